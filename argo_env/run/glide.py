@@ -73,6 +73,11 @@ class Glide:
         place = self._here if self._ahead is None else self._ahead[step - 1][0]
         return place, self._supply.charge_at(self._power[step - 1])
 
+    @property
+    def charges(self) -> tuple[float, float]:
+        """The least and the most charge of the battery after the steps, 0 to 1."""
+        return self._supply.charges(self._power)
+
     def go_to(self, step: int, now: float) -> None:
         """So many of the steps have passed by time `now` (s)."""
         count = step - self._passed

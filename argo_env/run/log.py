@@ -5,10 +5,11 @@ the same as that of a run that was never cut short.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Literal
 
-from pydantic import ValidationError
+from pydantic import TypeAdapter, ValidationError
 
 from argo_compiler.errors import Invalid
 from argo_compiler.hfsm import (
@@ -228,9 +229,9 @@ class Entry(Model):
 
 
 _LISTS = (
-    "tasks", "readings", "given_values", "anomalies", "found", "mishaps", "contacts", "path",
-    "resumed",
+    "tasks", "readings", "given_values", "anomalies", "found", "mishaps", "contacts", "resumed",
 )  # fmt: skip
+_PATH = TypeAdapter(list[PathSample])
 
 
 class RunLog:
@@ -249,8 +250,10 @@ class RunLog:
         self.last_event = 0.0
         """s, when the machine was told of something last, or a person let the robot do something"""
         self.contacts: list[Contact] = []
-        self.path: list[PathSample] = []
         self.resumed: list[float] = []
+        self._path: list[PathSample] = []
+        self._passed: list[tuple[float, Place, float | None]] = []
+        """what the path has besides: times (s), poses and charges"""
 
     def add(self, entry: Entry) -> None:
         self.last = entry
@@ -275,15 +278,33 @@ class RunLog:
         other = RunLog(self.site)
         for name in _LISTS:
             setattr(other, name, list(getattr(self, name)))
+        other._path, other._passed = list(self._path), list(self._passed)
         other.last_event = self.last_event
         other.add(entry)
         return other
 
     def sample(self, t: float, pose: Place, charge: float | None) -> None:
         """One more point of the recorded path: at time `t` (s), with such a charge (0 to 1)."""
-        x, y, z, yaw, pitch = (round(v, DIGITS) for v in pose)
-        floor = self.site.floor_at(pose[2])
-        charge = None if charge is None else round(charge, DIGITS)
-        self.path.append(
-            PathSample(t=t, x=x, y=y, z=z, yaw=yaw, pitch=pitch, floor=floor, charge=charge)
-        )
+        self._passed.append((t, pose, charge))
+
+    @property
+    def path(self) -> Sequence[PathSample]:
+        """The recorded path."""
+        if self._passed:
+            # Many samples in one go take half the time of one by one.
+            self._path += _PATH.validate_python([self._point(*passed) for passed in self._passed])
+            self._passed.clear()
+        return self._path
+
+    def _point(self, t: float, pose: Place, charge: float | None) -> dict[str, float | None]:
+        x, y, z, yaw, pitch = pose
+        return {
+            "t": t,
+            "x": round(x, DIGITS),
+            "y": round(y, DIGITS),
+            "z": round(z, DIGITS),
+            "yaw": round(yaw, DIGITS),
+            "pitch": round(pitch, DIGITS),
+            "floor": self.site.floor_at(z),
+            "charge": None if charge is None else round(charge, DIGITS),
+        }

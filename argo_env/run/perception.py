@@ -52,12 +52,12 @@ class Perception:
                         found.append(self._anomaly(watch, detection, now))
         return tuple(found)
 
-    def steps_to_look(self, first: int, last: int) -> set[int]:
+    def steps_to_look(self, first: int, last: int, charges: tuple[float, float]) -> set[int]:
         """The steps from the first to the last number in which anything may be noticed, if no fault
-        begins or ends meanwhile."""
+        begins or ends meanwhile and the charge of the battery is between these two (0 to 1)."""
         found: set[int] = set()
         for (_, every, turn), patient in zip(self._turns, self._patient, strict=True):
-            if patient is None or not patient.sees_nothing_new:
+            if patient is None or not patient.sees_nothing_new(*charges):
                 found.update(range(first + (turn - first) % every, last + 1, every))
         return found
 

@@ -93,5 +93,12 @@ class PowerSupply:
         """Of the battery, 0 to 1, when it stands like this."""
         return None if self._battery is None else state[1] / self._battery.capacity
 
+    def charges(self, states: Sequence[PowerState]) -> tuple[float, float]:
+        """The least and the most charge, 0 to 1, of some such states; full without a battery."""
+        if self._battery is None or not states:
+            return 1.0, 1.0
+        left = [state[1] for state in states]
+        return min(left) / self._battery.capacity, max(left) / self._battery.capacity
+
     def _docked(self, pose: BodyPose) -> bool:
         return any(at_dock(pose, dock) for dock in self._docks)

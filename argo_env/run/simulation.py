@@ -423,7 +423,7 @@ class Simulation(Closing):
             return None
         glide, first = vehicle.glide(course.action, most), course.steps
         last, every = first + glide.steps, self._sampled_every
-        looks = vehicle.steps_to_look(first + 1, last)
+        looks = vehicle.steps_to_look(glide, first + 1)
         samples = range(first + every - first % every, last + 1, every)
         for step in sorted({*looks, *samples, last} if glide.steps else ()):
             course.step_to(step)

@@ -109,9 +109,11 @@ class Vehicle:
         own = self._action if action else None
         return Glide(self.rig, self.odometry, self.supply, own, most)
 
-    def steps_to_look(self, first: int, last: int) -> set[int]:
-        """The numbers of the steps of a glide in which it looks whether there is anything."""
-        return self._perception.steps_to_look(first, last)
+    def steps_to_look(self, glide: Glide, first: int) -> set[int]:
+        """The numbers of the steps of a glide, which begin with the `first`, in which it looks
+        whether there is anything."""
+        last = first + glide.steps - 1
+        return self._perception.steps_to_look(first, last, glide.charges)
 
     def look(self, step: int, now: float) -> Sensed:
         """What it notices in that step of a glide, which ends at `now` (s)."""

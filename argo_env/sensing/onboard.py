@@ -22,6 +22,8 @@ from argo_env.surroundings.network import RadioNetwork
 
 LOW, FULL = 0.2, 0.99
 """shares of the charge: below the one the battery is low, from the other on it is charged again"""
+_UNCERTAIN = 0.01
+"""share of the charge, well above that by which an estimate from rounded volts is off"""
 WINDOW = 10.0  # s over which the way made is compared with the way planned
 SLOW = 0.6  # share of the planned speed below which something is wrong
 _SAMPLE = 0.2  # s between the places on the planned way that the robot's are compared with
@@ -44,6 +46,13 @@ class BatteryWatch:
 
     def remember(self, told: Sequence[Told], now: float) -> None:  # noqa: ARG002
         self._low = bool(told) and told[-1].kind is EventKind.LOW_BATTERY
+
+    def sees_nothing_new(self, least: float, most: float) -> bool:
+        """Whether the charge stays so far from the level at which it would be told that no
+        estimate reaches it."""
+        if self._low:
+            return most + _UNCERTAIN < FULL
+        return least - _UNCERTAIN > self._level
 
     def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
         voltage = self._battery.voltage
@@ -73,8 +82,7 @@ class ConnectionWatch:
         lost = bool(told) and told[-1].kind is EventKind.CONNECTION_LOST
         self._missed = self._limit if lost else 0
 
-    @property
-    def sees_nothing_new(self) -> bool:
+    def sees_nothing_new(self, least: float, most: float) -> bool:  # noqa: ARG002
         """Whether the network has no shadows, and the last answer has come."""
         return not self._network.shadows and not self._missed
 
@@ -107,8 +115,7 @@ class EmergencyStopWatch:
     def remember(self, told: Sequence[Told], now: float) -> None:  # noqa: ARG002
         self._pressed = bool(told) and self._drive.pressed
 
-    @property
-    def sees_nothing_new(self) -> bool:
+    def sees_nothing_new(self, least: float, most: float) -> bool:  # noqa: ARG002
         """Whether the circuit is as it was."""
         return self._pressed == self._drive.pressed
 

@@ -47,11 +47,11 @@ class Told:
 
 @runtime_checkable
 class PatientWatch(Watch, Protocol):
-    """A watch that sees nothing new for as long as no fault begins or ends."""
+    """A watch that can say when it will see nothing new for as long as no fault begins or ends."""
 
-    @property
-    def sees_nothing_new(self) -> bool:
-        """Whether no look tells or changes anything until then."""
+    def sees_nothing_new(self, least: float, most: float) -> bool:
+        """Whether no look tells or changes anything until then, the charge of the battery being
+        between these two (0 to 1)."""
         ...
 
 

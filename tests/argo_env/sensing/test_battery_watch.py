@@ -1,12 +1,15 @@
 """When the battery is called low, and when it is charged again."""
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from argo_compiler.il import Afterwards, EventKind, Reaction, Response
 from argo_env.drives.battery import Battery
 from argo_env.faults.robot import LowBattery
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.onboard import BatteryWatch
+from tests.conftest import examples
 from tests.yard import measure, mission, simulated, yard
 
 HERE = BodyPose(0.0, 0.0, 0.0, 0.0)
@@ -45,3 +48,32 @@ def test_it_is_low_once_and_again_when_it_was_charged(navigator):
         battery.charge = charge
         told += [detection.kind for detection in watch.look(0.0, HERE)]
     assert told == [EventKind.LOW_BATTERY, EventKind.BATTERY_CHARGED, EventKind.LOW_BATTERY]
+
+
+SHARES = st.floats(0.0, 1.0)
+
+
+@settings(max_examples=examples(500), deadline=None)
+@given(
+    level=SHARES,
+    was_low=st.booleans(),
+    charges=st.lists(SHARES, min_size=1, max_size=6),
+    watts=st.floats(-600.0, 400.0),
+)
+def test_who_need_not_look_would_have_seen_nothing(navigator, level, was_low, charges, watts):
+    battery = Battery(navigator.robot)
+    watch, twin = BatteryWatch(battery, level), BatteryWatch(battery, level)
+    if was_low:
+        battery.charge = 0.0
+        for one in (watch, twin):
+            one.look(0.0, HERE)
+    if not watch.sees_nothing_new(min(charges), max(charges)):
+        return
+    for charge in charges:
+        battery.charge = charge
+        battery.use(watts, 0.0)
+        assert not watch.look(1.0, HERE)
+    for charge in (0.0, 1.0, 0.0):
+        battery.charge = charge
+        told = [[d.kind for d in one.look(2.0, HERE)] for one in (watch, twin)]
+        assert told[0] == told[1], "and what it sees later is the same"

@@ -23,11 +23,13 @@ class TravelTimes:
         site = navigator.site
         docks = [site.docks[number] for number in sorted(site.docks)]
         self._places = [*docks, *(_view(navigator, c.id) for c in site.checkpoints)]
-        known = [k for k, place in enumerate(self._places) if place is not None]
+        self._known = known = [k for k, place in enumerate(self._places) if place is not None]
+        places = [place for place in self._places if place is not None]
         self._times = np.full((len(self._places), len(self._places)), np.inf)
-        self._times[np.ix_(known, known)] = navigator.travel_times(
-            [place for place in self._places if place is not None]
-        )
+        self._times[np.ix_(known, known)] = navigator.travel_times(places)
+        self._from_everywhere = navigator.parts.made(
+            "travel-times", lambda: {"times": navigator.travel_times_to(places)}
+        )["times"]
 
     def row(self, pose: BodyPose, navigator: Navigator) -> NDArray[np.float64]:
         """Estimated s from a pose to the docks and then to the checkpoints, in the order of their
@@ -43,11 +45,17 @@ class TravelTimes:
             if apart[nearest] <= _NEAR:
                 return np.asarray(self._times[nearest])
         here = Pose(x=pose.x, y=pose.y, z=pose.z, yaw=pose.yaw)
-        known = [k for k, place in enumerate(self._places) if place and _free(navigator, place)]
         row = np.full(len(self._places), np.inf)
-        if _free(navigator, here):
-            places = [place for k in known if (place := self._places[k])]
-            row[known] = navigator.travel_times_from(here, places)
+        try:
+            state = navigator.state_at(here)
+        except Unreachable:
+            return row
+        if navigator is self._navigator():
+            row[self._known] = self._from_everywhere[:, state]
+            return row
+        known = [k for k, place in enumerate(self._places) if place and _free(navigator, place)]
+        places = [place for k in known if (place := self._places[k])]
+        row[known] = navigator.travel_times_from(here, places)
         return row
 
 
@@ -60,7 +68,7 @@ def _view(navigator: Navigator, checkpoint: int) -> Pose | None:
 
 def _free(navigator: Navigator, pose: Pose) -> bool:
     try:
-        navigator.snap(pose)
+        navigator.state_at(pose)
     except Unreachable:
         return False
     return True

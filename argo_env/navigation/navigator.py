@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from argo_compiler.errors import Invalid, Unreachable
 from argo_compiler.model import Pose
 from argo_env.files.parts import NOWHERE, Parts
+from argo_env.navigation.arrivals import times_to
 from argo_env.navigation.blockage import Blockage, close, closed_cells, turns_over
 from argo_env.navigation.lattice import (
     DRIVING_LEVEL,
@@ -135,7 +136,7 @@ class Navigator:
 
         Raises Unreachable if there is none within SNAP_DISTANCE.
         """
-        (place,) = _poses(self.lattice, [self._state_at(pose)])
+        (place,) = _poses(self.lattice, [self.state_at(pose)])
         return place.model_copy(update={"yaw": pose.yaw})
 
     def plan(self, start: Pose, goal: Pose) -> Path:
@@ -147,8 +148,8 @@ class Navigator:
         return self._path(start, goal)
 
     def _find_path(self, start: Pose, goal: Pose) -> Path:
-        source = self._state_at(start)
-        target = self._state_at(goal)
+        source = self.state_at(start)
+        target = self.state_at(goal)
         states = self._routes.find(source, (np.array([target]), np.zeros(1)))
         if states is None:
             raise self._no_way(start, f"({goal.x:.2f}, {goal.y:.2f}, {goal.z:.2f})")
@@ -185,6 +186,23 @@ class Navigator:
         errors likewise."""
         return np.asarray(self._routes.times(self._states([start, *places]), 1)[0, 1:])
 
+    def travel_times_to(self, places: Sequence[Pose | int]) -> NDArray[np.float32]:
+        """Seconds to each of `places` from every state of the lattice, shape (n, states), inf where
+        there is no way; errors as for `travel_times`. Of ways that are equally cheap it may count
+        another one than `travel_times` does, which takes hardly more or less."""
+        return times_to(self.lattice, self._states(places))
+
+    def state_at(self, pose: Pose) -> int:
+        """The number of the lattice's state that ways from `pose` begin with. Raises Unreachable
+        if the robot can't stand there."""
+        state = nearest_state(self.lattice, pose)
+        if state is None:
+            raise Unreachable(
+                f"there is no place that the robot can reach within {SNAP_DISTANCE} m of "
+                f"({pose.x:.2f}, {pose.y:.2f}, {pose.z:.2f})"
+            )
+        return state
+
     def viewing_pose(self, checkpoint_id: int) -> Pose:
         """The pose that `travel_times` counts with for a checkpoint.
 
@@ -217,7 +235,7 @@ class Navigator:
     def _from_first_dock(self) -> NDArray[np.float64]:
         arrays = self.parts.made(
             "first-dock",
-            lambda: {"costs": self._routes.costs_from(self._state_at(self._first_dock))},
+            lambda: {"costs": self._routes.costs_from(self.state_at(self._first_dock))},
         )
         return arrays["costs"]
 
@@ -240,18 +258,9 @@ class Navigator:
 
     def _states(self, places: Sequence[Pose | int]) -> NDArray[np.int64]:
         states = [
-            self._state_at(p) if isinstance(p, Pose) else self._viewing_state(p) for p in places
+            self.state_at(p) if isinstance(p, Pose) else self._viewing_state(p) for p in places
         ]
         return np.array(states, dtype=np.int64)
-
-    def _state_at(self, pose: Pose) -> int:
-        state = nearest_state(self.lattice, pose)
-        if state is None:
-            raise Unreachable(
-                f"there is no place that the robot can reach within {SNAP_DISTANCE} m of "
-                f"({pose.x:.2f}, {pose.y:.2f}, {pose.z:.2f})"
-            )
-        return state
 
     def _no_way(self, start: Pose, goal: str) -> Unreachable:
         reasons = ", ".join(dict.fromkeys(b.reason for b in self.blockages))
@@ -268,7 +277,7 @@ class Navigator:
                 f"checkpoint {checkpoint_id} ({checkpoint.name}) can't be seen from anywhere that"
                 " the robot can reach"
             )
-        states = self._routes.find(self._state_at(start), goals)
+        states = self._routes.find(self.state_at(start), goals)
         if states is None:
             raise self._no_way(start, f"a view of checkpoint {checkpoint_id}")
         return states

@@ -167,3 +167,17 @@ def test_travel_times_of_nothing_and_of_what_is_not_there(hall):
         hall.travel_times([1, 99])
     with pytest.raises(Exception, match="no place that the robot can reach"):
         hall.travel_times([Pose(x=50.0, y=0.0, z=0.0)])
+
+
+@settings(max_examples=examples(10), deadline=None)
+@given(seed=st.integers(0, 10**6))
+def test_from_everywhere_it_takes_as_long_as_from_each_place(hall, seed):
+    ids = [c.id for c in hall.site.checkpoints]
+    everywhere = hall.travel_times_to([hall.site.docks[1], *ids])
+    assert everywhere.shape == (len(ids) + 1, hall.lattice.size)
+    for state in some_states(hall.lattice, seed, 8):
+        x, y, z, yaw = hall.lattice.poses(np.array([state]))[0].tolist()
+        here = Pose(x=x, y=y, z=z, yaw=yaw)
+        assert hall.state_at(here) == state
+        row = hall.travel_times_from(here, [hall.site.docks[1], *ids])
+        assert everywhere[:, state] == pytest.approx(row, rel=0.02, abs=1e-4)

@@ -14,6 +14,8 @@ _CURVE = (
 of the robot that Argo's is modelled after."""
 _CHARGES, _VOLTAGES = ([point[k] for point in _CURVE] for k in (0, 1))
 RESISTANCE = 0.05  # ohm, assumed
+ESTIMATE_ERROR = 0.005
+"""by how much the estimated charge is off at most, as volts are measured to 10 mV"""
 _MOVING = 0.02  # m/s or rad/s from where on the robot moves, and does not only settle
 _ON_STAIRS = math.radians(8.0)  # of pitch
 

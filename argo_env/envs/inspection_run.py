@@ -8,7 +8,7 @@ from argo_compiler.hfsm import ActionFailed
 from argo_compiler.il import Action, EventKind, Mission, Task
 from argo_compiler.model import Pose
 from argo_env.closing import Closing
-from argo_env.drives.battery import estimated_charge
+from argo_env.drives.battery import ESTIMATE_ERROR, estimated_charge
 from argo_env.navigation import Navigator
 from argo_env.planning.opening import OpenedSite
 from argo_env.robot.pose import BodyPose
@@ -120,8 +120,7 @@ class Inspection(Closing):
         self._told.clear()
         end = self.now + seconds
         while not self._over and (self.now < end or (charging and self.charge < FULL)):
-            # How full the battery is, is looked at in each step.
-            self._step(self.now if charging else end)
+            self._step(end if self.now < end else self._surely_not_full)
         if self.time_up:
             self._stop()
         return self._deed()
@@ -132,6 +131,15 @@ class Inspection(Closing):
         self._simulation.settle()
 
     @property
+    def _surely_not_full(self) -> float:
+        """s, a time up to which the battery can't be found full, however it is charged."""
+        battery = self._simulation.rig.battery
+        assert battery is not None
+        watts = self._simulation.rig.navigator.robot.power.charging
+        missing = (FULL - ESTIMATE_ERROR - battery.charge) * battery.capacity
+        return self.now + max(0.0, missing) * 3600.0 / watts
+
+    @property
     def _over(self) -> bool:
         return self._simulation.over or self.time_up
 
@@ -140,7 +148,7 @@ class Inspection(Closing):
         began = self.now
         self._simulation.give(task)
         while self._simulation.task is not None and not self._over:
-            self._step(self._limit)
+            self._step(math.inf)
         if self.time_up:
             self._stop()
         return self._deed(began)
@@ -152,15 +160,12 @@ class Inspection(Closing):
     def _step(self, until: float) -> None:
         """Goes on for one time step, or for many up to that time (s)."""
         began = self.now
-        if until <= began:
-            self._simulation.step()
-        else:
-            last = _position(self._trail[-1][1])
-            for number, place in enumerate(self._simulation.leap(until), start=1):
-                if math.dist(place[:3], last) >= _TRAIL:
-                    now = round(began + number * self._drive.time_step, 6)
-                    self._trail.append((now, BodyPose(*place)))
-                    last = place[:3]
+        last = _position(self._trail[-1][1])
+        for number, place in enumerate(self._simulation.leap(min(until, self._limit)), start=1):
+            if math.dist(place[:3], last) >= _TRAIL:
+                now = round(began + number * self._drive.time_step, 6)
+                self._trail.append((now, BodyPose(*place)))
+                last = place[:3]
         self._mark(self.now, self._drive.pose)
 
     def _deed(self, began: float = math.inf) -> Deed:

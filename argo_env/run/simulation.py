@@ -102,7 +102,9 @@ class Simulation(Closing):
         self._closed = False
         self._changing = False
         self._broken = False
+        self._ended = False
         self._record: RunRecord | None = None
+        """that of the ended run, once it was asked for"""
         require_site(site, spec)
         require_machine(machine, spec)
         check_given([*spec.events, *events], spec.mission, site.site)
@@ -126,7 +128,7 @@ class Simulation(Closing):
     @property
     def over(self) -> bool:
         """Whether the run has ended."""
-        return self._record is not None
+        return self._ended
 
     @property
     def spec(self) -> RunSpec:
@@ -174,7 +176,9 @@ class Simulation(Closing):
 
     def record(self) -> RunRecord:
         """The record of the run: of the whole of it, or as it stands now."""
-        if self._record is not None:
+        if self._ended:
+            if self._record is None:
+                self._record = self._course.record(self._spec)
             return self._record
         present = self._course.entry(sample=self._course.unsampled)
         contacts = (*present.contacts, *present.touching)
@@ -402,7 +406,7 @@ class Simulation(Closing):
             return 0
         if (course.action is None) != (machine.running is None):
             return 0
-        if machine.running is None and deadline is None:
+        if machine.running is None and deadline is None and until == math.inf:
             return 0  # it waits for what is told
         schedule = self.rig.schedule
         next_time = min(
@@ -520,7 +524,8 @@ class Simulation(Closing):
         self._conclude()
 
     def _conclude(self) -> None:
-        self._record = self._course.record(self._spec)
+        self._ended = True
         _log.info("the run has ended at %g s", self.now)
         for observer in self._observers:
-            observer.on_end(self._record)
+            if hears(observer, "on_end"):
+                observer.on_end(self.record())

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from argo_compiler.il import EventKind
-from argo_env.drives.battery import Battery, estimated_charge
+from argo_env.drives.battery import ESTIMATE_ERROR, Battery, estimated_charge
 from argo_env.drives.powertrain import Powertrain
 from argo_env.navigation.path import Path, wrap
 from argo_env.robot.pose import BodyPose
@@ -22,8 +22,6 @@ from argo_env.surroundings.network import RadioNetwork
 
 LOW, FULL = 0.2, 0.99
 """shares of the charge: below the one the battery is low, from the other on it is charged again"""
-_UNCERTAIN = 0.01
-"""share of the charge, well above that by which an estimate from rounded volts is off"""
 WINDOW = 10.0  # s over which the way made is compared with the way planned
 SLOW = 0.6  # share of the planned speed below which something is wrong
 _SAMPLE = 0.2  # s between the places on the planned way that the robot's are compared with
@@ -51,8 +49,8 @@ class BatteryWatch:
         """Whether the charge stays so far from the level at which it would be told that no
         estimate reaches it."""
         if self._low:
-            return most + _UNCERTAIN < FULL
-        return least - _UNCERTAIN > self._level
+            return most + ESTIMATE_ERROR < FULL
+        return least - ESTIMATE_ERROR > self._level
 
     def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
         voltage = self._battery.voltage

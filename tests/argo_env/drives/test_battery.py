@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_env.drives.battery import Battery, estimated_charge, load
+from argo_env.drives.battery import ESTIMATE_ERROR, Battery, estimated_charge, load
 from argo_env.robot.pose import BodyPose
 from tests.conftest import examples
 
@@ -44,7 +44,7 @@ def test_the_voltage_tells_the_charge(robot, charge, watts):
     battery.charge = charge
     battery.use(watts, 1e-9)
     told = estimated_charge(battery.voltage, battery.current)
-    assert told == pytest.approx(charge, abs=0.005)
+    assert told == pytest.approx(charge, abs=ESTIMATE_ERROR)
     assert 22.0 <= battery.voltage <= 29.5
 
 

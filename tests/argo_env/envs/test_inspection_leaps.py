@@ -1,0 +1,60 @@
+"""An inspection goes from event to event: all that it tells is what it tells step by step."""
+
+import os
+import random
+
+import pytest
+
+from argo_env.envs.inspection_run import Inspection, beginning
+from argo_env.faults.reading import decode_faults
+from argo_env.planning.opening import open_site
+from argo_env.run.conditions import RunConditions
+from argo_env.run.simulation import Simulation
+from argo_env.run.spec import RunSpec
+
+SITE = open_site("umad")
+EXAMPLES = int(os.environ.get("ARGO_EXAMPLES", "20"))
+FAULTS = (
+    "{kind: low_battery, charge: 0.12}",
+    "{kind: low_battery, charge: 0.006}",
+    "{kind: worn_battery, capacity: 0.2}",
+    "{kind: emergency_stop, at: 31.27, until: 52.1}",
+    "{kind: connection_loss, at: 60, until: 90}",
+    "{kind: drive_dysfunction, at: 12, until: 80}",
+)
+
+
+def told_of(seed: int) -> list[object]:
+    """All that is told of a random inspection."""
+    chosen = random.Random(seed)
+    docks = SITE.site.docks
+    faults = ", ".join(chosen.sample(FAULTS, chosen.choice([0, 1, 1, 2])))
+    spec = RunSpec(
+        mission=beginning(SITE, docks[chosen.choice([1, 2])]),
+        drive="route",
+        seed=seed,
+        faults=decode_faults(f"faults: [{faults}]".encode(), "test").faults,
+        conditions=RunConditions(charge=chosen.choice([None, 0.97, 0.995, 0.3])),
+    )
+    told: list[object] = []
+    with Inspection(SITE, spec, chosen.choice([150.0, 400.0, 1500.0])) as run:
+        while not (run.time_up or run.dead or len(told) > 20):
+            match chosen.randrange(3):
+                case 0:
+                    deed = run.read(chosen.choice(SITE.site.checkpoints).id)
+                case 1:
+                    deed = run.drive(docks[chosen.choice([1, 2])])
+                    if not (run.time_up or run.dead):
+                        deed = run.stand(chosen.choice([0.0, 10.0]), charging=True)
+                case _:
+                    deed = run.stand(chosen.choice([0.05, 0.3, 33.3, 200.0]))
+            told += [deed, run.now, run.charge, run.pose]
+        return [*told, run.trail, run.noticed, run.record().model_dump_json()]
+
+
+@pytest.mark.parametrize("seed", range(EXAMPLES))
+def test_it_tells_what_it_tells_step_by_step(seed, monkeypatch):
+    leaping = told_of(seed)
+    monkeypatch.setattr(Simulation, "leap", lambda self, until: self.step() or ())  # noqa: ARG005
+    for fast, slow in zip(leaping, told_of(seed), strict=True):
+        assert fast == slow

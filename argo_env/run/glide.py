@@ -13,7 +13,7 @@ from argo_env.drives.powertrain import Powertrain
 from argo_env.robot.pose import Place
 from argo_env.run.action import ActionUnderWay
 from argo_env.run.odometry import Odometry
-from argo_env.run.power_supply import PowerSupply
+from argo_env.run.power_supply import PowerState, PowerSupply
 from argo_env.run.rig import Rig
 
 
@@ -35,6 +35,7 @@ class Glide:
         self._action = action
         self._passed = 0
         self._ahead: list[tuple[Place, int]] | None = None
+        self._power: Sequence[PowerState] = ()
         pose = rig.drive.pose
         self._here = here = (pose.x, pose.y, pose.z, pose.yaw, pose.pitch)
         if not isinstance(rig.drive, Powertrain) or odometry.touching or pose.roll:

@@ -50,6 +50,7 @@ class Evaluation:
         if not named:
             raise Invalid("there is nothing to evaluate: give a mission")
         opened = open_site(site) if isinstance(site, str) else site
+        worlds.check(opened.site)
         cases = []
         for mission_name, mission in named.items():
             for faults_name, own in (faults or {NO_FAULTS: ()}).items():

@@ -161,6 +161,8 @@ def parse_seeds(text: str) -> tuple[int, ...]:
         low, high = int(first), int(last or first)
         if high < low or high - low >= MOST_RUNS:
             raise Invalid(f"seeds `{part}`: the last one is before the first, or it is too many")
+        if high > LARGEST_SEED:
+            raise Invalid(f"seeds `{part}`: the largest there can be is {LARGEST_SEED}")
         found += range(low, high + 1)
     if len(set(found)) < len(found):
         raise Invalid(f"seeds `{text}`: one is there twice")
@@ -169,3 +171,5 @@ def parse_seeds(text: str) -> tuple[int, ...]:
 
 MOST_RUNS = 10_000_000
 """seeds that one range may have"""
+LARGEST_SEED = 2**63 - 1
+"""that rows can be kept of"""

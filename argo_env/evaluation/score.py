@@ -107,10 +107,10 @@ def score_of(row: RunRow, rules: ScoringRules) -> RunScore:
 
 
 def mean_score(rows: Sequence[RunRow], rules: ScoringRules) -> Estimate:
-    """The mean over runs, with an interval of 95 % by the bootstrap over worlds, as the runs of one
-    world depend on each other."""
+    """The mean over runs that were carried out, with an interval of 95 % by the bootstrap over
+    worlds, as the runs of one world depend on each other."""
     worlds: dict[int, list[float]] = {}
-    for row in rows:
+    for row in filter(lambda row: row.carried_out, rows):
         worlds.setdefault(row.seed, []).append(score_of(row, rules).total)
     if not worlds:
         return Estimate(math.nan, math.nan, math.nan)

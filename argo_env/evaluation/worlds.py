@@ -4,11 +4,14 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from argo_compiler.errors import Invalid, NotFound
 from argo_compiler.model import Model
 from argo_env.faults.distribution import FaultDistribution
 from argo_env.run.conditions import RunConditions, ValueProfile, ValueStep
+from argo_env.run.rig import true_values
 from argo_env.run.spec import RunSpec
 from argo_env.seeding import generator
+from argo_env.site import Site
 
 
 def _between(said: object) -> object:
@@ -89,6 +92,15 @@ class Variation(_Ranges):
                 # Says by itself what a run can't have.
                 RunConditions.model_validate({name: end})
         return self
+
+    def check(self, site: Site) -> None:
+        """Raises Invalid for values that no checkpoint of the site can show."""
+        for id, one in self.values.items():
+            try:
+                for value in one.start or (site.checkpoint(id).nominal.low,):
+                    true_values(site, 0, {id: value})
+            except NotFound as error:
+                raise Invalid(str(error)) from error
 
     def applied(self, spec: RunSpec, seed: int) -> RunSpec:
         """The spec of the run in the world of a seed."""

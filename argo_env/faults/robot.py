@@ -20,7 +20,7 @@ class LowBattery(Fault):
 
     kind: Literal["low_battery"] = "low_battery"
     charge: float | None = Field(default=None, gt=0, le=1)
-    """share of the capacity that is there at the start"""
+    """share of the capacity that is there at the start, unless there is less anyway"""
 
     def settled(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
         drawn = draw(rng, 0.1, 0.25, 3)
@@ -28,7 +28,7 @@ class LowBattery(Fault):
 
     def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.charge is not None
-        targets.battery.charge = self.charge
+        targets.battery.charge = min(targets.battery.charge, self.charge)
 
 
 class WornBattery(Fault):

@@ -4,6 +4,7 @@ import math
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from statistics import median
 
 from rich.console import Console
 from rich.markup import escape
@@ -33,13 +34,18 @@ def show_results(
     requirements, and how each failing run is made again."""
     console.print(_plans(results))
     for plan in results.plan.plans:
+        if results.plan.strata:
+            continue  # its runs don't count alike
         score = mean_score(results.of(plan), scoring)
+        if math.isnan(score.value):
+            continue
         several = len(results.plan.plans) > 1
         name = f"{plan.beside(results.plan.plans)}: score" if several else "Score"
+        # Equal scores say nothing of how far others are from them.
+        varies = score.low < score.high
+        between = f" ({score.low:.1f} to {score.high:.1f})" if varies else ""
         console.print(
-            f"{escape(name)} {score.value:.1f} of {scoring.most:g} points "
-            f"({score.low:.1f} to {score.high:.1f})",
-            soft_wrap=True,
+            f"{escape(name)} {score.value:.1f} of {scoring.most:g} points{between}", soft_wrap=True
         )
     for plan in results.plan.plans:
         groups = results.by_faults(plan)
@@ -98,11 +104,11 @@ def _titled(what: str, plan: PlanName, results: EvaluationResults) -> str:
 def _plans(results: EvaluationResults) -> Table:
     table = Table(title=escape(results.plan.name), title_justify="left")
     table.add_column("plan")
-    for name in ("runs", "success", "95 % interval", "failures", "errors", "died", "time"):
+    for name in ("runs", "success", "95 % interval", "failures", "errors", "died", "median time"):
         table.add_column(name, justify="right")
     for plan in results.plan.plans:
         rows, rate = results.of(plan), results.rate(plan)
-        took = sorted(row.duration for row in rows if row.duration is not None)
+        took = [row.duration for row in rows if row.duration is not None]
         counts = {o: sum(row.outcome is o for row in rows) for o in RunOutcome}
         star = "" if rate.method is IntervalMethod.EXACT else " *"
         table.add_row(
@@ -113,7 +119,7 @@ def _plans(results: EvaluationResults) -> Table:
             str(counts[RunOutcome.FAILURE] or ""),
             str(counts[RunOutcome.ERROR] or ""),
             str(counts[RunOutcome.DIED] or ""),
-            clock(took[len(took) // 2]) if took else "",
+            clock(median(took)) if took else "",
         )
     methods = {results.rate(plan).method for plan in results.plan.plans}
     if IntervalMethod.SEQUENCE in methods:

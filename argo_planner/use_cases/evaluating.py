@@ -57,7 +57,11 @@ def plan_evaluation(
     """
     sets = [*_fault_sets(file, folder)]
     cases = [*_cases(file, folder, read, sets)]
+    if not cases:
+        raise Invalid("nothing is to be run: `faults` is empty; give at least `none`")
     worlds = file.worlds
+    for site, robot in {(case.spec.site, case.spec.robot) for case in cases if worlds.values}:
+        worlds.check(open_site(site, load_robot(robot)).site)
     if isinstance(file.faults, DrawnFaults) and not file.faults.strata:
         drawn = _distribution(file.faults, folder)
         _require_drawn(cases, drawn, str(folder / file.faults.file))

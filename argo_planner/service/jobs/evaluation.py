@@ -1,5 +1,6 @@
 """The evaluation of a mission: it is run in many worlds, in processes of its own."""
 
+import hashlib
 import os
 import time
 from collections import Counter
@@ -109,8 +110,18 @@ class EvaluationOrder(Model):
             width=asked.width,
             name=self.name,
         )
-        added = ", ".join(o.name or o.id for o in self.obstacles)
-        return evaluation.plan.model_copy(update={"added": added and f"obstacles: {added}"})
+        if not self.obstacles:
+            return evaluation.plan
+        # Made anew: runs among other obstacles are other runs, and known by other keys.
+        said = "".join(obstacle.model_dump_json() for obstacle in self.obstacles)
+        among = hashlib.sha256(said.encode()).hexdigest()
+        cases = tuple(
+            case.model_copy(update={"digest": f"{case.digest} {among}"})
+            for case in evaluation.plan.cases
+        )
+        same = {name: getattr(evaluation.plan, name) for name in EvaluationPlan.model_fields}
+        added = ", ".join(obstacle.name or obstacle.id for obstacle in self.obstacles)
+        return EvaluationPlan(**{**same, "cases": cases, "added": f"obstacles: {added}"})
 
 
 def evaluate_mission(order: EvaluationOrder, folder: Path, tell: Tell) -> EvaluationStanding:

@@ -59,7 +59,10 @@ def test_seeds_as_people_write_them(text, seeds):
     assert parse_seeds(text) == seeds
 
 
-@pytest.mark.parametrize("text", ["", "a", "3..1", "1,1", "0..2,2", "-1", "0...3", "0..99999999"])
+@pytest.mark.parametrize(
+    "text",
+    ["9223372036854775808", "", "a", "3..1", "1,1", "0..2,2", "-1", "0...3", "0..99999999"],
+)
 def test_seeds_that_are_none(text):
     with pytest.raises(Invalid, match="seeds"):
         parse_seeds(text)

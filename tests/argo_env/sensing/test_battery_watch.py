@@ -8,6 +8,7 @@ from argo_compiler.il import Afterwards, EventKind, Reaction, Response
 from argo_env.drives.battery import Battery
 from argo_env.faults.robot import LowBattery
 from argo_env.robot.pose import BodyPose
+from argo_env.run.conditions import RunConditions
 from argo_env.sensing.onboard import BatteryWatch
 from tests.conftest import examples
 from tests.yard import measure, mission, simulated, yard
@@ -37,6 +38,15 @@ def test_a_mission_says_from_which_charge_on_the_battery_is_low(navigator, level
     plan = mission(measure(1), reactions=(reaction(level),))
     record = simulated(plan, navigator, faults=(LowBattery(charge=0.5),))
     assert (EventKind.LOW_BATTERY in {a.kind for a in record.anomalies}) == low
+
+
+@pytest.mark.parametrize(("fault", "left"), [(0.5, 0.3), (0.2, 0.2)])
+def test_a_low_battery_is_never_a_fuller_one(navigator, fault, left):
+    spec = RunConditions(charge=0.3)
+    record = simulated(
+        mission(measure(1)), navigator, faults=(LowBattery(charge=fault),), conditions=spec
+    )
+    assert record.path[0].charge == pytest.approx(left, abs=0.01)
 
 
 @pytest.mark.rule("R11")

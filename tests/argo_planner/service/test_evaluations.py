@@ -139,7 +139,8 @@ def test_it_outlives_the_service(tmp_path: Path, site: OpenedSite) -> None:
 def test_obstacles_stand_in_the_worlds(tmp_path: Path, site: OpenedSite) -> None:
     with served(tmp_path, site) as service:
         id = imported(service)
-        free = over(service, begin(service, id, worlds=2))["standing"]
+        before = over(service, begin(service, id, worlds=2))
+        free = before["standing"]
         start = service.client.get(f"/api/missions/{id}").json()["mission"]["tasks"][0]["pose"]
         crate = {
             "id": "crate",
@@ -154,6 +155,12 @@ def test_obstacles_stand_in_the_worlds(tmp_path: Path, site: OpenedSite) -> None
         job = over(service, begin(service, id, worlds=2))
         assert job["standing"]["times"] != free["times"] or job["standing"]["failing"]
         assert "the crate" in service.client.get(f"/api/jobs/{job['id']}/report").text
+        keys = [
+            {row.key for row in read_rows(tmp_path / "evaluations" / one["id"])}
+            for one in (before, job)
+        ]
+        assert len(keys[0]) == len(keys[1]) == 2
+        assert not keys[0] & keys[1], "runs among other obstacles are other runs"
 
 
 def test_what_makes_no_sense_is_refused_before_anything_runs(service: Served, id: str) -> None:
@@ -165,6 +172,8 @@ def test_what_makes_no_sense_is_refused_before_anything_runs(service: Served, id
         ({"sensor": "camera"}, "take the sensor `ideal` or another drive"),
         ({"faults": [{"kind": "brick"}]}, "take another drive"),
         ({"variation": {"speed": [0.9, 0.5]}}, "the least comes first"),
+        ({"variation": {"values": {"999": {"drift": [0, 1]}}}}, "no checkpoint 999"),
+        ({"variation": {"values": {"1": {"start": [1, 1e300]}}}}, "checkpoint 1"),
     ):
         assert why in problem(asked(service, id, **said), 422, "invalid")["detail"], said
     problem(asked(service, id, revision='"77"'), 412, "stale-revision")

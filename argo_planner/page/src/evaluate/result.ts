@@ -254,7 +254,7 @@ export class EvaluateResult extends PageElement {
       </svg>
       <figcaption>
         <span class="axis"><span>0 ${texts.runs}, 0–100 %</span><span>${figure(now.most)}</span></span>
-        ${job.state === "running" ? texts.while : nothing}
+        ${job.state === "done" ? nothing : texts.while}
       </figcaption>
     </figure>`;
   }

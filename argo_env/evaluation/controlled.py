@@ -114,9 +114,7 @@ def with_drive(plan: EvaluationPlan, drive: str) -> EvaluationPlan:
         spec = case.spec.model_copy(update={"drive": drive, "sensor": sensor})
         check_spec(spec, open_site(spec.site, load_robot(spec.robot)).site)
         cases.append(case.model_copy(update={"spec": spec}))
-    # Made anew: a copy would keep the names of the plans that the other cases had.
-    same = {name: getattr(plan, name) for name in EvaluationPlan.model_fields}
-    return EvaluationPlan(**{**same, "cases": tuple(cases), "stopping": Stopping()})
+    return plan.changed(cases=tuple(cases), stopping=Stopping())
 
 
 def _part(plan: EvaluationPlan, seeds: Sequence[int]) -> EvaluationPlan:

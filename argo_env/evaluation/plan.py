@@ -4,6 +4,7 @@ import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 from pydantic import Field
 
@@ -93,6 +94,12 @@ class EvaluationPlan(Model):
     added: str = ""
     """what stands on the site beside its description, in words: where something does, no run can
     be made again from its spec alone"""
+
+    def changed(self, **fields: Any) -> "EvaluationPlan":
+        """A plan with other `fields`, made anew: a copy would keep the names of the plans that the
+        cases before had."""
+        same = {name: getattr(self, name) for name in EvaluationPlan.model_fields}
+        return EvaluationPlan(**{**same, **fields})
 
     @cached_property
     def plans(self) -> tuple[PlanName, ...]:

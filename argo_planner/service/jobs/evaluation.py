@@ -112,16 +112,15 @@ class EvaluationOrder(Model):
         )
         if not self.obstacles:
             return evaluation.plan
-        # Made anew: runs among other obstacles are other runs, and known by other keys.
+        # Runs among other obstacles are other runs, and known by other keys.
         said = "".join(obstacle.model_dump_json() for obstacle in self.obstacles)
         among = hashlib.sha256(said.encode()).hexdigest()
         cases = tuple(
             case.model_copy(update={"digest": f"{case.digest} {among}"})
             for case in evaluation.plan.cases
         )
-        same = {name: getattr(evaluation.plan, name) for name in EvaluationPlan.model_fields}
         added = ", ".join(obstacle.name or obstacle.id for obstacle in self.obstacles)
-        return EvaluationPlan(**{**same, "cases": cases, "added": f"obstacles: {added}"})
+        return evaluation.plan.changed(cases=cases, added=f"obstacles: {added}")
 
 
 def evaluate_mission(order: EvaluationOrder, folder: Path, tell: Tell) -> EvaluationStanding:

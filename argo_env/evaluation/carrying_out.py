@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from argo_compiler.errors import ArgoError
 from argo_env.evaluation.plan import EvaluationCase
 from argo_env.evaluation.row import RunOutcome, RunRow, row_of, row_without_end
-from argo_env.planning.opening import OpenedSite
+from argo_env.planning.opening import OpenedSite, open_site
+from argo_env.robot.spec import load_robot
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 
@@ -43,7 +44,9 @@ def _row(order: WorkOrder, site: OpenedSite | None) -> RunRow:
         watchdog.daemon = True
         watchdog.start()
     try:
-        return row_of(order.key, order.case, order.spec, simulate(order.spec, site))
+        opened = site or open_site(order.spec.site, load_robot(order.spec.robot))
+        record = simulate(order.spec, opened)
+        return row_of(order.key, order.case, order.spec, record, opened.site)
     except ArgoError as error:
         return row_without_end(order.key, order.case, order.spec, RunOutcome.ERROR, str(error))
     except Exception as error:  # told in the row, with its place

@@ -7,10 +7,12 @@ from pydantic import Field
 
 from argo_compiler.il import Action
 from argo_compiler.model import Model
-from argo_env.evaluation.detection import FaultDetection, detections, false_alarms
+from argo_env.evaluation.detection import FaultDetection, detections
+from argo_env.evaluation.false_alarms import false_alarms
 from argo_env.evaluation.plan import EvaluationCase, PlanName
 from argo_env.run.record import RunRecord
 from argo_env.run.spec import RunSpec
+from argo_env.site import Site
 from argo_env.site.shapes import Vector
 
 _CARRIED_OUT = (Action.MEASURE, Action.WAYPOINT)
@@ -65,7 +67,8 @@ class RunRow(Model):
     """readings outside their nominal range"""
     findings: int = 0
     false_alarms: int = 0
-    """findings that no fault accounts for"""
+    """findings that were not so: neither a fault nor the values, charge or speed of this world
+    account for them"""
     contacts: int = 0
     mishaps: int = 0
     late: int = 0
@@ -93,8 +96,8 @@ class RunRow(Model):
         return self.outcome in (RunOutcome.SUCCESS, RunOutcome.FAILURE)
 
 
-def row_of(key: str, case: EvaluationCase, spec: RunSpec, record: RunRecord) -> RunRow:
-    """The row of a run that was carried out."""
+def row_of(key: str, case: EvaluationCase, spec: RunSpec, record: RunRecord, site: Site) -> RunRow:
+    """The row of a run that was carried out on the site."""
     result = record.result
     asked = {task.name for task in record.mission.tasks if task.action in _CARRIED_OUT}
     done = {run.task for run in record.tasks if run.outcome == "done"}
@@ -116,11 +119,11 @@ def row_of(key: str, case: EvaluationCase, spec: RunSpec, record: RunRecord) -> 
             "readings": len(record.readings),
             "abnormal": sum(not reading.normal for reading in record.readings),
             "findings": len(record.findings),
-            "false_alarms": false_alarms(record),
+            "false_alarms": false_alarms(record, spec, site),
             "contacts": len(record.contacts),
             "mishaps": len(record.mishaps),
             "late": len(record.late),
-            "detections": detections(record),
+            "detections": detections(record, site),
             **({} if result.success else _where_it_failed(record)),
         }
     )

@@ -65,7 +65,7 @@ _WORDS = {
     "mishap": "there was trouble on the way",
     "late": "it took longer than it may",
     "detected": "all that was wrong was found",
-    "false alarm": "something was found that no fault accounts for",
+    "false alarm": "something was found that was not so",
 }
 
 

@@ -16,6 +16,8 @@ class Remedy(StrEnum):
     CHOOSE_START = "choose-start"
     CHOOSE_END = "choose-end"
     CHOOSE_SITE = "choose-site"
+    CHOOSE_OUTPUT = "choose-output"
+    CHOOSE_PLAN = "choose-plan"
     FILM_INSTEAD = "film-instead"
     GIVE_BUDGET = "give-budget"
     SEARCH_LONGER = "search-longer"

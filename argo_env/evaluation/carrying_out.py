@@ -26,6 +26,8 @@ class WorkOrder:
     spec: RunSpec
     world: dict[str, float]
     """what was drawn for its world"""
+    drawn: str = ""
+    """what the faults are called that were"""
     limit: float | None = None
     """s of wall time that it may take; then its process ends, and that is its reason"""
 
@@ -34,7 +36,7 @@ def carry_out(order: WorkOrder, site: OpenedSite | None = None) -> RunRow:
     """Makes the run, on the site that it names unless one is given, and its row. What goes wrong in
     the simulator is an outcome as well: one of many thousand runs must not end them all."""
     row = _row(order, site)
-    return row.model_copy(update={"world": order.world})
+    return row.model_copy(update={"world": order.world, "drawn": order.drawn})
 
 
 def _row(order: WorkOrder, site: OpenedSite | None) -> RunRow:

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from argo_compiler.errors import Conflict
+from argo_compiler.errors import Conflict, NotFound, Remedy
 from argo_env.evaluation.plan import PlanName
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
@@ -126,10 +126,29 @@ def compare_plans(
     return PlanComparison(said[0], said[1], tuple(whole), len(pairs) - len(whole))
 
 
+def named_plan(results: EvaluationResults, name: str) -> PlanName:
+    """The plan that is called so in the tables of an evaluation, or whose mission is.
+
+    Raises NotFound if there is none, Conflict if there are several.
+    """
+    plans = results.plan.plans
+    found = [plan for plan in plans if plan.beside(plans) == name]
+    found = found or [plan for plan in plans if plan.mission == name]
+    known = "; ".join(plan.beside(plans) for plan in plans)
+    if not found:
+        raise NotFound(f"{results.plan.name} has no plan `{name}`; there are: {known}")
+    if len(found) > 1:
+        raise Conflict(f"{results.plan.name}: several plans are of `{name}`: {known}")
+    return found[0]
+
+
 def _only(results: EvaluationResults) -> PlanName:
     if len(results.plan.plans) != 1:
         names = "; ".join(plan.beside(results.plan.plans) for plan in results.plan.plans)
-        raise Conflict(f"{results.plan.name} has several plans, say which is meant: {names}")
+        raise Conflict(
+            f"{results.plan.name} has several plans, say which is meant: {names}",
+            remedies=(Remedy.CHOOSE_PLAN,),
+        )
     return results.plan.plans[0]
 
 

@@ -18,7 +18,11 @@ from argo_compiler.model import Model
 from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
-from argo_env.evaluation.statistics.control import ControlVariate, controlled_mean
+from argo_env.evaluation.statistics.control import (
+    FEWEST_PAIRS,
+    ControlVariate,
+    controlled_mean,
+)
 from argo_env.evaluation.statistics.strata import Estimate
 from argo_env.planning.opening import open_site
 from argo_env.robot.spec import load_robot
@@ -76,8 +80,9 @@ def run_controlled(
     """Carries the plan out, and with the cheap `drive` as many more worlds as pay, if any do.
 
     Both are run in the first worlds, which tells how they go together and what they cost; what was
-    measured is kept in the folder. Raises ArgoError for several plans at once, strata, or a cheap
-    drive that can't have the same faults.
+    measured is kept in the folder. No means are told where too few worlds could be run with both.
+    Raises ArgoError for several plans at once, strata, few worlds, or a cheap drive that can't have
+    the same faults.
     """
     cheap = with_drive(plan, drive)
     first = plan.seeds[:PILOT]
@@ -86,8 +91,11 @@ def run_controlled(
     between = clock()
     cheap_pilot = make(_part(cheap, first))
     cost = _cost(folder, between - begun, clock() - between)
-    controls = {name: _measured(name, expensive_pilot, cheap_pilot, cost) for name in _QUANTITIES}
     results = make(plan)
+    pairs = by_world(expensive_pilot, "success").keys() & by_world(cheap_pilot, "success").keys()
+    if len(pairs) < FEWEST_PAIRS:
+        return results, ()
+    controls = {name: _measured(name, expensive_pilot, cheap_pilot, cost) for name in _QUANTITIES}
     seeds = tuple(dict.fromkeys(row.seed for row in results.rows))
     paying = [control for control in controls.values() if control.pays]
     more: tuple[int, ...] = ()
@@ -106,6 +114,11 @@ def with_drive(plan: EvaluationPlan, drive: str) -> EvaluationPlan:
     """The same plan with a cheap drive. Raises ArgoError if it can't have that."""
     if len(plan.plans) > 1 or plan.strata:
         raise Invalid("cheap runs help one plan without strata: give one mission, drive and policy")
+    if len(plan.seeds) < FEWEST_PAIRS:
+        raise Invalid(
+            f"how runs of two drives go together takes at least {FEWEST_PAIRS} worlds to measure: "
+            "give more seeds"
+        )
     if plan.plans[0].drive == drive:
         raise Conflict(f"the drive `{drive}` can't help itself: take a cheaper one")
     cases = []

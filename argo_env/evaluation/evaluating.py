@@ -141,10 +141,16 @@ class Evaluating:
             if following is None:
                 return
             run, key = following
-            case = self._plan.cases[run.case]
             self._pool.submit(
                 (run, key),
-                WorkOrder(key, case, run.spec, self._plan.variation.drawn(run.seed), self._limit),
+                WorkOrder(
+                    key,
+                    self._plan.cases[run.case],
+                    run.spec,
+                    self._plan.variation.drawn(run.seed),
+                    self._plan.drawn_in(run.seed),
+                    self._limit,
+                ),
             )
 
     def _row(self, finished: Finished) -> RunRow:
@@ -159,4 +165,9 @@ class Evaluating:
             outcome, reason = RunOutcome.ERROR, f"{type(finished.error).__name__}: {finished.error}"
         _log.warning("run %s, seed %d: %s", key, run.seed, reason)
         row = row_without_end(key, self._plan.cases[run.case], run.spec, outcome, reason)
-        return row.model_copy(update={"world": self._plan.variation.drawn(run.seed)})
+        return row.model_copy(
+            update={
+                "world": self._plan.variation.drawn(run.seed),
+                "drawn": self._plan.drawn_in(run.seed),
+            }
+        )

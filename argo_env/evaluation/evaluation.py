@@ -6,7 +6,7 @@ from pathlib import Path
 from argo_compiler.errors import Invalid
 from argo_compiler.il import Mission
 from argo_env.evaluation.evaluating import Evaluating, EvaluationProgress
-from argo_env.evaluation.folder import digest_of, keep_plan
+from argo_env.evaluation.folder import digest_of, open_rows
 from argo_env.evaluation.plan import NO_FAULTS, EvaluationCase, EvaluationPlan, Stopping
 from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.evaluation.pool.backends import PROCESSES, make_backend
@@ -86,19 +86,22 @@ class Evaluation:
         *,
         backend: str | WorkerBackend = PROCESSES,
         address: str | None = None,
+        replace: bool = False,
         heard: Callable[[EvaluationProgress], None] = lambda _: None,
     ) -> EvaluationResults:
         """Makes the runs, by so many workers (as many as there are processors), and returns what
         came of them. With a `folder` rows are kept there, and what is there is not run again;
-        `heard` is told how far it is after each run.
+        `heard` is told how far it is after each run. Where another evaluation is in the folder, it
+        gives way if it is to be replaced, and only those of its rows stay that fit.
 
-        Raises ArgoError if there are no such workers, or the folder can't be used.
+        Raises ArgoError if there are no such workers, or the folder can't be used, as where another
+        evaluation is in it.
         """
         if folder is None:
             return self._carried_out(None, backend, workers, address, heard)
         where = Path(folder)
-        keep_plan(where, self.plan, digest_of(self.plan.model_dump_json().encode()))
-        with RowStore(where) as store:
+        digest = digest_of(self.plan.model_dump_json().encode())
+        with open_rows(where, self.plan, digest, replace=replace) as store:
             return self._carried_out(store, backend, workers, address, heard)
 
     def _carried_out(

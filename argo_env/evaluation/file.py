@@ -60,7 +60,7 @@ class EvaluationFile(Model):
     """in which order tasks are done: `as written`, `optimised`, or `module:function`"""
     faults: tuple[str, ...] | DrawnFaults = (NO_FAULTS,)
     """files or folders of faults, and `none`; or a distribution that they are drawn from"""
-    seeds: str | int = "0..99"
+    seeds: str | int | tuple[int, ...] = "0..99"
     worlds: Variation = NO_VARIATION
     """what differs from world to world"""
     require: tuple[str, ...] = ()
@@ -84,14 +84,16 @@ class EvaluationFile(Model):
     def _sensors(cls, names: tuple[str, ...]) -> tuple[str, ...]:
         return _known(names, tuple(SENSORS), "sensor")
 
-    @field_validator("seeds")
+    @field_validator("seeds", mode="before")
     @classmethod
-    def _seeds(cls, said: str | int) -> str | int:
+    def _seeds(cls, said: object) -> str:
+        several = said if isinstance(said, list | tuple) else [said]
+        text = ",".join(map(str, several))
         try:
-            parse_seeds(str(said))
+            parse_seeds(text)
         except Invalid as error:
             raise ValueError(str(error)) from None
-        return said
+        return text
 
     @field_validator("require")
     @classmethod

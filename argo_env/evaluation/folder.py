@@ -1,23 +1,28 @@
 """The folder of an evaluation: its plan, its rows, and the specs of what failed."""
 
 import hashlib
+import os
+import re
+from collections.abc import Collection
 from pathlib import Path
 
 from pydantic import ValidationError
 
-from argo_compiler.errors import Invalid, NotFound
+from argo_compiler.errors import Conflict, Invalid, NotFound, Remedy, Unavailable
 from argo_compiler.files.reading import read_bytes
 from argo_compiler.files.writing import write_whole
 from argo_compiler.model import Model
 from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
-from argo_env.evaluation.store import read_rows
+from argo_env.evaluation.store import RowStore, read_rows
 from argo_env.files.folders import make_folder
 
 PLAN = "evaluation.json"
 FAILING = "failing"
 REPORT = "report.html"
+COMPARISON = "comparison.html"
+_SPEC = re.compile(r"[0-9a-f]{24}\.json")
 _MOST_FAILING = 1_000
 """specs that are written; the rows of all are there"""
 _MAX_BYTES = 1_000_000_000
@@ -31,11 +36,70 @@ class _Kept(Model):
     plan: EvaluationPlan
 
 
+def open_rows(
+    folder: Path,
+    plan: EvaluationPlan,
+    digest: str,
+    *,
+    replace: bool = False,
+    helper: EvaluationPlan | None = None,
+) -> RowStore:
+    """The rows of an evaluation in its folder, opened for writing, with the plan kept beside them;
+    `helper` is the plan of cheap runs that help it.
+
+    An evaluation that is there goes on if it is the same, or has the same cases and fewer seeds.
+    Any other one gives way if it is to be replaced: of its rows those stay that fit.
+
+    Raises Conflict for another evaluation that is not to be replaced, or if another process
+    evaluates into the folder; Unavailable if it can't be written.
+    """
+    store = RowStore(folder)
+    try:
+        if not _goes_on(folder, plan):
+            if not replace:
+                raise Conflict(
+                    f"{folder}: has another evaluation: choose another folder; or replace its "
+                    "plan, and keep those of its rows that fit",
+                    remedies=(Remedy.CHOOSE_OUTPUT, Remedy.REPLACE),
+                )
+            plans = (plan,) if helper is None else (plan, helper)
+            seeds = set(plan.seeds)
+            store.keep_only(
+                lambda row: any(one.has(row, seeds if one is plan else {row.seed}) for one in plans)
+            )
+        keep_plan(folder, plan, digest)
+    except BaseException:
+        store.close()
+        raise
+    return store
+
+
+def _goes_on(folder: Path, plan: EvaluationPlan) -> bool:
+    """Whether the plan goes on with what is in the folder, if there is anything."""
+    try:
+        before = kept_plan(folder)
+    except Invalid:
+        return False  # of another version of Argo
+    return before is None or (
+        set(before.seeds) <= set(plan.seeds)
+        and before.changed(seeds=plan.seeds, stopping=plan.stopping) == plan
+    )
+
+
 def keep_plan(folder: Path, plan: EvaluationPlan, digest: str) -> None:
     """Writes the plan of an evaluation. Raises Unavailable where that can't be done."""
     make_folder(folder)
-    text = _Kept(digest=digest, plan=plan).model_dump_json(indent=1)
-    write_whole(folder / PLAN, text.encode())
+    write_file(folder / PLAN, _Kept(digest=digest, plan=plan).model_dump_json(indent=1))
+
+
+def write_file(path: Path, text: str) -> Path:
+    """Writes a file of an evaluation and returns its path. Raises Unavailable where that can't be
+    done."""
+    try:
+        write_whole(path, text)
+    except OSError as error:
+        raise Unavailable(f"{path}: can't be written: {error.strerror}") from error
+    return path
 
 
 def kept_plan(folder: Path, digest: str | None = None) -> EvaluationPlan | None:
@@ -67,33 +131,36 @@ def read_results(folder: Path) -> EvaluationResults:
 
 def in_order(plan: EvaluationPlan, rows: tuple[RunRow, ...]) -> tuple[RunRow, ...]:
     """Those rows that are of the plan, seed by seed and case by case."""
-    cases = {(case.plan, case.faults): k for k, case in enumerate(plan.cases)}
     seeds = {seed: k for k, seed in enumerate(plan.seeds)}
     by_key = {row.key: row for row in rows}
-    found = []
-    for row in by_key.values():
-        case, seed = cases.get((row.plan, row.faults)), seeds.get(row.seed)
-        if case is None or seed is None:
-            continue
-        if plan.key(plan.run(case, row.seed)) == row.key:
-            found.append((seed, case, row))
-    return tuple(row for *_, row in sorted(found, key=lambda one: one[:2]))
+    found = [row for row in by_key.values() if plan.has(row, seeds)]
+    return tuple(sorted(found, key=lambda row: (seeds[row.seed], plan.case_of(row))))
 
 
 def write_failing(folder: Path, results: EvaluationResults) -> dict[str, Path]:
-    """A file for each run that failed, from which it can be made again alone; by the rows' keys."""
-    cases = {(case.plan, case.faults): k for k, case in enumerate(results.plan.cases)}
+    """A file for each run that failed, from which it can be made again alone; by the rows' keys.
+    Those of runs that are none of the evaluation's any more are removed."""
     written: dict[str, Path] = {}
     for row in results.rows:
         if row.success or len(written) == _MOST_FAILING:
             continue
-        run = results.plan.run(cases[row.plan, row.faults], row.seed)
+        case = results.plan.case_of(row)
+        assert case is not None
+        run = results.plan.run(case, row.seed)
         path = folder / FAILING / f"{row.key}.json"
         if not written:
             make_folder(folder / FAILING)
-        write_whole(path, run.spec.model_dump_json(indent=1).encode())
+        write_file(path, run.spec.model_dump_json(indent=1))
         written[row.key] = path
+    _remove_others(folder / FAILING, {path.name for path in written.values()})
     return written
+
+
+def _remove_others(folder: Path, names: Collection[str]) -> None:
+    """Removes the specs of other runs from the folder."""
+    for name in os.listdir(folder) if os.path.isdir(folder) else ():
+        if _SPEC.fullmatch(name) and name not in names:
+            os.unlink(folder / name)
 
 
 def digest_of(*contents: bytes) -> str:

@@ -36,7 +36,7 @@ def write_part(folder: Path, rows: Sequence[RunRow]) -> Path:
     from pyarrow import parquet
 
     parts = folder / PARTS
-    path = parts / f"part-{max(_numbers(folder), default=0) + 1:05d}.parquet"
+    path = _part(folder, max(_numbers(folder), default=0) + 1)
     draft = parts / f".{path.name}"
     table = pyarrow.Table.from_pylist([_plain(row) for row in rows], schema=_schema())
     try:
@@ -67,7 +67,7 @@ def read_parts(folder: Path) -> tuple[RunRow, ...]:
 
     rows: list[RunRow] = []
     for number in numbers:
-        path = folder / PARTS / f"part-{number:05d}.parquet"
+        path = _part(folder, number)
         try:
             # Not as a dataset, which would take the folder for a column.
             plain = parquet.ParquetFile(path).read().to_pylist(maps_as_pydicts="strict")
@@ -77,11 +77,26 @@ def read_parts(folder: Path) -> tuple[RunRow, ...]:
     return tuple(rows)
 
 
+def remove_parts(folder: Path) -> None:
+    """Removes all files. Raises Unavailable where that can't be done."""
+    try:
+        for number in _numbers(folder):
+            os.unlink(_part(folder, number))
+    except OSError as error:
+        raise Unavailable(f"{folder / PARTS}: can't be changed: {error.strerror}") from error
+
+
+def _part(folder: Path, number: int) -> Path:
+    return folder / PARTS / f"part-{number:05d}.parquet"
+
+
 def _numbers(folder: Path) -> list[int]:
     try:
         names = os.listdir(folder / PARTS)
     except FileNotFoundError:
         return []
+    except OSError as error:
+        raise Unavailable(f"{folder / PARTS}: can't be read: {error.strerror}") from error
     return sorted(int(found[1]) for name in names if (found := _NAME.fullmatch(name)))
 
 

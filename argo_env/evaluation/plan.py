@@ -1,10 +1,10 @@
 """What is to be evaluated, as data: cases, seeds, and when there are enough runs."""
 
 import hashlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import Field
 
@@ -15,6 +15,9 @@ from argo_env.evaluation.requirement import RateRequirement
 from argo_env.evaluation.worlds import NO_VARIATION, Variation
 from argo_env.faults.distribution import NOTHING
 from argo_env.run.spec import RunSpec
+
+if TYPE_CHECKING:
+    from argo_env.evaluation.row import RunRow
 
 NO_FAULTS = "none"
 """the name of the case in which nothing goes wrong"""
@@ -125,10 +128,31 @@ class EvaluationPlan(Model):
         text = "\n".join((*said, run.spec.model_dump_json()))
         return hashlib.sha256(text.encode()).hexdigest()[:24]
 
+    @cached_property
+    def _numbers(self) -> dict[tuple["PlanName", str], int]:
+        """The numbers of the cases, by plan and faults."""
+        return {(case.plan, case.faults): k for k, case in enumerate(self.cases)}
+
+    def case_of(self, row: "RunRow") -> int | None:
+        """The number of the case that a row is of; None: of none."""
+        return self._numbers.get((row.plan, row.faults))
+
+    def has(self, row: "RunRow", seeds: Container[int]) -> bool:
+        """Whether a row is that of a run of this plan, with one of these seeds."""
+        case = self.case_of(row)
+        if case is None or row.seed not in seeds:
+            return False
+        return self.key(self.run(case, row.seed)) == row.key
+
     def faults_in(self, case: str, seed: int) -> str:
         """What goes wrong in the world of a seed: the faults of the case, or those drawn for it."""
+        return self.drawn_in(seed) or case
+
+    def drawn_in(self, seed: int) -> str:
+        """What the faults are called that are drawn for the world of a seed; empty where the plan
+        draws none."""
         if self.variation.faults is None:
-            return case
+            return ""
         return self.variation.drawn_faults(seed) or NOTHING
 
     def check(self) -> None:
@@ -166,8 +190,10 @@ def parse_seeds(text: str) -> tuple[int, ...]:
         if not first.isdecimal() or (dots and not last.isdecimal()):
             raise Invalid(f"seeds `{text}`: write them as 0..999, or 3,7,20..29")
         low, high = int(first), int(last or first)
-        if high < low or high - low >= MOST_RUNS:
-            raise Invalid(f"seeds `{part}`: the last one is before the first, or it is too many")
+        if high < low:
+            raise Invalid(f"seeds `{part}`: the last one is before the first")
+        if high - low >= MOST_SEEDS - len(found):
+            raise Invalid(f"seeds `{part}`: there can be {MOST_SEEDS:,} seeds at most")
         if high > LARGEST_SEED:
             raise Invalid(f"seeds `{part}`: the largest there can be is {LARGEST_SEED}")
         found += range(low, high + 1)
@@ -176,7 +202,7 @@ def parse_seeds(text: str) -> tuple[int, ...]:
     return tuple(found)
 
 
-MOST_RUNS = 10_000_000
-"""seeds that one range may have"""
+MOST_SEEDS = 1_000_000
+"""of an evaluation"""
 LARGEST_SEED = 2**63 - 1
 """that rows can be kept of"""

@@ -41,6 +41,7 @@ class RunRow(Model):
     drive: str
     sensor: str
     faults: str
+    """of the case, by their name"""
     seed: int
     outcome: RunOutcome
     reason: str
@@ -79,6 +80,9 @@ class RunRow(Model):
     place: Vector | None = None
     """m, of a failure: where the robot was then"""
     floor: int | None = None
+    drawn: str = ""
+    """what the faults are called that were drawn for the world of this seed; empty: none are drawn
+    in this evaluation"""
     world: dict[str, float] = Field(default_factory=dict)
     """what was drawn for the world of this seed"""
 

@@ -16,7 +16,14 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from argo_compiler.errors import Conflict, NotFound, Unavailable
-from argo_env.evaluation.parts import can_write_parts, has_parts, read_parts, write_part
+from argo_env.evaluation.parts import (
+    PARTS,
+    can_write_parts,
+    has_parts,
+    read_parts,
+    remove_parts,
+    write_part,
+)
 from argo_env.evaluation.row import RunRow
 from argo_env.files.checked_lines import (
     checked_line,
@@ -25,7 +32,7 @@ from argo_env.files.checked_lines import (
     sync_folder,
     write_all,
 )
-from argo_env.files.folders import make_folder
+from argo_env.files.folders import check_folder, make_folder
 
 LOG = "rows.log"
 _LOCK = ".lock"
@@ -41,6 +48,7 @@ class RowStore:
         Raises Conflict if another process has it open, Unavailable if it can't be written.
         """
         make_folder(folder)
+        check_folder(folder / PARTS)
         self.folder = folder
         self._clock = clock
         self._lock = _locked(folder)
@@ -52,7 +60,7 @@ class RowStore:
             sync_folder(folder)
         except OSError as error:
             os.close(self._lock)
-            raise Unavailable(f"{folder}: can't be written: {error.strerror}") from error
+            raise _unwritable(folder, error) from error
         self.damaged = found.damaged
         """lines of the log that could not be read: their runs are made again"""
         self._synced = clock()
@@ -70,7 +78,7 @@ class RowStore:
         """Keeps a row, unless it is there already. Raises Unavailable if the disk is full."""
         if row.key in self._rows:
             return
-        line = checked_line(row.model_dump(mode="json", exclude_defaults=True))
+        line = _line(row)
         try:
             write_all(self._file, line)
         except OSError as error:
@@ -101,6 +109,29 @@ class RowStore:
         self._size = os.lseek(self._file, 0, os.SEEK_SET)
         self._moved = len(self._rows)
         self.sync()
+
+    def keep_only(self, fits: Callable[[RunRow], bool]) -> None:
+        """Forgets all rows but those that fit. Raises Unavailable where that can't be done; killed
+        meanwhile, the folder has all that fit, and maybe others."""
+        kept = [row for row in self._rows.values() if fits(row)]
+        if len(kept) == len(self._rows):
+            return
+        draft = self.folder / f".{LOG}"
+        try:
+            with open(draft, "wb") as file:
+                file.writelines(map(_line, kept))
+                file.flush()
+                os.fsync(file.fileno())
+            os.replace(draft, self.folder / LOG)
+            sync_folder(self.folder)
+            os.close(self._file)
+            self._file = os.open(self.folder / LOG, os.O_RDWR)
+            self._size = os.lseek(self._file, 0, os.SEEK_END)
+        except OSError as error:
+            raise _unwritable(self.folder, error) from error
+        remove_parts(self.folder)
+        self._rows = {row.key: row for row in kept}
+        self._moved = 0
 
     def close(self) -> None:
         """Lets another process have the folder."""
@@ -158,11 +189,19 @@ def read_log(folder: Path) -> LoggedRows:
     return LoggedRows(tuple(rows), size, damaged)
 
 
+def _line(row: RunRow) -> bytes:
+    return checked_line(row.model_dump(mode="json", exclude_defaults=True))
+
+
+def _unwritable(folder: Path, error: OSError) -> Unavailable:
+    return Unavailable(f"{error.filename or folder}: can't be written: {error.strerror}")
+
+
 def _locked(folder: Path) -> int:
     try:
         file = os.open(folder / _LOCK, os.O_RDWR | os.O_CREAT, 0o644)
     except OSError as error:
-        raise Unavailable(f"{folder}: can't be written: {error.strerror}") from error
+        raise _unwritable(folder, error) from error
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:

@@ -1,5 +1,6 @@
 """Worlds that vary: what is drawn anew for each seed, each from a stream of its own."""
 
+import math
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -16,9 +17,14 @@ from argo_env.site import Site
 
 def _between(said: object) -> object:
     """A number is the range that has only it."""
-    if isinstance(said, int | float):
-        return said, said
-    return tuple(said) if isinstance(said, list) else said
+    ends = (said, said) if _is_number(said) else said
+    if not isinstance(ends, list | tuple) or len(ends) != 2 or not all(map(_is_number, ends)):
+        raise ValueError("give a number, or the least and the most, as [0.8, 1.0]")
+    return tuple(ends)
+
+
+def _is_number(said: object) -> bool:
+    return isinstance(said, int | float) and not isinstance(said, bool) and math.isfinite(said)
 
 
 Range = Annotated[tuple[float, float], BeforeValidator(_between)]

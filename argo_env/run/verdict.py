@@ -7,6 +7,7 @@ from argo_compiler.il import Action, Mission
 from argo_compiler.il.docked import at_dock
 from argo_compiler.il.reserved import RESERVED_NAMES
 from argo_compiler.model import Pose
+from argo_env.formatting import told_apart
 from argo_env.run.headline import AS_PLANNED
 from argo_env.run.log import RunLog
 from argo_env.run.record import DIGITS, Result, TaskRun, WindowKept, WindowRun
@@ -74,7 +75,8 @@ def judge(
         if names:
             missing.append(f"{what}: {', '.join(names)}")
     if limit is not None and now > limit:
-        missing.append(f"it took {now:.0f} s of at most {limit:.0f} s")
+        took, most = told_apart(now, limit)
+        missing.append(f"it took {took} s of at most {most} s")
     if docked is False and last.ended:
         other = next((a for a, dock in docks.items() if at_dock(last.body_pose, dock)), None)
         missing.append(

@@ -1,7 +1,7 @@
 """`argo evaluate`: missions are run many times, and what that says of them is told."""
 
 import os
-from collections.abc import Mapping
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -9,37 +9,41 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from argo_compiler.errors import Conflict, Invalid, Remedy
-from argo_compiler.files.reading import read_bytes
+from argo_compiler.errors import Invalid
 from argo_env.evaluation.controlled import ControlledMean, run_controlled, with_drive
 from argo_env.evaluation.evaluating import Evaluating
-from argo_env.evaluation.file import MAX_BYTES, EvaluationFile, MissionEntry, decode_evaluation
 from argo_env.evaluation.folder import (
+    COMPARISON,
+    FAILING,
     PLAN,
+    REPORT,
     digest_of,
-    keep_plan,
     kept_plan,
+    open_rows,
     read_results,
     write_failing,
 )
-from argo_env.evaluation.plan import AS_WRITTEN, NO_FAULTS, EvaluationPlan
-from argo_env.evaluation.pool.backends import BACKENDS, PROCESSES, make_backend
+from argo_env.evaluation.plan import EvaluationPlan
+from argo_env.evaluation.pool.backend import WorkerBackend
+from argo_env.evaluation.pool.backends import BACKENDS, PROCESSES
 from argo_env.evaluation.rates import Decision
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.score import read_scoring
 from argo_env.evaluation.store import RowStore
+from argo_env.files.folders import check_folder
 from argo_env.run.drives_and_sensors import DRIVES, IDEAL, SENSORS
 from argo_planner.terminal.completion import among
 from argo_planner.terminal.evaluation_display import EvaluationDisplay
+from argo_planner.terminal.evaluation_request import asked_for, refuse_others
 from argo_planner.terminal.evaluation_tables import show_comparison, show_means, show_results
-from argo_planner.terminal.files import read_upload
+from argo_planner.terminal.files import check_outputs, read_upload
 from argo_planner.terminal.options import EndArea, Force, SiteOption, StartArea
-from argo_planner.use_cases.evaluating import plan_evaluation
-
-_YAML = (".yaml", ".yml")
+from argo_planner.terminal.signals import Interrupted
+from argo_planner.use_cases.evaluating import files_of, make_workers, plan_evaluation
 
 
 def evaluate(
+    context: typer.Context,
     sources: Annotated[
         list[Path] | None,
         typer.Argument(
@@ -134,25 +138,41 @@ def evaluate(
             "--compare", metavar="DIR DIR", help="two evaluations, pair by pair; runs nothing"
         ),
     ] = None,
+    plans: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--plan",
+            metavar="NAME",
+            help="with --compare: which plan is meant, where an evaluation has several; once for "
+            "both, or once for each",
+        ),
+    ] = None,
     force: Force = False,
 ) -> None:
     """Run missions many times: how sure they work, what breaks them, which is better."""
     console = Console(highlight=False)
     if compare is not None:
-        if sources:
-            raise Invalid("--compare is about evaluations that are there: give no missions")
-        _compare(*compare, report, console)
+        refuse_others(context, sources)
+        _compare(*compare, plans or [], out, report, force, console)
         return
+    if plans:
+        raise Invalid("--plan says which plans --compare is about: give it with that")
     rules = read_scoring(scoring)
-    file, folder, content = _asked_for(
-        sources or [], seeds, site, drive, sensor, faults, policy, require, width,
+    file, folder, content = asked_for(
+        context, sources or [], seeds, site, drive, sensor, faults, policy, require, width,
         control, start_area, end_area,
     )  # fmt: skip
     where = out or Path("out") / "evaluations" / _plain(file.name)
-    plan = _planned(file, folder, content, where, force)
-    if file.control is not None:
-        with_drive(plan, file.control)  # what it can't have is told before anything runs
-    results, means = _carried_out(plan, file.control, where, backend, workers, address, limit)
+    own = os.path.exists(where / PLAN)
+    check_outputs(sources or [], folders=[(where, [REPORT] if report else [])], force=own or force)
+    check_folder(where / FAILING)
+    digest = digest_of(*files_of(file, folder), content)
+    plan = kept_plan(where, digest) or plan_evaluation(file, folder, read_upload)
+    helper = None if file.control is None else with_drive(plan, file.control)
+    with open_rows(where, plan, digest, replace=force, helper=helper) as store:
+        results, means = _carried_out(
+            plan, file.control, store, make_workers(plan, backend, workers, address), limit
+        )
     failing = write_failing(where, results)
     show_results(results, failing, console, rules)
     show_means(means, file.control, console)
@@ -161,124 +181,70 @@ def evaluate(
 
         path = write_evaluation_report(where, results)
         console.print(f"Report: {escape(str(path))}", soft_wrap=True)
+    if not any(row.carried_out for row in results.rows):
+        print("argo: no run could be carried out: nothing is known of the plans", file=sys.stderr)
+        raise typer.Exit(1)
     if any(verdict.verdict is not Decision.MET for verdict in results.verdicts):
         raise typer.Exit(1)
-
-
-def _asked_for(
-    sources: list[Path],
-    seeds: str,
-    site: str,
-    drive: str,
-    sensor: str,
-    faults: list[str] | None,
-    policies: list[str] | None,
-    require: list[str] | None,
-    width: float | None,
-    control: str | None,
-    start_area: int | None,
-    end_area: int | None,
-) -> tuple[EvaluationFile, Path, bytes]:
-    """What is to be evaluated, the folder that its paths begin in, and the text of its file."""
-    if not sources:
-        raise Invalid("give an evaluation's file, or missions; see `argo evaluate --help`")
-    described = [source for source in sources if source.suffix in _YAML]
-    if described:
-        if len(sources) > 1:
-            raise Invalid(f"{described[0]}: an evaluation's file stands alone: give nothing else")
-        path = described[0]
-        content = read_bytes(path, "evaluation", MAX_BYTES)
-        return decode_evaluation(content, str(path)), path.parent, content
-    missions = tuple(
-        MissionEntry(file=str(source), start_area=start_area, end_area=end_area)
-        for source in sources
-    )
-    data = {
-        "name": " and ".join(source.stem for source in sources),
-        "missions": missions,
-        "sites": (site,),
-        "drives": (drive,),
-        "sensors": (sensor,),
-        "policies": tuple(policies or (AS_WRITTEN,)),
-        "faults": tuple(faults or (NO_FAULTS,)),
-        "seeds": seeds,
-        "require": tuple(require or ()),
-        "stop": {"width": width},
-        "control": control,
-    }
-    return _validated(data), Path(), b""
-
-
-def _validated(data: Mapping[str, object]) -> EvaluationFile:
-    from pydantic import ValidationError
-
-    try:
-        return EvaluationFile.model_validate(data)
-    except ValidationError as error:
-        fault = error.errors(include_url=False)[0]
-        raise Invalid(str(fault["msg"]).removeprefix("Value error, ")) from None
-
-
-def _planned(
-    file: EvaluationFile, folder: Path, content: bytes, where: Path, force: bool
-) -> EvaluationPlan:
-    """The plan, which is the one that is there already if it was made from the same."""
-    read = [content, file.model_dump_json().encode()]
-    for said in file.missions:
-        path = folder / (said if isinstance(said, str) else said.file)
-        if os.path.isfile(path):
-            read.append(path.read_bytes())
-    digest = digest_of(*read)
-    before = kept_plan(where, digest)
-    plan = before or plan_evaluation(file, folder, read_upload)
-    if before is None:
-        other = os.path.exists(where / PLAN) and kept_plan(where) not in (None, plan)
-        if other and not force:
-            raise Conflict(
-                f"{where}: has another evaluation: choose another folder with --out; or replace "
-                "its plan, and keep those of its rows that fit",
-                remedies=(Remedy.REPLACE,),
-            )
-        keep_plan(where, plan, digest)
-    return plan
 
 
 def _carried_out(
     plan: EvaluationPlan,
     control: str | None,
-    where: Path,
-    backend: str,
-    workers: int | None,
-    address: str | None,
+    store: RowStore,
+    workers: WorkerBackend,
     limit: float | None,
 ) -> tuple[EvaluationResults, tuple[ControlledMean, ...]]:
-    with RowStore(where) as store, EvaluationDisplay() as display:
-        has = make_backend(backend, workers, address)
+    def made(part: EvaluationPlan) -> EvaluationResults:
+        evaluating = Evaluating(part, workers, store, limit=limit)
+        for _ in evaluating.rows_as_they_come():
+            display.show(evaluating.progress)
+        return evaluating.results
 
-        def made(part: EvaluationPlan) -> EvaluationResults:
-            evaluating = Evaluating(part, has, store, limit=limit)
-            for _ in evaluating.rows_as_they_come():
-                display.show(evaluating.progress)
-            return evaluating.results
-
-        try:
+    try:
+        with EvaluationDisplay() as display:
             if control is None:
                 return made(plan), ()
-            return run_controlled(plan, control, made, where)
-        finally:
-            has.close()
+            return run_controlled(plan, control, made, store.folder)
+    except Interrupted as interrupted:
+        print(
+            f"argo: interrupted; {len(store.rows)} runs are kept in {store.folder}: the same "
+            "command goes on with them",
+            file=sys.stderr,
+        )
+        raise typer.Exit(interrupted.status) from None
+    finally:
+        workers.close()
 
 
-def _compare(first: Path, second: Path, report: bool, console: Console) -> None:
-    from argo_env.evaluation.comparison import compare_plans
+def _compare(
+    first: Path,
+    second: Path,
+    plans: list[str],
+    out: Path | None,
+    report: bool,
+    force: bool,
+    console: Console,
+) -> None:
+    from argo_env.evaluation.comparison import compare_plans, named_plan
 
+    where = out or first
+    if len(plans) > 2:
+        raise Invalid("--compare is about two plans: give --plan once for each of them")
+    if report:
+        check_outputs((), folders=[(where, [COMPARISON])], force=force)
     a, b = read_results(first), read_results(second)
-    compared = compare_plans(a, b)
+    names = [None, None] if not plans else [plans[0], plans[-1]]
+    chosen = [
+        None if name is None else named_plan(results, name)
+        for results, name in zip((a, b), names, strict=True)
+    ]
+    compared = compare_plans(a, b, *chosen)
     show_comparison(compared, console)
     if report:
         from argo_env.evaluation.report.page import write_comparison_report
 
-        path = write_comparison_report(first, second, compared)
+        path = write_comparison_report(where, first, second, compared)
         console.print(f"Report: {escape(str(path))}", soft_wrap=True)
 
 

@@ -26,7 +26,16 @@ from argo_planner.terminal.events import KINDS, READING_FORM, parse_events, pars
 from argo_planner.terminal.files import check_outputs, read_upload
 from argo_planner.terminal.importing import import_shown
 from argo_planner.terminal.kept import JOURNAL, Kept, require_no_unfinished
-from argo_planner.terminal.options import EndArea, Force, Optimise, SiteOption, Source, StartArea
+from argo_planner.terminal.options import (
+    EndArea,
+    Force,
+    Optimise,
+    SiteOption,
+    Source,
+    StartArea,
+    dashed,
+    given_options,
+)
 from argo_planner.terminal.run_display import carry_out_shown
 from argo_planner.terminal.signals import first_signal_deferred
 from argo_planner.use_cases.reporting import REPORT_FILES
@@ -231,11 +240,11 @@ def _took(record: RunRecord, loading: float, running: float) -> str:
 
 def _refuse_decided(context: typer.Context, source: Path) -> None:
     """Raises Invalid for options that change what a spec has decided."""
-    for name in _DECIDED:
-        given = context.get_parameter_source(name)
-        if given is not None and given.name == "COMMANDLINE":
-            option = "--" + name.replace("_", "-")
-            raise Invalid(f"{source}: is the spec of a run, in which {option} is decided already")
+    for name in given_options(context):
+        if name in _DECIDED:
+            raise Invalid(
+                f"{source}: is the spec of a run, in which {dashed(name)} is decided already"
+            )
 
 
 def _read_faults(path: Path) -> FaultText:

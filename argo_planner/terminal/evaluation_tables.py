@@ -70,7 +70,9 @@ def show_results(
 
 
 def show_means(means: Sequence[ControlledMean], drive: str | None, console: Console) -> None:
-    """Prints what cheap runs have helped."""
+    """Prints what cheap runs of a drive have helped."""
+    if drive is not None and not means:
+        console.print(f"Too few worlds could be run with the drive {drive} to see what it helps.")
     for mean in means:
         control = mean.control
         console.print(
@@ -122,10 +124,14 @@ def _plans(results: EvaluationResults) -> Table:
             clock(median(took)) if took else "",
         )
     methods = {results.rate(plan).method for plan in results.plan.plans}
+    notes = []
     if IntervalMethod.SEQUENCE in methods:
-        table.caption = "* the runs of one world depend on each other: it counts as one"
+        notes.append("* the runs of one world depend on each other: it counts as one")
     elif IntervalMethod.STRATA in methods:
-        table.caption = "* put together by the probabilities of faults"
+        notes.append("* put together by the probabilities of faults")
+    if results.missing:
+        notes.append("errors and runs that died say nothing of the plan, and are in no rate")
+    table.caption = "\n".join(notes) or None
     return table
 
 
@@ -154,7 +160,8 @@ def _failing(results: EvaluationResults, files: Mapping[str, Path]) -> Iterator[
     yield f"{len(rows)} of {len(results.rows)} runs are no success; each is made again alone by:"
     for row in rows[:_NAMED]:
         said = "" if row.carried_out else f"{row.outcome}: "
-        yield f"  seed {row.seed}, {results.faults_of(row)}: {said}{row.reason}"
+        plan = f"{row.plan.beside(results.plan.plans)}, " if len(results.plan.plans) > 1 else ""
+        yield f"  {plan}seed {row.seed}, {results.faults_of(row)}: {said}{row.reason}"
         if row.key in files:
             yield f"    argo run {shlex.quote(str(files[row.key]))} --report out/{row.key[:8]}"
     if len(rows) > _NAMED and files:

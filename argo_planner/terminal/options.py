@@ -33,3 +33,19 @@ EndArea = Annotated[
     int | None, typer.Option("--end-area", help="the area to end in, where the script leaves it")
 ]
 Force = Annotated[bool, typer.Option("--force", help="replace files that are there already")]
+
+
+def given_options(context: typer.Context) -> list[str]:
+    """The names of the parameters of a command that its command line has, but for arguments."""
+    arguments = {p.name for p in context.command.params if p.param_type_name == "argument"}
+    sources = ((name, context.get_parameter_source(name)) for name in context.params)
+    return [
+        name
+        for name, source in sources
+        if source is not None and source.name == "COMMANDLINE" and name not in arguments
+    ]
+
+
+def dashed(name: str) -> str:
+    """A parameter's name as that of an option."""
+    return "--" + name.replace("_", "-")

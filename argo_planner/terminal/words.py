@@ -16,6 +16,8 @@ _WORDS = {
     Remedy.CHOOSE_START: "--start-area",
     Remedy.CHOOSE_END: "--end-area",
     Remedy.CHOOSE_SITE: "--site",
+    Remedy.CHOOSE_OUTPUT: "--out",
+    Remedy.CHOOSE_PLAN: "--plan",
     Remedy.FILM_INSTEAD: "--render instead of --gui",
     Remedy.GIVE_BUDGET: "--budget",
     Remedy.SEARCH_LONGER: "--time-limit",

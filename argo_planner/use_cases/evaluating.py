@@ -7,6 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import cast
 
+import argo_compiler
 from argo_compiler.errors import ArgoError, Conflict, Invalid, NotFound, located
 from argo_compiler.files.reading import read_bytes
 from argo_compiler.il import Mission
@@ -19,6 +20,8 @@ from argo_env.evaluation.plan import (
     Stopping,
     parse_seeds,
 )
+from argo_env.evaluation.pool.backend import WorkerBackend
+from argo_env.evaluation.pool.backends import make_backend
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.faults.distribution import NOTHING, FaultDistribution, decode_distribution
 from argo_env.faults.kinds import AnyFault
@@ -27,6 +30,7 @@ from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.robot.spec import load_robot
 from argo_env.run.rig import check_spec
 from argo_env.run.spec import RunSpec
+from argo_env.worker_processes import usable_processors
 from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
 from argo_planner.use_cases.no_order import require_order
 from argo_planner.use_cases.routing import suggest_order
@@ -80,6 +84,33 @@ def plan_evaluation(
     )
     plan.check()
     return plan
+
+
+def files_of(file: EvaluationFile, folder: Path) -> Iterator[bytes]:
+    """What an evaluation depends on, as far as it is in files: two that give the same are the same
+    evaluation. Policies that are functions are not in files, and never the same."""
+    yield argo_compiler.__version__.encode()
+    yield file.model_dump_json().encode()
+    if any(policy not in (AS_WRITTEN, OPTIMISED) for policy in file.policies):
+        yield os.urandom(16)
+    faults = [file.faults.file] if isinstance(file.faults, DrawnFaults) else file.faults
+    missions = [said if isinstance(said, str) else said.file for said in file.missions]
+    for name in (*missions, *file.sites, *faults):
+        path = folder / name
+        for one in _files(path) if os.path.isdir(path) else [path]:
+            if os.path.isfile(one):
+                yield str(one).encode()
+                yield one.read_bytes()
+
+
+def make_workers(
+    plan: EvaluationPlan, backend: str, workers: int | None, address: str | None
+) -> WorkerBackend:
+    """Workers for an evaluation, at most one a run. Raises ArgoError if there can be none."""
+    runs = len(plan.seeds) * (1 if plan.strata else len(plan.cases))
+    if workers is None and address is None:
+        workers = usable_processors()
+    return make_backend(backend, None if workers is None else min(workers, runs), address)
 
 
 def _cases(

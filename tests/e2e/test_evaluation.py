@@ -105,7 +105,16 @@ def test_two_evaluations_are_compared(argo, file, tmp_path):
         ((MISSION, *AREAS, "--require", "fun >= 0.5"), "nothing is known of `fun`"),
         ((MISSION, *AREAS, "--faults", "nothing.yaml"), "nothing.yaml"),
         ((MISSION, *AREAS, "--backend", "abacus"), "no back end `abacus`"),
+        ((MISSION, *AREAS, "--width", "3"), "--width: `width` has to be less than 1"),
+        ((MISSION, *AREAS, "--seeds", "0..2000000"), "1,000,000 seeds at most"),
+        ((MISSION, *AREAS, "--plan", "a"), "--compare"),
+        ((MISSION, *AREAS, "--backend", "dask", "--address", "127.0.0.1:9"), "Connection refused"),
+        (
+            (MISSION, *AREAS, "--drive", "kinematic", "--control", "route", "--seeds", "0..5"),
+            "takes at least 10 worlds",
+        ),
         (("--compare", "here", "there"), "here"),
+        (("--compare", "here", "there", "--seeds", "0..3"), "no use for --seeds"),
         ((MISSION, "--compare", "here", "there"), "give no missions"),
     ],
 )
@@ -121,6 +130,11 @@ def test_wrong_input_gets_one_message(argo, tmp_path, arguments, message):
     [
         ("missions: []\n", "missions"),
         ("missions: [a.txt]\nseeds: x\n", "seeds"),
+        ("missions: [a.txt]\nseeds: 1e9\n", "write them as 0..999"),
+        ("missions: [a.txt]\nseeds: {first: 1}\n", "write them as 0..999"),
+        ("missions: [a.txt]\nworlds: {speed: fast}\n", "give a number, or the least and the most"),
+        ("missions: [a.txt]\nworlds: {speed: [0.8, 0.9, 1]}\n", "the least and the most"),
+        ("missions: [a.txt]\nworlds: {speed: .nan}\n", "give a number"),
         ("missions: [a.txt]\nworlds: {speed: [0.9, 1.4]}\n", "speed"),
         ("missions: [a.txt\n", "is not YAML"),
         ("missions: [a.txt]\nmission: [b]\n", "mission"),
@@ -146,23 +160,119 @@ def test_another_evaluation_is_not_overwritten(argo, file, tmp_path):
     assert "--force" in said.stderr
 
 
+def test_what_a_file_says_is_not_said_by_options_as_well(argo, file, tmp_path):
+    said = argo("evaluate", file, "--out", tmp_path / "out", "--drive", "kinematic")
+    assert said.returncode == 2
+    assert "--drive would say it again" in said.stderr
+
+
+def test_faults_that_have_changed_are_not_those_of_before(argo, file, tmp_path):
+    out = tmp_path / "out"
+    assert argo("evaluate", file, "--out", out).returncode == 0
+    (tmp_path / "stop.yaml").write_text(STOP.replace("at: 30", "at: 40"))
+    said = argo("evaluate", file, "--out", out)
+    assert said.returncode == 2
+    assert "has another evaluation" in said.stderr
+    assert argo("evaluate", file, "--out", out, "--force").returncode == 0
+    began = {one.began for row in read_rows(out) for one in row.detections}
+    assert began == {40.0}
+
+
+def test_of_an_evaluation_that_is_replaced_only_what_fits_is_kept(argo, file, tmp_path):
+    out = tmp_path / "out"
+    assert argo("evaluate", file, "--out", out).returncode == 0
+    before = {row.key: row for row in read_rows(out)}
+    assert len(list((out / "failing").iterdir())) == 5
+    assert len(list((out / "parts").glob("*.parquet"))) == 1
+    file.write_text(FILE.format(mission=ROOT / MISSION, last=2).replace("none, ", ""))
+    said = argo("evaluate", file, "--out", out, "--force")
+    assert "3 of 3 runs" in said.stdout
+    after = {row.key: row for row in read_rows(out)}
+    assert len(after) == 3
+    assert after.items() < before.items()
+    assert {path.stem for path in (out / "failing").iterdir()} == set(after)
+
+
+def test_files_of_others_are_not_written_over(argo, file, tmp_path):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "report.html").write_text("somebody's own")
+    said = argo("evaluate", file, "--out", out)
+    assert said.returncode == 2
+    assert "report.html: is there already" in said.stderr
+    assert (out / "report.html").read_text() == "somebody's own"
+    assert argo("evaluate", file, "--out", out, "--force").returncode == 0
+    assert argo("evaluate", file, "--out", out).returncode == 0
+    assert argo("evaluate", "--compare", out, out).returncode == 0
+    again = argo("evaluate", "--compare", out, out)
+    assert again.returncode == 2
+    assert "comparison.html: is there already" in again.stderr
+    assert argo("evaluate", "--compare", out, out, "--out", tmp_path / "other").returncode == 0
+    assert (tmp_path / "other" / "comparison.html").exists()
+
+
+@pytest.mark.parametrize("name", ["parts", "failing", "rows.log", "evaluation.json", "report.html"])
+def test_what_is_in_the_way_is_named_before_anything_runs(argo, file, tmp_path, name):
+    out = tmp_path / "out"
+    out.mkdir()
+    if name in ("parts", "failing"):
+        (out / name).touch()
+    else:
+        (out / name).mkdir()
+    said = argo("evaluate", file, "--out", out, "--force")
+    assert said.returncode == 2
+    assert str(out / name) in said.stderr
+    assert "Traceback" not in said.stderr
+    assert said.stdout == ""
+
+
+def test_plans_of_one_evaluation_are_compared_by_name(argo, tmp_path):
+    out = tmp_path / "out"
+    options = ("--seeds", "0..9", "--out", out, "--policy", "as written", "--policy", "optimised")
+    assert argo("evaluate", MISSION, *AREAS, *options).returncode == 0
+    unclear = argo("evaluate", "--compare", out, out)
+    assert unclear.returncode == 2
+    assert "mission_1, as written; mission_1, optimised (--plan)" in unclear.stderr
+    named = ("--plan", "mission_1, as written", "--plan", "mission_1, optimised")
+    said = argo("evaluate", "--compare", out, out, *named)
+    assert said.returncode == 0
+    assert "A: mission_1, as written" in said.stdout
+    wrong = argo("evaluate", "--compare", out, out, "--plan", "mission_2", "--no-report")
+    assert "no plan `mission_2`" in wrong.stderr
+
+
+def test_an_evaluation_of_which_no_run_could_be_carried_out_is_no_success(argo, file, tmp_path):
+    text = file.read_text().replace("speed: [0.8, 1.0]", "ahead: 0.7")
+    file.write_text(text.replace("seeds: 0..4", "seeds: 0..1").replace(", stop.yaml", ""))
+    said = argo("evaluate", file, "--out", tmp_path / "out")
+    assert said.returncode == 1
+    assert "no run could be carried out" in said.stderr
+    assert "are in no rate" in said.stdout
+
+
+def test_failing_runs_name_their_plan(argo, file, tmp_path):
+    file.write_text(file.read_text() + "policies: [as written, optimised]\n")
+    said = argo("evaluate", file, "--out", tmp_path / "out")
+    assert "  mission 1, optimised, seed 0, stop: " in said.stdout
+
+
 def test_more_seeds_go_on_from_the_rows_that_are_there(argo, file, tmp_path):
     out = tmp_path / "out"
     assert argo("evaluate", file, "--out", out).returncode == 0
     before = {row.key for row in read_rows(out)}
     file.write_text(FILE.format(mission=ROOT / MISSION, last=6))
-    assert argo("evaluate", file, "--out", out, "--force").returncode == 0
+    assert argo("evaluate", file, "--out", out).returncode == 0
     after = {row.key for row in read_rows(out)}
     assert before < after
     assert len(after) == 14
 
 
-def started(file: Path, out: Path) -> "subprocess.Popen[bytes]":
+def started(file: Path, out: Path, stderr: int = subprocess.DEVNULL) -> "subprocess.Popen[bytes]":
     return subprocess.Popen(
         [sys.executable, "-m", "argo_planner", "evaluate", file, "--out", out, "--workers", "2"],
         cwd=ROOT,
         stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
+        stderr=stderr,
         start_new_session=True,
     )
 
@@ -264,12 +374,14 @@ def test_no_worker_is_left_behind(long_file, tmp_path):
 
 def test_ctrl_c_keeps_the_rows(long_file, tmp_path):
     out = tmp_path / "out"
-    process = started(long_file, out)
+    process = started(long_file, out, subprocess.PIPE)
     while count(out) < 3:
         time.sleep(0.02)
     os.killpg(process.pid, signal.SIGINT)
-    assert process.wait(60) == 130
+    _, told = process.communicate(timeout=60)
+    assert process.returncode == 130
     kept = count(out)
+    assert f"argo: interrupted; {kept} runs are kept in {out}".encode() in told
     assert kept >= 3
     again = started(long_file, out)
     assert again.wait(300) == 0

@@ -1,18 +1,22 @@
 """Workers of a Dask cluster: one of this machine, or an existing one by its address."""
 
+import asyncio
 import logging
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import dask
-from distributed import Client, KilledWorker, LocalCluster
+from distributed import Client, KilledWorker, LocalCluster, rpc
 from distributed import wait as wait_for
 from distributed.client import FutureCancelledError
 
 from argo_compiler.errors import Unavailable
+from argo_env.evaluation.pool.addresses import require_listener
 from argo_env.evaluation.pool.backend import WorkerDiedError
 
 _LOGGERS = tuple(f"distributed{part}" for part in ("", ".scheduler", ".nanny", ".core", ".worker"))
+_PATIENCE = 10.0  # s until a scheduler has said that it is one
 _SETTINGS = {
     # A call is tried again by the pool, which knows when it was alone.
     "distributed.scheduler.allowed-failures": 0,
@@ -37,6 +41,8 @@ class DaskCluster:
         for name in _LOGGERS:
             logging.getLogger(name).setLevel(logging.CRITICAL)
         dask.config.set(_SETTINGS)
+        if address is not None:
+            _require_scheduler(address)
         self._cluster: Any = None
         try:
             if address is None:
@@ -80,3 +86,22 @@ class DaskCluster:
         self._client.close()
         if self._cluster is not None:
             self._cluster.close()
+
+
+def _require_scheduler(address: str) -> None:
+    """Raises ArgoError if no scheduler answers at the address: a client would wait for ever."""
+    require_listener(address, "Dask")
+
+    async def asked() -> str:
+        async with asyncio.timeout(_PATIENCE), rpc(address) as scheduler:
+            return str((await scheduler.identity()).get("type"))
+
+    try:
+        # In a thread of its own: a notebook has a loop in this one.
+        with ThreadPoolExecutor(1) as thread:
+            kind = thread.submit(asyncio.run, asked()).result()
+    except Exception as error:  # whatever else may be listening answers with
+        why = "what listens there does not answer as one" if isinstance(error, OSError) else error
+        raise Unavailable(f"no Dask cluster at {address}: {why}") from None
+    if kind != "Scheduler":
+        raise Unavailable(f"no Dask cluster at {address}: it is the address of a {kind}")

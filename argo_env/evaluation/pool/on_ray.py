@@ -2,6 +2,8 @@
 
 import logging
 import os
+import subprocess
+import sys
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -9,9 +11,11 @@ import ray
 from ray.exceptions import GetTimeoutError, RayTaskError, WorkerCrashedError
 
 from argo_compiler.errors import Unavailable
+from argo_env.evaluation.pool.addresses import require_listener
 from argo_env.evaluation.pool.backend import WorkerDiedError
 
 _STORE = 100_000_000  # bytes that Ray shares between processes; specs and rows are small
+_ANSWERS = 40.0  # s until a cluster has taken a client
 _PATIENCE = 60.0  # s until a result that is ready is there
 
 
@@ -28,6 +32,8 @@ class RayCluster:
         Raises Unavailable if it can't be reached.
         """
         os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
+        if address not in (None, "auto", "local"):
+            _require_cluster(str(address))
         own: dict[str, Any] = {}
         if address is None:
             own = {
@@ -46,6 +52,8 @@ class RayCluster:
         except (ConnectionError, RuntimeError, ValueError) as error:
             where = f" at {address}" if address else ""
             raise Unavailable(f"no Ray cluster{where}: {error}") from None
+        # What it would print of workers that died is what rows say.
+        ray._private.worker._worker_logs_enabled = False
         self.workers = workers or max(1, int(ray.cluster_resources().get("CPU", 1)))
         self._remote: dict[Any, Any] = {}
 
@@ -80,6 +88,27 @@ class RayCluster:
 
     def close(self) -> None:
         ray.shutdown()
+
+
+def _require_cluster(address: str) -> None:
+    """Raises ArgoError if a cluster at the address takes no calls: asked in a process of its own,
+    as Ray would go on for ever trying to reach one that does not answer."""
+    require_listener(address, "Ray")
+    asked = "import ray, sys; ray.init(sys.argv[1], log_to_driver=False, logging_level=40)"
+    try:
+        done = subprocess.run(
+            (sys.executable, "-c", asked, address), capture_output=True, timeout=_ANSWERS
+        )
+    except subprocess.TimeoutExpired:
+        raise Unavailable(
+            f"no Ray cluster at {address}: what listens there does not answer as one"
+        ) from None
+    if done.returncode:
+        said = done.stderr.decode(errors="replace").strip()
+        why = said.rpartition("\n")[2]
+        if "InvalidAuthToken" in said:
+            why = "it asks for a token: set RAY_AUTH_MODE=token and RAY_AUTH_TOKEN"
+        raise Unavailable(f"no Ray cluster at {address}: {why}")
 
 
 def _first_line(error: Exception) -> str:

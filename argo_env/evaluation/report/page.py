@@ -11,11 +11,9 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 from markupsafe import Markup
 
 import argo_compiler
-from argo_compiler.errors import Unavailable
-from argo_compiler.files.writing import write_whole
 from argo_env.evaluation.comparison import PlanComparison
 from argo_env.evaluation.durations import duration_curve
-from argo_env.evaluation.folder import REPORT
+from argo_env.evaluation.folder import COMPARISON, REPORT, write_file
 from argo_env.evaluation.plan import PlanName
 from argo_env.evaluation.plots import (
     detection_delays,
@@ -39,10 +37,10 @@ from argo_env.evaluation.report.words import (
 )
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome
+from argo_env.files.folders import make_folder
 from argo_env.formatting import clock
 from argo_env.report.svg import clean
 
-COMPARISON = "comparison.html"
 _RUNS, _SHOWN, _REASONS, _PLACES = 100, 12, 15, 12
 """lines of tables; of runs some are to be opened first, and all are among the rows"""
 _GAINS = (0.01, 0.02, 0.05, 0.1, 0.2)
@@ -51,13 +49,16 @@ _GAINS = (0.01, 0.02, 0.05, 0.1, 0.2)
 def write_evaluation_report(folder: Path, results: EvaluationResults) -> Path:
     """Writes `report.html` into the folder of an evaluation and returns its path. Raises
     Unavailable where it can't be written."""
-    return _write(folder / REPORT, evaluation_page(results, folder))
+    return write_file(folder / REPORT, evaluation_page(results, folder))
 
 
-def write_comparison_report(first: Path, second: Path, compared: PlanComparison) -> Path:
-    """Writes `comparison.html` into the folder of the first of two evaluations and returns its
+def write_comparison_report(
+    folder: Path, first: Path, second: Path, compared: PlanComparison
+) -> Path:
+    """Writes `comparison.html` into a folder, of two evaluations in theirs, and returns its
     path. Raises as `write_evaluation_report`."""
-    return _write(first / COMPARISON, comparison_page(compared, first, second))
+    make_folder(folder)
+    return write_file(folder / COMPARISON, comparison_page(compared, first, second))
 
 
 def evaluation_page(results: EvaluationResults, folder: Path) -> str:
@@ -190,11 +191,3 @@ def _template(name: str) -> Template:
     style = (here / "style.css").read_text(encoding="utf-8")
     environment.globals.update(outcome=RunOutcome, between=between, style=style)
     return environment.get_template(name)
-
-
-def _write(path: Path, text: str) -> Path:
-    try:
-        write_whole(path, text)
-    except OSError as error:
-        raise Unavailable(f"{path}: can't be written: {error.strerror}") from error
-    return path

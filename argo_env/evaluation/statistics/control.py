@@ -17,7 +17,8 @@ from argo_compiler.errors import Invalid
 from argo_env.evaluation.statistics.rates import LEVEL
 from argo_env.evaluation.statistics.strata import Estimate
 
-_FEWEST = 10  # pairs from which on a correlation says anything
+FEWEST_PAIRS = 10
+"""from which on a correlation says anything"""
 
 
 @dataclass(frozen=True)
@@ -33,8 +34,8 @@ class ControlVariate:
         cls, expensive: NDArray[np.float64], cheap: NDArray[np.float64], cost: float
     ) -> "ControlVariate":
         """From pairs, one of each a world, shape (n,) each."""
-        if len(expensive) != len(cheap) or len(expensive) < _FEWEST:
-            raise Invalid(f"a correlation takes at least {_FEWEST} pairs of runs")
+        if len(expensive) != len(cheap) or len(expensive) < FEWEST_PAIRS:
+            raise Invalid(f"a correlation takes at least {FEWEST_PAIRS} pairs of runs")
         if not cost > 0:
             raise Invalid(f"a cheap run that costs {cost:g} of an expensive one: give more than 0")
         if np.ptp(expensive) == 0 or np.ptp(cheap) == 0:
@@ -73,8 +74,8 @@ def controlled_mean(
     """The mean of the expensive runs, from pairs, shape (n,) each, and the cheap runs of further
     worlds, shape (m,). The interval is that of the normal distribution with n - 2 degrees."""
     n, m = len(expensive), len(more_cheap)
-    if n != len(cheap) or n < _FEWEST:
-        raise Invalid(f"it takes at least {_FEWEST} pairs of runs")
+    if n != len(cheap) or n < FEWEST_PAIRS:
+        raise Invalid(f"it takes at least {FEWEST_PAIRS} pairs of runs")
     from scipy.stats import t
 
     spread = float(np.var(cheap, ddof=1))

@@ -259,7 +259,9 @@ def test_a_comparison_says_how_sure_it_is(mission, tmp_path):
     compared = compare_plans(
         results_of(mission, "calm", fail=()), results_of(mission, "hasty", fail=range(8))
     )
-    page = write_comparison_report(tmp_path, tmp_path / "b", compared).read_text(encoding="utf-8")
+    page = write_comparison_report(tmp_path, tmp_path, tmp_path / "b", compared).read_text(
+        encoding="utf-8"
+    )
     assert "A succeeds more often." in page
     assert "+20.0 %" in page
     assert "none: equal in all worlds" in page  # of times

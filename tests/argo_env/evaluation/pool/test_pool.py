@@ -1,5 +1,9 @@
 """The pool on each of its back ends, all of them for real on this machine."""
 
+import socket
+import subprocess
+import sys
+import time
 from importlib.util import find_spec
 
 import pytest
@@ -76,6 +80,13 @@ def test_a_call_that_was_lost_with_its_worker_is_made_again(backend, tmp_path):
     assert {ticket: one.value for ticket, one in found.items()} == {k: k for k in range(20)}
 
 
+def test_workers_that_die_say_nothing_on_the_terminal(backend, capfd):
+    found = carried_out(backend, work.die_on_500, range(495, 505))
+    assert found[5].died
+    time.sleep(1.0)  # for what would be told late
+    assert capfd.readouterr().out == ""
+
+
 def test_more_may_be_submitted_meanwhile(backend):
     pool = Pool(backend, work.square)
     pool.submit(0, 0)
@@ -131,10 +142,43 @@ def test_a_cluster_that_is_there_is_used_by_its_address(tmp_path):
             backend.close()
 
 
-@pytest.mark.skipif(find_spec("distributed") is None, reason="needs `distributed`")
-def test_a_cluster_that_is_not_there_is_said(monkeypatch):
-    import argo_env.evaluation.pool.on_dask as on_dask
+@pytest.mark.long
+@pytest.mark.skipif(find_spec("ray") is None, reason="needs `ray`")
+def test_a_ray_cluster_that_is_there_is_used_by_its_address(monkeypatch):
+    monkeypatch.setenv("RAY_AUTH_MODE", "disabled")
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = str(free.getsockname()[1])
+    ray = (sys.executable, "-m", "ray.scripts.scripts")
+    options = ("--num-cpus", "2", "--include-dashboard=false", "--disable-usage-stats")
+    subprocess.run((*ray, "start", "--head", "--port", port, *options), check=True)
+    try:
+        backend = make_backend("ray", address=f"127.0.0.1:{port}")
+        try:
+            assert backend.workers == 2
+            found = carried_out(backend, work.square, range(10))
+            assert [found[k].value for k in range(10)] == [k * k for k in range(10)]
+        finally:
+            backend.close()
+    finally:
+        subprocess.run((*ray, "stop", "--force"), check=True)
 
-    monkeypatch.setitem(on_dask._SETTINGS, "distributed.comm.timeouts.connect", "1s")
-    with pytest.raises(ArgoError, match=r"no Dask cluster at tcp://127\.0\.0\.1:9"):
-        make_backend("dask", address="tcp://127.0.0.1:9")
+
+@pytest.mark.parametrize("name", ["ray", "dask"])
+def test_a_cluster_that_is_not_there_is_said(name):
+    pytest.importorskip(PACKAGES[name], reason=f"needs `{PACKAGES[name]}`")
+    with pytest.raises(ArgoError, match=r"cluster at 127\.0\.0\.1:9: Connection refused"):
+        make_backend(name, address="127.0.0.1:9")
+    for nowhere in ("nonsense", "host:port", ""):
+        with pytest.raises(ArgoError, match="give host:port"):
+            make_backend(name, address=nowhere)
+
+
+@pytest.mark.parametrize("name", ["ray", "dask"])
+def test_what_is_no_cluster_is_not_waited_for(name, monkeypatch):
+    module = pytest.importorskip(f"argo_env.evaluation.pool.on_{name}")
+    monkeypatch.setattr(module, "_ANSWERS" if name == "ray" else "_PATIENCE", 2.0)
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        port = silent.getsockname()[1]
+        with pytest.raises(ArgoError, match="what listens there does not answer as one"):
+            make_backend(name, address=f"127.0.0.1:{port}")

@@ -1,0 +1,98 @@
+"""The folder of an evaluation: which plan it may take, and which rows stay."""
+
+import pytest
+
+from argo_compiler.errors import Conflict
+from argo_env.evaluation.carrying_out import WorkOrder
+from argo_env.evaluation.controlled import with_drive
+from argo_env.evaluation.folder import digest_of, kept_plan, open_rows, read_results
+from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan, Stopping
+from argo_env.evaluation.store import read_rows
+from argo_env.run.spec import RunSpec
+from tests.argo_env.evaluation import work
+
+DIGEST = digest_of(b"")
+
+
+@pytest.fixture(scope="module")
+def plan(mission) -> EvaluationPlan:
+    case = EvaluationCase(mission="short", spec=RunSpec(mission=mission))
+    return EvaluationPlan(cases=(case,), seeds=tuple(range(12)))
+
+
+def rows_of(plan, seeds=None):
+    """Rows of runs that nobody has made."""
+    return [
+        work.invented(WorkOrder(plan.key(run), plan.cases[run.case], run.spec, {}))
+        for run in plan.runs(seeds)
+    ]
+
+
+def filled(folder, plan, *more):
+    """The folder with all rows of the plan, in a Parquet file, and more in the log."""
+    with open_rows(folder, plan, DIGEST) as store:
+        for row in rows_of(plan):
+            store.add(row)
+        store.compact()
+        for row in more:
+            store.add(row)
+
+
+def keys(folder):
+    return {row.key for row in read_rows(folder)}
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{}, {"seeds": tuple(range(20))}, {"stopping": Stopping(width=0.1)}],
+    ids=["the same", "more seeds", "another end"],
+)
+def test_an_evaluation_goes_on(tmp_path, plan, change):
+    filled(tmp_path, plan)
+    with open_rows(tmp_path, plan.changed(**change), DIGEST) as store:
+        assert len(store.rows) == 12
+    assert kept_plan(tmp_path) == plan.changed(**change)
+
+
+@pytest.mark.parametrize("seeds", [range(5), range(5, 30)])
+def test_another_one_is_refused_and_changes_nothing(tmp_path, plan, seeds):
+    filled(tmp_path, plan)
+    other = plan.changed(seeds=tuple(seeds))
+    with pytest.raises(Conflict, match="has another evaluation"):
+        open_rows(tmp_path, other, DIGEST)
+    assert kept_plan(tmp_path) == plan
+    assert len(keys(tmp_path)) == 12
+    # Nobody holds the folder after that.
+    open_rows(tmp_path, plan, DIGEST).close()
+
+
+def test_replaced_it_keeps_what_fits_in_parts_and_log(tmp_path, plan):
+    later = rows_of(plan.changed(seeds=(100, 101)))
+    filled(tmp_path, plan, *later)
+    other = plan.changed(seeds=(3, 4, 5, 100))
+    with open_rows(tmp_path, other, DIGEST, replace=True) as store:
+        assert {row.seed for row in store.rows.values()} == {3, 4, 5, 100}
+        store.add(rows_of(other.changed(seeds=(200,)))[0])
+        store.compact()
+    assert len(keys(tmp_path)) == 5
+    assert [row.seed for row in read_results(tmp_path).rows] == [3, 4, 5, 100]
+
+
+def test_cheap_runs_stay_with_the_plan_that_they_help(tmp_path, plan):
+    cheap = with_drive(plan, "route")
+    filled(tmp_path, plan, *rows_of(cheap, (0, 1, 5_000)))
+    other = plan.changed(seeds=tuple(range(20, 40)))
+    with open_rows(tmp_path, other, DIGEST, replace=True, helper=cheap) as store:
+        assert sorted((row.seed, row.drive) for row in store.rows.values()) == [
+            (0, "route"), (1, "route"), (5_000, "route"),
+        ]  # fmt: skip
+
+
+def test_a_plan_that_this_version_does_not_know_is_another_one(tmp_path, plan):
+    filled(tmp_path, plan)
+    (tmp_path / "evaluation.json").write_text('{"version": 0}')
+    with pytest.raises(Conflict, match="has another evaluation"):
+        open_rows(tmp_path, plan, DIGEST)
+    open_rows(tmp_path, plan, DIGEST, replace=True).close()
+    assert kept_plan(tmp_path) == plan
+    assert len(keys(tmp_path)) == 12

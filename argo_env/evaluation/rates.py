@@ -7,7 +7,7 @@ from enum import StrEnum
 
 from argo_env.evaluation.plan import EvaluationPlan, PlanName
 from argo_env.evaluation.row import RunOutcome, RunRow
-from argo_env.evaluation.statistics.rates import clopper_pearson, wilson
+from argo_env.evaluation.statistics.rates import Rate, clopper_pearson, wilson
 from argo_env.evaluation.statistics.sequences import ConfidenceSequence
 from argo_env.evaluation.statistics.strata import Stratum, stratified_rate
 
@@ -18,7 +18,8 @@ class IntervalMethod(StrEnum):
     EXACT = "Clopper-Pearson"
     """one run a world"""
     SEQUENCE = "confidence sequence"
-    """several runs in each world, which depend on each other: their mean in each world counts"""
+    """several runs in each world, which depend on each other, so that their mean in each world
+    counts; or a requirement that decides when there are enough: it holds whenever one stops"""
     STRATA = "strata"
     """runs of each case by themselves, put together by weight"""
     QUICK = "Wilson"
@@ -57,8 +58,8 @@ def rate_of(
     lost = len(own) - len(ran)
     cases = [case for case in evaluation.cases if case.plan == plan]
     if len(cases) == 1:
-        rate = clopper_pearson(sum(map(holds, ran)), len(ran))
-        return PlanRate(rate.value, rate.low, rate.high, len(ran), lost, IntervalMethod.EXACT)
+        rate, method = rate_of_runs(evaluation, [holds(row) for row in ran])
+        return PlanRate(rate.value, rate.low, rate.high, len(ran), lost, method)
     weights = {case.faults: case.weight for case in cases}
     if evaluation.strata:
         whole = sum(weights.values())
@@ -75,6 +76,21 @@ def rate_of(
     low, high = sequence.interval
     value = sum(means.values()) / len(means) if means else float("nan")
     return PlanRate(value, low, high, len(ran), lost, IntervalMethod.SEQUENCE)
+
+
+def rate_of_runs(
+    evaluation: EvaluationPlan, outcomes: Sequence[bool]
+) -> tuple[Rate, IntervalMethod]:
+    """How often something was so in runs of which each world has one, with an interval that holds
+    however the evaluation came to its end: the exact one holds where the number of runs, or the
+    width of the interval, was said before, and not where a requirement was decided, which is
+    the more often so the farther the runs at hand are from the truth."""
+    count, runs = sum(outcomes), len(outcomes)
+    if not evaluation.stopping.require:
+        return clopper_pearson(count, runs), IntervalMethod.EXACT
+    sequence = ConfidenceSequence()
+    sequence.add(map(float, outcomes))
+    return Rate(count, runs, *sequence.interval), IntervalMethod.SEQUENCE
 
 
 def world_means(

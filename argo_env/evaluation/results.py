@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING
 
 from argo_env.evaluation.plan import EvaluationPlan, PlanName
 from argo_env.evaluation.rates import (
+    IntervalMethod,
     PlanRate,
     RequirementVerdict,
     judge_requirements,
     rate_of,
+    rate_of_runs,
 )
 from argo_env.evaluation.requirement import QUANTITIES
 from argo_env.evaluation.row import RunOutcome, RunRow
-from argo_env.evaluation.statistics.rates import Rate, clopper_pearson
+from argo_env.evaluation.statistics.rates import Rate
 
 if TYPE_CHECKING:
     import pandas
@@ -24,12 +26,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class GroupRate:
-    """The rate of success of some of a plan's runs, with the exact interval."""
+    """The rate of success of some of a plan's runs, with its interval."""
 
     plan: PlanName
     name: str
     rate: Rate
     outcomes: Counter[RunOutcome]
+    method: IntervalMethod
     one_each: bool = True
     """whether each world has one run in it: only then the interval is one"""
 
@@ -74,7 +77,7 @@ class EvaluationResults:
         own = self.of(plan)
         names = dict.fromkeys(self.faults_of(row) for row in own)
         return tuple(
-            _group(plan, name, [row for row in own if self.faults_of(row) == name])
+            self._group(plan, name, [row for row in own if self.faults_of(row) == name])
             for name in names
         )
 
@@ -101,8 +104,14 @@ class EvaluationResults:
             block = seeds[first : first + size]
             rows = [row for row in own if block[0] <= row.seed <= block[-1]]
             name = str(block[0]) if len(block) == 1 else f"{block[0]} to {block[-1]}"
-            found.append(_group(plan, name, rows))
+            found.append(self._group(plan, name, rows))
         return tuple(found)
+
+    def _group(self, plan: PlanName, name: str, rows: Sequence[RunRow]) -> GroupRate:
+        ran = [row.success for row in rows if row.carried_out]
+        rate, method = rate_of_runs(self.plan, ran)
+        one_each = len({row.seed for row in rows}) == len(rows)
+        return GroupRate(plan, name, rate, Counter(row.outcome for row in rows), method, one_each)
 
     @cached_property
     def frame(self) -> "pandas.DataFrame":
@@ -138,10 +147,3 @@ class EvaluationResults:
             )
             lines.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
         return f"<table><thead><tr>{head}</tr></thead><tbody>{''.join(lines)}</tbody></table>"
-
-
-def _group(plan: PlanName, name: str, rows: Sequence[RunRow]) -> GroupRate:
-    ran = [row for row in rows if row.carried_out]
-    rate = clopper_pearson(sum(row.success for row in ran), len(ran))
-    one_each = len({row.seed for row in rows}) == len(rows)
-    return GroupRate(plan, name, rate, Counter(row.outcome for row in rows), one_each)

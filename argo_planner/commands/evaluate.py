@@ -2,6 +2,7 @@
 
 import os
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -240,6 +241,9 @@ def _compare(
         for results, name in zip((a, b), names, strict=True)
     ]
     compared = compare_plans(a, b, *chosen)
+    if compared.first == compared.second:
+        of = compared.first
+        compared = replace(compared, first=f"{of} in {first}", second=f"{of} in {second}")
     show_comparison(compared, console)
     if report:
         from argo_env.evaluation.report.page import write_comparison_report

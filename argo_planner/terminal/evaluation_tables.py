@@ -14,6 +14,7 @@ from argo_env.evaluation.comparison import PlanComparison
 from argo_env.evaluation.controlled import ControlledMean
 from argo_env.evaluation.plan import PlanName
 from argo_env.evaluation.rates import Decision, IntervalMethod
+from argo_env.evaluation.report.words import why_sequence
 from argo_env.evaluation.results import EvaluationResults, GroupRate
 from argo_env.evaluation.row import RunOutcome
 from argo_env.evaluation.score import ScoringRules, mean_score
@@ -56,6 +57,9 @@ def show_results(
             console.print(_groups(_titled("by seeds", plan, results), "seeds", blocks))
     for line in _failing(results, failing):
         console.print(escape(line), soft_wrap=True)
+    worlds, planned = len({row.seed for row in results.rows}), len(results.plan.seeds)
+    if worlds < planned and not results.plan.strata:
+        console.print(f"{worlds} of {planned} worlds were enough: what it stops for is reached.")
     for verdict in results.verdicts:
         style = _STYLES[verdict.verdict]
         of = (
@@ -67,6 +71,8 @@ def show_results(
             f"{verdict.worlds} worlds)",
             soft_wrap=True,
         )
+    if any(verdict.verdict is Decision.OPEN for verdict in results.verdicts):
+        console.print("What is not decided takes more worlds: give more --seeds.")
 
 
 def show_means(means: Sequence[ControlledMean], drive: str | None, console: Console) -> None:
@@ -126,7 +132,8 @@ def _plans(results: EvaluationResults) -> Table:
     methods = {results.rate(plan).method for plan in results.plan.plans}
     notes = []
     if IntervalMethod.SEQUENCE in methods:
-        notes.append("* the runs of one world depend on each other: it counts as one")
+        several = len(results.plan.cases) > len(results.plan.plans)
+        notes += ["* " + " ".join(why_sequence(results.plan.stopping, several))]
     elif IntervalMethod.STRATA in methods:
         notes.append("* put together by the probabilities of faults")
     if results.missing:

@@ -145,7 +145,7 @@ class RunCount:
             for group in results.by_faults(plan):
                 found, lost = group.rate, group.outcomes.total() - group.rate.runs
                 groups[group.name] = PlanRate(
-                    found.value, found.low, found.high, found.runs, lost, IntervalMethod.EXACT
+                    found.value, found.low, found.high, found.runs, lost, group.method
                 )
             requirements = tuple(
                 RequirementTold(

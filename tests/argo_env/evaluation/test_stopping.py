@@ -1,0 +1,52 @@
+"""Intervals hold however an evaluation came to its end: simulated evaluations of known rates."""
+
+import numpy as np
+import pytest
+
+from argo_env.evaluation.batches import batches
+from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan, Stopping
+from argo_env.evaluation.rates import IntervalMethod
+from argo_env.evaluation.requirement import parse_requirement
+from argo_env.evaluation.results import EvaluationResults
+from argo_env.evaluation.row import RunOutcome, row_without_end
+from argo_env.run.spec import RunSpec
+
+
+def simulated(plan, rng, share):
+    """The results of an evaluation of runs of which such a share succeeds."""
+    (case,) = plan.cases
+    bare = row_without_end("", case, case.spec, RunOutcome.SUCCESS, "")
+    rows = []
+    for batch in batches(plan, rows):
+        for run in batch:
+            came = RunOutcome.SUCCESS if rng.random() < share else RunOutcome.FAILURE
+            rows.append(bare.model_copy(update={"seed": run.seed, "outcome": came}))
+    return EvaluationResults(plan, tuple(rows))
+
+
+@pytest.mark.parametrize(
+    "evaluations",
+    [pytest.param(100, id="100"), pytest.param(500, id="500", marks=pytest.mark.long)],
+)
+@pytest.mark.parametrize(("share", "asked"), [(0.85, 0.8), (0.9, 0.95)])
+def test_the_interval_covers_where_a_requirement_decides_when_to_stop(
+    mission, share, asked, evaluations
+):
+    """An exact interval covers the rate in 93 of 100 of the first ones only."""
+    plan = EvaluationPlan(
+        cases=(EvaluationCase(mission="m", spec=RunSpec(mission=mission, drive="route")),),
+        seeds=tuple(range(400)),
+        stopping=Stopping(require=(parse_requirement(f"success >= {asked}"),)),
+    )
+    rng = np.random.default_rng(9)
+    held = groups = early = 0
+    for _ in range(evaluations):
+        results = simulated(plan, rng, share)
+        rate = results.rate(plan.plans[0])
+        (group,) = results.by_faults(plan.plans[0])
+        assert rate.method is group.method is IntervalMethod.SEQUENCE
+        held += rate.low <= share <= rate.high
+        groups += group.rate.low <= share <= group.rate.high
+        early += rate.runs < 400
+    assert early > 0.1 * evaluations
+    assert held == groups >= 0.945 * evaluations

@@ -19,7 +19,7 @@ class IntervalMethod(StrEnum):
     """one run a world"""
     SEQUENCE = "confidence sequence"
     """several runs in each world, which depend on each other, so that their mean in each world
-    counts; or a requirement that decides when there are enough: it holds whenever one stops"""
+    counts; or an end that depends on what came of the runs: it holds whenever one stops"""
     STRATA = "strata"
     """runs of each case by themselves, put together by weight"""
     QUICK = "Wilson"
@@ -50,15 +50,17 @@ def rate_of(
     plan: PlanName,
     rows: Sequence[RunRow],
     holds: Callable[[RunRow], bool] = success,
+    any_time: bool = False,
 ) -> PlanRate:
     """The rate of a plan over all its cases, from the rows of the evaluation. Runs that could not
-    be carried out are left out, and counted."""
+    be carried out are left out, and counted. `any_time`: the interval has to hold whatever ended
+    the evaluation, as where somebody did who saw what came of it."""
     own = [row for row in rows if row.plan == plan]
     ran = [row for row in own if row.carried_out]
     lost = len(own) - len(ran)
     cases = [case for case in evaluation.cases if case.plan == plan]
     if len(cases) == 1:
-        rate, method = rate_of_runs(evaluation, [holds(row) for row in ran])
+        rate, method = rate_of_runs(evaluation, [holds(row) for row in ran], any_time)
         return PlanRate(rate.value, rate.low, rate.high, len(ran), lost, method)
     weights = {case.faults: case.weight for case in cases}
     if evaluation.strata:
@@ -79,14 +81,14 @@ def rate_of(
 
 
 def rate_of_runs(
-    evaluation: EvaluationPlan, outcomes: Sequence[bool]
+    evaluation: EvaluationPlan, outcomes: Sequence[bool], any_time: bool = False
 ) -> tuple[Rate, IntervalMethod]:
     """How often something was so in runs of which each world has one, with an interval that holds
     however the evaluation came to its end: the exact one holds where the number of runs, or the
     width of the interval, was said before, and not where a requirement was decided, which is
     the more often so the farther the runs at hand are from the truth."""
     count, runs = sum(outcomes), len(outcomes)
-    if not evaluation.stopping.require:
+    if not (evaluation.stopping.require or any_time):
         return clopper_pearson(count, runs), IntervalMethod.EXACT
     sequence = ConfidenceSequence()
     sequence.add(map(float, outcomes))

@@ -1,8 +1,8 @@
 """What came of an evaluation."""
 
 import html
-from collections import Counter
-from collections.abc import Sequence
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -43,6 +43,24 @@ class EvaluationResults:
 
     plan: EvaluationPlan
     rows: tuple[RunRow, ...]
+    cut_short: bool = False
+    """whether something else has ended it than the plan: intervals hold whatever that was"""
+
+    @staticmethod
+    def so_far(plan: EvaluationPlan, rows: Iterable[RunRow]) -> "EvaluationResults":
+        """Those of an evaluation that was cut short, of which there are these rows: of all worlds
+        before the first one in which a run is missing, as what has come of later ones depends on
+        how long runs take."""
+        by_world: dict[int, list[RunRow]] = defaultdict(list)
+        for row in rows:
+            by_world[row.seed].append(row)
+        found: list[RunRow] = []
+        for seed in plan.seeds:
+            world = by_world[seed]
+            if len(world) < len(plan.cases):
+                break
+            found += sorted(world, key=lambda row: plan.case_of(row) or 0)
+        return EvaluationResults(plan, tuple(found), cut_short=True)
 
     @cached_property
     def outcomes(self) -> Counter[RunOutcome]:
@@ -65,7 +83,7 @@ class EvaluationResults:
 
     def rate(self, plan: PlanName, quantity: str = "success") -> PlanRate:
         """How often something is so in a plan's runs, over all their faults."""
-        return rate_of(self.plan, plan, self.rows, QUANTITIES[quantity])
+        return rate_of(self.plan, plan, self.rows, QUANTITIES[quantity], self.cut_short)
 
     @cached_property
     def verdicts(self) -> tuple[RequirementVerdict, ...]:
@@ -109,7 +127,7 @@ class EvaluationResults:
 
     def _group(self, plan: PlanName, name: str, rows: Sequence[RunRow]) -> GroupRate:
         ran = [row.success for row in rows if row.carried_out]
-        rate, method = rate_of_runs(self.plan, ran)
+        rate, method = rate_of_runs(self.plan, ran, self.cut_short)
         one_each = len({row.seed for row in rows}) == len(rows)
         return GroupRate(plan, name, rate, Counter(row.outcome for row in rows), method, one_each)
 

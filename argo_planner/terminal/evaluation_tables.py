@@ -133,7 +133,7 @@ def _plans(results: EvaluationResults) -> Table:
     notes = []
     if IntervalMethod.SEQUENCE in methods:
         several = len(results.plan.cases) > len(results.plan.plans)
-        notes += ["* " + " ".join(why_sequence(results.plan.stopping, several))]
+        notes += ["* " + " ".join(why_sequence(results, several))]
     elif IntervalMethod.STRATA in methods:
         notes.append("* put together by the probabilities of faults")
     if results.missing:

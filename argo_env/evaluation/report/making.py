@@ -24,6 +24,8 @@ def how_it_was_made(results: EvaluationResults) -> list[tuple[str, list[str]]]:
     asked = len(cases) * len(plan.seeds)
     made.append(("Seeds", [ranges(plan.seeds)]))
     made.append(("Runs", [f"{len(results.rows)} of {asked} that there may be"]))
+    if results.cut_short:
+        made.append(("Ended", ["before its time; told are the worlds of which no run is missing"]))
     stopping = []
     if plan.stopping.require:
         stopping.append("when all that was required is decided")

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from argo_env.evaluation.plan import PlanName, Stopping
+from argo_env.evaluation.plan import PlanName
 from argo_env.evaluation.rates import Decision, IntervalMethod
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.formatting import clock
@@ -63,13 +63,17 @@ def headline(results: EvaluationResults) -> tuple[str, str]:
     return f"{len(results.failing)} of {len(results.rows)} runs are no success", "notice"
 
 
-def why_sequence(stopping: Stopping, several: bool) -> list[str]:
+def why_sequence(results: EvaluationResults, several: bool) -> list[str]:
     """Why the interval of a rate is a confidence sequence, in sentences; `several`: there are
     several runs in each world."""
     said = []
     if several:
         said.append("The runs of one world depend on each other, so that a world counts as one.")
-    if stopping.require:
+    if results.cut_short:
+        said.append(
+            "It was ended before its time, maybe by somebody who saw what came of the runs."
+        )
+    elif results.plan.stopping.require:
         said.append("Its end may depend on what came of the runs, as there is a requirement.")
     return [*said, "The interval is a confidence sequence, which allows for that."]
 
@@ -84,7 +88,7 @@ def meaning(results: EvaluationResults, plan: PlanName) -> str:
             how = "The interval is exact (Clopper-Pearson)."
         case IntervalMethod.SEQUENCE:
             several = sum(case.plan == plan for case in results.plan.cases) > 1
-            how = " ".join(why_sequence(results.plan.stopping, several))
+            how = " ".join(why_sequence(results, several))
             if rate.lost and several:
                 how += " Worlds in which a run could not be carried out are left out."
         case _:

@@ -9,7 +9,11 @@ from pathlib import Path
 from argo_compiler.errors import ArgoError, Conflict, NotFound, Unavailable
 from argo_planner.service.evaluations.kept import EvaluationFolder, KeptEvaluation
 from argo_planner.service.evaluations.replay import ReplayedRun, ReplayOrder, replay_run
-from argo_planner.service.jobs.evaluation import EvaluationOrder, evaluate_mission
+from argo_planner.service.jobs.evaluation import (
+    EvaluationOrder,
+    evaluate_mission,
+    report_so_far,
+)
 from argo_planner.service.jobs.job import EvaluationJob, Job, JobState
 from argo_planner.service.jobs.jobs import Jobs
 from argo_planner.service.processes.work import JobProcess
@@ -50,6 +54,7 @@ class Evaluations:
             revision=revision,
             author=author,
             begun=self._clock(),
+            name=order.name,
             asked=order.asked,
         )
         return await self._begin(KeptEvaluation(order=order, job=job))
@@ -72,9 +77,38 @@ class Evaluations:
             raise NotFound(f"job {id} is no evaluation")
         return job
 
-    async def report(self, id: str) -> bytes:
-        """The report, as a page. Raises NotFound if there is none yet."""
+    async def end_of(self, plan: str) -> None:
+        """Ends the evaluation of a mission that is no more, if one is under way."""
+        for job in self._jobs.running(EvaluationJob):
+            if job.mission == plan:
+                await self._jobs.cancel(job.id)
+
+    async def forget(self, id: str) -> None:
+        """Deletes an evaluation that is over, with all its rows. Raises NotFound, Conflict if it is
+        under way."""
         job = self.of(id)
+        if job.state is JobState.RUNNING:
+            raise Conflict(f"evaluation {id} is under way: end it first")
+        self._jobs.forget(id)
+        await asyncio.to_thread(self._folder.forget, id)
+
+    async def forget_all_of(self, plan: str) -> None:
+        """Deletes the evaluations of a mission that is gone for good."""
+        await self.end_of(plan)
+        for job in self._jobs.all():
+            if isinstance(job, EvaluationJob) and job.mission == plan:
+                await self.forget(job.id)
+
+    async def report(self, id: str) -> bytes:
+        """The report, as a page; of an evaluation that was cut short, of what there is. Raises
+        NotFound if there is none yet."""
+        job = self.of(id)
+        if job.state in (JobState.CANCELLED, JobState.INTERRUPTED):
+            work = JobProcess(report_so_far, self._folder.path(id))
+            try:
+                await work.result(lambda _: None)
+            finally:
+                work.end()
         try:
             return await asyncio.to_thread(self._folder.report, id)
         except NotFound:
@@ -112,8 +146,10 @@ class Evaluations:
 
     def _require_free(self) -> None:
         for job in self._jobs.running(EvaluationJob):
+            assert isinstance(job, EvaluationJob)
             raise Conflict(
-                f"an evaluation is under way, begun by {job.author}: wait for it, or cancel it"
+                f"mission {job.name!r} is being evaluated, begun by {job.author}: wait for it, or "
+                "end it"
             )
 
     async def _begin(self, kept: KeptEvaluation) -> EvaluationJob:
@@ -123,6 +159,9 @@ class Evaluations:
 
         async def ended(job: Job) -> None:
             assert isinstance(job, EvaluationJob)
+            if job.state in (JobState.CANCELLED, JobState.INTERRUPTED):
+                job = await asyncio.to_thread(self._folder.cut_short, job)
+                self._jobs.tell_anew(job)
             try:
                 now = KeptEvaluation(order=kept.order, job=job)
                 await asyncio.to_thread(self._folder.keep, now)

@@ -4,17 +4,18 @@ report."""
 import logging
 import os
 import re
+import shutil
 from pathlib import Path
 
 from pydantic import ValidationError
 
-from argo_compiler.errors import NotFound
+from argo_compiler.errors import ArgoError, NotFound, Unavailable
 from argo_compiler.files.reading import FileError, read_bytes
 from argo_compiler.files.writing import write_whole
 from argo_compiler.model import Model
 from argo_env.evaluation.folder import REPORT
 from argo_env.files.folders import make_folder
-from argo_planner.service.jobs.evaluation import EvaluationOrder
+from argo_planner.service.jobs.evaluation import EvaluationOrder, cut_short
 from argo_planner.service.jobs.job import JOB_ID, EvaluationJob, JobState
 
 _KEPT = "job.json"
@@ -57,6 +58,23 @@ class EvaluationFolder:
                     _log.warning("%s: can't be read, and is left out: %s", self.path(name), error)
         return sorted(found, key=lambda kept: kept.job.begun)
 
+    def cut_short(self, job: EvaluationJob) -> EvaluationJob:
+        """An evaluation that was ended before its time, with how it stands by the rows that are
+        kept, as far as they can be read."""
+        try:
+            found = cut_short(self.path(job.id))
+        except ArgoError as error:
+            _log.warning("evaluation %s: its rows can't be read: %s", job.id, error)
+            return job
+        return job if found is None else job.heard(found[0])
+
+    def forget(self, id: str) -> None:
+        """Deletes one of them. Raises Unavailable where that can't be done."""
+        try:
+            shutil.rmtree(self.path(id))
+        except OSError as error:
+            raise Unavailable(f"{self.path(id)}: can't be deleted: {error.strerror}") from error
+
     def kept(self, id: str) -> KeptEvaluation:
         """What is kept of one of them. Raises NotFound if that can't be read."""
         try:
@@ -75,4 +93,4 @@ class EvaluationFolder:
             return kept
         why = "the service ended before all was run"
         job = kept.job.model_copy(update={"state": JobState.INTERRUPTED, "problem": why})
-        return kept.model_copy(update={"job": job})
+        return kept.model_copy(update={"job": self.cut_short(job)})

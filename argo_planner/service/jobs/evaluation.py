@@ -10,18 +10,19 @@ from pathlib import Path
 
 from pydantic import Field, field_validator, model_validator
 
-from argo_compiler.errors import Invalid
+from argo_compiler.errors import Invalid, NotFound
 from argo_compiler.il import Mission
 from argo_compiler.model import Model
 from argo_env.evaluation.carrying_out import WorkOrder, carry_out
 from argo_env.evaluation.evaluating import Evaluating
 from argo_env.evaluation.evaluation import Evaluation
-from argo_env.evaluation.folder import digest_of, keep_plan, write_failing
+from argo_env.evaluation.folder import digest_of, keep_plan, kept_plan, write_failing
 from argo_env.evaluation.plan import NO_FAULTS, EvaluationPlan
 from argo_env.evaluation.pool.backends import PROCESSES, make_backend
 from argo_env.evaluation.requirement import parse_requirement
+from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
-from argo_env.evaluation.store import RowStore
+from argo_env.evaluation.store import RowStore, read_rows
 from argo_env.evaluation.worlds import NO_VARIATION, Variation
 from argo_env.faults.kinds import AnyFault
 from argo_env.planning.opening import OpenedSite, open_site
@@ -143,21 +144,51 @@ def evaluate_mission(order: EvaluationOrder, folder: Path, tell: Tell) -> Evalua
     with RowStore(folder) as store:
         try:
             evaluating = Evaluating(plan, workers, store, limit=_LONGEST_RUN, call=call)
-            told = -_PERIOD
+            told, before = -_PERIOD, len(store.rows)
             for row in evaluating.rows_as_they_come():
                 standing.add(row)
-                if time.monotonic() - told >= _PERIOD:
-                    tell(standing.told(evaluating.progress))
+                # What was known before is counted before anything is told.
+                known = evaluating.progress.done >= before
+                if known and time.monotonic() - told >= _PERIOD:
+                    tell(standing.under_way(evaluating.progress))
                     told = time.monotonic()
         finally:
             workers.close()
     results = evaluating.results
-    final = standing.told(evaluating.progress, results)
+    final = standing.ended(results)
     tell(final)
     if not order.obstacles:
         write_failing(folder, results)
     write_evaluation_report(folder, results)
     return final
+
+
+def cut_short(folder: Path) -> tuple[EvaluationStanding, EvaluationResults] | None:
+    """How the evaluation in a folder stands that was ended before its time, and what came of it; of
+    one of which there are no rows, None. Raises ArgoError where they can't be read."""
+    plan = kept_plan(folder)
+    try:
+        rows = read_rows(folder)
+    except NotFound:
+        rows = ()
+    if plan is None or not rows:
+        return None
+    count, results = RunCount(plan), EvaluationResults.so_far(plan, rows)
+    places = {seed: k for k, seed in enumerate(plan.seeds)}
+    for row in sorted(rows, key=lambda row: (places[row.seed], plan.case_of(row) or 0)):
+        count.add(row)
+    return count.ended(results), results
+
+
+def report_so_far(folder: Path, tell: Tell) -> None:  # noqa: ARG001
+    """Writes the report of an evaluation that was ended before its time. Raises NotFound if no run
+    of it has ended."""
+    from argo_env.evaluation.report.page import write_evaluation_report
+
+    found = cut_short(folder)
+    if found is None:
+        raise NotFound("no run of the evaluation has ended yet: there is nothing to report")
+    write_evaluation_report(folder, found[1])
 
 
 def _carried_out(site: str, obstacles: tuple[Obstacle, ...], order: WorkOrder) -> RunRow:

@@ -74,6 +74,8 @@ class EvaluationJob(_Job):
     """The evaluation of a mission in many worlds."""
 
     kind: Literal["evaluation"] = "evaluation"
+    name: str = ""
+    """of the mission when it was begun"""
     asked: EvaluationAsked
     standing: EvaluationStanding | None = None
     """None: no run has ended yet"""

@@ -71,7 +71,16 @@ class Jobs:
         under_way.work.end()
         job = self._keep(self._jobs[id].model_copy(update={"state": JobState.CANCELLED}))
         await under_way.ended(job)
-        return job
+        return self._jobs.get(id, job)
+
+    def tell_anew(self, job: Job) -> None:
+        """More is known of a job that has ended."""
+        if job.id in self._jobs:
+            self._keep(job)
+
+    def forget(self, id: str) -> None:
+        """A job that is over is not known any more."""
+        self._jobs.pop(id, None)
 
     async def close(self) -> None:
         """Ends all jobs."""

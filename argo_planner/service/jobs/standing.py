@@ -84,11 +84,14 @@ class EvaluationStanding(Model):
     done: int
     """runs that have ended"""
     most: int
-    """runs that there are at most"""
+    """runs that there are at most; once all that it takes have been made, those"""
+    planned: int
+    """runs that were asked for: it may stop before, as soon as a requirement is decided"""
     remaining: float | None
     """s that it takes at most, if it goes on as fast; None: not known yet"""
     rate: RateTold
-    """of all runs; while they come, by an interval that claims nothing"""
+    """of all runs; while they come, by an interval that claims nothing. Of an evaluation that was
+    cut short that of the first worlds of which no run is missing"""
     curve: tuple[RateTold, ...]
     """the rate as it was after some of the runs, in their order"""
     outcomes: dict[RunOutcome, int]
@@ -132,10 +135,22 @@ class RunCount:
             if len(self._curve) > _MOST_POINTS:
                 self._curve, self._every = self._curve[1::2], 2 * self._every
 
-    def told(
-        self, progress: EvaluationProgress, results: EvaluationResults | None = None
+    def under_way(self, progress: EvaluationProgress) -> EvaluationStanding:
+        """How it stands while more runs come."""
+        return self._told(progress.most, progress.remaining, None)
+
+    def ended(self, results: EvaluationResults) -> EvaluationStanding:
+        """How it stands at its end, with these results, or where it was cut short."""
+        most = self._planned if results.cut_short else self._outcomes.total()
+        return self._told(most, None, results)
+
+    @property
+    def _planned(self) -> int:
+        return len(self._evaluation.seeds) * len(self._evaluation.cases)
+
+    def _told(
+        self, most: int, remaining: float | None, results: EvaluationResults | None
     ) -> EvaluationStanding:
-        """How it stands; with the `results`, once all has been run."""
         rate = quick_rate(self._outcomes)
         groups = {name: quick_rate(counts) for name, counts in self._by_faults.items()}
         requirements: tuple[RequirementTold, ...] = ()
@@ -158,9 +173,10 @@ class RunCount:
                 for verdict in results.verdicts
             )
         return EvaluationStanding(
-            done=progress.done,
-            most=progress.done if results is not None else progress.most,
-            remaining=None if results is not None else progress.remaining,
+            done=self._outcomes.total(),
+            most=most,
+            planned=self._planned,
+            remaining=remaining,
             rate=RateTold.of(rate),
             curve=tuple(self._curve),
             outcomes=dict(self._outcomes),

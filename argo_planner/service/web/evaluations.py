@@ -34,8 +34,11 @@ router = APIRouter(
 RunKey = Annotated[str, Path(pattern=r"^[0-9a-f]{24}$", description="key of the run")]
 _JOB = {
     name: link(name, id="$response.body#/id")
-    for name in ("read_job", "cancel_job", "go_on_with_evaluation", "read_evaluation_report")
-}
+    for name in (
+        "read_job", "cancel_job", "go_on_with_evaluation", "read_evaluation_report",
+        "forget_evaluation",
+    )
+}  # fmt: skip
 # The report is one file, with its styles and pictures in it; it runs nothing and loads nothing.
 _REPORT_POLICY = (
     "default-src 'none'; style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'"
@@ -83,6 +86,13 @@ async def go_on_with_evaluation(service: Service, _: Planner, id: JobId) -> Resp
     return said(await service.evaluations.go_on(id), 202)
 
 
+@router.delete("/evaluations/{id}", operation_id="forget_evaluation", status_code=204)
+async def forget_evaluation(service: Service, _: Planner, id: JobId) -> Response:
+    """Deletes an evaluation that is over, with all its rows; 409 while it is under way."""
+    await service.evaluations.forget(id)
+    return Response(status_code=204)
+
+
 @router.get("/jobs/{id}/runs/{key}", operation_id="replay_run", response_model=ReplayedRun)
 async def replay_run(service: Service, _: Viewer, id: JobId, key: RunKey) -> Response:
     """A run of an evaluation, made once more: all that has happened in it."""
@@ -101,7 +111,7 @@ async def replay_run(service: Service, _: Viewer, id: JobId, key: RunKey) -> Res
     },
 )
 async def read_evaluation_report(service: Service, _: Viewer, id: JobId) -> Response:
-    """The report of an evaluation that is done."""
+    """The report of an evaluation; of one that was cut short, of what there is."""
     content = await service.evaluations.report(id)
     headers = {"content-security-policy": _REPORT_POLICY}
     return Response(content, headers=headers, media_type="text/html")

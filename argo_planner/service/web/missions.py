@@ -189,8 +189,9 @@ async def duplicate_mission(
     },
 )
 async def delete_mission(service: Service, _: Planner, id: PlanId) -> Response:
-    """Moves a mission to the bin."""
+    """Moves a mission to the bin; an evaluation of it that is under way ends."""
     await service.rooms.delete(id)
+    await service.evaluations.end_of(id)
     return Response(status_code=204)
 
 
@@ -209,8 +210,9 @@ async def restore_mission(service: Service, _: Planner, id: PlanId) -> Response:
 
 @router.delete("/bin/{id}", operation_id="destroy_mission", status_code=204)
 async def destroy_mission(service: Service, _: Planner, id: PlanId) -> Response:
-    """Deletes a mission in the bin for good."""
+    """Deletes a mission in the bin for good, with its evaluations."""
     await service.rooms.destroy(id)
+    await service.evaluations.forget_all_of(id)
     drop_notes(service.folder, id)
     return Response(status_code=204)
 

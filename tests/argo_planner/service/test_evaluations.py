@@ -104,18 +104,53 @@ def test_one_at_a_time_and_what_was_cancelled_goes_on(service: Served, id: str) 
     job = begin(service, id, worlds=10_000)
     until(service, job, lambda read: read["standing"] is not None)
     told = problem(asked(service, id, worlds=1), 409, "conflict")
-    assert "an evaluation is under way, begun by ann" in told["detail"]
+    assert "mission 'm' is being evaluated, begun by ann" in told["detail"]
+    problem(service.client.delete(f"/api/evaluations/{job}"), 409, "conflict")
     cancelled = service.client.delete(f"/api/jobs/{job}").json()
     assert cancelled["state"] == "cancelled"
     before = cancelled["standing"]["done"]
-    problem(service.client.get(f"/api/jobs/{job}/report"), 404, "not-found")
-    gone_on = service.client.post(f"/api/jobs/{job}/go_on")
-    assert gone_on.status_code == 202, gone_on.text
-    problem(service.client.post(f"/api/jobs/{job}/go_on"), 409, "conflict")
-    # What was known is there at once: more than there was time for since.
-    now = until(service, job, lambda read: (read["standing"] or {}).get("done", 0) > before)
-    assert now["standing"]["remaining"] is None or now["standing"]["done"] >= before
+    assert cancelled["standing"]["most"] == cancelled["standing"]["planned"] == 10_000
+    with service.follow(id) as page:
+        gone_on = service.client.post(f"/api/jobs/{job}/go_on")
+        assert gone_on.status_code == 202, gone_on.text
+        problem(service.client.post(f"/api/jobs/{job}/go_on"), 409, "conflict")
+        # What was known is counted before anything is told.
+        while True:
+            message = json.loads(page.recv(timeout=120))
+            if message["kind"] != "job":
+                continue
+            assert message["job"]["standing"]["done"] >= before
+            if message["job"]["standing"]["done"] > before:
+                break
     assert service.client.delete(f"/api/jobs/{job}").status_code == 200
+
+
+def test_what_was_ended_by_hand_is_told_so_that_it_holds_and_has_a_report(
+    service: Served, id: str
+) -> None:
+    job = begin(service, id, worlds=10_000, faults=FAULTS)
+    until(service, job, lambda read: (read["standing"] or {}).get("done", 0) > 8)
+    standing = service.client.delete(f"/api/jobs/{job}").json()["standing"]
+    assert standing["rate"]["method"] == "confidence sequence"
+    assert {one["rate"]["method"] for one in standing["by_faults"]} == {"confidence sequence"}
+    assert sum(standing["outcomes"].values()) == standing["done"] >= standing["rate"]["runs"]
+    assert standing["rate"]["runs"] % 2 == 0, "of whole worlds"
+    report = service.client.get(f"/api/jobs/{job}/report")
+    assert report.status_code == 200
+    assert "It was ended before its time" in report.text
+    assert service.client.delete(f"/api/evaluations/{job}").status_code == 204
+    problem(service.client.get(f"/api/jobs/{job}"), 404, "not-found")
+    assert job not in {one["id"] for one in service.client.get("/api/jobs").json()["jobs"]}
+
+
+def test_the_evaluation_of_a_mission_that_is_deleted_ends(service: Served) -> None:
+    id = imported(service)
+    job = begin(service, id, worlds=10_000)
+    until(service, job, lambda read: read["standing"] is not None)
+    assert service.client.delete(f"/api/missions/{id}").status_code == 204
+    assert service.client.get(f"/api/jobs/{job}").json()["state"] == "cancelled"
+    assert service.client.delete(f"/api/bin/{id}").status_code == 204
+    problem(service.client.get(f"/api/jobs/{job}"), 404, "not-found")
 
 
 def test_it_outlives_the_service(tmp_path: Path, site: OpenedSite) -> None:
@@ -124,10 +159,13 @@ def test_it_outlives_the_service(tmp_path: Path, site: OpenedSite) -> None:
         done = begin(first, id, worlds=3)
         assert over(first, done)["state"] == "done"
         cut_short = begin(first, id, worlds=150)
-        until(first, cut_short, lambda read: read["standing"] is not None)
+        known = until(first, cut_short, lambda read: read["standing"] is not None)["standing"]
     with served(tmp_path, site) as second:
         states = {job["id"]: job["state"] for job in second.client.get("/api/jobs").json()["jobs"]}
         assert states == {done: "done", cut_short: "interrupted"}
+        standing = second.client.get(f"/api/jobs/{cut_short}").json()["standing"]
+        assert standing["done"] >= known["done"]
+        assert standing["rate"]["method"] == "confidence sequence"
         assert second.client.get(f"/api/jobs/{done}").json()["standing"]["done"] == 3
         assert second.client.get(f"/api/jobs/{done}/report").status_code == 200
         assert second.client.post(f"/api/jobs/{cut_short}/go_on").status_code == 202

@@ -84,7 +84,7 @@ export interface paths {
         readonly post?: never;
         /**
          * Delete Mission
-         * @description Moves a mission to the bin.
+         * @description Moves a mission to the bin; an evaluation of it that is under way ends.
          */
         readonly delete: operations["delete_mission"];
         readonly options?: never;
@@ -184,7 +184,7 @@ export interface paths {
         readonly post?: never;
         /**
          * Destroy Mission
-         * @description Deletes a mission in the bin for good.
+         * @description Deletes a mission in the bin for good, with its evaluations.
          */
         readonly delete: operations["destroy_mission"];
         readonly options?: never;
@@ -507,6 +507,26 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/evaluations/{id}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        readonly post?: never;
+        /**
+         * Forget Evaluation
+         * @description Deletes an evaluation that is over, with all its rows; 409 while it is under way.
+         */
+        readonly delete: operations["forget_evaluation"];
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/jobs/{id}/runs/{key}": {
         readonly parameters: {
             readonly query?: never;
@@ -536,7 +556,7 @@ export interface paths {
         };
         /**
          * Read Evaluation Report
-         * @description The report of an evaluation that is done.
+         * @description The report of an evaluation; of one that was cut short, of what there is.
          */
         readonly get: operations["read_evaluation_report"];
         readonly put?: never;
@@ -2245,6 +2265,11 @@ export interface components {
              * @enum {string}
              */
             readonly kind: "evaluation";
+            /**
+             * Name
+             * @default
+             */
+            readonly name: string;
             readonly asked: components["schemas"]["EvaluationAsked-Output"];
             readonly standing?: components["schemas"]["EvaluationStanding"] | null;
         };
@@ -2257,6 +2282,8 @@ export interface components {
             readonly done: number;
             /** Most */
             readonly most: number;
+            /** Planned */
+            readonly planned: number;
             /** Remaining */
             readonly remaining: number | null;
             readonly rate: components["schemas"]["RateTold"];
@@ -3723,7 +3750,7 @@ export interface components {
          * @description What can be done about an error, for a front end that says in its own words how.
          * @enum {string}
          */
-        readonly Remedy: "check-mission" | "choose-areas" | "choose-start" | "choose-end" | "choose-site" | "film-instead" | "give-budget" | "search-longer" | "keep-journal" | "resume" | "run-anew" | "record" | "replace" | "replay" | "show-rest";
+        readonly Remedy: "check-mission" | "choose-areas" | "choose-start" | "choose-end" | "choose-site" | "choose-output" | "choose-plan" | "film-instead" | "give-budget" | "search-longer" | "keep-journal" | "resume" | "run-anew" | "record" | "replace" | "replay" | "show-rest";
         /**
          * RemoveCondition
          * @description See `remove_condition`.
@@ -8062,6 +8089,99 @@ export interface operations {
                 content: {
                     readonly "application/json": components["schemas"]["EvaluationJob"];
                 };
+            };
+            /** @description Bad Request */
+            readonly 400: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            readonly 401: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            readonly 403: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            readonly 404: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Conflict */
+            readonly 409: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Request Entity Too Large */
+            readonly 413: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    readonly forget_evaluation: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                /** @description id of the job */
+                readonly id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 204: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description Bad Request */
             readonly 400: {

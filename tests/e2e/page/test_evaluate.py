@@ -21,6 +21,11 @@ def jobs(service: Any) -> Any:
     return service.client.get("/api/jobs").json()["jobs"]
 
 
+def runs_in(done: Any) -> int:
+    """How many runs have ended, as the page says."""
+    return int(done.inner_text().split(" ")[0].replace(",", ""))
+
+
 def test_rates_close_in_and_a_failing_run_is_replayed(browsers, address, plan, service) -> None:
     ann = opened(browsers, address, plan)
     bob = opened(browsers, address, plan)
@@ -37,7 +42,8 @@ def test_rates_close_in_and_a_failing_run_is_replayed(browsers, address, plan, s
     assert 0 < standing["outcomes"]["failure"] < 20
     expect(page.locator("#rate")).to_contain_text(f"{100 * standing['rate']['value']:g} %")
     expect(page.locator("#done")).to_have_text("20 of 20 runs")
-    expect(page.locator(".verdict")).to_contain_text("success >= 0.5")
+    expect(page.locator(".verdict")).to_contain_text("Success in at least 50 %: is ")
+    expect(page.locator("#kind")).to_contain_text("it holds whenever one stops")
     expect(bob.page.locator("#rate")).to_have_text(page.locator("#rate").inner_text())
     # What had happened by then is there when the page is read again.
     page.reload()
@@ -72,20 +78,46 @@ def test_an_evaluation_is_ended_and_goes_on(browsers, address, plan, service) ->
     page.locator("argo-evaluate-start select[name=worlds]").select_option("10000")
     ann.click(page.locator("#evaluate"))
     expect(page.locator("#rate")).to_be_visible(timeout=60_000)
-    expect(page.locator("#evaluate")).to_be_disabled()
+    begin = page.locator("#evaluate")
+    expect(begin).to_have_attribute("aria-disabled", "true")
+    expect(page.locator("#why-not")).to_contain_text("is under way: wait for it, or end it")
+    # Another mission can't be evaluated meanwhile, and leads here.
+    other = service.client.post(
+        f"/api/missions/{plan}/duplicate", json={"name": "another one"}
+    ).json()["id"]
+    bob = opened(browsers, address, other)
+    expect(bob.page.locator("#why-not")).to_contain_text("is being evaluated, begun by")
+    bob.click(bob.page.locator("#why-not a"))
+    expect(bob.page.locator("#rate")).to_be_visible()
+    done = page.locator("#done")
+    expect(page.locator("#kind")).to_contain_text("while runs come it claims nothing")
     ann.click(page.locator("#cancel"))
     result = page.locator("argo-evaluate-result section")
     expect(result).to_have_attribute("data-state", "cancelled")
-    expect(page.locator("#evaluate")).to_be_enabled()
+    expect(page.locator("#kind")).to_contain_text("it holds whyever it was ended")
+    expect(page.get_by_role("link", name="Report with all tables and pictures")).to_be_visible()
+    expect(begin).to_have_attribute("aria-disabled", "false")
+    before = runs_in(done)
     ann.click(page.locator("#go-on"))
     expect(result).to_have_attribute("data-state", "running")
+    assert runs_in(done) >= before
     ann.click(page.locator("#cancel"))
     expect(result).to_have_attribute("data-state", "cancelled")
+    assert runs_in(done) >= before
     service.client.post(  # by somebody else, in another way
         f"/api/missions/{plan}/evaluations", json={"worlds": 3}, headers={"if-match": "*"}
     )
     expect(page.locator("#done")).to_have_text("3 of 3 runs", timeout=60_000)
     expect(result).to_contain_text("No run failed.")
+    # The one before can still be looked at, and deleted.
+    which = page.locator("#which")
+    expect(which.locator("option")).to_have_count(2)
+    which.select_option(index=1)
+    expect(result).to_have_attribute("data-state", "cancelled")
+    ann.click(page.locator("#forget"))
+    expect(which).to_have_count(0)
+    expect(result).to_have_attribute("data-state", "done")
+    assert len([one for one in jobs(service) if one["mission"] == plan]) == 1
 
 
 def test_ranges_that_make_no_sense_are_told_at_once(browsers, address, plan, service) -> None:

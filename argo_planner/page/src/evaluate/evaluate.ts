@@ -21,9 +21,10 @@ export class EvaluatePanel extends PageElement {
   ];
 
   override render() {
+    // What came of one comes first: below the form nobody would see it.
     return html`<div class="all">
-      <argo-evaluate-start></argo-evaluate-start>
       <argo-evaluate-result></argo-evaluate-result>
+      <argo-evaluate-start></argo-evaluate-start>
     </div>`;
   }
 }

@@ -5,6 +5,7 @@ import { batch, computed, effect, signal } from "@preact/signals-core";
 import { answered, client, Refusal, Unreached } from "../api/client";
 import type { operations } from "../api/schema";
 import type { EvaluationAsked, EvaluationJob, FailedRun } from "../api/types";
+import { heed } from "../scene/heed";
 import { settled } from "../state/commands";
 import { tellError } from "../state/notices";
 import { connected, jobs, planId, revision, takeJob } from "../state/plan";
@@ -14,11 +15,24 @@ import { panel } from "../state/view";
 /** Of what is asked only what is given is sent. */
 type Body = operations["evaluate_mission"]["requestBody"]["content"]["application/json"];
 
-/** The newest evaluation of the mission, whoever has begun it; null: none is known. */
+/** The evaluations of all missions, as far as they were asked for, the newest first; without what came of them. */
+const known = signal<readonly EvaluationJob[]>([]);
+/** Those of the mission. */
+export const evaluations = computed(() => known.value.filter((one) => one.mission === planId.value));
+/** One of another mission that is under way, so that none can begin here; null: none is known. */
+export const elsewhere = computed(
+  () => known.value.find((one) => one.mission !== planId.value && one.state === "running") ?? null,
+);
+/** Id of the one that somebody chose to see; null: the newest. */
+const chosen = signal<string | null>(null);
+/** The evaluation of the mission that is shown: the newest, whoever has begun it, or the one that was chosen; null: none is known. */
 export const evaluation = computed<EvaluationJob | null>(() => {
   let newest: EvaluationJob | null = null;
-  for (const one of jobs.value.values())
-    if (one.kind === "evaluation" && (newest === null || one.begun > newest.begun)) newest = one;
+  for (const one of jobs.value.values()) {
+    if (one.kind !== "evaluation") continue;
+    if (one.id === chosen.value) return one;
+    if (newest === null || one.begun > newest.begun) newest = one;
+  }
   return newest;
 });
 /** Whether the mission was changed since it was begun. */
@@ -28,21 +42,68 @@ export const evaluationIsStale = computed(
 /** Key of the run that is being made again. */
 export const replaying = signal<string | null>(null);
 
-// What became of it while nobody could tell, and which one there was before the page was opened, is asked for.
+// Each mission is looked at anew.
+effect(() => {
+  heed(planId);
+  chosen.value = null;
+});
+const state = computed(() => evaluation.value?.state ?? null);
+// What became of them while nobody could tell, and which ones there were before the page was opened, is asked for;
+// and again when one begins or ends.
 effect(() => {
   const id = planId.value;
-  if (id !== null && connected.value) void newestOf(id);
+  heed(state);
+  if (id !== null && connected.value) void ask(id);
 });
 
-async function newestOf(id: string): Promise<void> {
+/** Asks for all evaluations, and for what came of the newest one of the mission. */
+async function ask(id: string): Promise<void> {
   try {
     const { jobs: all } = await answered(client.GET("/api/jobs"));
-    const found = all.find((one) => one.mission === id && one.kind === "evaluation");
-    if (found === undefined) return;
-    const whole = await answered(client.GET("/api/jobs/{id}", { params: { path: { id: found.id } } }));
-    if (planId.peek() === id) takeJob(whole);
+    known.value = all.filter((one): one is EvaluationJob => one.kind === "evaluation");
+    const newest = known.value.find((one) => one.mission === id);
+    if (newest !== undefined && !jobs.peek().has(newest.id)) await read(newest.id, id);
   } catch (error) {
     if (!(error instanceof Refusal || error instanceof Unreached)) throw error;
+  }
+}
+
+/** Reads what came of an evaluation of the mission `id`. */
+async function read(job: string, id: string): Promise<void> {
+  const whole = await answered(client.GET("/api/jobs/{id}", { params: { path: { id: job } } }));
+  if (planId.peek() === id) takeJob(whole);
+}
+
+/** Asks whether another mission is evaluated. */
+export async function lookElsewhere(): Promise<void> {
+  if (planId.value !== null) await ask(planId.value);
+}
+
+/** Shows another evaluation of the mission. */
+export async function choose(job: string): Promise<void> {
+  const id = planId.value;
+  if (id === null) return;
+  try {
+    if (!jobs.peek().has(job)) await read(job, id);
+    chosen.value = job;
+  } catch (error) {
+    tellError(error);
+  }
+}
+
+/** Deletes an evaluation that is over, with all that came of it. */
+export async function forget(job: string): Promise<void> {
+  try {
+    await answered(client.DELETE("/api/evaluations/{id}", { params: { path: { id: job } } }));
+    batch(() => {
+      const left = new Map(jobs.value);
+      left.delete(job);
+      jobs.value = left;
+      if (chosen.value === job) chosen.value = null;
+    });
+    if (planId.value !== null) await ask(planId.value);
+  } catch (error) {
+    tellError(error);
   }
 }
 
@@ -51,6 +112,7 @@ export async function evaluate(asked: Partial<EvaluationAsked>): Promise<void> {
   const id = planId.value;
   if (id === null) return;
   await settled();
+  chosen.value = null;
   await taken(() =>
     client.POST("/api/missions/{id}/evaluations", {
       params: { path: { id }, header: { "If-Match": `"${revision.value}"` } },
@@ -92,5 +154,6 @@ async function taken(ask: () => Parameters<typeof answered>[0]): Promise<void> {
     if (planId.value === id) takeJob(job);
   } catch (error) {
     tellError(error);
+    void lookElsewhere();
   }
 }

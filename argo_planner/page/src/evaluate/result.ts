@@ -5,15 +5,18 @@ import { svg } from "lit";
 import type { EvaluationJob, EvaluationStanding, FailedRun, RateTold } from "../api/types";
 import { rateCurve } from "../model/rate-curve";
 import { mayPlan } from "../state/session";
-import { t } from "../texts";
+import { dateLocale, t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
 import { figure, percent, seconds } from "../ui/figures";
 import { icon } from "../ui/icons";
 import { styled } from "../ui/styled";
 import {
   cancelEvaluation,
+  choose,
   evaluation,
   evaluationIsStale,
+  evaluations,
+  forget,
   goOnWithEvaluation,
   replay,
   replaying,
@@ -184,6 +187,7 @@ export class EvaluateResult extends PageElement {
     const standing = job.standing ?? null;
     const resumable = job.state === "cancelled" || job.state === "interrupted";
     return html`<section aria-label=${texts.found} data-state=${job.state}>
+      ${this.choice(job)}
       <h2 role="status">${texts.found}: ${texts.states[job.state]}</h2>
       ${job.problem ? html`<p class="warn">${job.problem}</p>` : nothing}
       ${evaluationIsStale.value ? html`<p class="small">${texts.stale}</p>` : nothing}
@@ -199,12 +203,35 @@ export class EvaluateResult extends PageElement {
             ${icon("play")} ${texts.goOn}
           </button>`
         : nothing}
-      ${job.state === "done"
+      ${job.state === "done" || (resumable && standing !== null)
         ? html`<a href=${`/api/jobs/${job.id}/report`} target="_blank" rel="noopener">
             ${icon("flag", 14)} ${texts.report}
           </a>`
         : nothing}
+      ${job.state === "running"
+        ? nothing
+        : html`<button id="forget" class="bare" ?disabled=${!mayPlan()} @click=${() => forget(job.id)}>
+            ${icon("bin", 14)} ${texts.forget}
+          </button>`}
     </section>`;
+  }
+
+  /** Which evaluation of the mission is shown. */
+  private choice(job: EvaluationJob) {
+    const texts = t().evaluate;
+    const all = evaluations.value;
+    if (all.length < 2) return nothing;
+    return html`<label>
+      ${texts.which}
+      <select id="which" @change=${(event: Event) => choose((event.target as HTMLSelectElement).value)}>
+        ${all.map(
+          (one) =>
+            html`<option value=${one.id} .selected=${one.id === job.id}>
+              ${texts.begun(moment(one.begun), texts.states[one.id === job.id ? job.state : one.state])}
+            </option>`,
+        )}
+      </select>
+    </label>`;
   }
 
   private standing(job: EvaluationJob, now: EvaluationStanding) {
@@ -216,8 +243,9 @@ export class EvaluateResult extends PageElement {
         ? nothing
         : html`<p class="rate" id="rate">${share(now.rate.value)} <span>${texts.success}</span></p>`}
       <p class="numbers">
-        ${texts.interval(share(now.rate.low), share(now.rate.high))}<br />
-        <span id="done">${texts.runsOf(figure(now.done), figure(now.most))}</span>${running && now.remaining
+        ${texts.interval(share(now.rate.low), share(now.rate.high))}
+        <span class="small" id="kind">${this.kind(job, now)}</span><br />
+        <span id="done">${this.runs(job, now)}</span>${running && now.remaining
           ? html`, ${texts.left(seconds(Math.ceil(now.remaining)))}`
           : nothing}
       </p>
@@ -225,8 +253,9 @@ export class EvaluateResult extends PageElement {
       ${this.chart(job, now)} ${now.requirements.map(
         (one) =>
           html`<p class="verdict ${one.verdict === "not decided" ? "" : one.verdict}" data-verdict=${one.verdict}>
-            <b>${one.requirement}</b> ${texts.verdicts[one.verdict]}
+            <b>${texts.required(one.requirement, percentOf)}</b>: ${texts.verdicts[one.verdict]}
             <span class="small">(${share(one.low)} – ${share(one.high)})</span>
+            ${one.verdict === "not decided" ? html`<br /><span class="small">${texts.moreWorlds}</span>` : nothing}
           </p>`,
       )}
       ${lost === 0 ? nothing : html`<p class="warn">${texts.lost(lost)}</p>`}
@@ -254,9 +283,24 @@ export class EvaluateResult extends PageElement {
       </svg>
       <figcaption>
         <span class="axis"><span>0 ${texts.runs}, 0–100 %</span><span>${figure(now.most)}</span></span>
-        ${job.state === "done" ? nothing : texts.while}
       </figcaption>
     </figure>`;
+  }
+
+  /** What kind of interval it is, and so what it claims. */
+  private kind(job: EvaluationJob, now: EvaluationStanding): string {
+    const kinds = t().evaluate.kinds;
+    if (now.rate.method === "Wilson") return job.asked.faults.length > 0 ? kinds.whileMixed : kinds.while;
+    if (now.rate.method === "Clopper-Pearson") return kinds.exact;
+    if (job.state !== "done") return kinds.cutShort(figure(now.rate.runs));
+    return now.by_faults.length > 1 ? kinds.worlds : kinds.anyTime;
+  }
+
+  /** How many runs there are, of how many, and why not more. */
+  private runs(job: EvaluationJob, now: EvaluationStanding): string {
+    const texts = t().evaluate;
+    if (job.state === "done" && now.done < now.planned) return texts.enough(figure(now.done), figure(now.planned));
+    return texts.runsOf(figure(now.done), figure(job.state === "done" ? now.done : now.most));
   }
 
   private byFaults(now: EvaluationStanding) {
@@ -314,4 +358,13 @@ export class EvaluateResult extends PageElement {
 
 function share(part: number): string {
   return percent(part, 1);
+}
+
+/** A number in percent as somebody gave it. */
+function percentOf(part: number): string {
+  return percent(part, 4);
+}
+
+function moment(begun: string): string {
+  return new Date(begun).toLocaleString(dateLocale(), { dateStyle: "short", timeStyle: "medium" });
 }

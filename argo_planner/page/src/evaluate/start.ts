@@ -10,7 +10,7 @@ import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
 import { figure } from "../ui/figures";
 import { icon } from "../ui/icons";
-import { evaluate, evaluation } from "./evaluation";
+import { elsewhere, evaluate, evaluation, evaluations } from "./evaluation";
 
 const WORLDS = [20, 100, 300, 1_000, 3_000, 10_000] as const;
 const DRIVES = ["route", "kinematic", "tracked"] as const;
@@ -69,6 +69,9 @@ export class EvaluateStart extends PageElement {
       .one {
         grid-template-columns: minmax(0, 1fr) 68px;
       }
+      a {
+        color: var(--accent);
+      }
       .wrong {
         color: var(--bad);
         font-size: 12px;
@@ -83,11 +86,11 @@ export class EvaluateStart extends PageElement {
   override render() {
     const texts = t().evaluate;
     const reason = this.whyNot();
-    const running = evaluation.value?.state === "running";
+    const other = elsewhere.value;
     return html`<form @submit=${this.begin}>
       <p class="reason">${texts.hint}</p>
       <div class="begin">
-        <button class="main" id="evaluate" ?disabled=${reason !== null || running || this.starting}>
+        <button class="main" id="evaluate" aria-disabled=${reason !== null || this.starting} aria-describedby="why-not">
           ${icon("gauge", 20)} ${texts.begin}
         </button>
         <label>
@@ -97,7 +100,10 @@ export class EvaluateStart extends PageElement {
           </select>
         </label>
       </div>
-      ${reason === null ? nothing : html`<p class="reason">${reason}</p>`}
+      <p class="reason" id="why-not" ?hidden=${reason === null}>
+        ${reason}
+        ${other === null ? nothing : html`<a href=${`#/missions/${other.mission}`}>${t().run.openThat}</a>`}
+      </p>
       <details>
         <summary>${texts.how}</summary>
         <div class="inner">
@@ -154,7 +160,11 @@ export class EvaluateStart extends PageElement {
     const texts = t().evaluate;
     if (!mayPlan()) return texts.mayNotPlan;
     if ((mission.value?.tasks.length ?? 0) === 0) return texts.nothing;
-    return broken.value ? texts.hasErrors : null;
+    if (broken.value) return texts.hasErrors;
+    if (evaluations.value.some((one) => one.state === "running") || evaluation.value?.state === "running")
+      return texts.underWay;
+    const other = elsewhere.value;
+    return other === null ? null : texts.busy(other.name, other.author);
   }
 
   private choseFaults(event: CustomEvent<readonly FaultKind[]>): void {
@@ -163,6 +173,7 @@ export class EvaluateStart extends PageElement {
 
   private async begin(event: SubmitEvent): Promise<void> {
     event.preventDefault();
+    if (this.whyNot() !== null || this.starting) return;
     const form = new FormData(event.target as HTMLFormElement);
     const variation = this.variation(form);
     if (variation === null) return;

@@ -8,7 +8,7 @@ import { dismissNewest, notices } from "../state/notices";
 import { planId, select, selection } from "../state/plan";
 import { isUnderWay } from "../model/run-mode";
 import { ask, asking } from "../state/asking";
-import { run } from "../state/run";
+import { run, runIsOn, showRun } from "../state/run";
 import { mayOperate, mayPlan } from "../state/session";
 import { panel, tool } from "../state/view";
 import { t } from "../texts";
@@ -152,8 +152,9 @@ async function takeOver(): Promise<void> {
   await ask({ kind: "take_over" });
 }
 
-/** Shows the run, with the focus on what comes next. */
+/** Shows the run of the robot, with the focus on what comes next: not one of before, which can't be steered. */
 function openRun(): void {
+  if (runIsOn.value) void showRun(null);
   panel.value = "run";
   setTimeout(() => dispatchEvent(new CustomEvent("open-run")));
 }

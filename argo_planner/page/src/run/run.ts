@@ -102,8 +102,8 @@ export class RunPanel extends PageElement {
         : nothing}
       ${!runIsOn.value && pastRun.value === null ? html`<argo-run-start></argo-run-start>` : nothing}
       ${here || other
-        ? html`<argo-run-band></argo-run-band>
-            ${pastRun.value?.evaluated ? this.evaluated(pastRun.value.evaluated) : nothing}
+        ? html`${pastRun.value?.evaluated ? this.evaluated(pastRun.value.evaluated) : nothing}
+            <argo-run-band></argo-run-band>
             ${shown?.status === "ended" && !pastRun.value?.evaluated ? this.report(shown) : nothing}
             ${this.steering()} ${this.choice()}
             <argo-run-time></argo-run-time>
@@ -156,6 +156,7 @@ export class RunPanel extends PageElement {
     const texts = t().evaluate;
     return html`<div class="evaluated" id="evaluated">
       <p>${texts.replayed(one.seed, texts.faultsNamed(one.faults))}</p>
+      ${pastRun.value?.state.sensor === "camera" ? html`<p class="reason">${texts.noPictures}</p>` : nothing}
       <button id="to-evaluation" @click=${this.toEvaluation}>${icon("back")} ${texts.back}</button>
     </div>`;
   }

@@ -13,6 +13,18 @@ function named(kinds: Kinds, none: string): (name: string) => string {
   };
 }
 
+type Words = Readonly<Record<string, string>>;
+
+/** A requirement, such as `success >= 0.98`, as a sentence in these words. */
+function required(words: Words, least: string, most: string) {
+  return (requirement: string, percent: (part: number) => string): string => {
+    const [, quantity = "", sign = "", number = ""] = /^([a-z ]+) (>=|<=) ([\d.e-]+)$/.exec(requirement) ?? [];
+    const word = words[quantity];
+    if (word === undefined) return requirement;
+    return `${word} ${sign === ">=" ? least : most} ${percent(Number(number))}`;
+  };
+}
+
 export const evaluate = both(
   {
     begin: "Evaluate",
@@ -49,7 +61,34 @@ export const evaluate = both(
     runsOf: (done: string, most: string) => `${done} of ${most} runs`,
     left: (time: string) => `at most ${time} left`,
     interval: (low: string, high: string) => `95 % interval: ${low} to ${high}`,
-    while: "Intervals claim nothing while runs come; the one at the end does.",
+    kinds: {
+      while: "(Wilson: while runs come it claims nothing)",
+      whileMixed: "(Wilson over all runs: while they come it claims nothing; at the end a world counts as one)",
+      exact: "(exact, Clopper-Pearson)",
+      worlds: "(confidence sequence: a world with its several runs counts as one)",
+      anyTime: "(confidence sequence: it holds whenever one stops, as the requirement decides that)",
+      cutShort: (runs: string) =>
+        `(confidence sequence: it holds whyever it was ended; of the ${runs} runs of the first worlds without a gap)`,
+    },
+    enough: (done: string, planned: string) => `${done} of at most ${planned} runs: they were enough`,
+    required: required(
+      {
+        success: "Success",
+        detected: "All faults found",
+        contact: "A contact",
+        mishap: "Trouble on the way",
+        late: "Too late",
+        "false alarm": "A false alarm",
+      },
+      "in at least",
+      "in at most",
+    ),
+    moreWorlds: "It takes more worlds to decide: evaluate once more in more of them, or require less.",
+    underWay: "An evaluation of this mission is under way: wait for it, or end it.",
+    busy: (name: string, author: string) => `“${name}” is being evaluated, begun by ${author}: wait for it, or end it there.`,
+    which: "Evaluation of",
+    begun: (when: string, state: string) => `${when}: ${state}`,
+    forget: "Delete this evaluation",
     chart: "The rate of success and its interval, run by run",
     cancel: "End the evaluation",
     goOn: "Go on",
@@ -61,12 +100,16 @@ export const evaluate = both(
     runs: "Runs",
     times: (least: string, median: string, most: string) =>
       least === most ? `A success took ${median}.` : `A success took ${median} in the median, ${least} to ${most}.`,
-    lost: (count: number) => (count === 1 ? "1 run could not be carried out." : `${count} runs could not be carried out.`),
+    lost: (count: number) =>
+      count === 1
+        ? "1 run could not be carried out, and is in no rate."
+        : `${count} runs could not be carried out, and are in no rate.`,
     failing: "Runs that are no success",
     failed: (seed: number, faults: string | null) => (faults === null ? `World ${seed}` : `World ${seed}, ${faults}`),
     more: (count: number) => `and ${count} more, in the report`,
     replaying: "It is made again…",
     replayed: (seed: number, faults: string) => `Run in world ${seed}, ${faults}: made again, as it went`,
+    noPictures: "What the camera saw is not shown: pictures are kept of no run.",
     back: "Back to the evaluation",
     report: "Report with all tables and pictures",
     noFailure: "No run failed.",
@@ -107,7 +150,34 @@ export const evaluate = both(
     runsOf: (done: string, most: string) => `${done} von ${most} Läufen`,
     left: (time: string) => `noch höchstens ${time}`,
     interval: (low: string, high: string) => `95-%-Intervall: ${low} bis ${high}`,
-    while: "Solange Läufe kommen, behaupten Intervalle nichts; das am Ende schon.",
+    kinds: {
+      while: "(Wilson: solange Läufe kommen, behauptet es nichts)",
+      whileMixed: "(Wilson über alle Läufe: solange sie kommen, behauptet es nichts; am Ende zählt eine Welt einmal)",
+      exact: "(exakt, Clopper-Pearson)",
+      worlds: "(Konfidenzfolge: eine Welt mit ihren Läufen zählt einmal)",
+      anyTime: "(Konfidenzfolge: sie gilt, wann immer man aufhört, denn das entscheidet die Forderung)",
+      cutShort: (runs: string) =>
+        `(Konfidenzfolge: sie gilt, warum auch immer beendet wurde; von den ${runs} Läufen der ersten Welten ohne Lücke)`,
+    },
+    enough: (done: string, planned: string) => `${done} von höchstens ${planned} Läufen: sie haben genügt`,
+    required: required(
+      {
+        success: "Erfolg",
+        detected: "Alle Fehler gefunden",
+        contact: "Eine Berührung",
+        mishap: "Schwierigkeiten unterwegs",
+        late: "Zu spät",
+        "false alarm": "Ein Fehlalarm",
+      },
+      "in mindestens",
+      "in höchstens",
+    ),
+    moreWorlds: "Das zu entscheiden braucht mehr Welten: bewerten Sie in mehr davon, oder fordern Sie weniger.",
+    underWay: "Diese Mission wird gerade bewertet: warten Sie, oder beenden Sie das.",
+    busy: (name: string, author: string) => `„${name}“ wird gerade bewertet, begonnen von ${author}: warten Sie, oder beenden Sie es dort.`,
+    which: "Bewertung vom",
+    begun: (when: string, state: string) => `${when}: ${state}`,
+    forget: "Diese Bewertung löschen",
     chart: "Der Anteil der Erfolge und sein Intervall, Lauf für Lauf",
     cancel: "Bewertung beenden",
     goOn: "Weitermachen",
@@ -119,12 +189,16 @@ export const evaluate = both(
     runs: "Läufe",
     times: (least: string, median: string, most: string) =>
       least === most ? `Ein Erfolg dauerte ${median}.` : `Ein Erfolg dauerte im Median ${median}, ${least} bis ${most}.`,
-    lost: (count: number) => (count === 1 ? "1 Lauf war nicht möglich." : `${count} Läufe waren nicht möglich.`),
+    lost: (count: number) =>
+      count === 1
+        ? "1 Lauf war nicht möglich und zählt nirgends."
+        : `${count} Läufe waren nicht möglich und zählen nirgends.`,
     failing: "Läufe ohne Erfolg",
     failed: (seed: number, faults: string | null) => (faults === null ? `Welt ${seed}` : `Welt ${seed}, ${faults}`),
     more: (count: number) => `und ${count} weitere, im Bericht`,
     replaying: "Er wird noch einmal gemacht …",
     replayed: (seed: number, faults: string) => `Lauf in Welt ${seed}, ${faults}: noch einmal gemacht, wie er war`,
+    noPictures: "Was die Kamera sah, wird nicht gezeigt: Bilder werden von keinem Lauf behalten.",
     back: "Zurück zur Bewertung",
     report: "Bericht mit allen Tabellen und Bildern",
     noFailure: "Kein Lauf ist misslungen.",

@@ -63,6 +63,20 @@ def test_rates_close_in_and_a_failing_run_is_replayed(browsers, address, plan, s
     expect(page.locator("argo-run a", has_text="report")).to_have_count(0)
     ann.click(page.locator("#to-evaluation"))
     expect(page.locator("#failing")).to_be_visible()
+    # Who takes the robot over sees the robot, and not the replay.
+    begun = service.client.post(
+        f"/api/missions/{plan}/runs", json={"speed": 1.0}, headers={"if-match": "*"}
+    )
+    assert begun.status_code in (201, 202), begun.text
+    expect(page.locator("argo-run-badge")).to_contain_text("Driving by itself", timeout=60_000)
+    page.locator("#tab-evaluate").click()
+    ann.click(first)
+    expect(told).to_be_visible(timeout=60_000)
+    ann.key("F9")
+    expect(told).to_have_count(0)
+    expect(page.locator("argo-run-band")).to_contain_text("You have the robot", timeout=60_000)
+    service.client.post(f"/api/runs/{begun.json()['id']}/requests", json={"kind": "stop"})
+    page.locator("#tab-evaluate").click()
     with ann.context.expect_page() as opening:
         ann.click(page.get_by_role("link", name="Report with all tables and pictures"))
     report = opening.value

@@ -1,6 +1,7 @@
 /** The evaluation of the mission: in how many worlds it is a success, how sure that is, and what breaks it. */
 
-import { css, customElement, html, look, PageElement } from "../ui/element";
+import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { evaluation } from "./evaluation";
 import "./result";
 import "./start";
 
@@ -23,7 +24,7 @@ export class EvaluatePanel extends PageElement {
   override render() {
     // What came of one comes first: below the form nobody would see it.
     return html`<div class="all">
-      <argo-evaluate-result></argo-evaluate-result>
+      ${evaluation.value === null ? nothing : html`<argo-evaluate-result></argo-evaluate-result>`}
       <argo-evaluate-start></argo-evaluate-start>
     </div>`;
   }

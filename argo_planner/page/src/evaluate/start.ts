@@ -191,6 +191,10 @@ export class EvaluateStart extends PageElement {
     this.starting = true;
     await evaluate(asked as unknown as Partial<EvaluationAsked>);
     this.starting = false;
+    await new Promise(requestAnimationFrame);
+    // What comes of it stands above the form.
+    const root = this.getRootNode() as ShadowRoot;
+    root.querySelector("argo-evaluate-result")?.scrollIntoView({ block: "start" });
   }
 
   /** How worlds differ; null: a range makes no sense, and it is said which. */

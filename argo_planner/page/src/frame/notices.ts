@@ -39,9 +39,11 @@ export class PageNotices extends PageElement {
       article.bad {
         border-left-color: var(--bad);
       }
+      /* On a narrow page the buttons of the panel are at the bottom. */
       @media (max-width: 800px) {
         :host {
-          bottom: 12px;
+          top: 52px;
+          bottom: auto;
         }
       }
       ul {

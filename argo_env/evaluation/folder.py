@@ -12,6 +12,7 @@ from argo_compiler.errors import Conflict, Invalid, NotFound, Remedy, Unavailabl
 from argo_compiler.files.reading import read_bytes
 from argo_compiler.files.writing import write_whole
 from argo_compiler.model import Model
+from argo_env.evaluation.batches import is_enough
 from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
@@ -119,14 +120,18 @@ def kept_plan(folder: Path, digest: str | None = None) -> EvaluationPlan | None:
 
 
 def read_results(folder: Path) -> EvaluationResults:
-    """The evaluation in a folder, as far as it has come.
+    """The evaluation in a folder, as far as it has come: of one that is not at its end the worlds
+    before the first one in which a run is missing.
 
     Raises NotFound if there is none.
     """
     plan = kept_plan(folder)
     if plan is None:
         raise NotFound(f"{folder}: has no evaluation")
-    return EvaluationResults(plan, in_order(plan, read_rows(folder)))
+    rows = in_order(plan, read_rows(folder))
+    if plan.strata or len(rows) == len(plan.seeds) * len(plan.cases) or is_enough(plan, rows):
+        return EvaluationResults(plan, rows)
+    return EvaluationResults.so_far(plan, rows)
 
 
 def in_order(plan: EvaluationPlan, rows: tuple[RunRow, ...]) -> tuple[RunRow, ...]:

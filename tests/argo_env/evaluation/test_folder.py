@@ -7,6 +7,7 @@ from argo_env.evaluation.carrying_out import WorkOrder
 from argo_env.evaluation.controlled import with_drive
 from argo_env.evaluation.folder import digest_of, kept_plan, open_rows, read_results
 from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan, Stopping
+from argo_env.evaluation.rates import IntervalMethod
 from argo_env.evaluation.store import read_rows
 from argo_env.run.spec import RunSpec
 from tests.argo_env.evaluation import work
@@ -52,6 +53,19 @@ def test_an_evaluation_goes_on(tmp_path, plan, change):
     with open_rows(tmp_path, plan.changed(**change), DIGEST) as store:
         assert len(store.rows) == 12
     assert kept_plan(tmp_path) == plan.changed(**change)
+
+
+def test_one_that_is_not_at_its_end_is_told_by_the_worlds_before_the_first_gap(tmp_path, plan):
+    filled(tmp_path, plan.changed(seeds=(0, 1, 2, 3, 5, 6)))
+    open_rows(tmp_path, plan, DIGEST).close()
+    results = read_results(tmp_path)
+    assert results.cut_short
+    assert [row.seed for row in results.rows] == [0, 1, 2, 3]
+    assert results.rate(plan.plans[0]).method is IntervalMethod.SEQUENCE
+    filled(tmp_path, plan)
+    results = read_results(tmp_path)
+    assert not results.cut_short
+    assert results.rate(plan.plans[0]).method is IntervalMethod.EXACT
 
 
 @pytest.mark.parametrize("seeds", [range(5), range(5, 30)])

@@ -29,9 +29,16 @@ def require_accessible(person: Person, where: str) -> None:
     assert not serious, (where, serious)
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
-@pytest.mark.parametrize("locale", ["en-GB", "de-DE"])
-def test_planning_is_accessible(browsers, address, plan, theme, locale) -> None:
+@pytest.mark.parametrize(
+    ("locale", "theme"),
+    [
+        ("en-GB", "light"),
+        ("de-DE", "dark"),
+        pytest.param("en-GB", "dark", marks=pytest.mark.long),
+        pytest.param("de-DE", "light", marks=pytest.mark.long),
+    ],
+)
+def test_planning_is_accessible(browsers, address, plan, locale, theme) -> None:
     ann = browsers.person(address, locale=locale, color_scheme=theme)
     ann.open()
     expect(ann.page.locator("argo-home button.main")).to_be_enabled()

@@ -67,6 +67,7 @@ def steer_by(press: Any) -> None:
     press("Give back")
 
 
+@pytest.mark.long
 def test_by_mouse(ann, service, capsys) -> None:
     ann.click(ann.button("New mission"))
     ann.idle()
@@ -112,6 +113,7 @@ def test_by_mouse(ann, service, capsys) -> None:
     expect_success(ann, service, id)
 
 
+@pytest.mark.long
 def test_by_keys_alone(ann, service, capsys) -> None:
     expect(ann.button("New mission")).to_be_focused()
     ann.key("Enter")

@@ -31,7 +31,8 @@ def service(tmp_path_factory, umad) -> Iterator[Served]:
 def chromium() -> Iterator[Browsers]:
     if CHROMIUM is None:
         pytest.skip(NO_CHROMIUM)
-    found = Browsers()
+    # Half as many pixels each way: they are drawn in software, which takes most of the time.
+    found = Browsers(scale=0.5)
     yield found
     found.close()
 

@@ -124,7 +124,9 @@ class Person:
 class Browsers:
     """Chromium, and the people who use it."""
 
-    def __init__(self) -> None:
+    def __init__(self, scale: float = 1.0) -> None:
+        """`scale`: px that are drawn for one of the page."""
+        self._scale = scale
         self._playwright = sync_playwright().start()
         self._browser: Browser = self._playwright.chromium.launch(
             executable_path=CHROMIUM, args=_OPTIONS
@@ -133,7 +135,12 @@ class Browsers:
 
     def person(self, address: str, name: str = "ann", **context: Any) -> Person:
         """Somebody new, who has not opened the page yet."""
-        options = {"viewport": {"width": 1400, "height": 850}, "locale": "en-GB"} | context
+        options: dict[str, Any] = {
+            "viewport": {"width": 1400, "height": 850},
+            "locale": "en-GB",
+            "device_scale_factor": self._scale,
+        }
+        options |= context
         opened = self._browser.new_context(**options)
         kept = (
             f"localStorage.getItem('argo.author') ?? localStorage.setItem('argo.author', '{name}')"

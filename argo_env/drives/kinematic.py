@@ -6,9 +6,11 @@ from argo_env.drives.flipper_motion import FLAT, RAISED, RATE
 from argo_env.drives.support import ground_memory
 from argo_env.drives.timed_drive import TimedDrive
 from argo_env.navigation.path import Motion, wrap
-from argo_env.robot.pose import BodyPose
+from argo_env.robot.pose import BodyPose, Place
 from argo_env.robot.spec import RobotSpec
 from argo_env.world.world import World
+
+_AT_ONCE = 100  # steps ahead that are looked at: something is near before long
 
 
 class KinematicDrive(NonCopyable, TimedDrive):
@@ -45,6 +47,29 @@ class KinematicDrive(NonCopyable, TimedDrive):
         self._show()
         return status
 
+    @property
+    def glides(self) -> bool:
+        return self._world.stays_clear(self._pose)
+
+    def places_ahead(self, count: int) -> list[Place]:
+        assert self._timetable is not None
+        places: list[Place] = []
+        for motion, ends, duration, times in self._timetable.stretches(
+            (self._steps + k) * self.time_step for k in range(1, min(count, _AT_ONCE) + 1)
+        ):
+            if self._flippers != _flippers_on(motion):
+                return places
+            for t in times:
+                pose = self._pose_at(motion, 1.0 - (ends - t) / duration)
+                if not self._world.stays_clear(pose):
+                    return places
+                places.append((pose.x, pose.y, pose.z, pose.yaw, pose.pitch))
+        return places
+
+    def go_to(self, place: Place, count: int) -> None:
+        super().go_to(place, count)
+        self._show()
+
     def _pose_at(self, motion: Motion, share: float) -> BodyPose:
         if motion is not self._motion:
             self._motion = motion
@@ -52,8 +77,7 @@ class KinematicDrive(NonCopyable, TimedDrive):
         return _interpolated(self._poses, share)
 
     def _move_flippers(self) -> None:
-        on_stairs = self._motion is not None and self._motion.on_stairs
-        wanted = FLAT if on_stairs else RAISED
+        wanted = _flippers_on(self._motion) if self._motion else RAISED
         most = RATE * self.time_step
         self._flippers += min(most, max(-most, wanted - self._flippers))
 
@@ -62,6 +86,11 @@ class KinematicDrive(NonCopyable, TimedDrive):
         self._world.set_joints(
             {"left_flipper_joint": self._flippers, "right_flipper_joint": self._flippers}
         )
+
+
+def _flippers_on(motion: Motion) -> float:
+    """Where the flippers belong (rad) on a motion."""
+    return FLAT if motion.on_stairs else RAISED
 
 
 def _interpolated(poses: list[BodyPose], share: float) -> BodyPose:

@@ -1,11 +1,11 @@
 """The drive with what can stop it: an emergency stop, a dysfunction."""
 
 import math
+from bisect import bisect_left
 from collections.abc import Sequence
 
 from argo_env.drives.drive import Drive, DriveStatus, Incident
-from argo_env.drives.route import RouteDrive
-from argo_env.drives.timed_drive import from_here
+from argo_env.drives.timed_drive import TimedDrive, from_here
 from argo_env.navigation.path import Path
 from argo_env.robot.pose import BodyPose, Place
 
@@ -81,18 +81,25 @@ class Powertrain:
             self.way = None
         return self._stalled() if status is DriveStatus.MOVING else status
 
+    @property
+    def glides(self) -> bool:
+        """Whether nothing can happen to the robot where it is, so that many steps can be made at
+        once."""
+        return isinstance(self._drive, TimedDrive) and self._drive.glides
+
     def steps_ahead(self, most: int) -> list[tuple[Place, int]]:
         """Where the robot is after each of the next steps, and how many steps the drive has made
         by then: as far as it surely moves on and nothing can happen to it, at most so many. None
         of them is made."""
         drive = self._drive
-        if self.pressed or self.way is None or not isinstance(drive, RouteDrive):
+        if self.pressed or self.way is None or not isinstance(drive, TimedDrive):
             return []
         if self.share < _SLOWEST or self._before is None:
             return []
         counts = self._drives_steps(most, drive.steps_left)
         here = drive.pose
         places = [_place(here), *drive.places_ahead(counts[-1] if counts else 0)]
+        counts = counts[: bisect_left(counts, len(places))]
         before = _place(self._before)
         for number, place in enumerate(places[1:], start=1):
             if not _has_moved(before, place):
@@ -103,7 +110,7 @@ class Powertrain:
     def go_on(self, ahead: list[tuple[Place, int]], done: int, count: int) -> None:
         """Makes so many of the steps ahead, after those that were done."""
         drive = self._drive
-        assert isinstance(drive, RouteDrive)
+        assert isinstance(drive, TimedDrive)
         first = ahead[done - 1][1] if done else 0
         place, made = ahead[done + count - 1]
         if self.share == 1.0 and not self._credit:

@@ -20,9 +20,11 @@ class RouteDrive(TimedDrive):
     def __init__(self, robot: RobotSpec, time_step: float = 0.1) -> None:
         super().__init__(robot, time_step)
 
+    @property
+    def glides(self) -> bool:
+        return True
+
     def places_ahead(self, count: int) -> list[Place]:
-        """Where it is after each of the next so many steps, at most `steps_left`: what `step` would
-        make of them one by one, to the last bit."""
         assert self._timetable is not None
         places: list[Place] = []
         for motion, ends, duration, times in self._timetable.stretches(
@@ -44,11 +46,6 @@ class RouteDrive(TimedDrive):
                     )
                 )
         return places
-
-    def go_to(self, place: Place, count: int) -> None:
-        """So many steps have passed, after which it is at `place`."""
-        self._steps += count
-        self._pose = BodyPose(*place)
 
     def _pose_at(self, motion: Motion, share: float) -> BodyPose:
         a, b = motion.start, motion.end

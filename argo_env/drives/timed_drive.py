@@ -7,7 +7,7 @@ from argo_compiler.model import Pose
 from argo_env.drives.drive import DriveStatus, Incident
 from argo_env.drives.timetable import Timetable, steps
 from argo_env.navigation.path import Motion, Path
-from argo_env.robot.pose import BodyPose
+from argo_env.robot.pose import BodyPose, Place
 from argo_env.robot.spec import RobotSpec
 
 _SAME_PLACE = 1e-3  # m
@@ -70,6 +70,21 @@ class TimedDrive(ABC):
         if self._timetable is None:
             return 0
         return max(0, steps(self._timetable.duration, self.time_step) - self._steps - 1)
+
+    @property
+    @abstractmethod
+    def glides(self) -> bool:
+        """Whether nothing can happen to it where it is, so that many steps can be made at once."""
+
+    @abstractmethod
+    def places_ahead(self, count: int) -> list[Place]:
+        """Where it is after each of the next so many steps, at most `steps_left`: what `step` would
+        make of them one by one, to the last bit. Fewer where something can happen to it."""
+
+    def go_to(self, place: Place, count: int) -> None:
+        """So many steps have passed, after which it is at `place`."""
+        self._steps += count
+        self._pose = BodyPose(*place)
 
     @abstractmethod
     def _pose_at(self, motion: Motion, share: float) -> BodyPose:

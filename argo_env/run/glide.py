@@ -1,4 +1,4 @@
-"""Many time steps at once, in which a robot without a world only goes on with what it does.
+"""Many time steps at once, in which a robot that touches nothing only goes on with what it does.
 
 It drives along its path, measures or stands; nobody tells it anything, and no fault begins or ends.
 All that adds up is the same as step by step, to the last bit.
@@ -38,7 +38,12 @@ class Glide:
         self._power: Sequence[PowerState] = ()
         pose = rig.drive.pose
         self._here = here = (pose.x, pose.y, pose.z, pose.yaw, pose.pitch)
-        if not isinstance(rig.drive, Powertrain) or odometry.touching or pose.roll:
+        if (
+            not isinstance(rig.drive, Powertrain)
+            or odometry.touching
+            or pose.roll
+            or not rig.drive.glides
+        ):
             self.steps = 0
             return
         if action is None:

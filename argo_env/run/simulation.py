@@ -202,8 +202,8 @@ class Simulation(Closing):
 
     def leap(self, until: float = math.inf) -> Sequence[Place]:
         """Lets time pass up to the next moment at which something may happen, and not beyond
-        `until` (s): many time steps where the robot only drives, measures or stands and has no
-        world about it, else one. Observers are told all but the single steps; records are the
+        `until` (s): many time steps where the robot only drives, measures or stands and surely
+        touches nothing, else one. Observers are told all but the single steps; records are the
         same as by `step`. Returns where the robot was after each of the steps but the last.
 
         Raises Conflict as `step` does.

@@ -6,6 +6,7 @@ from typing import Any
 
 from argo_compiler.hfsm import StartAction
 from argo_compiler.model import Pose
+from argo_env.drives.powertrain import Powertrain
 from argo_env.navigation import Blockage, Path
 from argo_env.navigation.retreat import driven, recent
 from argo_env.robot.pose import BodyPose
@@ -19,7 +20,6 @@ from argo_env.run.power_supply import PowerSupply
 from argo_env.run.record import Anomaly
 from argo_env.run.rig import Rig
 from argo_env.run.robot import RobotAction, Sensed
-from argo_env.world.paper_world import PaperWorld
 
 _NOTHING = Sensed()
 
@@ -101,8 +101,9 @@ class Vehicle:
 
     @property
     def glides(self) -> bool:
-        """Whether many steps can be made at once: without a world nothing else moves."""
-        return isinstance(self.rig.world, PaperWorld)
+        """Whether many steps can be made at once, as nothing can happen to the robot."""
+        drive = self.rig.drive
+        return isinstance(drive, Powertrain) and drive.glides
 
     def glide(self, action: RobotAction | None, most: int) -> Glide:
         """The steps ahead, at most so many, in which it only goes on with `action`."""

@@ -3,10 +3,12 @@
 import math
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from argo_compiler.catalog import CheckpointKind
 from argo_env.files import resources
@@ -20,19 +22,23 @@ from argo_env.world.clearance import Clearance, SolidBounds
 from argo_env.world.placement import AS_PLANNED, Placement, displaced
 from argo_env.world.pybullet_client import Connection, pybullet
 
-_ROBOT_BIT = 2
-SITE_BIT = 1
+_RAY_BIT, _ROBOT_BIT = 1, 2  # PyBullet's rays are of the first group, whatever they look for
+SITE_BIT = 4
 """collision filter group of all but the robot"""
+_HIT_BY = _RAY_BIT | _ROBOT_BIT  # not by its like: nothing of the site moves, and it takes long
 STANDING = ("_track", "_flipper")
 """how the names of the links end that the robot stands on"""
-_OBJECT = 0.5  # m from the middle of a checkpoint that it reaches at most
 _INDICATOR = 0.15  # m that a needle or lever reaches beyond where it is now, at most
+_BESIDE = np.array([0.25, 0.25, 0.0])  # m around a checkpoint that count as near it
+_SITES = 4  # whose solids' bounds are remembered
 
 
 class Bodies(Connection):
     """A site with its checkpoints and a robot. Holds a connection, and where everything is.
 
-    Nothing moves by itself here: everything is put where it is to be.
+    Nothing moves by itself here: everything is put where it is to be. PyBullet is told where the
+    robot is when it is asked about it: a robot that drives in the open is put to many places about
+    which nobody asks.
     """
 
     def __init__(
@@ -40,14 +46,18 @@ class Bodies(Connection):
     ) -> None:
         """`elements`: the solids that are really there."""
         super().__init__(gui)
+        self._gui = gui
         self.site = site
         self.robot = robot
         self._solids = elements
         self._placements: dict[int, Placement] = {}
         self._pose = BodyPose(0.0, 0.0, 0.0, 0.0)
         self._posture: dict[str, float] = {}
+        self._untold: dict[str, float] = {}  # joints that PyBullet has elsewhere, or may have
+        self._astray = False  # whether PyBullet has the robot elsewhere, or may have
         self._envelope: tuple[SolidBounds, SolidBounds] | None = None  # in this posture
         self._clearance: Clearance | None = None  # of what stands where it stands now
+        self._objects: SolidBounds | None = None  # around each checkpoint where it stands now
         self._moved = True  # whether anything but the robot has, since collisions were looked for
         self._screens: dict[int, str] = {}
         self._site_body = self._load_site()
@@ -56,11 +66,10 @@ class Bodies(Connection):
         self._site_links = self._links(self._site_body)
         self._robot_links = self._links(self._robot_body)
         self._joints = self._joint_indices(self._robot_body)
-        self._elements = {m: ElementIndex(elements, m) for m in {e.material for e in elements}}
         self._walking = {e.material for e in elements if e.role in WALKING_ROLES}
         self._filter(self._robot_body, _ROBOT_BIT, SITE_BIT)
         for body in (self._site_body, *self._checkpoints.values()):
-            self._filter(body, SITE_BIT, SITE_BIT | _ROBOT_BIT)
+            self._filter(body, SITE_BIT, _HIT_BY)
         self.move_arm(robot.arm_stowed)
 
     @property
@@ -70,20 +79,22 @@ class Bodies(Connection):
 
     def place_robot(self, pose: BodyPose) -> None:
         """Puts the robot there, whatever is in the way."""
-        self._pose = pose
-        self._place(self._robot_body, (pose.x, pose.y, pose.z), (pose.roll, pose.pitch, pose.yaw))
+        self._pose, self._astray = pose, True
+        if self._gui:
+            self._tell()
 
     def set_joints(self, positions: Mapping[str, float]) -> None:
         """Puts joints of the robot to positions (rad), by name."""
         for name, position in positions.items():
             if self._posture.get(name) != position:
                 self._posture[name], self._envelope = position, None
-            pybullet.resetJointState(
-                self._robot_body, self._joints[name], position, physicsClientId=self._client
-            )
+            self._untold[name] = position
+        if self._gui:
+            self._tell()
 
     def joint_positions(self, names: Sequence[str]) -> list[float]:
         """Positions (rad) of joints of the robot, by name."""
+        self._tell()
         states = pybullet.getJointStates(
             self._robot_body, [self._joints[n] for n in names], physicsClientId=self._client
         )
@@ -114,7 +125,7 @@ class Bodies(Connection):
         actual = self.in_place(checkpoint_id)
         rpy = (placement.roll, 0.0, planned.yaw + placement.turn)
         self._place(self._checkpoints[checkpoint_id], actual.position, rpy)
-        self._moved, self._clearance = True, None
+        self._moved, self._clearance, self._objects = True, None, None
         self._detect()
 
     def placement(self, checkpoint_id: int) -> Placement:
@@ -148,7 +159,7 @@ class Bodies(Connection):
             pybullet.getQuaternionFromEuler(solid.rpy),
             physicsClientId=client,
         )
-        self._filter(body, SITE_BIT, SITE_BIT | _ROBOT_BIT)
+        self._filter(body, SITE_BIT, _HIT_BY)
         self._screens[body] = name
         self._detect()
         return body
@@ -160,34 +171,61 @@ class Bodies(Connection):
         self._detect()
 
     def only_solids_between(self, low: Vector, high: Vector) -> bool:
-        """Whether no checkpoint and nothing else that moves reaches into a box (m)."""
-        places = (self.in_place(id).position for id in self._checkpoints)
-        return not self._screens and not any(
-            all(a - _OBJECT < v < b + _OBJECT for a, v, b in zip(low, place, high, strict=True))
-            for place in places
-        )
+        """Whether no checkpoint is near a box (m), and nothing else moves."""
+        box = SolidBounds(np.array(low) - _BESIDE, np.array(high) + _BESIDE)
+        return not self._screens and not self._around_checkpoints().overlapping(box).any()
+
+    def _around_checkpoints(self) -> SolidBounds:
+        """The boxes in which the checkpoints are, wherever their indicators."""
+        if self._objects is None:
+            boxes = [self._box(b, self._links(b)) for b in self._checkpoints.values()]
+            low = np.array([box.low for box in boxes]).reshape(-1, 3)
+            high = np.array([box.high for box in boxes]).reshape(-1, 3)
+            self._objects = SolidBounds(low - _INDICATOR, high + _INDICATOR)
+        return self._objects
 
     def _is_clear(self) -> bool:
         """Whether the robot surely has no contact with anything that it must not touch."""
+        return self._is_clear_at(self._pose)
+
+    def _is_clear_at(self, pose: BodyPose) -> bool:
+        """Whether it would surely have none there."""
         if self._moved or self._screens:
             return False
         if self._clearance is None:
-            parts = [(e.material, s) for e in self._solids for s in e.solids]
-            half = np.array([half_extents(solid) for _, solid in parts])
-            center = np.array([solid.center for _, solid in parts])
-            objects = [self._box(b, self._links(b)) for b in self._checkpoints.values()]
-            low = [center - half, *(box.low[None] - _INDICATOR for box in objects)]
-            high = [center + half, *(box.high[None] + _INDICATOR for box in objects)]
-            walking = [m in self._walking for m, _ in parts] + [False] * len(objects)
-            solids = SolidBounds(np.concatenate(low), np.concatenate(high))
-            self._clearance = Clearance(solids, np.array(walking))
+            solids, walking = _bounds_of(self._solids)
+            objects = self._around_checkpoints()
+            self._clearance = Clearance(
+                SolidBounds(
+                    np.concatenate([solids.low, objects.low]),
+                    np.concatenate([solids.high, objects.high]),
+                ),
+                np.concatenate([walking, np.zeros(len(objects.low), dtype=bool)]),
+            )
         if self._envelope is None:
+            self._tell()
             self._place(self._robot_body, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+            self._astray = True
             upper = [k for k, name in self._robot_links.items() if not name.endswith(STANDING)]
             body = self._robot_body
             self._envelope = self._box(body, self._robot_links), self._box(body, upper)
-            self.place_robot(self._pose)
-        return self._clearance.is_clear(self._pose, *self._envelope, self.contact_breaking)
+        return self._clearance.is_clear(pose, *self._envelope, self.contact_breaking)
+
+    def _detect(self) -> None:
+        self._tell()
+        super()._detect()
+
+    def _tell(self) -> None:
+        """Tells PyBullet where the robot and its joints are."""
+        for name, position in self._untold.items():
+            pybullet.resetJointState(
+                self._robot_body, self._joints[name], position, physicsClientId=self._client
+            )
+        self._untold.clear()
+        if self._astray:
+            at = self._pose
+            self._place(self._robot_body, (at.x, at.y, at.z), (at.roll, at.pitch, at.yaw))
+            self._astray = False
 
     def _box(self, body: int, links: Iterable[int]) -> SolidBounds:
         """The upright box around links of a body."""
@@ -204,6 +242,10 @@ class Bodies(Connection):
         if body in self._screens:
             return self._screens[body]
         return self._elements[self._site_links[link]].at(point)
+
+    @cached_property
+    def _elements(self) -> dict[str, ElementIndex]:
+        return {m: ElementIndex(self._solids, m) for m in {e.material for e in self._solids}}
 
     def _load_site(self) -> int:
         with tempfile.TemporaryDirectory() as folder:
@@ -231,3 +273,15 @@ class Bodies(Connection):
 
     def _joint_indices(self, body: int) -> dict[str, int]:
         return {joint: k for k, (joint, _) in self._parts(body).items()}
+
+
+@lru_cache(maxsize=_SITES)
+def _bounds_of(elements: tuple[Element, ...]) -> tuple[SolidBounds, NDArray[np.bool_]]:
+    """The upright boxes around all solids, and on which of them wheels and tracks may stand: as in
+    PyBullet, all of a material on which anything is walked."""
+    parts = [(e.material, s) for e in elements for s in e.solids]
+    half = np.array([half_extents(solid) for _, solid in parts])
+    center = np.array([solid.center for _, solid in parts])
+    walked = {e.material for e in elements if e.role in WALKING_ROLES}
+    walking = np.array([material in walked for material, _ in parts])
+    return SolidBounds(center - half, center + half), walking

@@ -77,12 +77,15 @@ class Clearance:
         if self._found and _is_near(self._found, pose, whole, upper):
             return True
         self._gather(pose, whole)
-        one, other = _gaps(self._others, pose, whole), _gaps(self._floors, pose, upper)
-        margin = distance + _SPARE
-        sideways, upwards = (min(pair) - margin for pair in zip(one, other, strict=True))
-        clear = sideways > 0.0 and upwards > 0.0
-        self._found = _Found(pose, whole, upper, sideways, upwards) if clear else None
-        return clear
+        self._found = None
+        margin, gaps = distance + _SPARE, []
+        for solids, box in ((self._others, whole), (self._floors, upper)):
+            gaps.append(_gaps(solids, pose, box))
+            if min(gaps[-1]) <= margin:
+                return False
+        sideways, upwards = (min(pair) - margin for pair in zip(*gaps, strict=True))
+        self._found = _Found(pose, whole, upper, sideways, upwards)
+        return True
 
     def _gather(self, pose: BodyPose, whole: SolidBounds) -> None:
         """Gathers the solids near the robot, unless it is still where that was done before."""

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.errors import Remedy, Unavailable
+from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
 from argo_env.site import Site
 from argo_env.site.shapes import Element, Vector
@@ -110,6 +111,11 @@ class World(Bodies):
         felt, self._felt = self._felt, None if self._felt is None else ()
         return (*(felt or ()), *found)
 
+    def stays_clear(self, pose: BodyPose) -> bool:
+        """Whether `touches` would find nothing with the robot there either, and PyBullet need not
+        be asked. Not where someone watches."""
+        return self._was_clear and self._felt is None and not self._gui and self._is_clear_at(pose)
+
     def _contacts(self) -> Sequence[tuple[Any, ...]]:
         """PyBullet's contacts of the robot; none where it is clear of all that it must not touch,
         as it was the last time. That once more makes PyBullet forget the contacts from before."""
@@ -136,6 +142,7 @@ class World(Bodies):
             self.set_joints(before)
 
     def _near_arm(self, clearance: float) -> str | None:
+        self._tell()
         links = {name: number for number, name in self._robot_links.items()}
         bodies = (self._site_body, *self._checkpoints_near(), *self._screens)
         for name, hull in _ARM.items():
@@ -239,6 +246,7 @@ class World(Bodies):
     ) -> NDArray[np.uint8]:
         """What a camera sees in daylight, red, green and blue, shape (height, width, 3). The
         matrices are OpenGL's, column by column; `size` is width and height in px."""
+        self._tell()
         return self._render(view, projection, size)[0]
 
     def _look_at_site(self) -> None:

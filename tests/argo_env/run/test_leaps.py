@@ -1,5 +1,5 @@
-"""Runs without a world go from event to event: the record, and the journal, are those of a run that
-goes step by step, to the last bit."""
+"""Runs go from event to event where the robot touches nothing: the record, and the journal, are
+those of a run that goes step by step, to the last bit."""
 
 import os
 import random
@@ -42,6 +42,12 @@ PAPER_FAULTS = (
     "{kind: drive_dysfunction, at: 12, until: 80}",
     "{kind: drive_dysfunction, speed: 0.0, at: 25}",
     "{kind: drive_dysfunction, speed: 0.013, at: 5, until: 45}",
+)
+WORLD_FAULTS = (
+    "{kind: gas_leak, at: 15}",
+    "{kind: platform_alarm, at: 20, until: 60}",
+    "{kind: brick}",
+    "{kind: missing_plate}",
 )
 EVENTS = (Occurred(EventKind.GAS_LEAK), Pause(), Resume(), TakeOver(), GiveBack(), Cancel())
 
@@ -98,9 +104,10 @@ def mission_of(chosen: random.Random) -> Mission:
     )
 
 
-def spec_of(seed: int) -> RunSpec:
+def spec_of(seed: int, drive: str = "route") -> RunSpec:
     chosen = random.Random(seed)
-    faults = chosen.sample(PAPER_FAULTS, chosen.choice([0, 0, 1, 2, 3]))
+    possible = PAPER_FAULTS if drive == "route" else PAPER_FAULTS + WORLD_FAULTS
+    faults = chosen.sample(possible, chosen.choice([0, 0, 1, 2, 3]))
     events = []
     for _ in range(chosen.choice([0, 0, 1, 3])):
         events.append((round(chosen.uniform(0, 120), 2), chosen.choice(EVENTS)))
@@ -113,7 +120,7 @@ def spec_of(seed: int) -> RunSpec:
     text = f"faults: [{', '.join(faults)}]" if faults else "faults: []"
     return RunSpec(
         mission=mission_of(chosen),
-        drive="route",
+        drive=drive,
         seed=seed,
         faults=decode_faults(text.encode(), "test").faults,
         events=logged(*sorted(events, key=lambda one: one[0])),
@@ -135,6 +142,15 @@ EXAMPLES = int(os.environ.get("ARGO_EXAMPLES", "60"))
 @pytest.mark.parametrize("seed", range(EXAMPLES))
 def test_the_record_and_the_journal_are_those_of_step_by_step(seed, tmp_path):
     spec = spec_of(seed)
+    slow = outcome(spec, observers=[StepByStep()], journal=tmp_path / "slow")
+    assert outcome(spec) == slow
+    assert outcome(spec, journal=tmp_path / "fast") == slow
+    assert (tmp_path / "fast").read_bytes() == (tmp_path / "slow").read_bytes()
+
+
+@pytest.mark.parametrize("seed", range(max(4, EXAMPLES // 5)))
+def test_a_robot_in_a_world_does_what_it_does_step_by_step(seed, tmp_path):
+    spec = spec_of(1000 + seed, "kinematic")
     slow = outcome(spec, observers=[StepByStep()], journal=tmp_path / "slow")
     assert outcome(spec) == slow
     assert outcome(spec, journal=tmp_path / "fast") == slow

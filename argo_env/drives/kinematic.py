@@ -61,8 +61,8 @@ class KinematicDrive(NonCopyable, TimedDrive):
                 return places
             for t in times:
                 pose = self._pose_at(motion, 1.0 - (ends - t) / duration)
-                if not self._world.stays_clear(pose):
-                    return places
+                if pose.roll or not self._world.stays_clear(pose):
+                    return places  # places have no roll
                 places.append((pose.x, pose.y, pose.z, pose.yaw, pose.pitch))
         return places
 

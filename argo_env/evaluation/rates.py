@@ -77,7 +77,9 @@ def rate_of(
     sequence.add(means.values())
     low, high = sequence.interval
     value = sum(means.values()) / len(means) if means else float("nan")
-    return PlanRate(value, low, high, len(ran), lost, IntervalMethod.SEQUENCE)
+    # A world of which one run is lost is left out as a whole.
+    count = len(means) * len(cases)
+    return PlanRate(value, low, high, count, lost, IntervalMethod.SEQUENCE)
 
 
 def rate_of_runs(

@@ -131,13 +131,16 @@ def _plans(results: EvaluationResults) -> Table:
         )
     methods = {results.rate(plan).method for plan in results.plan.plans}
     notes = []
+    several = len(results.plan.cases) > len(results.plan.plans) and not results.plan.strata
     if IntervalMethod.SEQUENCE in methods:
-        several = len(results.plan.cases) > len(results.plan.plans)
         notes += ["* " + " ".join(why_sequence(results, several))]
     elif IntervalMethod.STRATA in methods:
         notes.append("* put together by the probabilities of faults")
     if results.missing:
-        notes.append("errors and runs that died say nothing of the plan, and are in no rate")
+        worlds = ", nor are their worlds in that of the plan" if several else ""
+        notes.append(
+            f"errors and runs that died say nothing of the plan: they are in no rate{worlds}"
+        )
     table.caption = "\n".join(notes) or None
     return table
 

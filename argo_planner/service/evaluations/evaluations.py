@@ -103,6 +103,8 @@ class Evaluations:
         """The report, as a page; of an evaluation that was cut short, of what there is. Raises
         NotFound if there is none yet."""
         job = self.of(id)
+        if job.state is JobState.RUNNING:  # that of before it went on says less
+            raise NotFound(f"evaluation {id} has no report yet: it is under way")
         if job.state in (JobState.CANCELLED, JobState.INTERRUPTED):
             work = JobProcess(report_so_far, self._folder.path(id))
             try:

@@ -50,3 +50,16 @@ def test_the_interval_covers_where_a_requirement_decides_when_to_stop(
         early += rate.runs < 400
     assert early > 0.1 * evaluations
     assert held == groups >= 0.945 * evaluations
+
+
+def test_the_world_of_a_run_that_was_lost_is_left_out_and_not_counted(mission):
+    spec = RunSpec(mission=mission, drive="route")
+    cases = tuple(EvaluationCase(mission="m", faults=name, spec=spec) for name in "ab")
+    plan = EvaluationPlan(cases=cases, seeds=tuple(range(10)))
+    rows = []
+    for run in plan.runs():
+        lost = run.seed == 3 and run.case == 1
+        came = RunOutcome.ERROR if lost else RunOutcome.SUCCESS
+        rows.append(row_without_end(str(len(rows)), plan.cases[run.case], run.spec, came, ""))
+    rate = EvaluationResults(plan, tuple(rows)).rate(plan.plans[0])
+    assert (rate.runs, rate.lost) == (18, 1)

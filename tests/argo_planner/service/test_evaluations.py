@@ -111,8 +111,10 @@ def test_one_at_a_time_and_what_was_cancelled_goes_on(service: Served, id: str) 
     before = cancelled["standing"]["done"]
     assert cancelled["standing"]["most"] == cancelled["standing"]["planned"] == 10_000
     with service.follow(id) as page:
+        assert service.client.get(f"/api/jobs/{job}/report").status_code == 200
         gone_on = service.client.post(f"/api/jobs/{job}/go_on")
         assert gone_on.status_code == 202, gone_on.text
+        problem(service.client.get(f"/api/jobs/{job}/report"), 404, "not-found")
         problem(service.client.post(f"/api/jobs/{job}/go_on"), 409, "conflict")
         # What was known is counted before anything is told.
         while True:

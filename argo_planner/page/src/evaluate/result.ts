@@ -23,6 +23,8 @@ import {
 } from "./evaluation";
 
 const [WIDTH, HEIGHT] = [300, 110];
+/** What the service says of an evaluation that ended with it. */
+const SERVICE_ENDED = "the service ended before all was run";
 
 @customElement("argo-evaluate-result")
 export class EvaluateResult extends PageElement {
@@ -185,21 +187,22 @@ export class EvaluateResult extends PageElement {
     if (job === null) return nothing;
     const texts = t().evaluate;
     const standing = job.standing ?? null;
+    const why = mayPlan() ? nothing : texts.mayNotPlan;
     const resumable = job.state === "cancelled" || job.state === "interrupted";
     return html`<section aria-label=${texts.found} data-state=${job.state}>
       ${this.choice(job)}
       <h2 role="status">${texts.found}: ${texts.states[job.state]}</h2>
-      ${job.problem ? html`<p class="warn">${job.problem}</p>` : nothing}
+      ${job.problem ? html`<p class="warn">${job.problem === SERVICE_ENDED ? texts.serviceEnded : job.problem}</p>` : nothing}
       ${evaluationIsStale.value ? html`<p class="small">${texts.stale}</p>` : nothing}
       ${job.state === "running" && standing === null ? html`<progress></progress>` : nothing}
       ${standing === null ? nothing : this.standing(job, standing)}
       ${job.state === "running"
-        ? html`<button id="cancel" ?disabled=${!mayPlan()} @click=${() => cancelEvaluation(job.id)}>
+        ? html`<button id="cancel" title=${why} ?disabled=${!mayPlan()} @click=${() => cancelEvaluation(job.id)}>
             ${icon("stop")} ${texts.cancel}
           </button>`
         : nothing}
       ${resumable
-        ? html`<button id="go-on" ?disabled=${!mayPlan()} @click=${() => goOnWithEvaluation(job.id)}>
+        ? html`<button id="go-on" title=${why} ?disabled=${!mayPlan()} @click=${() => goOnWithEvaluation(job.id)}>
             ${icon("play")} ${texts.goOn}
           </button>`
         : nothing}
@@ -210,7 +213,7 @@ export class EvaluateResult extends PageElement {
         : nothing}
       ${job.state === "running"
         ? nothing
-        : html`<button id="forget" class="bare" ?disabled=${!mayPlan()} @click=${() => forget(job.id)}>
+        : html`<button id="forget" class="bare" title=${why} ?disabled=${!mayPlan()} @click=${() => forget(job.id)}>
             ${icon("bin", 14)} ${texts.forget}
           </button>`}
     </section>`;
@@ -290,7 +293,8 @@ export class EvaluateResult extends PageElement {
   /** What kind of interval it is, and so what it claims. */
   private kind(job: EvaluationJob, now: EvaluationStanding): string {
     const kinds = t().evaluate.kinds;
-    if (now.rate.method === "Wilson") return job.asked.faults.length > 0 ? kinds.whileMixed : kinds.while;
+    const cases = job.asked.faults.length + (job.asked.without_faults ? 1 : 0);
+    if (now.rate.method === "Wilson") return cases > 1 ? kinds.whileMixed : kinds.while;
     if (now.rate.method === "Clopper-Pearson") return kinds.exact;
     if (job.state !== "done") return kinds.cutShort(figure(now.rate.runs));
     return now.by_faults.length > 1 ? kinds.worlds : kinds.anyTime;
@@ -299,8 +303,11 @@ export class EvaluateResult extends PageElement {
   /** How many runs there are, of how many, and why not more. */
   private runs(job: EvaluationJob, now: EvaluationStanding): string {
     const texts = t().evaluate;
-    if (job.state === "done" && now.done < now.planned) return texts.enough(figure(now.done), figure(now.planned));
-    return texts.runsOf(figure(now.done), figure(job.state === "done" ? now.done : now.most));
+    const said =
+      job.state === "done" && now.done < now.planned
+        ? texts.enough(figure(now.done), figure(now.planned))
+        : texts.runsOf(figure(now.done), figure(job.state === "done" ? now.done : now.most));
+    return job.state === "running" || now.rate.runs === now.done ? said : `${said}, ${texts.count(figure(now.rate.runs))}`;
   }
 
   private byFaults(now: EvaluationStanding) {

@@ -70,6 +70,8 @@ export const evaluate = both(
       cutShort: (runs: string) =>
         `(confidence sequence: it holds whyever it was ended; of the ${runs} runs of the first worlds without a gap)`,
     },
+    count: (runs: string) => `${runs} of them count`,
+    serviceEnded: "The service ended before all was run.",
     enough: (done: string, planned: string) => `${done} of at most ${planned} runs: they were enough`,
     required: required(
       {
@@ -102,8 +104,8 @@ export const evaluate = both(
       least === most ? `A success took ${median}.` : `A success took ${median} in the median, ${least} to ${most}.`,
     lost: (count: number) =>
       count === 1
-        ? "1 run could not be carried out, and is in no rate."
-        : `${count} runs could not be carried out, and are in no rate.`,
+        ? "1 run could not be carried out, and does not count."
+        : `${count} runs could not be carried out, and do not count.`,
     failing: "Runs that are no success",
     failed: (seed: number, faults: string | null) => (faults === null ? `World ${seed}` : `World ${seed}, ${faults}`),
     more: (count: number) => `and ${count} more, in the report`,
@@ -159,6 +161,8 @@ export const evaluate = both(
       cutShort: (runs: string) =>
         `(Konfidenzfolge: sie gilt, warum auch immer beendet wurde; von den ${runs} Läufen der ersten Welten ohne Lücke)`,
     },
+    count: (runs: string) => `${runs} davon zählen`,
+    serviceEnded: "Der Dienst endete, bevor alles gelaufen war.",
     enough: (done: string, planned: string) => `${done} von höchstens ${planned} Läufen: sie haben genügt`,
     required: required(
       {

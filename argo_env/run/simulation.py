@@ -14,9 +14,10 @@ from argo_env.closing import Closing
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.start import start_pose
 from argo_env.robot.pose import BodyPose, Place
+from argo_env.run import ending
 from argo_env.run.beginning import matched, progress_now
 from argo_env.run.course import Course
-from argo_env.run.ending import TIME_LIMIT, exhausted, standstill
+from argo_env.run.ending import exhausted, standstill
 from argo_env.run.fitting_together import require_begun, require_machine, require_site
 from argo_env.run.log import Entry, LoggedEvent
 from argo_env.run.machine import Machine, OpenMachine
@@ -413,7 +414,7 @@ class Simulation(Closing):
             course.given.next_time,
             schedule.next_change if schedule else math.inf,
             math.inf if deadline is None else deadline,
-            TIME_LIMIT,
+            ending.TIME_LIMIT,
             until,
         )
         steps = int((next_time - course.now) / self.rig.drive.time_step) - 1

@@ -223,9 +223,12 @@ def test_a_condition_is_made_in_the_form(ann, service, plan) -> None:
     then = ann.page.get_by_label("Go on with", exact=True).first
     then.select_option("C4")
     expect(row(ann, "A1")).to_contain_text("is below 2.5")
-    way = mission(service, plan)["tasks"][1]["transitions"][0]
-    assert way["target"] == "C4"
-    assert (way["conditions"][0]["type"], way["conditions"][0]["param1"]) == (
+
+    def way():
+        return mission(service, plan)["tasks"][1]["transitions"][0]
+
+    ann.until(lambda: way()["target"] == "C4", "it goes on with C4")
+    assert (way()["conditions"][0]["type"], way()["conditions"][0]["param1"]) == (
         "MEASURED_VALUE_LESS",
         2.5,
     )

@@ -309,19 +309,19 @@ def undisturbed(long_file, tmp_path_factory):
     return sorted(read_rows(out), key=lambda row: row.key)
 
 
-KILLS = [pytest.param(3, id="3"), pytest.param(20, id="20", marks=pytest.mark.long)]
+KILLS = 20
 
 
-@pytest.mark.parametrize("kills", KILLS)
+@pytest.mark.long
 def test_killed_and_begun_again_the_rows_are_those_of_an_undisturbed_one(
-    long_file, undisturbed, tmp_path, kills
+    long_file, undisturbed, tmp_path
 ):
     """SIGKILL to the command, at any moment; each row that it had told stays, once."""
-    chosen, out = random.Random(kills), tmp_path / "out"
+    chosen, out = random.Random(KILLS), tmp_path / "out"
     done = 0
-    for _ in range(kills):
+    for _ in range(KILLS):
         process = started(long_file, out)
-        wanted = done + chosen.randint(1, max(1, 2 * len(undisturbed) // kills - 1))
+        wanted = done + chosen.randint(1, max(1, 2 * len(undisturbed) // KILLS - 1))
         while process.poll() is None and count(out) < min(wanted, len(undisturbed)):
             time.sleep(0.01)
         time.sleep(chosen.random() * 0.05)
@@ -333,21 +333,21 @@ def test_killed_and_begun_again_the_rows_are_those_of_an_undisturbed_one(
     assert sorted(read_rows(out), key=lambda row: row.key) == undisturbed
 
 
-@pytest.mark.parametrize("kills", KILLS)
-def test_killed_workers_change_nothing_of_the_rows(long_file, undisturbed, tmp_path, kills):
-    chosen, out = random.Random(100 + kills), tmp_path / "out"
+@pytest.mark.long
+def test_killed_workers_change_nothing_of_the_rows(long_file, undisturbed, tmp_path):
+    chosen, out = random.Random(100 + KILLS), tmp_path / "out"
     process = started(long_file, out)
     killed, wanted = 0, 1
-    while process.poll() is None and killed < kills:
+    while process.poll() is None and killed < KILLS:
         # Some rows between two kills, so that it ever comes to an end.
         if count(out) >= wanted and (workers := processes_of(process.pid)):
-            wanted = count(out) + chosen.randint(1, max(1, 2 * (len(undisturbed) // kills) - 3))
+            wanted = count(out) + chosen.randint(1, max(1, 2 * (len(undisturbed) // KILLS) - 3))
             with suppress(ProcessLookupError):  # it has ended by itself meanwhile
                 os.kill(chosen.choice(workers), signal.SIGKILL)
                 killed += 1
         time.sleep(0.01)
     assert process.wait(300) == 0
-    assert killed == kills
+    assert killed == KILLS
     assert sorted(read_rows(out), key=lambda row: row.key) == undisturbed
 
 

@@ -148,7 +148,13 @@ def test_the_record_and_the_journal_are_those_of_step_by_step(seed, tmp_path):
     assert (tmp_path / "fast").read_bytes() == (tmp_path / "slow").read_bytes()
 
 
-@pytest.mark.parametrize("seed", range(max(4, EXAMPLES // 5)))
+IN_A_WORLD = [
+    pytest.param(seed, marks=pytest.mark.long if seed >= 3 else ())
+    for seed in range(max(4, EXAMPLES // 5))
+]
+
+
+@pytest.mark.parametrize("seed", IN_A_WORLD)
 def test_a_robot_in_a_world_does_what_it_does_step_by_step(seed, tmp_path):
     spec = spec_of(1000 + seed, "kinematic")
     slow = outcome(spec, observers=[StepByStep()], journal=tmp_path / "slow")

@@ -155,6 +155,7 @@ def test_the_evaluation_of_a_mission_that_is_deleted_ends(service: Served) -> No
     problem(service.client.get(f"/api/jobs/{job}"), 404, "not-found")
 
 
+@pytest.mark.long
 def test_it_outlives_the_service(tmp_path: Path, site: OpenedSite) -> None:
     with served(tmp_path, site) as first:
         id = imported(first)
@@ -176,6 +177,7 @@ def test_it_outlives_the_service(tmp_path: Path, site: OpenedSite) -> None:
         assert len(read_rows(tmp_path / "evaluations" / cut_short)) == 150
 
 
+@pytest.mark.long
 def test_obstacles_stand_in_the_worlds(tmp_path: Path, site: OpenedSite) -> None:
     with served(tmp_path, site) as service:
         id = imported(service)

@@ -65,6 +65,7 @@ def test_a_robot_somewhere_else_carries_a_mission_out(service: Served) -> None:
         assert robot.poll() is None
 
 
+@pytest.mark.long
 def test_an_interrupted_run_stops_without_its_robot(service: Served) -> None:
     with a_robot(service):
         run = begin(service, imported(service))

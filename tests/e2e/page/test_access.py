@@ -33,7 +33,7 @@ def require_accessible(person: Person, where: str) -> None:
     ("locale", "theme"),
     [
         ("en-GB", "light"),
-        ("de-DE", "dark"),
+        pytest.param("de-DE", "dark", marks=pytest.mark.long),
         pytest.param("en-GB", "dark", marks=pytest.mark.long),
         pytest.param("de-DE", "light", marks=pytest.mark.long),
     ],

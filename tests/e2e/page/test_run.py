@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import pytest
 from playwright.sync_api import expect
 
 from tests.e2e.page.test_list import order, plan, row
@@ -17,6 +18,7 @@ def panel(person: Any) -> Any:
     return person.page.locator("argo-run")
 
 
+@pytest.mark.long
 def test_an_edited_mission_is_given_back_edited_and_the_report_is_readable(
     browsers, address, plan, service
 ) -> None:

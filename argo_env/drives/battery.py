@@ -2,6 +2,10 @@
 
 import math
 from bisect import bisect_left
+from copy import copy
+
+import numpy as np
+from numpy.typing import NDArray
 
 from argo_env.robot.pose import BodyPose, Place
 from argo_env.robot.spec import PowerSpec, RobotSpec
@@ -53,6 +57,16 @@ class Battery:
         self._load = watts
         self._left = min(max(self._left - watts * seconds / 3600.0, 0.0), self.capacity)
 
+    def steps_until(self, estimate: float, watts: float, seconds: float, most: int) -> int:
+        """After how many steps (s) with such a load (W) the charge that is estimated is that much,
+        0 to 1, for the first time; `most` if that is not before. None of them is made."""
+        other = copy(self)
+        for count in range(most):
+            if estimated_charge(other.voltage, other.current) >= estimate:
+                return count
+            other.use(watts, seconds)
+        return most
+
     @property
     def state(self) -> tuple[float, float]:
         """Wh that are left, and the load (W)."""
@@ -103,6 +117,25 @@ def load_of_way(
     if abs(math.remainder(after[3] - before[3], math.tau)) > least:
         return power.turning
     return power.measuring if measuring else power.standing
+
+
+def loads_of_steps(
+    power: PowerSpec,
+    ways: NDArray[np.float64],
+    places: NDArray[np.float64],
+    seconds: float,
+    measuring: bool,
+) -> NDArray[np.float64]:
+    """The same, to the last bit, for each of n steps: ways have shape (n,), places (n + 1, 5)."""
+    before, after = places[:-1], places[1:]
+    least = _MOVING * seconds
+    climbs = after[:, 2] > before[:, 2]
+    steep = np.abs(after[:, 4]) > _ON_STAIRS
+    moves = np.where(steep, np.where(climbs, power.climbing, power.descending), power.driving)
+    turned = np.abs(np.fmod(after[:, 3] - before[:, 3], math.tau))
+    turns = np.minimum(turned, math.tau - turned) > least
+    stands = power.measuring if measuring else power.standing
+    return np.where(ways > least, moves, np.where(turns, power.turning, stands))
 
 
 def _open_circuit(charge: float) -> float:

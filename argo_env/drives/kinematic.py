@@ -54,13 +54,12 @@ class KinematicDrive(NonCopyable, TimedDrive):
     def places_ahead(self, count: int) -> list[Place]:
         assert self._timetable is not None
         places: list[Place] = []
-        for motion, ends, duration, times in self._timetable.stretches(
-            (self._steps + k) * self.time_step for k in range(1, min(count, _AT_ONCE) + 1)
-        ):
+        times = self._times_ahead(min(count, _AT_ONCE))
+        for motion, shares in self._timetable.stretches(times):
             if self._flippers != _flippers_on(motion):
                 return places
-            for t in times:
-                pose = self._pose_at(motion, 1.0 - (ends - t) / duration)
+            for share in shares.tolist():
+                pose = self._pose_at(motion, share)
                 if pose.roll or not self._world.stays_clear(pose):
                     return places  # places have no roll
                 places.append((pose.x, pose.y, pose.z, pose.yaw, pose.pitch))

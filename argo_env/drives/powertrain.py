@@ -4,6 +4,8 @@ import math
 from bisect import bisect_left
 from collections.abc import Sequence
 
+import numpy as np
+
 from argo_env.drives.drive import Drive, DriveStatus, Incident
 from argo_env.drives.timed_drive import TimedDrive, from_here
 from argo_env.navigation.path import Path
@@ -89,26 +91,26 @@ class Powertrain:
 
     def steps_ahead(self, most: int) -> list[tuple[Place, int]]:
         """Where the robot is after each of the next steps, and how many steps the drive has made
-        by then: as far as it surely moves on and nothing can happen to it, at most so many. None
-        of them is made."""
+        by then: as far as it is held or surely moves on, and nothing can happen to it, at most so
+        many. None of them is made."""
         drive = self._drive
-        if self.pressed or self.way is None or not isinstance(drive, TimedDrive):
+        if self.way is None or not isinstance(drive, TimedDrive):
             return []
+        if self.pressed:
+            return [(_place(drive.pose), 0)] * most
         if self.share < _SLOWEST or self._before is None:
             return []
         counts = self._drives_steps(most, drive.steps_left)
         here = drive.pose
         places = [_place(here), *drive.places_ahead(counts[-1] if counts else 0)]
-        counts = counts[: bisect_left(counts, len(places))]
-        before = _place(self._before)
-        for number, place in enumerate(places[1:], start=1):
-            if not _has_moved(before, place):
-                return [(places[c], c) for c in counts if c < number]
-            before = place
-        return [(places[c], c) for c in counts]
+        moves = _first_still([_place(self._before), *places[1:]])
+        return [(places[c], c) for c in counts[: bisect_left(counts, moves)]]
 
     def go_on(self, ahead: list[tuple[Place, int]], done: int, count: int) -> None:
         """Makes so many of the steps ahead, after those that were done."""
+        if self.pressed:
+            self.held += count
+            return
         drive = self._drive
         assert isinstance(drive, TimedDrive)
         first = ahead[done - 1][1] if done else 0
@@ -159,6 +161,17 @@ class Powertrain:
 
 def _place(pose: BodyPose) -> Place:
     return pose.x, pose.y, pose.z, pose.yaw, pose.pitch
+
+
+def _first_still(places: Sequence[Place]) -> int:
+    """The number of the first place, after the first one, to which the robot has not moved from the
+    one before; how many places there are if there is none."""
+    change = np.abs(np.diff(np.array(places), axis=0))
+    surely = (change[:, :4] > _MOVED).any(axis=1)
+    for k in np.flatnonzero(~surely).tolist():
+        if not _has_moved(places[k], places[k + 1]):
+            return k + 1
+    return len(places)
 
 
 def _has_moved(before: Place, after: Place) -> bool:

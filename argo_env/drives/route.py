@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from argo_env.drives.timed_drive import TimedDrive
 from argo_env.navigation.path import Motion, wrap
 from argo_env.robot.pose import BodyPose, Place
@@ -27,24 +29,16 @@ class RouteDrive(TimedDrive):
     def places_ahead(self, count: int) -> list[Place]:
         assert self._timetable is not None
         places: list[Place] = []
-        for motion, ends, duration, times in self._timetable.stretches(
-            (self._steps + k) * self.time_step for k in range(1, count + 1)
-        ):
-            a, b, turn = motion.start, motion.end, motion.turn
-            x, y, z, yaw = a.x, a.y, a.z, a.yaw
-            dx, dy, dz = b.x - x, b.y - y, b.z - z
-            pitch = self._pitch(motion)
-            for t in times:
-                share = 1.0 - (ends - t) / duration
-                places.append(
-                    (
-                        x + share * dx,
-                        y + share * dy,
-                        z + share * dz,
-                        wrap(yaw + share * turn),
-                        pitch if share < 1.0 else 0.0,
-                    )
-                )
+        for motion, share in self._timetable.stretches(self._times_ahead(count)):
+            a, b = motion.start, motion.end
+            columns = (
+                a.x + share * (b.x - a.x),
+                a.y + share * (b.y - a.y),
+                a.z + share * (b.z - a.z),
+                wrap(a.yaw + share * motion.turn),
+                np.where(share < 1.0, self._pitch(motion), 0.0),
+            )
+            places += zip(*(column.tolist() for column in columns), strict=True)
         return places
 
     def _pose_at(self, motion: Motion, share: float) -> BodyPose:

@@ -3,6 +3,9 @@
 import math
 from abc import ABC, abstractmethod
 
+import numpy as np
+from numpy.typing import NDArray
+
 from argo_compiler.model import Pose
 from argo_env.drives.drive import DriveStatus, Incident
 from argo_env.drives.timetable import Timetable, steps
@@ -75,6 +78,10 @@ class TimedDrive(ABC):
     @abstractmethod
     def glides(self) -> bool:
         """Whether nothing can happen to it where it is, so that many steps can be made at once."""
+
+    def _times_ahead(self, count: int) -> NDArray[np.float64]:
+        """s on the path after each of the next so many steps."""
+        return np.arange(self._steps + 1, self._steps + count + 1) * self.time_step
 
     @abstractmethod
     def places_ahead(self, count: int) -> list[Place]:

@@ -1,9 +1,12 @@
 """When the robot is where on its path, at the pace that plans count with."""
 
 import math
-from bisect import bisect_left, bisect_right
-from collections.abc import Iterable, Iterator
+from bisect import bisect_right
+from collections.abc import Iterator
 from itertools import accumulate
+
+import numpy as np
+from numpy.typing import NDArray
 
 from argo_env.navigation.path import Motion, Path
 from argo_env.robot.spec import RobotSpec
@@ -35,17 +38,14 @@ class Timetable:
             return self._motions[-1], 1.0
         return self._motions[k], 1.0 - (self._ends[k] - t) / self._durations[k]
 
-    def stretches(
-        self, times: Iterable[float]
-    ) -> Iterator[tuple[Motion, float, float, list[float]]]:
-        """For times (s) that only grow, and are before the end: each motion that is under way at
-        some of them, when it ends (s), how long it takes (s), and those times."""
-        held = [*times]
+    def stretches(self, times: NDArray[np.float64]) -> Iterator[tuple[Motion, NDArray[np.float64]]]:
+        """For times (s), shape (n,), that only grow and are before the end: each motion that is
+        under way at some of them, and the share of it that is done at each."""
         first = 0
-        while first < len(held):
-            k = bisect_right(self._ends, held[first])
-            last = bisect_left(held, self._ends[k], first)
-            yield self._motions[k], self._ends[k], self._durations[k], held[first:last]
+        while first < len(times):
+            k = bisect_right(self._ends, times[first])
+            last = int(np.searchsorted(times, self._ends[k]))
+            yield self._motions[k], 1.0 - (self._ends[k] - times[first:last]) / self._durations[k]
             first = last
 
 

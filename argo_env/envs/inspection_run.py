@@ -22,6 +22,7 @@ from argo_env.run.steering import StopRun
 from argo_env.site.shapes import Vector
 
 FULL = 0.999  # charge from where on the battery counts as full
+_ESTIMATED = 1000  # steps of charging for which the charge is estimated ahead
 _TRAIL = 0.15  # m between poses that are kept
 
 
@@ -135,9 +136,12 @@ class Inspection(Closing):
         """s, a time up to which the battery can't be found full, however it is charged."""
         battery = self._simulation.rig.battery
         assert battery is not None
-        watts = self._simulation.rig.navigator.robot.power.charging
+        watts, seconds = self._simulation.rig.navigator.robot.power.charging, self._drive.time_step
         missing = (FULL - ESTIMATE_ERROR - battery.charge) * battery.capacity
-        return self.now + max(0.0, missing) * 3600.0 / watts
+        charges = battery.current < 0.0
+        if missing > 0.0 or not charges:
+            return self.now + max(0.0, missing) * 3600.0 / watts
+        return self.now + battery.steps_until(FULL, -watts, seconds, _ESTIMATED) * seconds
 
     @property
     def _over(self) -> bool:

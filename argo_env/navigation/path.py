@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -115,7 +116,15 @@ def merge(motions: Iterable[Motion]) -> list[Motion]:
     return merged
 
 
-def wrap(angle: float) -> float:
+@overload
+def wrap(angle: float) -> float: ...
+
+
+@overload
+def wrap(angle: NDArray[np.float64]) -> NDArray[np.float64]: ...
+
+
+def wrap(angle: float | NDArray[np.float64]) -> float | NDArray[np.float64]:
     """The same angle between -pi (exclusive) and pi, in rad."""
     return math.pi - (math.pi - angle) % (2 * math.pi)
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 _log = logging.getLogger(__name__)
 
 _KEPT = 8  # sites in memory; each holds some 100 MB
-_PATHS = 1024  # of a site; simulations go the same ways again and again
+_PATHS = 4096  # of a site; simulations go the same ways again and again
 
 
 class OpenedSite:

@@ -57,7 +57,8 @@ class Course:
     @property
     def unsampled(self) -> bool:
         """Whether the present place is no point of the recorded path yet."""
-        return not self.log.path or self.log.path[-1].t < self.now
+        last = self.log.sampled_at
+        return last is None or last < self.now
 
     def step_to(self, steps: int) -> None:
         """So many time steps of the drive have passed since the run began."""

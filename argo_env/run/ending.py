@@ -1,5 +1,7 @@
 """Why a run ends before its mission does."""
 
+import math
+
 from argo_env.drives.powertrain import Powertrain
 from argo_env.run.log import RunLog
 from argo_env.run.machine import Machine
@@ -23,18 +25,35 @@ def standstill(now: float, machine: Machine, rig: Rig, log: RunLog, acting: bool
     """Why nothing goes on by itself at time `now` (s), if nothing is to occur any more; `acting`
     by hand the robot does not stand."""
     waits = not acting and machine.running is None and machine.next_deadline is None
-    held = isinstance(rig.drive, Powertrain) and rig.drive.pressed
+    held = is_held(rig)
     if not (waits or held):
         return None
-    since, schedule = log.last_event, rig.schedule
-    if schedule is not None and schedule.faults:
-        # What has begun or ended may still be found.
-        since = max(since, schedule.last_change)
-        if schedule.pending or now < since + SETTLING:
-            return None
+    since, settled = _stands(rig, log)
+    if now < settled:
+        return None
     why = "held by its emergency stop" if held else "waiting for an event"
     why = "paused" if machine.paused else why
     stands = f"the robot stands still since {since:.0f} s, {why}, and nothing more occurs"
     if machine.paused and machine.hfsm.supervised and not log.tasks:
         stands += ": a supervisory mission begins when a person resumes it (the event `resume`)"
     return stands
+
+
+def is_held(rig: Rig) -> bool:
+    """Whether the emergency stop holds the robot."""
+    return isinstance(rig.drive, Powertrain) and rig.drive.pressed
+
+
+def settled_at(rig: Rig, log: RunLog) -> float:
+    """s, from when on a robot that stands still now is taken to do so for good."""
+    return _stands(rig, log)[1]
+
+
+def _stands(rig: Rig, log: RunLog) -> tuple[float, float]:
+    """s, since when a robot that stands still does so, and from when on for good."""
+    since, schedule = log.last_event, rig.schedule
+    if schedule is None or not schedule.faults:
+        return since, since
+    # What has begun or ended may still be found.
+    since = max(since, schedule.last_change)
+    return since, math.inf if schedule.pending else since + SETTLING

@@ -6,9 +6,11 @@ All that adds up is the same as step by step, to the last bit.
 
 import math
 from collections.abc import Sequence
-from itertools import accumulate
 
-from argo_env.drives.battery import load_of_way
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_env.drives.battery import loads_of_steps
 from argo_env.drives.powertrain import Powertrain
 from argo_env.robot.pose import Place
 from argo_env.run.action import ActionUnderWay
@@ -34,41 +36,40 @@ class Glide:
         self._supply = supply
         self._action = action
         self._passed = 0
-        self._ahead: list[tuple[Place, int]] | None = None
-        self._power: Sequence[PowerState] = ()
         pose = rig.drive.pose
         self._here = here = (pose.x, pose.y, pose.z, pose.yaw, pose.pitch)
+        self._ahead: list[tuple[Place, int]] | None = None
+        if action and action.driving:
+            self._ahead = []
+        self._power: Sequence[PowerState] = ()
+        self.steps = 0
+        """how many there are"""
         if (
             not isinstance(rig.drive, Powertrain)
             or odometry.touching
             or pose.roll
             or not rig.drive.glides
         ):
-            self.steps = 0
             return
-        if action is None:
-            self.steps = most
-        elif action.driving:
-            self._ahead = rig.drive.steps_ahead(most)
-            self.steps = len(self._ahead)
+        if self._ahead is None:
+            count = action.steps_measuring(most) if action else most
+            places = [here] * count
+            ways = rises = np.zeros(count)
         else:
-            self.steps = action.steps_measuring(most)
-        places = [place for place, _ in self._ahead] if self._ahead else [here] * self.steps
-        pairs = [*zip([here, *places], places, strict=False)]
-        still = self._ahead is None
-        ways = [0.0 if still else math.dist(a[:3], b[:3]) for a, b in pairs]
-        rises = [max(0.0, b[2] - a[2]) for a, b in pairs]
-        self._distance = [*accumulate(ways, initial=odometry.distance)]
-        self._climbed = [*accumulate(rises, initial=odometry.climbed)]
+            self._ahead = rig.drive.steps_ahead(most)
+            places = [place for place, _ in self._ahead]
+            points = [place[:3] for place in (here, *places)]
+            # As the odometry adds them up: a root by NumPy may differ in its last bit.
+            ways = np.array([*map(math.dist, points[:-1], points[1:])])
+            rises = np.maximum(0.0, np.diff([z for _, _, z in points]))
+        self._distance = _sums(odometry.distance, ways)
+        self._climbed = _sums(odometry.climbed, rises)
         measuring = action is not None and action.measuring
         power, time_step = rig.navigator.robot.power, rig.drive.time_step
-        loads = [
-            load_of_way(power, way, a, b, time_step, measuring)
-            for way, (a, b) in zip(ways, pairs, strict=True)
-        ]
-        self._power = supply.ahead(loads, places, time_step)
-        self.steps = min(self.steps, len(self._power))
-        """how many there are"""
+        table = np.array([here, *places])
+        loads = loads_of_steps(power, ways, table, time_step, measuring)
+        self._power = supply.ahead(loads, table[1:], time_step)
+        self.steps = len(self._power)
 
     def places(self, count: int) -> Sequence[Place]:
         """Where the robot is after each of the first so many steps; nothing while it stands."""
@@ -96,3 +97,8 @@ class Glide:
         self._odometry.climbed = self._climbed[step]
         self._supply.go_to(self._power[step - 1])
         self._passed = step
+
+
+def _sums(first: float, added: NDArray[np.float64]) -> list[float]:
+    """What adds up, before the first step and after each: one by one, to the last bit."""
+    return np.cumsum(np.concatenate([[first], added])).tolist()

@@ -288,6 +288,13 @@ class RunLog:
         self._passed.append((t, pose, charge))
 
     @property
+    def sampled_at(self) -> float | None:
+        """s, of the last point of the recorded path."""
+        if self._passed:
+            return self._passed[-1][0]
+        return self._path[-1].t if self._path else None
+
+    @property
     def path(self) -> Sequence[PathSample]:
         """The recorded path."""
         if self._passed:

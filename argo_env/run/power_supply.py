@@ -1,10 +1,14 @@
 """The battery in use: what the robot draws from it, and what a dock gives back."""
 
 from collections.abc import Sequence
+from itertools import repeat, takewhile
 
-from argo_compiler.il.docked import at_dock
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_compiler.il.docked import DOCKED_DISTANCE_M, at_dock
 from argo_env.drives.battery import Battery, load
-from argo_env.robot.pose import BodyPose, Place
+from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
 from argo_env.run.log import Entry
 from argo_env.site import Site
@@ -59,29 +63,52 @@ class PowerSupply:
         self._battery.use(watts, seconds)
 
     def ahead(
-        self, loads: Sequence[float], places: Sequence[Place], seconds: float
+        self, loads: NDArray[np.float64], places: NDArray[np.float64], seconds: float
     ) -> list[PowerState]:
-        """How it stands after each of some steps (s) with such loads (W), after which the robot is
-        at these places: up to where the battery is empty, before which nothing can happen."""
+        """How it stands after each of n steps (s) with such loads (W), shape (n,), after which the
+        robot is at these places, shape (n, 5): up to where the battery is empty, before which
+        nothing can happen."""
         if self._battery is None:
             return [(False, 0.0, 0.0)] * len(loads)
+        before, _ = self._battery.state
+        docked = self._docked_after(loads, places)
+        if docked.any():
+            return self._ahead_docked(loads.tolist(), docked.tolist(), seconds)
+        left = np.cumsum(np.concatenate([[before], -(loads * seconds / 3600.0)]))[1:]
+        states = zip(repeat(False), left.tolist(), loads.tolist())
+        return [*takewhile(lambda state: state[1] > 0.0, states)]
+
+    def _ahead_docked(
+        self, loads: Sequence[float], docked: Sequence[bool], seconds: float
+    ) -> list[PowerState]:
+        """The same for steps in some of which the robot is docked."""
+        assert self._battery is not None
         (left, _), capacity = self._battery.state, self._battery.capacity
-        standing = (self._power.standing, self._power.measuring)
         states: list[PowerState] = []
-        docked_at: tuple[Place, bool] | None = None
-        for watts, place in zip(loads, places, strict=True):
-            charging = False
-            if watts in standing:
-                if docked_at is None or docked_at[0] is not place:
-                    docked_at = place, self._docked(BodyPose(*place))
-                if docked_at[1]:
-                    charging = left / capacity < 1.0
-                    watts = -self._power.charging if charging else 0.0
+        for watts, at_station in zip(loads, docked, strict=True):
+            charging = at_station and left / capacity < 1.0
+            if at_station:
+                watts = -self._power.charging if charging else 0.0
             left = min(max(left - watts * seconds / 3600.0, 0.0), capacity)
             if left <= 0.0:
                 break
             states.append((charging, left, watts))
         return states
+
+    def _docked_after(
+        self, loads: NDArray[np.float64], places: NDArray[np.float64]
+    ) -> NDArray[np.bool_]:
+        """After which of the steps the robot stands in a dock."""
+        x, y = places[:, 0], places[:, 1]
+        near = np.zeros(len(loads), dtype=bool)
+        for dock in self._docks:
+            near |= np.hypot(x - dock.x, y - dock.y) < 2 * DOCKED_DISTANCE_M
+        near &= (loads == self._power.standing) | (loads == self._power.measuring)
+        docked = np.zeros(len(loads), dtype=bool)
+        if near.any():
+            kinds, which = np.unique(places[near], axis=0, return_inverse=True)
+            docked[near] = np.array([self._docked(BodyPose(*kind)) for kind in kinds])[which]
+        return docked
 
     def go_to(self, state: PowerState) -> None:
         """It stands like this from now on."""

@@ -417,6 +417,9 @@ class Simulation(Closing):
             ending.TIME_LIMIT,
             until,
         )
+        if ending.is_held(self.rig):
+            settled = ending.settled_at(self.rig, course.log)
+            next_time = min(next_time, settled if settled > course.now else math.inf)
         steps = int((next_time - course.now) / self.rig.drive.time_step) - 1
         return min(steps, _LONGEST)
 

@@ -81,7 +81,8 @@ class TimedDrive(ABC):
 
     def _times_ahead(self, count: int) -> NDArray[np.float64]:
         """s on the path after each of the next so many steps."""
-        return np.arange(self._steps + 1, self._steps + count + 1) * self.time_step
+        steps = np.arange(self._steps + 1, self._steps + count + 1, dtype=np.float64)
+        return steps * self.time_step
 
     @abstractmethod
     def places_ahead(self, count: int) -> list[Place]:

@@ -6,6 +6,7 @@ All that adds up is the same as step by step, to the last bit.
 
 import math
 from collections.abc import Sequence
+from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
@@ -101,4 +102,4 @@ class Glide:
 
 def _sums(first: float, added: NDArray[np.float64]) -> list[float]:
     """What adds up, before the first step and after each: one by one, to the last bit."""
-    return np.cumsum(np.concatenate([[first], added])).tolist()
+    return [*accumulate(added.tolist(), initial=first)]

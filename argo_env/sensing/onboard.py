@@ -5,8 +5,10 @@ circuit of the emergency stop, the way made against the way planned, pictures of
 """
 
 import math
+from bisect import bisect_left
 from collections import deque
 from collections.abc import Sequence
+from itertools import accumulate, repeat
 
 import numpy as np
 
@@ -236,17 +238,22 @@ def _places(
     path: Path, velocity: float | None, robot: RobotSpec
 ) -> list[tuple[float, float, float, float]]:
     """x, y, z (m) and yaw (rad) every _SAMPLE s along the plan."""
-    rows, t = [], 0.0
+    rows: list[tuple[float, float, float, float]] = []
+    first = 0.0
     for motion in path.motions:
         duration = motion.duration(robot, velocity)
+        most = 1 + math.ceil(max(0.0, duration - first) / _SAMPLE)
+        times = [*accumulate(repeat(_SAMPLE, most), initial=first)]
+        under_way = bisect_left(times, duration)
+        share = np.array(times[:under_way]) / duration
         a, b = motion.start, motion.end
-        x, y, z, yaw = a.x, a.y, a.z, a.yaw
-        dx, dy, dz = b.x - x, b.y - y, b.z - z
-        while t < duration:
-            share = t / duration
-            heading = wrap(yaw + share * motion.turn)
-            rows.append((x + share * dx, y + share * dy, z + share * dz, wrap(heading)))
-            t += _SAMPLE
-        t -= duration
+        columns = (
+            a.x + share * (b.x - a.x),
+            a.y + share * (b.y - a.y),
+            a.z + share * (b.z - a.z),
+            wrap(wrap(a.yaw + share * motion.turn)),
+        )
+        rows += zip(*(column.tolist() for column in columns), strict=True)
+        first = times[under_way] - duration
     end = path.end
     return [*rows, (end.x, end.y, end.z, end.yaw)]

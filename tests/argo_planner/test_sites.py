@@ -52,6 +52,7 @@ def test_a_site_that_can_be_driven_and_is_written_out(tmp_path):
 DRAWN = "generated:floors=1,size=12x12,checkpoints=2,seed=1"
 
 
+@pytest.mark.long
 def test_a_generated_site_is_written_under_the_name_of_its_file(tmp_path):
     file = tmp_path / "my site.yaml"
     result = argo("sites", DRAWN, "-o", file)

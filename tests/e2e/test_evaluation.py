@@ -85,6 +85,7 @@ def test_requirements_are_in_the_exit_status(argo, tmp_path):
     assert "missed" in missed.stdout
 
 
+@pytest.mark.long
 def test_two_evaluations_are_compared(argo, file, tmp_path):
     for name in ("a", "b"):
         assert argo("evaluate", file, "--out", tmp_path / name).returncode == 0
@@ -151,6 +152,7 @@ def test_a_wrong_file_says_where(argo, tmp_path, text, message):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.long
 def test_another_evaluation_is_not_overwritten(argo, file, tmp_path):
     out = tmp_path / "out"
     assert argo("evaluate", file, "--out", out).returncode == 0
@@ -166,6 +168,7 @@ def test_what_a_file_says_is_not_said_by_options_as_well(argo, file, tmp_path):
     assert "--drive would say it again" in said.stderr
 
 
+@pytest.mark.long
 def test_faults_that_have_changed_are_not_those_of_before(argo, file, tmp_path):
     out = tmp_path / "out"
     assert argo("evaluate", file, "--out", out).returncode == 0
@@ -178,6 +181,7 @@ def test_faults_that_have_changed_are_not_those_of_before(argo, file, tmp_path):
     assert began == {40.0}
 
 
+@pytest.mark.long
 def test_of_an_evaluation_that_is_replaced_only_what_fits_is_kept(argo, file, tmp_path):
     out = tmp_path / "out"
     assert argo("evaluate", file, "--out", out).returncode == 0
@@ -193,6 +197,7 @@ def test_of_an_evaluation_that_is_replaced_only_what_fits_is_kept(argo, file, tm
     assert {path.stem for path in (out / "failing").iterdir()} == set(after)
 
 
+@pytest.mark.long
 def test_files_of_others_are_not_written_over(argo, file, tmp_path):
     out = tmp_path / "out"
     out.mkdir()
@@ -226,6 +231,7 @@ def test_what_is_in_the_way_is_named_before_anything_runs(argo, file, tmp_path, 
     assert said.stdout == ""
 
 
+@pytest.mark.long
 def test_plans_of_one_evaluation_are_compared_by_name(argo, tmp_path):
     out = tmp_path / "out"
     options = ("--seeds", "0..9", "--out", out, "--policy", "as written", "--policy", "optimised")
@@ -250,12 +256,14 @@ def test_an_evaluation_of_which_no_run_could_be_carried_out_is_no_success(argo, 
     assert "are in no rate" in said.stdout
 
 
+@pytest.mark.long
 def test_failing_runs_name_their_plan(argo, file, tmp_path):
     file.write_text(file.read_text() + "policies: [as written, optimised]\n")
     said = argo("evaluate", file, "--out", tmp_path / "out")
     assert "  mission 1, optimised, seed 0, stop: " in said.stdout
 
 
+@pytest.mark.long
 def test_more_seeds_go_on_from_the_rows_that_are_there(argo, file, tmp_path):
     out = tmp_path / "out"
     assert argo("evaluate", file, "--out", out).returncode == 0
@@ -359,6 +367,7 @@ def count(out: Path) -> int:
         return 0
 
 
+@pytest.mark.long
 def test_no_worker_is_left_behind(long_file, tmp_path):
     process = started(long_file, tmp_path / "out")
     while count(tmp_path / "out") < 3:
@@ -372,6 +381,7 @@ def test_no_worker_is_left_behind(long_file, tmp_path):
     assert not processes_of(process.pid)
 
 
+@pytest.mark.long
 def test_ctrl_c_keeps_the_rows(long_file, tmp_path):
     out = tmp_path / "out"
     process = started(long_file, out, subprocess.PIPE)

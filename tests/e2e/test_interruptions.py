@@ -221,6 +221,7 @@ def test_what_goes_on_with_a_run_replaces_what_that_was_to_replace(folder, tmp_p
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP], ids=lambda n: n.name)
 def test_an_interrupted_run_that_is_recorded_only(argo, folder, tmp_path, number) -> None:
     recording = tmp_path / "run.mcap"
@@ -235,6 +236,7 @@ def test_an_interrupted_run_that_is_recorded_only(argo, folder, tmp_path, number
     assert not reported(tmp_path / "again").result.ended
 
 
+@pytest.mark.long
 def test_interrupted_before_the_first_step(argo, folder, navigator, tmp_path) -> None:
     report = tmp_path / "report"
     with started(*run_of(folder), "--report", report) as process:
@@ -251,6 +253,7 @@ def test_interrupted_before_the_first_step(argo, folder, navigator, tmp_path) ->
     require_complete(reported(report), simulated(PLAN, navigator, **settings(3)), ())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda n: n.name)
 def test_a_search_for_the_best_order_is_interrupted(missions: Path, number) -> None:
     environment = {**os.environ, "PYTHONPROFILEIMPORTTIME": "1"}
@@ -263,6 +266,7 @@ def test_a_search_for_the_best_order_is_interrupted(missions: Path, number) -> N
     assert process.returncode == STATUS[number]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("closed", [True, False], ids=["closed", "full"])
 def test_a_run_whose_output_goes_nowhere_is_reported(folder, tmp_path, closed: bool) -> None:
     reading, writing = os.pipe()

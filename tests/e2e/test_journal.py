@@ -186,6 +186,7 @@ def test_runs_that_are_killed_lose_nothing(argo, folder, navigator, record_prope
     print(f"{kills} kills, {done} runs, {silent} processes that told nothing")
 
 
+@pytest.mark.long
 def test_kill_and_resume_by_the_command(
     argo, argo_process, folder: Path, tmp_path: Path, navigator
 ) -> None:

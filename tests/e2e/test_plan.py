@@ -69,6 +69,7 @@ def test_a_script_is_put_into_the_folder_once(tmp_path: Path, missions: Path) ->
     assert len(list(folder.glob("*.plan"))) == 1
 
 
+@pytest.mark.long
 def test_another_mission_of_that_name_gets_another_name(tmp_path: Path, missions: Path) -> None:
     script, folder = missions / "mission_1.txt", tmp_path / "missions"
     with planning(script, "--folder", folder, "--no-browser", *AREAS):
@@ -78,6 +79,7 @@ def test_another_mission_of_that_name_gets_another_name(tmp_path: Path, missions
         assert mission_at(address)["name"] == "mission_1 (2)"
 
 
+@pytest.mark.long
 def test_the_browser_is_opened_at_the_page(tmp_path: Path) -> None:
     noted = tmp_path / "address"
     browser = tmp_path / "browser"

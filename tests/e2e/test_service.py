@@ -116,6 +116,7 @@ def evaluating(client: httpx.Client) -> str:
     return job
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("end", ["Ctrl-C", "kill -9"])
 def test_an_evaluation_ends_with_the_service_and_goes_on(serving: Serving, end: str) -> None:
     address = f"http://{serving.address}"
@@ -140,6 +141,7 @@ def test_an_evaluation_ends_with_the_service_and_goes_on(serving: Serving, end: 
     serving.end(signal.SIGTERM)
 
 
+@pytest.mark.long
 def test_one_service_has_a_folder(serving: Serving, argo_process) -> None:
     ended = argo_process("serve", str(serving.folder), "--port", "0", "--token", TOKEN)
     assert ended.returncode == 2
@@ -246,6 +248,7 @@ async def play(serving: Serving, seconds: float, subscribers: int, kills: int) -
     await asyncio.gather(*following, return_exceptions=True)
 
 
+@pytest.mark.long
 def test_nothing_is_lost_or_done_twice_when_the_service_is_killed(serving: Serving) -> None:
     asyncio.run(play(serving, seconds=4, subscribers=5, kills=1))
 

@@ -36,6 +36,7 @@ def clashing(size: int) -> RouteProblem:
     return replace(of_kind("plain", size), precedences=order)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("size", [400, 1000])
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_first_solver_finds_a_route(kind: str, size: int) -> None:
@@ -45,6 +46,7 @@ def test_the_first_solver_finds_a_route(kind: str, size: int) -> None:
     assert evaluate(problem, made.route).feasible
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", KINDS)
 def test_whoever_looks_at_the_clock_stops_soon_after_the_limit(kind: str) -> None:
     clock = Clock(0.002)

@@ -15,6 +15,7 @@ from argo_compiler.script.syntax.words.lexer import words
 DOCS = Path(__file__).parents[3] / "docs" / "script.md"
 
 
+@pytest.mark.long
 def test_saved_tables_parse_as_new_ones(monkeypatch: pytest.MonkeyPatch) -> None:
     new = Grammar(tables.make_parser())
 
@@ -70,6 +71,7 @@ def test_tables_of_another_lark_are_not_used(monkeypatch: pytest.MonkeyPatch) ->
     assert made == [True]
 
 
+@pytest.mark.long
 def test_tables_are_written_once(tmp_path: Path) -> None:
     tables.save_tables(tmp_path)
     path = tmp_path / "sentence.tables"

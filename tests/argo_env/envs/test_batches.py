@@ -76,6 +76,7 @@ def trajectory(batch, steps, seed=SEED, options=None):
     return heard, ended
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("id", [DRIVE, INSPECT])
 @pytest.mark.parametrize("processes", [1, 2, 3])
 def test_batch_is_what_single_environments_are(make, id, processes):

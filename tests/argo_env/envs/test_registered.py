@@ -176,6 +176,7 @@ def test_unknown_render_mode_is_refused(make):
         kind(render_mode="hologram")
 
 
+@pytest.mark.long
 def test_resets_leak_no_memory(id, make):
     env = make()
     count = RESETS.get(id, 30)

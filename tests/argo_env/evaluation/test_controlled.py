@@ -84,6 +84,7 @@ def test_cheap_runs_that_tell_nothing_are_made_in_the_first_worlds_only(expensiv
     assert made.count("route") == PILOT
 
 
+@pytest.mark.long
 def test_what_was_measured_outlives_an_interruption(expensive, tmp_path):
     made = Made()
     _, first = run_controlled(expensive, "route", made, tmp_path, lambda: made.time)

@@ -80,6 +80,7 @@ def test_rows_are_equal_on_every_back_end(backend, faulty, alone):
     assert all(row.detections[0].delay is not None for row in results.failing)
 
 
+@pytest.mark.long
 def test_of_a_thousand_runs_one_that_kills_its_worker_is_a_row_with_its_reason(backend, plan):
     many = plan.model_copy(update={"seeds": tuple(range(1_000))})
     results = evaluated(many, backend, call=work.invented)
@@ -91,6 +92,7 @@ def test_of_a_thousand_runs_one_that_kills_its_worker_is_a_row_with_its_reason(b
     assert (rate.runs, rate.lost) == (999, 1)
 
 
+@pytest.mark.long
 def test_a_real_run_that_dies_does_not_end_the_others(processes, plan):
     results = evaluated(plan, processes, call=work.poisoned)
     assert results.outcomes == {RunOutcome.SUCCESS: 9, RunOutcome.DIED: 1}
@@ -108,6 +110,7 @@ def test_what_goes_wrong_in_the_simulator_is_another_outcome(processes, plan):
     assert "nowhere" in row.reason
 
 
+@pytest.mark.long
 def test_a_run_that_takes_too_long_ends(processes, mission):
     # Of so many steps that it takes far longer than it may.
     slow = RunSpec(mission=mission, drive="tracked", sensor="camera")

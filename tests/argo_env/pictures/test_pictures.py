@@ -168,6 +168,7 @@ def test_a_gif_has_a_frame_for_each_time(record, umad, robot, tmp_path):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a.gif", "b.gif"]
 
 
+@pytest.mark.long
 def test_several_processes_draw_the_same_film(record, umad, robot, tmp_path, monkeypatch):
     monkeypatch.setattr(frames, "usable_processors", lambda: 2)
     for name, worth_it in (("alone.gif", 10**6), ("together.gif", 2)):

@@ -27,6 +27,7 @@ def alone(robot):
         yield scene
 
 
+@pytest.mark.long
 @settings(max_examples=15)
 @given(
     st.floats(-3.0, 18.0), st.floats(-4.0, 12.0), st.sampled_from([-0.03, 2.5, 5.0, 12.5]),

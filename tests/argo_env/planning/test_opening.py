@@ -103,6 +103,7 @@ def open_anew(reference):
     return open_site(reference)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("reference", ["darmstadt", "yard"])
 def test_what_is_on_disk_equals_what_is_found_anew(reference, yard_file, folder, monkeypatch):
     monkeypatch.setattr("argo_env.navigation.landmarks._WORTH_IT", 1000)  # as on large sites
@@ -163,6 +164,7 @@ def damaged(content):
         yield content[:place] + bytes([content[place] ^ 0x10]) + content[place + 1 :]
 
 
+@pytest.mark.long
 def test_a_damaged_entry_is_made_anew(yard_file, folder, caplog):
     anew = found(open_site(yard_file).navigator)
     whole = {path: path.read_bytes() for path in files_in(folder)}
@@ -218,6 +220,7 @@ print(found(open_site(sys.argv[1]).navigator))
 """
 
 
+@pytest.mark.long
 def test_processes_that_write_at_the_same_time_do_no_harm(yard_file, folder):
     anew = found(Navigator(load_site(yard_file), load_robot()))
     command = [sys.executable, "-c", PRINT_FOUND, yard_file]

@@ -22,6 +22,8 @@ from argo_env.run.spec import RunSpec
 from argo_env.world.world import World, pybullet
 from tests.yard import SITE
 
+pytestmark = pytest.mark.long
+
 THREADS = 8
 DRIVES = ("kinematic", "tracked", "kinematic", "route") * 2
 SCRIPT = """Mission Protocol #{k}

@@ -100,6 +100,7 @@ def test_it_is_watched_says_what_the_library_says_and_its_runs_are_replayed(
     assert (summary["id"], summary["standing"]) == (job, None)
 
 
+@pytest.mark.long
 def test_one_at_a_time_and_what_was_cancelled_goes_on(service: Served, id: str) -> None:
     job = begin(service, id, worlds=10_000)
     until(service, job, lambda read: read["standing"] is not None)
@@ -127,6 +128,7 @@ def test_one_at_a_time_and_what_was_cancelled_goes_on(service: Served, id: str) 
     assert service.client.delete(f"/api/jobs/{job}").status_code == 200
 
 
+@pytest.mark.long
 def test_what_was_ended_by_hand_is_told_so_that_it_holds_and_has_a_report(
     service: Served, id: str
 ) -> None:
@@ -145,6 +147,7 @@ def test_what_was_ended_by_hand_is_told_so_that_it_holds_and_has_a_report(
     assert job not in {one["id"] for one in service.client.get("/api/jobs").json()["jobs"]}
 
 
+@pytest.mark.long
 def test_the_evaluation_of_a_mission_that_is_deleted_ends(service: Served) -> None:
     id = imported(service)
     job = begin(service, id, worlds=10_000)
@@ -226,6 +229,7 @@ def test_what_makes_no_sense_is_refused_before_anything_runs(service: Served, id
     assert refused.status_code == 403
 
 
+@pytest.mark.long
 def test_searches_are_no_evaluations(service: Served, id: str) -> None:
     order = service.client.post(f"/api/missions/{id}/orders", json={"time_limit": 1}).json()["id"]
     for answer in (

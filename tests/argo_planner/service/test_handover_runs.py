@@ -105,6 +105,7 @@ def play(service: Served, site: OpenedSite, seed: int) -> str:
     return " ".join(played)
 
 
+@pytest.mark.long
 def test_by_hand_and_by_edit(service: Served, site: OpenedSite) -> None:
     assert {seed: play(service, site, seed).split()[-1:] for seed in (0, 3)}
 

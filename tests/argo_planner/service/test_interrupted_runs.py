@@ -23,6 +23,8 @@ from tests.argo_planner.service.test_run_host import (
     until,
 )
 
+pytestmark = pytest.mark.long
+
 
 async def interrupted(host: RunHost) -> None:
     """Kills the process of the run, and waits until that is known."""

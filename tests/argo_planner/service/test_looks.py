@@ -50,6 +50,7 @@ def test_notes_of_an_import_stay_until_the_mission_is_gone_for_good(service: Ser
     assert client.get(f"/api/missions/{other}/notes").json() == {"revision": 0, "notes": []}
 
 
+@pytest.mark.long
 def test_a_reading_of_the_camera_has_its_picture(service: Served) -> None:
     pytest.importorskip("cv2")
     params = {"filename": "m.txt", "start_area": 1, "end_area": 1}

@@ -49,6 +49,7 @@ def asked(service: Served, count: int, phases: str, folder: Path) -> int:
     return int(found[1])
 
 
+@pytest.mark.long
 def test_no_answer_is_against_the_document(service: Served, tmp_path: Path) -> None:
     assert asked(service, 3, "fuzzing", tmp_path) > 100
 

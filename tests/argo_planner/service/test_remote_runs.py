@@ -88,6 +88,7 @@ def test_an_interrupted_run_stops_without_its_robot(service: Served) -> None:
         time.sleep(0.1)
 
 
+@pytest.mark.long
 def test_without_a_robot_it_is_said(service: Served) -> None:
     run = begin(service, imported(service))
     while (found := state(service, run))["status"] == "preparing":

@@ -135,6 +135,7 @@ def test_a_run_is_that_of_the_simulation(tmp_path, site) -> None:
     play(tmp_path, script)
 
 
+@pytest.mark.long
 def test_a_second_run_is_refused_with_who_has_the_robot(tmp_path, site) -> None:
     async def script(host: RunHost) -> None:
         await host.start(order(site, speed=1.0), "ann")
@@ -152,6 +153,7 @@ def test_a_second_run_is_refused_with_who_has_the_robot(tmp_path, site) -> None:
     play(tmp_path, script)
 
 
+@pytest.mark.long
 def test_paused_is_said_only_when_nothing_moves(tmp_path, site) -> None:
     async def script(host: RunHost) -> None:
         await host.start(order(site, speed=20.0), "ann")
@@ -218,6 +220,7 @@ def test_a_person_takes_over_drives_measures_skips_and_gives_back(tmp_path, site
     play(tmp_path, script)
 
 
+@pytest.mark.long
 def test_a_run_goes_on_when_its_process_was_killed(tmp_path, site) -> None:
     spec = RunSpec(mission=order(site).mission, site=site.reference, drive="route", seed=4)
     alone = simulate(spec, site)
@@ -243,6 +246,7 @@ def test_a_run_goes_on_when_its_process_was_killed(tmp_path, site) -> None:
     play(tmp_path, script)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("after", ["go-on", "wait"])
 def test_a_service_that_begins_again_finds_its_run(tmp_path, site, after: str) -> None:
     async def begin(host: RunHost) -> None:
@@ -273,6 +277,7 @@ async def done_by_itself(host: RunHost) -> str:
     return host.state.headline.word
 
 
+@pytest.mark.long
 def test_what_can_not_be_run_has_ended_with_its_reason(tmp_path, site) -> None:
     async def script(host: RunHost) -> None:
         run = (await host.start(order(site, drive="flying"), "ann")).id

@@ -134,6 +134,7 @@ def test_why_there_is_no_report_yet_is_said(service: Served, id: str) -> None:
     assert state(service, run)["status"] == "ended", "known before it is confirmed"
 
 
+@pytest.mark.long
 def test_the_run_goes_on_when_nobody_looks(service: Served, id: str) -> None:
     live = service.socket("/api/robot/live", auth())
     run = start(service, id, speed=None)["id"]

@@ -224,6 +224,7 @@ WRITER = textwrap.dedent(
 )
 
 
+@pytest.mark.long
 def test_what_was_acknowledged_survives_a_kill(folder):
     with folder.create("Round", mission("a", "b"), AT) as file:
         path = file.path

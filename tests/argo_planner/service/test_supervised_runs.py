@@ -2,6 +2,8 @@
 
 import json
 
+import pytest
+
 from argo_planner.service.runs import requests as asked
 from argo_planner.service.runs.host import RunHost
 from argo_planner.service.runs.state import RunMode
@@ -14,6 +16,7 @@ from tests.argo_planner.service.test_run_host import (
 )
 
 
+@pytest.mark.long
 def test_a_pause_during_a_pause_changes_nothing(tmp_path, site) -> None:
     async def script(host: RunHost) -> None:
         await begun(host, site)
@@ -30,6 +33,7 @@ def test_a_pause_during_a_pause_changes_nothing(tmp_path, site) -> None:
     play(tmp_path, script)
 
 
+@pytest.mark.long
 def test_who_has_the_robot_neither_pauses_nor_skips_twice(tmp_path, site) -> None:
     name = next(t.name for t in order(site).mission.tasks if t.action == "MEASURE")
 

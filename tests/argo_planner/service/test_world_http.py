@@ -92,6 +92,7 @@ def test_obstacles_close_the_ground_and_are_kept(service: Served) -> None:
     page.close()
 
 
+@pytest.mark.long
 def test_runs_go_round_obstacles(service: Served) -> None:
     client = service.client
     made = client.post(

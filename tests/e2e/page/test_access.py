@@ -10,6 +10,8 @@ from argo_planner.service.web import page
 from tests.e2e.page.person import Person
 from tests.e2e.page.test_list import plan, row
 
+pytestmark = pytest.mark.long
+
 __all__ = ["plan"]
 AXE = Path(page.__file__).parents[2] / "page" / "node_modules" / "axe-core" / "axe.min.js"
 
@@ -33,9 +35,9 @@ def require_accessible(person: Person, where: str) -> None:
     ("locale", "theme"),
     [
         ("en-GB", "light"),
-        pytest.param("de-DE", "dark", marks=pytest.mark.long),
-        pytest.param("en-GB", "dark", marks=pytest.mark.long),
-        pytest.param("de-DE", "light", marks=pytest.mark.long),
+        ("de-DE", "dark"),
+        ("en-GB", "dark"),
+        ("de-DE", "light"),
     ],
 )
 def test_planning_is_accessible(browsers, address, plan, locale, theme) -> None:

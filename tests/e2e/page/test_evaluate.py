@@ -7,6 +7,8 @@ from playwright.sync_api import expect
 
 from tests.e2e.page.test_list import plan, row
 
+pytestmark = pytest.mark.long
+
 __all__ = ["plan"]
 
 
@@ -87,7 +89,6 @@ def test_rates_close_in_and_a_failing_run_is_replayed(browsers, address, plan, s
     report.close()
 
 
-@pytest.mark.long
 def test_an_evaluation_is_ended_and_goes_on(browsers, address, plan, service) -> None:
     ann = opened(browsers, address, plan)
     page = ann.page

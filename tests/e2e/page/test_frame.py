@@ -36,6 +36,7 @@ def test_a_mission_is_made_named_deleted_and_taken_back(ann, service) -> None:
     assert "Night round" in names
 
 
+@pytest.mark.long
 def test_a_script_that_leaves_its_areas_open_asks_for_them(ann, service) -> None:
     ann.page.set_input_files("#file", SCRIPT)
     ann.page.get_by_label("It begins in area").select_option("1")
@@ -67,6 +68,7 @@ def test_hostile_names_are_text(ann, service) -> None:
     assert ann.page.locator("img[src=x]").count() == 0
 
 
+@pytest.mark.long
 def test_who_may_only_look_can_change_nothing(browsers, service) -> None:
     id = service.create("For looking")
     viewer = browsers.person(f"http://{service.address}/?token={SECRETS['view']}")

@@ -76,6 +76,7 @@ def test_tasks_are_moved_by_keys_even_when_they_are_pressed_fast(ann, service, p
     assert tasks(service, plan) == ["START", "A1", "C4", "B2"]
 
 
+@pytest.mark.long
 def test_a_group_is_made_left_entered_and_moved_as_a_whole(ann, service, plan) -> None:
     ann.click(row(ann, "A1"))
     ann.click(row(ann, "B2"), modifiers=["Shift"])
@@ -98,6 +99,7 @@ def test_a_group_is_made_left_entered_and_moved_as_a_whole(ann, service, plan) -
     order(ann, "START", "C4", "Round", "A1", "B2")
 
 
+@pytest.mark.long
 def test_a_group_folds_though_a_task_in_it_is_selected(ann) -> None:
     ann.click(row(ann, "B2"))
     ann.key("g", "Escape")
@@ -109,6 +111,7 @@ def test_a_group_folds_though_a_task_in_it_is_selected(ann) -> None:
     order(ann, "START", "A1", "Round", "B2", "C4")
 
 
+@pytest.mark.long
 def test_several_tasks_are_dragged_at_once_into_a_group(ann, service, plan) -> None:
     ann.click(row(ann, "C4"))
     ann.key("g")
@@ -140,6 +143,7 @@ def test_tasks_are_copied_and_pasted(ann) -> None:
     order(ann, "START", "A1", "B2", "C4", "A1 (2)")
 
 
+@pytest.mark.long
 def test_a_group_is_copied_with_what_it_says(ann, service, plan) -> None:
     ann.context.grant_permissions(["clipboard-read", "clipboard-write"])
     ann.click(row(ann, "A1"))
@@ -213,6 +217,7 @@ def test_a_form_takes_times_as_people_write_them(ann, service, plan) -> None:
     assert mission(service, plan)["max_duration"] == 750
 
 
+@pytest.mark.long
 def test_a_condition_is_made_in_the_form(ann, service, plan) -> None:
     ann.click(row(ann, "A1"))
     ann.click(ann.button("Go elsewhere on a condition"))
@@ -263,6 +268,7 @@ def test_a_problem_leads_to_its_task_and_has_its_way_out(ann, service, plan) -> 
     expect(ann.button("Measure 20 first")).to_have_count(0)
 
 
+@pytest.mark.long
 def test_two_thousand_tasks_open_and_scroll(browsers, address, service) -> None:
     many = [{"name": f"T{n}", "action": "MEASURE", "object_id": "1"} for n in range(2000)]
     for task, after in pairwise(many):

@@ -9,6 +9,8 @@ from tests.argo_planner.service.served import ALL, Served
 from tests.e2e.page.person import Line, Person
 from tests.e2e.page.test_list import order, plan, row, tasks
 
+pytestmark = pytest.mark.long
+
 __all__ = ["plan"]
 
 
@@ -179,6 +181,5 @@ def test_a_short_time_offline_loses_nothing(browsers, service, plan) -> None:
     away(browsers, service, plan, 3)
 
 
-@pytest.mark.long
 def test_a_minute_offline_loses_nothing(browsers, service, plan) -> None:
     away(browsers, service, plan, 60)

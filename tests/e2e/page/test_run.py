@@ -54,6 +54,7 @@ def test_an_edited_mission_is_given_back_edited_and_the_report_is_readable(
     report.close()
 
 
+@pytest.mark.long
 def test_the_run_of_another_mission_does_not_offer_this_one_s_tasks(
     browsers, address, plan, service
 ) -> None:

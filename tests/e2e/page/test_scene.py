@@ -107,6 +107,7 @@ def test_v_glides_to_what_is_selected(ann) -> None:
     ann.idle()
 
 
+@pytest.mark.long
 def test_an_obstacle_closes_the_ground(ann, service) -> None:
     floor(ann, 1)
     ann.key("o")
@@ -126,6 +127,7 @@ def test_an_obstacle_closes_the_ground(ann, service) -> None:
     service.client.put("/api/world/obstacles", json={"obstacles": []}, headers={"if-match": "*"})
 
 
+@pytest.mark.long
 def test_an_obstacle_is_put_up_by_keys_alone(ann, service) -> None:
     floor(ann, 1)
     ann.focus(ann.page.get_by_role("tree"))

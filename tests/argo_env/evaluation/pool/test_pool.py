@@ -66,6 +66,7 @@ def test_what_can_not_be_sent_back_is_told_and_the_others_are_there(backend):
     assert all(one.value == k for k, one in found.items() if k % 10 != 7)
 
 
+@pytest.mark.long
 def test_of_a_thousand_calls_one_that_kills_its_worker_is_named(backend):
     found = carried_out(backend, work.die_on_500, range(1_000))
     assert sorted(found) == list(range(1_000))
@@ -80,6 +81,7 @@ def test_a_call_that_was_lost_with_its_worker_is_made_again(backend, tmp_path):
     assert {ticket: one.value for ticket, one in found.items()} == {k: k for k in range(20)}
 
 
+@pytest.mark.long
 def test_workers_that_die_say_nothing_on_the_terminal(backend, capfd):
     found = carried_out(backend, work.die_on_500, range(495, 505))
     assert found[5].died

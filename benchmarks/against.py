@@ -18,7 +18,8 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from itertools import cycle
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -111,7 +112,22 @@ def route() -> Work:
 
 
 def inspect() -> Work:
-    """An episode of Inspect-v0 of 40 steps at most, with actions that can be taken."""
+    """An episode of Inspect-v0 of 40 steps at most, with actions that can be taken, as at the start
+    of training: most of its ways are planned for the first time."""
+    return _episodes(iter(range(1_000_000)))
+
+
+def inspect_known() -> Work:
+    """Such an episode, when its ways are known, as they are in the course of training."""
+    seeds = cycle(range(3))
+    work = _episodes(seeds)
+    for _ in range(3):
+        work()
+    return work
+
+
+def _episodes(seeds: Iterator[int]) -> Work:
+    """Makes an episode of Inspect-v0 with the next of the seeds."""
     import gymnasium as gym
     import numpy as np
 
@@ -119,7 +135,6 @@ def inspect() -> Work:
 
     env: Any = gym.make("argo/Inspect-v0", disable_env_checker=True)
     env.reset(seed=100)
-    seeds = iter(range(1_000_000))
 
     def work() -> None:
         seed = next(seeds)
@@ -174,6 +189,7 @@ CASES: dict[str, tuple[Callable[[], Work], int]] = {
     "tracked": (tracked, 1),
     "route": (route, 10),
     "inspect": (inspect, 3),
+    "inspect-known": (inspect_known, 3),
     "report": (report, 1),
     "film": (film, 1),
 }

@@ -101,6 +101,8 @@ def test_findings_and_causes_as_another_reading_of_the_documentation_has_them():
                 finding.t
                 for finding, own in zip(record.findings, causes, strict=True)
                 if one.fault in {fault.kind for fault in own}
+                # What a noisy camera takes a value for does not tell that it is noisy.
+                and not (finding.is_reading and one.fault == "sensor_dysfunction")
             ]
             if one.delay is not None:
                 assert any(abs(one.began + one.delay - t) < 1e-6 for t in moments), number

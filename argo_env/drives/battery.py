@@ -7,7 +7,7 @@ from copy import copy
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env.robot.pose import BodyPose, Place
+from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import PowerSpec, RobotSpec
 
 _CURVE = (
@@ -100,21 +100,12 @@ def load(
 ) -> float:
     """What the robot draws (W) on its way between two poses within some seconds."""
     way = math.dist((before.x, before.y, before.z), (after.x, after.y, after.z))
-    a = (before.x, before.y, before.z, before.yaw, before.pitch)
-    b = (after.x, after.y, after.z, after.yaw, after.pitch)
-    return load_of_way(power, way, a, b, seconds, measuring)
-
-
-def load_of_way(
-    power: PowerSpec, way: float, before: Place, after: Place, seconds: float, measuring: bool
-) -> float:
-    """The same, where it is known how far apart (m) the two are."""
     least = _MOVING * seconds
     if way > least:
-        if abs(after[4]) > _ON_STAIRS:
-            return power.climbing if after[2] > before[2] else power.descending
+        if abs(after.pitch) > _ON_STAIRS:
+            return power.climbing if after.z > before.z else power.descending
         return power.driving
-    if abs(math.remainder(after[3] - before[3], math.tau)) > least:
+    if abs(math.remainder(after.yaw - before.yaw, math.tau)) > least:
         return power.turning
     return power.measuring if measuring else power.standing
 
@@ -126,7 +117,8 @@ def loads_of_steps(
     seconds: float,
     measuring: bool,
 ) -> NDArray[np.float64]:
-    """The same, to the last bit, for each of n steps: ways have shape (n,), places (n + 1, 5)."""
+    """The same, to the last bit, for each of n steps: ways (m) have the shape (n,), places, as of
+    poses without roll, (n + 1, 5)."""
     before, after = places[:-1], places[1:]
     least = _MOVING * seconds
     climbs = after[:, 2] > before[:, 2]

@@ -30,14 +30,8 @@ class RouteDrive(TimedDrive):
         assert self._timetable is not None
         places: list[Place] = []
         for motion, share in self._timetable.stretches(self._times_ahead(count)):
-            a, b = motion.start, motion.end
-            columns = (
-                a.x + share * (b.x - a.x),
-                a.y + share * (b.y - a.y),
-                a.z + share * (b.z - a.z),
-                wrap(a.yaw + share * motion.turn),
-                np.where(share < 1.0, self._pitch(motion), 0.0),
-            )
+            pitch = np.where(share < 1.0, self._pitch(motion), 0.0)
+            columns = (*motion.along(share), pitch)
             places += zip(*(column.tolist() for column in columns), strict=True)
         return places
 

@@ -47,6 +47,16 @@ class Motion:
             yaw=wrap(a.yaw + share * self.turn),
         )
 
+    def along(self, shares: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+        """x, y, z (m) and yaw (rad) after such shares of the motion, each of the shape of these."""
+        a, b = self.start, self.end
+        return (
+            a.x + shares * (b.x - a.x),
+            a.y + shares * (b.y - a.y),
+            a.z + shares * (b.z - a.z),
+            wrap(a.yaw + shares * self.turn),
+        )
+
     def speed(self, robot: RobotSpec, velocity: float | None = None) -> float:
         """m/s that a drive aims at; `velocity` (m/s) replaces the robot's own speed on the flat
         ahead, and on stairs and backwards where it is the slower one."""

@@ -40,8 +40,6 @@ class Glide:
         pose = rig.drive.pose
         self._here = here = (pose.x, pose.y, pose.z, pose.yaw, pose.pitch)
         self._ahead: list[tuple[Place, int]] | None = None
-        if action and action.driving:
-            self._ahead = []
         self._power: Sequence[PowerState] = ()
         self.steps = 0
         """how many there are"""
@@ -52,17 +50,17 @@ class Glide:
             or not rig.drive.glides
         ):
             return
-        if self._ahead is None:
-            count = action.steps_measuring(most) if action else most
-            places = [here] * count
-            ways = rises = np.zeros(count)
-        else:
+        if action and action.driving:
             self._ahead = rig.drive.steps_ahead(most)
             places = [place for place, _ in self._ahead]
             points = [place[:3] for place in (here, *places)]
             # As the odometry adds them up: a root by NumPy may differ in its last bit.
             ways = np.array([*map(math.dist, points[:-1], points[1:])])
             rises = np.maximum(0.0, np.diff([z for _, _, z in points]))
+        else:
+            count = action.steps_measuring(most) if action else most
+            places = [here] * count
+            ways = rises = np.zeros(count)
         self._distance = _sums(odometry.distance, ways)
         self._climbed = _sums(odometry.climbed, rises)
         measuring = action is not None and action.measuring

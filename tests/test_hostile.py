@@ -7,6 +7,7 @@ import json
 import subprocess
 import sys
 import textwrap
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -95,13 +96,14 @@ SCRIPTS = {
     "brackets a megabyte deep": "Mission Protocol #1\n1. Go to " + "(" * 1_000_000,
 }
 
+# Each is made by the test that reads it.
 FILES = {
-    "groups a thousand deep": nested(1000),
-    "a name of a megabyte": {
+    "groups a thousand deep": partial(nested, 1000),
+    "a name of a megabyte": lambda: {
         "version": 3,
         "tasks": [{"name": "A" * 1_000_000, "action": "MEASURE", "object_id": "1"}],
     },
-    "a hundred thousand tasks": {
+    "a hundred thousand tasks": lambda: {
         "version": 3,
         "tasks": [
             {
@@ -113,7 +115,7 @@ FILES = {
             for i in range(100_000)
         ],
     },
-    "ten thousand transitions from one task": {
+    "ten thousand transitions from one task": lambda: {
         "version": 3,
         "tasks": [
             {
@@ -151,7 +153,7 @@ def test_hostile_scripts(name: str, tmp_path: Path) -> None:
 )
 def test_hostile_files(name: str, tmp_path: Path) -> None:
     path = tmp_path / "mission.json"
-    path.write_text(json.dumps(FILES[name]), encoding="utf-8")
+    path.write_text(json.dumps(FILES[name]()), encoding="utf-8")
     assert answer(path).split()[0] in ("mission", "refused")
 
 

@@ -3,6 +3,7 @@
 import ast
 import re
 from collections import defaultdict
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -26,27 +27,32 @@ def dotted(path):
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
-TREES = {
-    dotted(path): ast.parse(path.read_text(encoding="utf-8"))
-    for package in KNOWS
-    for path in sorted((ROOT / package).rglob("*.py"))
-    if EXPORTED not in path.parents
-}
+@cache
+def trees():
+    """The syntax tree of each module, by its dotted name; made when the first test asks."""
+    return {
+        dotted(path): ast.parse(path.read_text(encoding="utf-8"))
+        for package in KNOWS
+        for path in sorted((ROOT / package).rglob("*.py"))
+        if EXPORTED not in path.parents
+    }
+
+
 PACKAGES = {dotted(path) for package in KNOWS for path in (ROOT / package).rglob("__init__.py")}
 
 
 def imports_of(module):
     """The modules of the project that a module imports, wherever in it."""
     found = set()
-    for node in ast.walk(TREES[module]):
+    for node in ast.walk(trees()[module]):
         if isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{module} imports relatively"
             for alias in node.names:
                 full = f"{node.module}.{alias.name}"
-                found.add(full if full in TREES else node.module)
+                found.add(full if full in trees() else node.module)
         elif isinstance(node, ast.Import):
             found.update(alias.name for alias in node.names)
-    return (found & set(TREES)) - {module}
+    return (found & set(trees())) - {module}
 
 
 def room_of(module):
@@ -61,7 +67,7 @@ def room_of(module):
 def test_packages_import_in_one_direction(package):
     imported = {
         (module, other)
-        for module in TREES
+        for module in trees()
         if module.split(".")[0] == package
         for other in imports_of(module)
         if other.split(".")[0] not in {package, *KNOWS[package]}
@@ -71,7 +77,7 @@ def test_packages_import_in_one_direction(package):
 
 def test_folders_import_each_other_in_no_circle():
     rooms = defaultdict(set)
-    for module in set(TREES) - FRONT_DOORS:
+    for module in set(trees()) - FRONT_DOORS:
         for other in imports_of(module) - FRONT_DOORS:
             if room_of(other) != room_of(module):
                 rooms[room_of(module)].add(room_of(other))
@@ -84,7 +90,7 @@ def test_folders_import_each_other_in_no_circle():
 def test_the_checkers_of_witnesses_share_no_code_with_the_analysis():
     analysis = "argo_compiler.analysis."
     forms = {analysis + name for name in ("facts", "travel", "witness")}
-    checkers = {m for m in TREES if m.startswith((analysis + "verif", analysis + "bound_verif"))}
+    checkers = {m for m in trees() if m.startswith((analysis + "verif", analysis + "bound_verif"))}
     assert checkers
     for module in checkers:
         others = {other for other in imports_of(module) if other.startswith(analysis)}
@@ -93,7 +99,7 @@ def test_the_checkers_of_witnesses_share_no_code_with_the_analysis():
 
 def test_no_two_public_classes_have_one_name():
     homes = defaultdict(list)
-    for module, tree in TREES.items():
+    for module, tree in trees().items():
         if module.split(".")[0] in {"argo_compiler", "argo_env"}:
             for node in tree.body:
                 if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
@@ -105,10 +111,10 @@ def imported_into(module):
     """The names that a module has from other modules of the project."""
     return {
         alias.name
-        for node in ast.walk(TREES[module])
-        if isinstance(node, ast.ImportFrom) and node.module in TREES
+        for node in ast.walk(trees()[module])
+        if isinstance(node, ast.ImportFrom) and node.module in trees()
         for alias in node.names
-        if f"{node.module}.{alias.name}" not in TREES
+        if f"{node.module}.{alias.name}" not in trees()
     }
 
 
@@ -116,10 +122,10 @@ def imported_into(module):
 def test_names_are_imported_from_their_home_or_from_the_package_that_offers_them(package):
     strays = [
         f"{module} imports {alias.name} from {node.module}, which has it from elsewhere"
-        for module in TREES
+        for module in trees()
         if module.split(".")[0] == package
-        for node in ast.walk(TREES[module])
-        if isinstance(node, ast.ImportFrom) and node.module in set(TREES) - PACKAGES
+        for node in ast.walk(trees()[module])
+        if isinstance(node, ast.ImportFrom) and node.module in set(trees()) - PACKAGES
         for alias in node.names
         if alias.name in imported_into(node.module)
     ]
@@ -129,8 +135,8 @@ def test_names_are_imported_from_their_home_or_from_the_package_that_offers_them
 def test_only_packages_offer_what_they_import():
     offered = {
         (module, name)
-        for module in set(TREES) - PACKAGES
-        for node in TREES[module].body
+        for module in set(trees()) - PACKAGES
+        for node in trees()[module].body
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__"
         for name in set(ast.literal_eval(node.value)) & imported_into(module)
     }
@@ -139,7 +145,7 @@ def test_only_packages_offer_what_they_import():
 
 def test_each_public_class_has_a_name_of_its_own():
     homes = {}
-    for module, tree in TREES.items():
+    for module, tree in trees().items():
         for node in tree.body:
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 homes.setdefault(node.name, []).append(module)
@@ -149,7 +155,7 @@ def test_each_public_class_has_a_name_of_its_own():
 def test_no_class_of_the_script_language_is_long():
     long = {
         f"{module}.{node.name}": node.end_lineno - node.lineno + 1
-        for module, tree in TREES.items()
+        for module, tree in trees().items()
         if module.startswith("argo_compiler.script.")
         for node in ast.walk(tree)
         if isinstance(node, ast.ClassDef) and node.end_lineno - node.lineno >= 200
@@ -161,7 +167,7 @@ def is_script(module):
     """Whether a module is there to be run, and not to be imported."""
     return module.endswith(".__main__") or any(
         isinstance(node, ast.If) and "__name__" in ast.unparse(node.test)
-        for node in TREES[module].body
+        for node in trees()[module].body
     )
 
 
@@ -169,7 +175,7 @@ def test_libraries_do_not_print():
     """Nor do the use cases; what a person sees is printed by commands, the terminal and scripts."""
     prints = {
         module
-        for module, tree in TREES.items()
+        for module, tree in trees().items()
         if not module.startswith(("argo_planner.commands", "argo_planner.terminal"))
         if module != "argo_planner.cli" and not is_script(module)
         for node in ast.walk(tree)
@@ -179,14 +185,14 @@ def test_libraries_do_not_print():
 
 
 def test_no_command_imports_another():
-    for module in TREES:
+    for module in trees():
         if module.startswith("argo_planner.commands."):
             others = {m for m in imports_of(module) if m.startswith("argo_planner.commands")}
             assert not others, module
 
 
 def test_use_cases_know_no_terminal():
-    for module, tree in TREES.items():
+    for module, tree in trees().items():
         if module.startswith("argo_planner.use_cases"):
             assert not {
                 m
@@ -207,7 +213,7 @@ OPTION = re.compile(r"(^|[\s(`])--[a-z]|`argo ")
 
 def test_messages_of_the_libraries_name_the_thing_and_no_option():
     """The command line adds its own words; scripts of the libraries are command lines."""
-    for module, tree in TREES.items():
+    for module, tree in trees().items():
         library = module.startswith(("argo_compiler", "argo_env", "argo_planner.use_cases"))
         if not library or is_script(module):
             continue
@@ -232,7 +238,7 @@ def test_what_goes_wrong_is_of_a_kind(package):
     """`ArgoError` is what all kinds are; by itself it tells a program nothing."""
     bare = [
         f"{module}, line {node.lineno}"
-        for module, tree in TREES.items()
+        for module, tree in trees().items()
         if module.split(".")[0] == package
         for node in ast.walk(tree)
         if isinstance(node, ast.Call) and ast.unparse(node.func) == "ArgoError"
@@ -252,7 +258,7 @@ def test_paths_of_users_are_asked_for_by_what_never_raises():
     """Unlike `os.path`, a `Path` raises where a folder can't be read or links go round."""
     asking = {
         module
-        for module, tree in TREES.items()
+        for module, tree in trees().items()
         for node in ast.walk(tree)
         if isinstance(node, ast.Call)
         and isinstance(node.func, ast.Attribute)

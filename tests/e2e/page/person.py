@@ -33,7 +33,7 @@ _OPTIONS = [
     "--disable-component-update",
     "--disable-sync",
 ]
-PATIENCE_S = 90
+PATIENCE_S = 240
 """after which a test gives up: far more than anything takes, also on a busy machine"""
 
 # Not the page's: what the browser says of its software renderer, and that a request was refused,

@@ -63,7 +63,7 @@ def test_planning_is_accessible(browsers, address, plan, locale, theme) -> None:
     ann.click(ann.page.locator("argo-evaluate-start argo-faults button"))
     ann.click(ann.page.locator("#evaluate"))
     result = ann.page.locator("argo-evaluate-result section")
-    expect(result).to_have_attribute("data-state", "done", timeout=60_000)
+    expect(result).to_have_attribute("data-state", "done")
     require_accessible(ann, "what came of an evaluation")
     ann.key("?")
     require_accessible(ann, "the sheet of keys")

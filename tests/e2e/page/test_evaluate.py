@@ -40,7 +40,7 @@ def test_rates_close_in_and_a_failing_run_is_replayed(browsers, address, plan, s
     page.locator("argo-evaluate-start select[name=worlds]").select_option("20")
     ann.click(page.locator("#evaluate"))
     result = page.locator("argo-evaluate-result section")
-    expect(result).to_have_attribute("data-state", "done", timeout=60_000)
+    expect(result).to_have_attribute("data-state", "done")
     standing = service.client.get(f"/api/jobs/{jobs(service)[0]['id']}").json()["standing"]
     assert 0 < standing["outcomes"]["failure"] < 20
     expect(page.locator("#rate")).to_contain_text(f"{100 * standing['rate']['value']:g} %")
@@ -58,7 +58,7 @@ def test_rates_close_in_and_a_failing_run_is_replayed(browsers, address, plan, s
     (failed,) = (one for one in standing["failing"] if one["key"] == key)
     ann.click(first)
     told = page.locator("#evaluated")
-    expect(told).to_contain_text(f"world {failed['seed']}", timeout=60_000)
+    expect(told).to_contain_text(f"world {failed['seed']}")
     band = page.locator("argo-run-band #mode")
     expect(band).to_have_attribute("data-mode", "bad")
     expect(band).to_contain_text(failed["reason"])
@@ -71,13 +71,13 @@ def test_rates_close_in_and_a_failing_run_is_replayed(browsers, address, plan, s
         f"/api/missions/{plan}/runs", json={"speed": 1.0}, headers={"if-match": "*"}
     )
     assert begun.status_code in (201, 202), begun.text
-    expect(page.locator("argo-run-badge")).to_contain_text("Driving by itself", timeout=60_000)
+    expect(page.locator("argo-run-badge")).to_contain_text("Driving by itself")
     page.locator("#tab-evaluate").click()
     ann.click(first)
     expect(told).to_be_visible(timeout=60_000)
     ann.key("F9")
     expect(told).to_have_count(0)
-    expect(page.locator("argo-run-band")).to_contain_text("You have the robot", timeout=60_000)
+    expect(page.locator("argo-run-band")).to_contain_text("You have the robot")
     service.client.post(f"/api/runs/{begun.json()['id']}/requests", json={"kind": "stop"})
     page.locator("#tab-evaluate").click()
     with ann.context.expect_page() as opening:
@@ -124,7 +124,7 @@ def test_an_evaluation_is_ended_and_goes_on(browsers, address, plan, service) ->
     service.client.post(  # by somebody else, in another way
         f"/api/missions/{plan}/evaluations", json={"worlds": 3}, headers={"if-match": "*"}
     )
-    expect(page.locator("#done")).to_have_text("3 of 3 runs", timeout=60_000)
+    expect(page.locator("#done")).to_have_text("3 of 3 runs")
     expect(result).to_contain_text("No run failed.")
     # The one before can still be looked at, and deleted.
     which = page.locator("#which")

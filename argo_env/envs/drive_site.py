@@ -47,7 +47,7 @@ class DriveSite(Closing):
         self.guide = Guide(navigator)
         self.dysfunctions = tuple(f for f in settled if isinstance(f, DriveDysfunction))
         self._real = real
-        self.world = World(site, self.robot, elements=real.elements)
+        self.world = World(site, self.robot, elements=real.elements, drawn=False)
         self.body = TrackedBody(self.world, self.robot)
         self._scene: Scene | None = None
         self._camera: ChaseCamera | None = None

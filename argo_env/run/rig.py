@@ -81,7 +81,8 @@ def fit_out(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitStack) ->
         camera: Sensor = IdealSensor(world, robot, truth)
     else:
         real = changed_site(site, faults).elements
-        world = stack.enter_context(World(site, robot, gui, real))
+        drawn = spec.sensor != IDEAL  # others take pictures
+        world = stack.enter_context(World(site, robot, gui, real, drawn))
         inner = WORLD_DRIVES[spec.drive](world, robot, spec.conditions.friction)
         camera = SENSORS[spec.sensor](world, truth, seed)
         watches = standard_watches(world, surroundings, seed)

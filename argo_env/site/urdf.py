@@ -25,8 +25,9 @@ COLOURS: dict[str, tuple[float, float, float]] = {
 
 
 @lru_cache(maxsize=32)  # worlds of the same site, and its storeys, are made again and again
-def to_urdf(name: str, elements: tuple[Element, ...]) -> str:
+def to_urdf(name: str, elements: tuple[Element, ...], drawn: bool = True) -> str:
     """The elements as one URDF document. Links are named after materials, solids after elements.
+    Unless `drawn`, pictures show nothing of it, and PyBullet loads it in half the time.
 
     Every tag stands on a line of its own: PyBullet cuts lines longer than 1,024 characters.
     """
@@ -45,7 +46,7 @@ def to_urdf(name: str, elements: tuple[Element, ...]) -> str:
         for element in elements:
             if element.material == material:
                 for number, solid in enumerate(element.solids):
-                    lines += _solid(f"{element.name} #{number}", solid, material)
+                    lines += _solid(f"{element.name} #{number}", solid, material, drawn)
         lines += [
             "</link>",
             f'<joint name="site_to_{material}" type="fixed">',
@@ -65,7 +66,7 @@ _INERTIAL = (
 )
 
 
-def _solid(name: str, solid: Solid, material: str) -> list[str]:
+def _solid(name: str, solid: Solid, material: str, drawn: bool) -> list[str]:
     quoted = quoteattr(name)
     if isinstance(solid, Box):
         shape = f'<box size="{_words(solid.size)}" />'
@@ -77,15 +78,8 @@ def _solid(name: str, solid: Solid, material: str) -> list[str]:
         shape,
         "</geometry>",
     ]
-    return [
-        f"<visual name={quoted}>",
-        *where,
-        f'<material name="{material}" />',
-        "</visual>",
-        f"<collision name={quoted}>",
-        *where,
-        "</collision>",
-    ]
+    shown = [f"<visual name={quoted}>", *where, f'<material name="{material}" />', "</visual>"]
+    return [*(shown if drawn else ()), f"<collision name={quoted}>", *where, "</collision>"]
 
 
 def _words(vector: Vector) -> str:

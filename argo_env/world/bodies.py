@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,11 +43,18 @@ class Bodies(Connection):
     """
 
     def __init__(
-        self, site: Site, robot: RobotSpec, gui: bool, elements: tuple[Element, ...]
+        self,
+        site: Site,
+        robot: RobotSpec,
+        gui: bool,
+        elements: tuple[Element, ...],
+        drawn: bool,
     ) -> None:
-        """`elements`: the solids that are really there."""
+        """`elements`: the solids that are really there; `drawn`: whether pictures show anything of
+        all this, which takes twice as long to load."""
         super().__init__(gui)
         self._gui = gui
+        self._drawn = gui or drawn
         self.site = site
         self.robot = robot
         self._solids = elements
@@ -60,9 +68,12 @@ class Bodies(Connection):
         self._objects: SolidBounds | None = None  # around each checkpoint where it stands now
         self._moved = True  # whether anything but the robot has, since collisions were looked for
         self._screens: dict[int, str] = {}
-        self._site_body = self._load_site()
-        self._checkpoints = {c.id: self._load_checkpoint(c) for c in site.checkpoints}
-        self._robot_body = self._load(robot_folder() / robot.urdf, fixed=False)
+        with tempfile.TemporaryDirectory() as folder:
+            made = Path(folder)
+            self._site_body = self._load_site(made)
+            self._checkpoints = {c.id: self._load_checkpoint(c, made) for c in site.checkpoints}
+            robot_file = self._as_drawn(robot_folder() / robot.urdf, made)
+            self._robot_body = self._load(robot_file, fixed=False)
         self._site_links = self._links(self._site_body)
         self._robot_links = self._links(self._robot_body)
         self._joints = self._joint_indices(self._robot_body)
@@ -247,18 +258,26 @@ class Bodies(Connection):
     def _elements(self) -> dict[str, ElementIndex]:
         return {m: ElementIndex(self._solids, m) for m in {e.material for e in self._solids}}
 
-    def _load_site(self) -> int:
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / f"{self.site.name}.urdf"
-            path.write_text(to_urdf(self.site.name, self._solids), encoding="utf-8")
-            return self._load(path, fixed=True)
+    def _load_site(self, folder: Path) -> int:
+        path = folder / "site.urdf"
+        path.write_text(to_urdf(self.site.name, self._solids, self._drawn), encoding="utf-8")
+        return self._load(path, fixed=True)
 
-    def _load_checkpoint(self, checkpoint: SiteCheckpoint) -> int:
+    def _load_checkpoint(self, checkpoint: SiteCheckpoint, folder: Path) -> int:
         name = checkpoint.kind.value.replace(" ", "_")
         path = resources.urdf() / "checkpoints" / f"{name}.urdf"
-        body = self._load(path, fixed=True)
+        body = self._load(self._as_drawn(path, folder), fixed=True)
         self._place(body, checkpoint.position, (0.0, 0.0, checkpoint.yaw))
         return body
+
+    def _as_drawn(self, path: Path, folder: Path) -> Path:
+        """The file of a body, or one in the folder without what only pictures show."""
+        if self._drawn:
+            return path
+        bare = folder / path.name
+        if not bare.exists():
+            bare.write_text(_undrawn(path), encoding="utf-8")
+        return bare
 
     def _filter(self, body: int, group: int, mask: int) -> None:
         """What all links of a body are, and what they collide with."""
@@ -273,6 +292,16 @@ class Bodies(Connection):
 
     def _joint_indices(self, body: int) -> dict[str, int]:
         return {joint: k for k, (joint, _) in self._parts(body).items()}
+
+
+@lru_cache(maxsize=8)  # of the robot and of each kind of checkpoint
+def _undrawn(path: Path) -> str:
+    """A URDF file without what only pictures show."""
+    robot = ElementTree.parse(path).getroot()
+    for link in robot.iter("link"):
+        for visual in link.findall("visual"):
+            link.remove(visual)
+    return ElementTree.tostring(robot, encoding="unicode")
 
 
 @lru_cache(maxsize=_SITES)

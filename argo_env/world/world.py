@@ -66,8 +66,10 @@ class World(Bodies):
         robot: RobotSpec,
         gui: bool = False,
         elements: tuple[Element, ...] | None = None,
+        drawn: bool = True,
     ) -> None:
         """`elements`: the solids that are really there, if they differ from those of the site.
+        Unless `drawn` there are no pictures of it, and it loads in half the time.
 
         Raises ArgoError if a window is asked for where there is no display.
         """
@@ -76,7 +78,8 @@ class World(Bodies):
                 "a window needs a display, and DISPLAY is not set; make a film instead",
                 remedies=(Remedy.FILM_INSTEAD,),
             )
-        super().__init__(site, robot, gui, site.elements if elements is None else elements)
+        solids = site.elements if elements is None else elements
+        super().__init__(site, robot, gui, solids, drawn)
         self.light = 1.0
         """how bright it is, from 0 to 1: full daylight"""
         self.on_shot: Callable[[Shot], None] | None = None
@@ -246,6 +249,7 @@ class World(Bodies):
     ) -> NDArray[np.uint8]:
         """What a camera sees in daylight, red, green and blue, shape (height, width, 3). The
         matrices are OpenGL's, column by column; `size` is width and height in px."""
+        assert self._drawn, "of a world that is not drawn there are no pictures"
         self._tell()
         return self._render(view, projection, size)[0]
 

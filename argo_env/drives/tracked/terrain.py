@@ -44,7 +44,7 @@ class Terrain:
     def write(self, folder: str) -> Path:
         """Writes the URDF; returns where it is."""
         path = Path(folder) / "terrain.urdf"
-        path.write_text(to_urdf(self.name, self._elements), encoding="utf-8")
+        path.write_text(to_urdf(self.name, self._elements, drawn=False), encoding="utf-8")
         return path
 
 

@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from argo_env.drives.drive import DriveStatus
+from argo_env.drives.kinematic import KinematicDrive
 from argo_env.robot.pose import BodyPose
 from argo_env.world.placement import Placement
 from argo_env.world.world import World
@@ -45,14 +47,32 @@ def walk(rng, floors):
         yield BodyPose(x, y, floor.z + height, yaw, tilt * rng.uniform(-1.0, 1.0))
 
 
+def flight(rng, floors):
+    """Poses of a robot that is tilted in any way and goes about in the air, as if on stairs."""
+    floor = floors[int(rng.integers(len(floors)))]
+    place = np.array([rng.uniform(0.0, 12.0), rng.uniform(0.0, 9.0), floor.z + rng.uniform(0, 2)])
+    yaw, pitch, roll = rng.uniform(-math.pi, math.pi), *rng.uniform(-0.7, 0.7, 2)
+    for k in range(STEPS):
+        if k % 20 == 0:
+            speed, turns = rng.uniform(-0.06, 0.06, 3), rng.uniform(-0.05, 0.05, 3)
+            turns *= rng.random(3) < 0.5
+            roll *= rng.random() < 0.5
+        if rng.random() < 0.02:
+            place[:2] += rng.uniform(-2.0, 2.0, 2)
+        place += speed
+        yaw, pitch, roll = np.add((yaw, pitch, roll), turns).tolist()
+        yield BodyPose(*place.tolist(), yaw, pitch, roll)
+
+
+@pytest.mark.parametrize("way", [walk, flight])
 @pytest.mark.parametrize("seed", range(WALKS))
-def test_touches_are_those_of_looking_each_time(worlds, umad, robot, seed, monkeypatch):
+def test_touches_are_those_of_looking_each_time(worlds, umad, robot, seed, way, monkeypatch):
     rng, usual = np.random.default_rng(seed), worlds[0]
     looks = []
     detect = usual._detect
     monkeypatch.setattr(usual, "_detect", lambda: (looks.append(1), detect()))
     touched = 0
-    for k, pose in enumerate(walk(rng, umad.spec.floors)):
+    for k, pose in enumerate(way(rng, umad.spec.floors)):
         do(worlds, "place_robot", pose)
         if k % 20 == 0:
             joints = {
@@ -80,6 +100,27 @@ def test_most_looks_are_spared_in_the_open(worlds, umad, monkeypatch):
         usual.place_robot(BodyPose(8.0 + 0.01 * k, 1.6, 12.5, 0.0))
         assert usual.touches() == ()
     assert len(looks) < 5
+
+
+@pytest.mark.parametrize("ends", [(1, 2), (2, 1)])
+def test_most_looks_are_spared_on_stairs(worlds, robot, navigator, catalog, ends, monkeypatch):
+    start, end = (catalog.floor(number).patrol[0] for number in ends)
+    path = navigator.plan(start, end)
+    usual, always = worlds
+    looks, detect = [], usual._detect
+    monkeypatch.setattr(usual, "_detect", lambda: (looks.append(1), detect()))
+    drive = KinematicDrive(usual, robot)
+    drive.place(BodyPose(start.x, start.y, start.z, start.yaw))
+    drive.begin(path, None)
+    steep = asked = 0
+    while drive.step() is DriveStatus.MOVING:
+        before = len(looks)
+        always.place_robot(drive.pose)
+        always.set_joints(usual._posture)
+        assert found(usual) == found(always) == []
+        if abs(drive.pose.pitch) > 0.3:
+            steep, asked = steep + 1, asked + len(looks) - before
+    assert asked < steep / 10 > 10
 
 
 def test_a_checkpoint_that_is_put_in_the_way_is_found(worlds, umad):

@@ -1,12 +1,17 @@
 """The kinematic drive: the robot follows its path on the surface at the planned speeds."""
 
+from collections.abc import Iterator
+from itertools import takewhile
+
+import numpy as np
+
 from argo_env.closing import NonCopyable
 from argo_env.drives.drive import DriveStatus
 from argo_env.drives.flipper_motion import FLAT, RAISED, RATE
 from argo_env.drives.support import ground_memory
 from argo_env.drives.timed_drive import TimedDrive
 from argo_env.navigation.path import Motion, wrap
-from argo_env.robot.pose import BodyPose, Place
+from argo_env.robot.pose import BodyPose, Place, Places
 from argo_env.robot.spec import RobotSpec
 from argo_env.world.world import World
 
@@ -51,19 +56,19 @@ class KinematicDrive(NonCopyable, TimedDrive):
     def glides(self) -> bool:
         return self._world.stays_clear(self._pose)
 
-    def places_ahead(self, count: int) -> list[Place]:
+    def places_ahead(self, count: int) -> Places:
+        clear = takewhile(self._world.stays_clear, self._poses_ahead(min(count, _AT_ONCE)))
+        places = [(pose.x, pose.y, pose.z, pose.yaw, pose.pitch) for pose in clear]
+        return np.array(places).reshape(-1, 5)
+
+    def _poses_ahead(self, count: int) -> Iterator[BodyPose]:
+        """How it stands after each of the next so many steps, until its flippers move."""
         assert self._timetable is not None
-        places: list[Place] = []
-        times = self._times_ahead(min(count, _AT_ONCE))
-        for motion, shares in self._timetable.stretches(times):
+        for motion, shares in self._timetable.stretches(self._times_ahead(count)):
             if self._flippers != _flippers_on(motion):
-                return places
+                return
             for share in shares.tolist():
-                pose = self._pose_at(motion, share)
-                if pose.roll or not self._world.stays_clear(pose):
-                    return places  # places have no roll
-                places.append((pose.x, pose.y, pose.z, pose.yaw, pose.pitch))
-        return places
+                yield self._pose_at(motion, share)
 
     def go_to(self, place: Place, count: int) -> None:
         super().go_to(place, count)

@@ -1,19 +1,33 @@
 """The drive with what can stop it: an emergency stop, a dysfunction."""
 
 import math
-from bisect import bisect_left
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from argo_env.drives.drive import Drive, DriveStatus, Incident
 from argo_env.drives.timed_drive import TimedDrive, from_here
 from argo_env.navigation.path import Path
-from argo_env.robot.pose import BodyPose, Place
+from argo_env.robot.pose import BodyPose, Place, Places, place_of
 
 STALLED = 30.0  # s without any motion after which a way is given up
 _MOVED = 1e-3  # m or rad that count as a motion
 _SLOWEST = 0.02  # share of the speed below which a robot may be taken for a stalled one
+
+
+@dataclass(frozen=True, eq=False)
+class StepsAhead:
+    """The next steps, none of which has been made."""
+
+    places: Places
+    """where the robot is after each of them"""
+    made: NDArray[np.int64]
+    """how many steps the drive has made by then, shape (n,)"""
+
+
+_NO_STEPS = StepsAhead(np.empty((0, 5)), np.empty(0, dtype=np.int64))
 
 
 class Powertrain:
@@ -89,51 +103,58 @@ class Powertrain:
         once."""
         return isinstance(self._drive, TimedDrive) and self._drive.glides
 
-    def steps_ahead(self, most: int) -> list[tuple[Place, int]]:
-        """Where the robot is after each of the next steps, and how many steps the drive has made
-        by then: as far as it is held or surely moves on, and nothing can happen to it, at most so
-        many. None of them is made."""
+    def steps_ahead(self, most: int) -> StepsAhead:
+        """The next steps, as far as the robot is held or surely moves on, and nothing can happen to
+        it: at most so many."""
         drive = self._drive
         if self.way is None or not isinstance(drive, TimedDrive):
-            return []
+            return _NO_STEPS
+        here = np.array([_place(drive.pose)])
         if self.pressed:
-            return [(_place(drive.pose), 0)] * most
+            return StepsAhead(here.repeat(most, axis=0), np.zeros(most, dtype=np.int64))
         if self.share < _SLOWEST or self._before is None:
-            return []
-        counts = self._drives_steps(most, drive.steps_left)
-        here = drive.pose
-        places = [_place(here), *drive.places_ahead(counts[-1] if counts else 0)]
-        moves = _first_still([_place(self._before), *places[1:]])
-        return [(places[c], c) for c in counts[: bisect_left(counts, moves)]]
+            return _NO_STEPS
+        made = self._drives_steps(most, drive.steps_left)
+        places = drive.places_ahead(int(made[-1]) if len(made) else 0)
+        made = made[: np.searchsorted(made, _first_still(_place(self._before), places))]
+        if not self._makes_every_step:
+            places = np.concatenate([here, places])[made]
+        return StepsAhead(places[: len(made)], made)
 
-    def go_on(self, ahead: list[tuple[Place, int]], done: int, count: int) -> None:
+    def go_on(self, ahead: StepsAhead, done: int, count: int) -> None:
         """Makes so many of the steps ahead, after those that were done."""
         if self.pressed:
             self.held += count
             return
         drive = self._drive
         assert isinstance(drive, TimedDrive)
-        first = ahead[done - 1][1] if done else 0
-        place, made = ahead[done + count - 1]
-        if self.share == 1.0 and not self._credit:
+        first = int(ahead.made[done - 1]) if done else 0
+        last = done + count - 1
+        made = int(ahead.made[last])
+        if self._makes_every_step:
             self._still = 0.0
         else:
             before = first
-            for _, by_then in ahead[done : done + count]:
+            for by_then in ahead.made[done : done + count].tolist():
                 self._credit += self.share
                 if by_then > before:
                     self._credit -= 1.0
                     before, self._still = by_then, 0.0
                 else:
                     self._still += self.time_step
-        drive.go_to(place, made - first)
+        drive.go_to(place_of(ahead.places, last), made - first)
         if made > first:
             self._before = drive.pose
 
-    def _drives_steps(self, most: int, left: int) -> list[int]:
+    @property
+    def _makes_every_step(self) -> bool:
+        """Whether the drive is not slowed, and makes as many steps as there are."""
+        return self.share == 1.0 and not self._credit
+
+    def _drives_steps(self, most: int, left: int) -> NDArray[np.int64]:
         """How many steps the drive has made after each of the next ones, up to those left."""
-        if self.share == 1.0 and not self._credit:
-            return [*range(1, min(most, left) + 1)]
+        if self._makes_every_step:
+            return np.arange(1, min(most, left) + 1)
         made, counts, credit = 0, [], self._credit
         for _ in range(most):
             credit += self.share
@@ -143,7 +164,7 @@ class Powertrain:
             if made > left:
                 break
             counts.append(made)
-        return counts
+        return np.array(counts, dtype=np.int64)
 
     def _stalled(self) -> DriveStatus:
         """MOVING, or FAILED if the robot should have moved for long and has not."""
@@ -163,15 +184,16 @@ def _place(pose: BodyPose) -> Place:
     return pose.x, pose.y, pose.z, pose.yaw, pose.pitch
 
 
-def _first_still(places: Sequence[Place]) -> int:
-    """The number of the first place, after the first one, to which the robot has not moved from the
-    one before; how many places there are if there is none."""
-    change = np.abs(np.diff(np.array(places), axis=0))
+def _first_still(before: Place, places: Places) -> int:
+    """The number, from 1, of the first of the places to which the robot has not moved from the one
+    before; one more than there are if there is none."""
+    all_places = np.concatenate([[before], places])
+    change = np.abs(np.diff(all_places, axis=0))
     surely = (change[:, :4] > _MOVED).any(axis=1)
     for k in np.flatnonzero(~surely).tolist():
-        if not _has_moved(places[k], places[k + 1]):
+        if not _has_moved(place_of(all_places, k), place_of(all_places, k + 1)):
             return k + 1
-    return len(places)
+    return len(all_places)
 
 
 def _has_moved(before: Place, after: Place) -> bool:

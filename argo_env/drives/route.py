@@ -6,7 +6,7 @@ import numpy as np
 
 from argo_env.drives.timed_drive import TimedDrive
 from argo_env.navigation.path import Motion, wrap
-from argo_env.robot.pose import BodyPose, Place
+from argo_env.robot.pose import BodyPose, Places
 from argo_env.robot.spec import RobotSpec
 
 
@@ -26,13 +26,15 @@ class RouteDrive(TimedDrive):
     def glides(self) -> bool:
         return True
 
-    def places_ahead(self, count: int) -> list[Place]:
+    def places_ahead(self, count: int) -> Places:
         assert self._timetable is not None
-        places: list[Place] = []
+        places, first = np.empty((count, 5)), 0
         for motion, share in self._timetable.stretches(self._times_ahead(count)):
-            pitch = np.where(share < 1.0, self._pitch(motion), 0.0)
-            columns = (*motion.along(share), pitch)
-            places += zip(*(column.tolist() for column in columns), strict=True)
+            rows = places[first : first + len(share)]
+            for column, values in enumerate(motion.along(share)):
+                rows[:, column] = values
+            rows[:, 4] = np.where(share < 1.0, self._pitch(motion), 0.0)
+            first += len(share)
         return places
 
     def _pose_at(self, motion: Motion, share: float) -> BodyPose:

@@ -10,7 +10,7 @@ from argo_compiler.model import Pose
 from argo_env.drives.drive import DriveStatus, Incident
 from argo_env.drives.timetable import Timetable, steps
 from argo_env.navigation.path import Motion, Path
-from argo_env.robot.pose import BodyPose, Place
+from argo_env.robot.pose import BodyPose, Place, Places
 from argo_env.robot.spec import RobotSpec
 
 _SAME_PLACE = 1e-3  # m
@@ -85,7 +85,7 @@ class TimedDrive(ABC):
         return steps * self.time_step
 
     @abstractmethod
-    def places_ahead(self, count: int) -> list[Place]:
+    def places_ahead(self, count: int) -> Places:
         """Where it is after each of the next so many steps, at most `steps_left`: what `step` would
         make of them one by one, to the last bit. Fewer where something can happen to it."""
 

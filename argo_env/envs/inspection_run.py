@@ -1,8 +1,10 @@
 """One inspection under way: a simulation whose tasks are given one by one."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 from argo_compiler.hfsm import ActionFailed
 from argo_compiler.il import Action, EventKind, Mission, Task
@@ -11,7 +13,7 @@ from argo_env.closing import Closing
 from argo_env.drives.battery import ESTIMATE_ERROR, estimated_charge
 from argo_env.navigation import Navigator
 from argo_env.planning.opening import OpenedSite
-from argo_env.robot.pose import BodyPose
+from argo_env.robot.pose import BodyPose, Places, place_of
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine, OpenMachine
 from argo_env.run.observer import Observer
@@ -24,6 +26,7 @@ from argo_env.site.shapes import Vector
 FULL = 0.999  # charge from where on the battery counts as full
 _ESTIMATED = 1000  # steps of charging for which the charge is estimated ahead
 _TRAIL = 0.15  # m between poses that are kept
+_ROUNDING = 1e-6  # m, left by sums of floats
 
 
 @dataclass(frozen=True)
@@ -164,12 +167,10 @@ class Inspection(Closing):
     def _step(self, until: float) -> None:
         """Goes on for one time step, or for many up to that time (s)."""
         began = self.now
-        last = _position(self._trail[-1][1])
-        for number, place in enumerate(self._simulation.leap(min(until, self._limit)), start=1):
-            if math.dist(place[:3], last) >= _TRAIL:
-                now = round(began + number * self._drive.time_step, 6)
-                self._trail.append((now, BodyPose(*place)))
-                last = place[:3]
+        places = self._simulation.leap(min(until, self._limit))
+        for number in _apart(_position(self._trail[-1][1]), places):
+            now = round(began + (number + 1) * self._drive.time_step, 6)
+            self._trail.append((now, BodyPose(*place_of(places, number))))
         self._mark(self.now, self._drive.pose)
 
     def _deed(self, began: float = math.inf) -> Deed:
@@ -194,6 +195,27 @@ class Inspection(Closing):
             if math.dist(_position(pose), _position(last)) < _TRAIL:
                 return
         self._trail.append((now, pose))
+
+
+def _apart(last: Vector, places: Places) -> Iterator[int]:
+    """The numbers of the places that are as far as `_TRAIL` from `last` (m), each then being the
+    last one for the next."""
+    if not len(places):
+        return
+    points = places[:, :3].tolist()
+    # No place is farther away than the way to it is long.
+    ways = np.linalg.norm(np.diff(places[:, :3], axis=0), axis=1)
+    gone = np.cumsum(np.concatenate([[math.dist(last, points[0])], ways]))
+    number, begun = 0, 0.0
+    while True:
+        number = max(number, int(np.searchsorted(gone, begun + _TRAIL - _ROUNDING)))
+        while number < len(points) and math.dist(points[number], last) < _TRAIL:
+            number += 1
+        if number == len(points):
+            return
+        yield number
+        last, begun = points[number], gone[number]
+        number += 1
 
 
 def _position(pose: BodyPose) -> Vector:

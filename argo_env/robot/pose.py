@@ -2,8 +2,19 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 Place = tuple[float, float, float, float, float]
 """x, y, z (m), yaw and pitch (rad) of a robot that does not roll"""
+Places = NDArray[np.float64]
+"""many of them, shape (n, 5)"""
+
+
+def place_of(places: Places, number: int) -> Place:
+    """One of many places."""
+    x, y, z, yaw, pitch = places[number].tolist()
+    return x, y, z, yaw, pitch
 
 
 @dataclass(frozen=True)

@@ -1,20 +1,34 @@
 """The battery in use: what the robot draws from it, and what a dock gives back."""
 
-from collections.abc import Sequence
-from itertools import repeat, takewhile
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.il.docked import DOCKED_DISTANCE_M, at_dock
 from argo_env.drives.battery import Battery, load
-from argo_env.robot.pose import BodyPose
+from argo_env.robot.pose import BodyPose, Places
 from argo_env.robot.spec import RobotSpec
 from argo_env.run.log import Entry
 from argo_env.site import Site
 
-PowerState = tuple[bool, float, float]
-"""whether the battery is being charged, Wh that are left in it, and the load (W)"""
+
+@dataclass(frozen=True, eq=False)
+class PowerAhead:
+    """How the supply stands after each of n steps, arrays of the shape (n,)."""
+
+    charging: NDArray[np.bool_]
+    """whether the battery is being charged"""
+    left: NDArray[np.float64]
+    """Wh in the battery"""
+    watts: NDArray[np.float64]
+    """the load"""
+
+    def __len__(self) -> int:
+        return len(self.left)
+
+
+NO_STEPS = PowerAhead(np.empty(0, dtype=bool), np.empty(0), np.empty(0))
 
 
 class PowerSupply:
@@ -62,42 +76,41 @@ class PowerSupply:
             watts = -self._power.charging if self.charging else 0.0
         self._battery.use(watts, seconds)
 
-    def ahead(
-        self, loads: NDArray[np.float64], places: NDArray[np.float64], seconds: float
-    ) -> list[PowerState]:
+    def ahead(self, loads: NDArray[np.float64], places: Places, seconds: float) -> PowerAhead:
         """How it stands after each of n steps (s) with such loads (W), shape (n,), after which the
-        robot is at these places, shape (n, 5): up to where the battery is empty, before which
-        nothing can happen."""
+        robot is at these places: up to where the battery is empty, before which nothing can
+        happen."""
+        charging = np.zeros(len(loads), dtype=bool)
         if self._battery is None:
-            return [(False, 0.0, 0.0)] * len(loads)
-        before, _ = self._battery.state
+            return PowerAhead(charging, np.zeros(len(loads)), np.zeros(len(loads)))
         docked = self._docked_after(loads, places)
         if docked.any():
-            return self._ahead_docked(loads.tolist(), docked.tolist(), seconds)
-        left = np.cumsum(np.concatenate([[before], -(loads * seconds / 3600.0)]))[1:]
-        states = zip(repeat(False), left.tolist(), loads.tolist())
-        return [*takewhile(lambda state: state[1] > 0.0, states)]
+            charging, left, loads = self._ahead_docked(loads, docked, seconds)
+        else:
+            before, _ = self._battery.state
+            left = np.cumsum(np.concatenate([[before], -(loads * seconds / 3600.0)]))[1:]
+        empty = left <= 0.0
+        last = int(empty.argmax()) if empty.any() else len(left)
+        return PowerAhead(charging[:last], left[:last], loads[:last])
 
     def _ahead_docked(
-        self, loads: Sequence[float], docked: Sequence[bool], seconds: float
-    ) -> list[PowerState]:
-        """The same for steps in some of which the robot is docked."""
+        self, loads: NDArray[np.float64], docked: NDArray[np.bool_], seconds: float
+    ) -> tuple[NDArray[np.bool_], NDArray[np.float64], NDArray[np.float64]]:
+        """Whether it charges, Wh that are left and the load (W) after steps in some of which the
+        robot is docked."""
         assert self._battery is not None
         (left, _), capacity = self._battery.state, self._battery.capacity
-        states: list[PowerState] = []
-        for watts, at_station in zip(loads, docked, strict=True):
+        states = []
+        for watts, at_station in zip(loads.tolist(), docked.tolist(), strict=True):
             charging = at_station and left / capacity < 1.0
             if at_station:
                 watts = -self._power.charging if charging else 0.0
             left = min(max(left - watts * seconds / 3600.0, 0.0), capacity)
-            if left <= 0.0:
-                break
             states.append((charging, left, watts))
-        return states
+        charges, lefts, drawn = (np.array(column) for column in zip(*states, strict=True))
+        return charges, lefts, drawn
 
-    def _docked_after(
-        self, loads: NDArray[np.float64], places: NDArray[np.float64]
-    ) -> NDArray[np.bool_]:
+    def _docked_after(self, loads: NDArray[np.float64], places: Places) -> NDArray[np.bool_]:
         """After which of the steps the robot stands in a dock."""
         x, y = places[:, 0], places[:, 1]
         near = np.zeros(len(loads), dtype=bool)
@@ -110,22 +123,22 @@ class PowerSupply:
             docked[near] = np.array([self._docked(BodyPose(*kind)) for kind in kinds])[which]
         return docked
 
-    def go_to(self, state: PowerState) -> None:
-        """It stands like this from now on."""
-        self.charging, *battery = state
+    def go_to(self, ahead: PowerAhead, step: int) -> None:
+        """It stands as after that step, from 0, from now on."""
+        self.charging = bool(ahead.charging[step])
         if self._battery is not None:
-            self._battery.state = battery[0], battery[1]
+            self._battery.state = float(ahead.left[step]), float(ahead.watts[step])
 
-    def charge_at(self, state: PowerState) -> float | None:
-        """Of the battery, 0 to 1, when it stands like this."""
-        return None if self._battery is None else state[1] / self._battery.capacity
+    def charge_after(self, ahead: PowerAhead, step: int) -> float | None:
+        """Of the battery, 0 to 1, after that step, from 0."""
+        return None if self._battery is None else float(ahead.left[step]) / self._battery.capacity
 
-    def charges(self, states: Sequence[PowerState]) -> tuple[float, float]:
-        """The least and the most charge, 0 to 1, of some such states; full without a battery."""
-        if self._battery is None or not states:
+    def charges(self, ahead: PowerAhead) -> tuple[float, float]:
+        """The least and the most charge, 0 to 1, after the steps; full without a battery."""
+        if self._battery is None or not len(ahead):
             return 1.0, 1.0
-        left = [state[1] for state in states]
-        return min(left) / self._battery.capacity, max(left) / self._battery.capacity
+        least, most = float(ahead.left.min()), float(ahead.left.max())
+        return least / self._battery.capacity, most / self._battery.capacity
 
     def _docked(self, pose: BodyPose) -> bool:
         return any(at_dock(pose, dock) for dock in self._docks)

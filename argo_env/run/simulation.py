@@ -5,6 +5,8 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 
+import numpy as np
+
 from argo_compiler.errors import Conflict, Invalid, NotFound
 from argo_compiler.hfsm import ByHand, Event, GiveBack, Occurred, Resume, Tick
 from argo_compiler.hfsm.events import ReadingGiven
@@ -13,7 +15,7 @@ from argo_compiler.model import Pose
 from argo_env.closing import Closing
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.start import start_pose
-from argo_env.robot.pose import BodyPose, Place
+from argo_env.robot.pose import BodyPose, Places
 from argo_env.run import ending
 from argo_env.run.beginning import matched, progress_now
 from argo_env.run.course import Course
@@ -53,6 +55,7 @@ LoggedEvents = Sequence[tuple[float, LoggedEvent]]
 
 _LONGEST = 5_000
 """steps that are made at once at most"""
+_NOWHERE: Places = np.empty((0, 5))
 
 
 def never() -> bool:
@@ -201,7 +204,7 @@ class Simulation(Closing):
                 observer.on_step(self._course.now, self._course.action)
         self.settle()
 
-    def leap(self, until: float = math.inf) -> Sequence[Place]:
+    def leap(self, until: float = math.inf) -> Places:
         """Lets time pass up to the next moment at which something may happen, and not beyond
         `until` (s): many time steps where the robot only drives, measures or stands and surely
         touches nothing, else one. Observers are told all but the single steps; records are the
@@ -211,13 +214,13 @@ class Simulation(Closing):
         """
         self._require_going_on()
         if not self._opened and self._open():
-            return ()
+            return _NOWHERE
         with self._change():
             passed = self._glide(self._quiet_steps(until))
             if passed is None:
                 self._advance()
         self.settle()
-        return passed or ()
+        return _NOWHERE if passed is None else passed
 
     def handle(self, event: Steering) -> None:
         """Tells the run something from outside, now.
@@ -423,7 +426,7 @@ class Simulation(Closing):
         steps = int((next_time - course.now) / self.rig.drive.time_step) - 1
         return min(steps, _LONGEST)
 
-    def _glide(self, most: int) -> Sequence[Place] | None:
+    def _glide(self, most: int) -> Places | None:
         """Makes at most so many steps at once, up to where the robot notices something. Where it
         was after each of them but the last; None if there are none."""
         course, vehicle = self._course, self._vehicle

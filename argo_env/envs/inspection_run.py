@@ -202,19 +202,19 @@ def _apart(last: Vector, places: Places) -> Iterator[int]:
     last one for the next."""
     if not len(places):
         return
-    points = places[:, :3].tolist()
+    points = places[:, :3]
     # No place is farther away than the way to it is long.
-    ways = np.linalg.norm(np.diff(places[:, :3], axis=0), axis=1)
-    gone = np.cumsum(np.concatenate([[math.dist(last, points[0])], ways]))
+    ways = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    gone = np.cumsum(np.concatenate([[math.dist(last, points[0].tolist())], ways]))
     number, begun = 0, 0.0
     while True:
         number = max(number, int(np.searchsorted(gone, begun + _TRAIL - _ROUNDING)))
-        while number < len(points) and math.dist(points[number], last) < _TRAIL:
+        while number < len(points) and math.dist(points[number].tolist(), last) < _TRAIL:
             number += 1
         if number == len(points):
             return
         yield number
-        last, begun = points[number], gone[number]
+        last, begun = points[number].tolist(), gone[number]
         number += 1
 
 

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from itertools import accumulate, repeat
 
 import numpy as np
+from numpy.typing import NDArray
 
 from argo_compiler.il import EventKind
 from argo_env.drives.battery import ESTIMATE_ERROR, Battery, estimated_charge
@@ -136,7 +137,7 @@ class DriveWatch:
         self._drive = drive
         self._robot = robot
         self._way: tuple[Path, float | None] | None = None
-        self._plan: list[tuple[float, float, float, float]] = []
+        self._plan = np.empty((0, 4))  # as `_places` says
         self._at = 0
         self._held = 0
         self._progress: deque[tuple[float, float]] = deque()
@@ -179,7 +180,8 @@ class DriveWatch:
         """Where on the plan the robot is: at most twice as far on as time would have it."""
         nearest, least = self._at, math.inf
         last = self._at + round(2 * self.period / _SAMPLE)
-        for number, (x, y, z, yaw) in enumerate(self._plan[self._at : last + 1], start=self._at):
+        rows = self._plan[self._at : last + 1].tolist()
+        for number, (x, y, z, yaw) in enumerate(rows, start=self._at):
             dx, dy, dz = x - pose.x, y - pose.y, z - pose.z
             turned = _RADIAN * ((yaw - pose.yaw + math.pi) % math.tau) - _RADIAN * math.pi
             apart = dx * dx + dy * dy + dz * dz + turned * turned
@@ -234,11 +236,9 @@ def onboard_watches(
     )
 
 
-def _places(
-    path: Path, velocity: float | None, robot: RobotSpec
-) -> list[tuple[float, float, float, float]]:
-    """x, y, z (m) and yaw (rad) every _SAMPLE s along the plan."""
-    rows: list[tuple[float, float, float, float]] = []
+def _places(path: Path, velocity: float | None, robot: RobotSpec) -> NDArray[np.float64]:
+    """x, y, z (m) and yaw (rad) every _SAMPLE s along the plan, shape (n, 4)."""
+    rows: list[NDArray[np.float64]] = []
     first = 0.0
     for motion in path.motions:
         duration = motion.duration(robot, velocity)
@@ -246,7 +246,7 @@ def _places(
         times = [*accumulate(repeat(_SAMPLE, most), initial=first)]
         under_way = bisect_left(times, duration)
         x, y, z, yaw = motion.along(np.array(times[:under_way]) / duration)
-        rows += zip(*(column.tolist() for column in (x, y, z, wrap(yaw))), strict=True)
+        rows.append(np.column_stack([x, y, z, wrap(yaw)]))
         first = times[under_way] - duration
     end = path.end
-    return [*rows, (end.x, end.y, end.z, end.yaw)]
+    return np.concatenate([*rows, [(end.x, end.y, end.z, end.yaw)]])

@@ -6,8 +6,9 @@ beside one, for each back end.
     python -m benchmarks.evaluate --power
 
 The time outside the simulation is that of the whole with one worker, without its start, less that
-of the same runs one after the other in this process; the two alternate in parts, so that other work
-on the machine slows both. Memory is the most that workers have taken by the first and by the last
+of its runs, each of which its worker times. Two workers are held against one by the same runs one
+after the other in this process, in turn with them in parts, so that other work on the machine slows
+both. Memory is the most that workers have taken by the first and by the last
 tenth of the runs.
 With `--power`: how often two plans with a known difference are told apart.
 """
@@ -43,11 +44,14 @@ def plan_of(drive: str, seeds: range) -> EvaluationPlan:
     return EvaluationPlan(cases=(case,), seeds=tuple(seeds))
 
 
-def with_memory(order: WorkOrder) -> RunRow:
-    """A run whose row says how much memory its worker has taken (MB) by its end."""
+def watched(order: WorkOrder) -> RunRow:
+    """A run whose row says how long it took (s), and how much memory its worker has taken (MB) by
+    its end."""
+    begun = time.perf_counter()
     row = carry_out(order)
     taken = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    return row.model_copy(update={"world": {"memory": taken}})
+    world = {"seconds": time.perf_counter() - begun, "memory": taken}
+    return row.model_copy(update={"world": world})
 
 
 def parts(seeds: int) -> Iterator[range]:
@@ -63,6 +67,8 @@ class Measured:
 
     took: float
     """s"""
+    running: float
+    """s that the runs took in their workers, all together"""
     alone: float
     """s that the same runs took one after the other in this process, in turn with them"""
     memory: tuple[float, ...]
@@ -72,7 +78,7 @@ class Measured:
 def measured(name: str, drive: str, runs: int, workers: int) -> Measured:
     """Makes the runs with so many workers of a back end."""
     plan = plan_of(drive, range(runs))
-    took, alone = 0.0, 0.0
+    took, running, alone = 0.0, 0.0, 0.0
     memory: list[float] = []
     backend = make_backend(name, workers)
     try:  # they open the site
@@ -82,18 +88,19 @@ def measured(name: str, drive: str, runs: int, workers: int) -> Measured:
         for part in parts(runs):
             partial = plan.model_copy(update={"seeds": tuple(part)})
             begun = time.perf_counter()
-            evaluating = Evaluating(partial, backend, call=with_memory)
+            evaluating = Evaluating(partial, backend, call=watched)
             rows = list(evaluating.rows_as_they_come())
             took += time.perf_counter() - begun
             assert [row.outcome for row in rows] == [RunOutcome.SUCCESS] * len(part)
+            running += sum(row.world["seconds"] for row in rows)
             memory += [row.world["memory"] for row in rows]
             begun = time.perf_counter()
             for run in partial.runs():
-                with_memory(WorkOrder("", partial.cases[0], run.spec, {}))
+                watched(WorkOrder("", partial.cases[0], run.spec, {}))
             alone += time.perf_counter() - begun
     finally:
         backend.close()
-    return Measured(took, alone, tuple(memory))
+    return Measured(took, running, alone, tuple(memory))
 
 
 def measure(name: str, drive: str, runs: int) -> None:
@@ -105,7 +112,7 @@ def measure(name: str, drive: str, runs: int) -> None:
     print(
         f"{name:<10} {drive:<10} {runs:>5} runs: {runs / one.took:6.1f} a second with one worker, "
         f"{runs / two.took:6.1f} with two ({times:.2f} times as many), "
-        f"{100 * (one.took / one.alone - 1):+5.1f} % beside the simulation, memory of a worker "
+        f"{100 * (one.took / one.running - 1):5.1f} % beside the simulation, memory of a worker "
         f"{max(two.memory[:tenth]):.0f} MB after a tenth of the runs, "
         f"{max(two.memory[-tenth:]):.0f} MB after all",
         flush=True,

@@ -1,8 +1,10 @@
 """One inspection under way: a simulation whose tasks are given one by one."""
 
 import math
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
 
@@ -202,19 +204,19 @@ def _apart(last: Vector, places: Places) -> Iterator[int]:
     last one for the next."""
     if not len(places):
         return
-    points = places[:, :3]
+    points = places[:, :3].tolist()
     # No place is farther away than the way to it is long.
-    ways = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    gone = np.cumsum(np.concatenate([[math.dist(last, points[0].tolist())], ways]))
+    ways = np.linalg.norm(np.diff(places[:, :3], axis=0), axis=1)
+    gone = [*accumulate(ways.tolist(), initial=math.dist(last, points[0]))]
     number, begun = 0, 0.0
     while True:
-        number = max(number, int(np.searchsorted(gone, begun + _TRAIL - _ROUNDING)))
-        while number < len(points) and math.dist(points[number].tolist(), last) < _TRAIL:
+        number = bisect_left(gone, begun + _TRAIL - _ROUNDING, number)
+        while number < len(points) and math.dist(points[number], last) < _TRAIL:
             number += 1
         if number == len(points):
             return
         yield number
-        last, begun = points[number].tolist(), gone[number]
+        last, begun = points[number], gone[number]
         number += 1
 
 

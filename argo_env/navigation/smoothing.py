@@ -22,6 +22,7 @@ _SAME_PLACE, _SAME_YAW = 1e-9, 1e-9  # m, rad
 _TURN_STEP = math.radians(5.0)
 _VERTEX_SPACING = 1.0  # m between places where a short cut may begin or end
 _VERTEX_TURN = math.radians(90.0)  # less than half a turn, so that its direction stays clear
+_ASIDE = CELL * math.sqrt(0.5)  # m of a place from the centre of its cell, at most
 
 
 Places = tuple[NDArray[np.float64], NDArray[np.float64]]
@@ -82,11 +83,13 @@ class FlatMap:
     def _room(self) -> NDArray[np.float64]:
         """How far the centre of each cell is from that of the nearest cell of the border (m), of
         the grid with two more cells on each side; 0 where it is not free."""
-        # With the first path only: see `graphs`.
-        from scipy.ndimage import distance_transform_edt
+        return np.where(np.pad(self.free, 2), _distances(self._beside_free), 0.0)
 
-        room = distance_transform_edt(~self._beside_free) * CELL
-        return np.where(np.pad(self.free, 2), room, 0.0)
+    @cached_property
+    def _turning_room(self) -> NDArray[np.float64]:
+        """The same for the border and the rims."""
+        near = self._beside_free | np.pad(self.rims, 2)
+        return np.where(np.pad(self.free, 2), _distances(near), 0.0)
 
     def obvious_drives(
         self, a: NDArray[np.float64], ends: NDArray[np.float64], footprint: Footprint
@@ -99,10 +102,8 @@ class FlatMap:
         i = ((a[0] - self.grid.x0 + away[:, :1] * shares) / CELL).astype(np.int64) + 2
         j = ((a[1] - self.grid.y0 + away[:, 1:] * shares) / CELL).astype(np.int64) + 2
         least = self._room[i, j].min(axis=1)
-        aside = CELL * math.sqrt(0.5)  # of a place from the centre of its cell
-        inner = min(footprint.half_width, footprint.front, footprint.rear) + MARGIN
         outer = footprint.radius + MARGIN
-        return least > outer + 2 * aside + CELL / 2, least < inner - aside
+        return least > outer + 2 * _ASIDE + CELL / 2, least < _inner(footprint) - _ASIDE
 
     def clear_drive(self, a: Pose, b: Pose, footprint: Footprint) -> bool:
         """Whether the robot touches free cells only, all the way straight ahead from a to b."""
@@ -117,6 +118,10 @@ class FlatMap:
         """Whether the robot touches free cells only, and no rim, while it turns in place by `turn`
         (rad)."""
         reach = footprint.radius + MARGIN + CELL
+        i, j = int((at.x - self.grid.x0) / CELL) + 2, int((at.y - self.grid.y0) / CELL) + 2
+        room = self._turning_room[i, j]
+        if room > reach + _ASIDE or room < _inner(footprint) - _ASIDE:
+            return bool(room > reach)
         x, y = _near(self._turning_border, (at.x, at.y), (at.x, at.y), reach)
         x, y = x - at.x, y - at.y
         near = np.hypot(x, y) <= reach
@@ -124,6 +129,19 @@ class FlatMap:
             return True
         yaws = at.yaw + turn * np.linspace(0.0, 1.0, 1 + math.ceil(abs(turn) / _TURN_STEP))
         return not overlaps(footprint, MARGIN, yaws[:, None], x[near], y[near]).any()
+
+
+def _distances(cells: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """m from the centre of each cell to that of the nearest of these."""
+    # With the first path only: see `graphs`.
+    from scipy.ndimage import distance_transform_edt
+
+    return np.asarray(distance_transform_edt(~cells) * CELL)
+
+
+def _inner(footprint: Footprint) -> float:
+    """m around the robot's middle that it always covers, with the margin, however it is turned."""
+    return min(footprint.half_width, footprint.front, footprint.rear) + MARGIN
 
 
 def _near(
@@ -231,7 +249,7 @@ def connect(a: Pose, b: Pose) -> list[Motion]:
     if math.dist((a.x, a.y), (b.x, b.y)) < _SAME_PLACE:
         return turn(a, b.yaw)
     yaw = math.atan2(b.y - a.y, b.x - a.x)
-    start, end = a.model_copy(update={"yaw": yaw}), b.model_copy(update={"yaw": yaw})
+    start, end = (Pose(x=p.x, y=p.y, z=p.z, yaw=yaw) for p in (a, b))
     return [*turn(a, yaw), Motion(start, end), *turn(end, b.yaw)]
 
 
@@ -240,4 +258,4 @@ def turn(pose: Pose, yaw: float) -> list[Motion]:
     angle = wrap(yaw - pose.yaw)
     if abs(angle) < _SAME_YAW:
         return []
-    return [Motion(pose, pose.model_copy(update={"yaw": yaw}), turn=angle)]
+    return [Motion(pose, Pose(x=pose.x, y=pose.y, z=pose.z, yaw=yaw), turn=angle)]

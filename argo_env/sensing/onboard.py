@@ -205,7 +205,7 @@ class CameraWatch:
 
     def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
         pattern = self._sensor.test()
-        spread = 0.0 if pattern is None else float(np.sqrt(np.mean(np.square(pattern))))
+        spread = 0.0 if pattern is None else math.hypot(*pattern) / math.sqrt(len(pattern))
         before, self._told = self._told, pattern is None or spread > NOISY
         if not self._told or before:
             return ()

@@ -10,8 +10,9 @@ from argo_env.drives.kinematic import KinematicDrive
 from argo_env.robot.pose import BodyPose
 from argo_env.world.placement import Placement
 from argo_env.world.world import World
+from tests.conftest import examples
 
-WALKS, STEPS = 12, 120
+WALKS, STEPS = examples(12), 120
 
 
 @pytest.fixture(scope="module")

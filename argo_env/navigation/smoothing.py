@@ -25,7 +25,7 @@ _VERTEX_TURN = math.radians(90.0)  # less than half a turn, so that its directio
 _ASIDE = CELL * math.sqrt(0.5)  # m of a place from the centre of its cell, at most
 
 
-Places = tuple[NDArray[np.float64], NDArray[np.float64]]
+Centers = tuple[NDArray[np.float64], NDArray[np.float64]]
 """x, ascending, and y of the centres of cells, in m."""
 
 
@@ -56,12 +56,12 @@ class FlatMap:
         return FlatMap(surface.grid, free, rims[1:-1, 1:-1])
 
     @cached_property
-    def _border(self) -> Places:
+    def _border(self) -> Centers:
         """The cells that are not free and touch free ones."""
         return self._places(self._beside_free)
 
     @cached_property
-    def _turning_border(self) -> Places:
+    def _turning_border(self) -> Centers:
         """The border and the rims, alike."""
         return self._places(self._beside_free | np.pad(self.rims, 2))
 
@@ -75,7 +75,7 @@ class FlatMap:
                 nearby |= np.roll(free, (di, dj), axis=(0, 1))
         return nearby & ~free
 
-    def _places(self, cells: NDArray[np.bool_]) -> Places:
+    def _places(self, cells: NDArray[np.bool_]) -> Centers:
         i, j = np.nonzero(cells)
         return self.grid.centers(i - 2, j - 2)
 
@@ -145,8 +145,8 @@ def _inner(footprint: Footprint) -> float:
 
 
 def _near(
-    places: Places, low: tuple[float, float], high: tuple[float, float], reach: float
-) -> Places:
+    places: Centers, low: tuple[float, float], high: tuple[float, float], reach: float
+) -> Centers:
     """Those within `reach` (m) of the rectangle from `low` to `high`."""
     x, y = places
     part = slice(*np.searchsorted(x, (low[0] - reach, high[0] + reach)))

@@ -1,7 +1,7 @@
 """Two plans in the same worlds: which is better, and how sure that is."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -11,6 +11,7 @@ from argo_env.evaluation.plan import PlanName
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
 from argo_env.evaluation.statistics.pairs import Difference, SuccessPairs, difference, power
+from argo_env.evaluation.statistics.sequences import ConfidenceSequence
 
 _Pairs = list[tuple[RunRow, RunRow]]
 
@@ -25,6 +26,8 @@ class PlanComparison:
     """runs of both that were carried out"""
     lost: int
     """pairs of which one could not be carried out"""
+    alone: tuple[int, int] = (0, 0)
+    """runs of each that the other one has not, and that do not count"""
 
     @cached_property
     def successes(self) -> SuccessPairs:
@@ -43,8 +46,25 @@ class PlanComparison:
     @cached_property
     def success(self) -> Difference:
         """By how much the first one's rate of success is higher, over worlds: the runs of one world
-        with several faults depend on each other, and count as one."""
-        return self._by_world(lambda row: float(row.success), list(self.pairs))
+        with several faults depend on each other, and count as one. The interval holds whatever the
+        rates are."""
+        found = self._by_world(lambda row: float(row.success), list(self.pairs))
+        if not self.pairs:
+            return found
+        if self.one_each:
+            low, high = self.successes.interval()
+        else:
+            sequence = ConfidenceSequence()
+            sequence.add((1.0 + gap) / 2.0 for gap in self._gaps())
+            low, high = (2.0 * end - 1.0 for end in sequence.interval)
+        return replace(found, low=low, high=high)
+
+    def _gaps(self) -> list[float]:
+        """By world, by how much the first one's share of successes is higher, -1 to 1."""
+        worlds: dict[int, list[int]] = {}
+        for a, b in self.pairs:
+            worlds.setdefault(a.seed, []).append(a.success - b.success)
+        return [sum(gaps) / len(gaps) for gaps in worlds.values()]
 
     @cached_property
     def p_value(self) -> float:
@@ -123,7 +143,8 @@ def compare_plans(
     said = [str(name.beside(names)) for name in names]
     if said[0] == said[1]:
         said = [f"{first.plan.name}: {said[0]}", f"{second.plan.name}: {said[1]}"]
-    return PlanComparison(said[0], said[1], tuple(whole), len(pairs) - len(whole))
+    alone = len(a) - len(common), len(b) - len(common)
+    return PlanComparison(said[0], said[1], tuple(whole), len(pairs) - len(whole), alone)
 
 
 def named_plan(results: EvaluationResults, name: str) -> PlanName:

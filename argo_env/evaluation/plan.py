@@ -164,6 +164,11 @@ class EvaluationPlan(Model):
         if twice:
             plan, faults = twice[0]
             raise Conflict(f"{plan} with faults {faults} is there twice: rename one of them")
+        faultless = self.variation.faults is None and not any(c.spec.faults for c in self.cases)
+        if faultless and any(one.quantity == "detected" for one in self.stopping.require):
+            raise Invalid(
+                "that faults are `detected` is required, and there are none: name some to find"
+            )
         if self.strata and len(self.plans) > 1:
             raise Invalid("strata are of one plan: give one mission, drive and policy")
 

@@ -1,5 +1,6 @@
 """Rates of plans, from rows: the right interval for the way in which the runs came."""
 
+import math
 from collections import Counter, defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -49,37 +50,47 @@ def rate_of(
     evaluation: EvaluationPlan,
     plan: PlanName,
     rows: Sequence[RunRow],
-    holds: Callable[[RunRow], bool] = success,
+    holds: Callable[[RunRow], bool | None] = success,
     any_time: bool = False,
 ) -> PlanRate:
     """The rate of a plan over all its cases, from the rows of the evaluation. Runs that could not
-    be carried out are left out, and counted. `any_time`: the interval has to hold whatever ended
+    be carried out are left out, and counted; those of which `holds` says None are left out, too.
+    `any_time`: the interval has to hold whatever ended
     the evaluation, as where somebody did who saw what came of it."""
     own = [row for row in rows if row.plan == plan]
     ran = [row for row in own if row.carried_out]
     lost = len(own) - len(ran)
     cases = [case for case in evaluation.cases if case.plan == plan]
     if len(cases) == 1:
-        rate, method = rate_of_runs(evaluation, [holds(row) for row in ran], any_time)
-        return PlanRate(rate.value, rate.low, rate.high, len(ran), lost, method)
+        rate, method = rate_of_runs(evaluation, _said(ran, holds), any_time)
+        return PlanRate(rate.value, rate.low, rate.high, rate.runs, lost, method)
     weights = {case.faults: case.weight for case in cases}
     if evaluation.strata:
-        whole = sum(weights.values())
+        of_case = {name: [row for row in ran if row.faults == name] for name in weights}
+        said = {name: _said(rows, holds) for name, rows in of_case.items()}
+        # A case of which no run counts is none of what the rate is over.
+        counts = [name for name in weights if said[name] or not of_case[name]]
+        if not counts:
+            return PlanRate(math.nan, 0.0, 1.0, 0, lost, IntervalMethod.STRATA)
+        whole = sum(weights[name] for name in counts)
         strata = [
-            Stratum(weight / whole, sum(map(holds, of_case)), len(of_case))
-            for name, weight in weights.items()
-            for of_case in ([row for row in ran if row.faults == name],)
+            Stratum(weights[name] / whole, sum(said[name]), len(said[name])) for name in counts
         ]
-        found = stratified_rate(strata)
-        return PlanRate(found.value, found.low, found.high, len(ran), lost, IntervalMethod.STRATA)
+        found, runs = stratified_rate(strata), len(_said(ran, holds))
+        return PlanRate(found.value, found.low, found.high, runs, lost, IntervalMethod.STRATA)
     means = world_means(ran, weights, holds)
     sequence = ConfidenceSequence()
     sequence.add(means.values())
     low, high = sequence.interval
-    value = sum(means.values()) / len(means) if means else float("nan")
+    value = sum(means.values()) / len(means) if means else math.nan
     # A world of which one run is lost is left out as a whole.
-    count = len(means) * len(cases)
+    count = len(_said([row for row in ran if row.seed in means], holds))
     return PlanRate(value, low, high, count, lost, IntervalMethod.SEQUENCE)
+
+
+def _said(rows: Sequence[RunRow], holds: Callable[[RunRow], bool | None]) -> list[bool]:
+    """What is said of the runs that count."""
+    return [so for row in rows if (so := holds(row)) is not None]
 
 
 def rate_of_runs(
@@ -98,18 +109,19 @@ def rate_of_runs(
 
 
 def world_means(
-    rows: Sequence[RunRow], weights: dict[str, float], holds: Callable[[RunRow], bool]
+    rows: Sequence[RunRow], weights: dict[str, float], holds: Callable[[RunRow], bool | None]
 ) -> dict[int, float]:
-    """By seed, the weighted mean over the cases of a plan, for worlds in which all have run."""
-    by_seed: dict[int, dict[str, bool]] = defaultdict(dict)
+    """By seed, the weighted mean over the cases of a plan that count in it, for worlds in which all
+    have run and any counts."""
+    by_seed: dict[int, dict[str, bool | None]] = defaultdict(dict)
     for row in rows:
         by_seed[row.seed][row.faults] = holds(row)
-    whole = sum(weights.values())
-    return {
-        seed: min(1.0, sum(weights[name] for name, so in said.items() if so) / whole)
-        for seed, said in by_seed.items()
-        if len(said) == len(weights)
-    }
+    means = {}
+    for seed, said in by_seed.items():
+        whole = sum(weights[name] for name, so in said.items() if so is not None)
+        if len(said) == len(weights) and whole:
+            means[seed] = min(1.0, sum(weights[name] for name, so in said.items() if so) / whole)
+    return means
 
 
 def quick_rate(outcomes: Counter[RunOutcome]) -> PlanRate:

@@ -14,15 +14,23 @@ if TYPE_CHECKING:
 
 _FORM = re.compile(r"\s*([a-z_ ]+?)\s*(>=|<=)\s*([0-9.]+)\s*(%?)\s*")
 
-QUANTITIES: dict[str, Callable[["RunRow"], bool]] = {
+
+def _all_found(row: "RunRow") -> bool | None:
+    if not row.detections:
+        return None
+    return all(one.delay is not None for one in row.detections)
+
+
+QUANTITIES: dict[str, Callable[["RunRow"], bool | None]] = {
     "success": lambda row: row.success,
     "contact": lambda row: row.contacts > 0,
     "mishap": lambda row: row.mishaps > 0,
     "late": lambda row: row.limit is not None and (row.duration or 0.0) > row.limit,
-    "detected": lambda row: all(one.delay is not None for one in row.detections),
+    "detected": _all_found,
     "false alarm": lambda row: row.false_alarms > 0,
 }
-"""What can be required, by name: of a run that was carried out, whether it is so."""
+"""What can be required, by name: of a run that was carried out, whether it is so; None where that
+makes no sense, as that all was found where nothing was wrong: such a run does not count."""
 
 GOOD = frozenset({"success", "detected"})
 """what one wants; the others one wants not"""
@@ -45,9 +53,9 @@ class RateRequirement(Model):
     def __str__(self) -> str:
         return f"{self.quantity} {'>=' if self.at_least else '<='} {self.share:g}"
 
-    def holds(self, row: "RunRow") -> bool:
-        """Whether it is so in the run. A run that could not be carried out counts against the
-        requirement."""
+    def holds(self, row: "RunRow") -> bool | None:
+        """Whether it is so in the run, None if the run does not count. One that could not be
+        carried out counts against the requirement."""
         if not row.carried_out:
             return not self.at_least
         return QUANTITIES[self.quantity](row)

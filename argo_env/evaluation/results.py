@@ -139,7 +139,7 @@ class EvaluationResults:
         lines = []
         for row in self.rows:
             line = row.model_dump(mode="json", exclude={"world", "detections", "place"})
-            line["detected"] = all(one.delay is not None for one in row.detections)
+            line["detected"] = QUANTITIES["detected"](row)
             line["delay"] = max((one.delay or 0.0 for one in row.detections), default=None)
             line["x"], line["y"], line["z"] = row.place or (None, None, None)
             line.update({f"world.{name}": value for name, value in row.world.items()})

@@ -213,11 +213,19 @@ def show_comparison(compared: PlanComparison, console: Console) -> None:
     if compared.one_each:
         console.print(
             f"So many pairs show a difference of 5 % with a probability of "
-            f"{compared.power(0.05):.0%}, one of 2 % with {compared.power(0.02):.0%}.",
+            f"{100 * compared.power(0.05):.0f} %, one of 2 % with "
+            f"{100 * compared.power(0.02):.0f} %.",
             soft_wrap=True,
         )
     if compared.lost:
         console.print(f"{compared.lost} pairs could not be carried out, and do not count.")
+    if any(compared.alone):
+        a, b = compared.alone
+        console.print(
+            f"{a} runs of A and {b} of B have no partner in the same world with the same faults, "
+            "and do not count.",
+            soft_wrap=True,
+        )
 
 
 def _difference(found: Difference, scale: float, unit: str) -> tuple[str, str]:

@@ -57,6 +57,7 @@ def other_rates(results: EvaluationResults) -> list[tuple[str, str, PlanRate]]:
         for name in QUANTITIES
         if name not in left_out
         for plan in plans
+        if results.rate(plan, name).runs
     ]
 
 
@@ -64,7 +65,7 @@ _WORDS = {
     "contact": "the robot touched something",
     "mishap": "there was trouble on the way",
     "late": "it took longer than it may",
-    "detected": "all that was wrong was found",
+    "detected": "all that was wrong was found, where anything was",
     "false alarm": "something was found that was not so",
 }
 

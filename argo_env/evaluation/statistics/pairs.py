@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.stats import binom, binomtest
 
 from argo_compiler.errors import Invalid
-from argo_env.evaluation.statistics.rates import LEVEL
+from argo_env.evaluation.statistics.rates import LEVEL, clopper_pearson
 from argo_env.seeding import generator
 
 RESAMPLES = 10_000
@@ -43,6 +43,15 @@ class SuccessPairs:
     def difference(self) -> float:
         """By how much the first one's rate is higher."""
         return (self.first_only - self.second_only) / self.pairs if self.pairs else math.nan
+
+    def interval(self, level: float = LEVEL) -> tuple[float, float]:
+        """Between what the difference of the rates lies, with at least the probability `level`,
+        whatever they are: the exact intervals of both kinds of pairs that differ, each of which
+        may err half as often, put together."""
+        each = (1.0 + level) / 2.0
+        up = clopper_pearson(self.first_only, self.pairs, each)
+        down = clopper_pearson(self.second_only, self.pairs, each)
+        return up.low - down.high, up.high - down.low
 
     @property
     def p_value(self) -> float:

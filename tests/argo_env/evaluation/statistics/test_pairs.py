@@ -51,6 +51,21 @@ def test_the_power_is_what_simulated_comparisons_find(first_only, second_only):
     assert power(100, first_only, second_only) == pytest.approx(found / COMPARISONS, abs=0.03)
 
 
+@pytest.mark.parametrize("n", [1, 5, 12, 25])
+@pytest.mark.parametrize("up", [0.0, 0.02, 0.1, 0.4])
+@pytest.mark.parametrize("down", [0.0, 0.05, 0.3])
+def test_the_interval_of_a_difference_in_success_covers_it(n, up, down):
+    """Over all that can come of n pairs."""
+    held = 0.0
+    for a in range(n + 1):
+        for b in range(n + 1 - a):
+            low, high = SuccessPairs(n - a - b, a, b, 0).interval()
+            if low <= up - down <= high:
+                ways = comb(n, a) * comb(n - a, b)
+                held += ways * up**a * down**b * (1.0 - up - down) ** (n - a - b)
+    assert held >= 0.95 - 1e-9
+
+
 def test_the_interval_of_a_difference_covers():
     rng = np.random.default_rng(11)
     held = 0

@@ -1,0 +1,48 @@
+"""Comparisons of evaluations: what is paired, and between what the difference lies."""
+
+import pytest
+
+from argo_env.evaluation.comparison import compare_plans
+from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan
+from argo_env.evaluation.results import EvaluationResults
+from argo_env.evaluation.row import RunOutcome, row_without_end
+from argo_env.run.spec import RunSpec
+
+
+def results_of(mission, seeds, faults=("none",), failing=()):
+    """Results in which the runs of some worlds fail."""
+    spec = RunSpec(mission=mission, drive="route")
+    cases = tuple(EvaluationCase(mission="m", faults=name, spec=spec) for name in faults)
+    plan = EvaluationPlan(cases=cases, seeds=tuple(seeds))
+    rows = []
+    for run in plan.runs():
+        came = RunOutcome.FAILURE if run.seed in failing else RunOutcome.SUCCESS
+        row = row_without_end("", plan.cases[run.case], run.spec, came, "")
+        rows.append(row.model_copy(update={"seed": run.seed, "duration": 100.0}))
+    return EvaluationResults(plan, tuple(rows))
+
+
+@pytest.mark.parametrize("faults", [("none",), ("a", "b")])
+def test_where_no_pair_differs_there_may_still_be_a_difference(mission, faults):
+    one = results_of(mission, range(10), faults)
+    success = compare_plans(one, one).success
+    assert success.value == 0.0
+    assert success.low == -success.high < -0.2
+
+
+@pytest.mark.parametrize("faults", [("none",), ("a", "b")])
+def test_one_pair_that_differs_shows_nothing(mission, faults):
+    found = compare_plans(
+        results_of(mission, range(20), faults), results_of(mission, range(20), faults, failing={3})
+    )
+    assert found.success.value == pytest.approx(0.05)
+    assert found.success.low < 0.0 < 0.2 < found.success.high < 1.0
+    assert found.p_value == pytest.approx(1.0, abs=0.01)
+
+
+def test_runs_without_a_partner_are_counted(mission):
+    found = compare_plans(
+        results_of(mission, range(8), ("none", "a")), results_of(mission, range(4, 15))
+    )
+    assert found.successes.pairs == 4
+    assert found.alone == (12, 7)

@@ -1,0 +1,93 @@
+"""What is required of faults: that they are found, of the runs that had any."""
+
+import math
+
+import pytest
+
+from argo_compiler.errors import Invalid
+from argo_env.evaluation.detection import FaultDetection
+from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan, Stopping
+from argo_env.evaluation.rates import Decision
+from argo_env.evaluation.report.rates import other_rates
+from argo_env.evaluation.requirement import parse_requirement
+from argo_env.evaluation.results import EvaluationResults
+from argo_env.evaluation.row import RunOutcome, row_without_end
+from argo_env.faults.reading import decode_faults
+from argo_env.run.spec import RunSpec
+
+ALARM = decode_faults(b"faults: [{kind: platform_alarm, at: 5}]", "test").faults
+FOUND = FaultDetection(fault="platform_alarm", began=5.0, delay=3.0)
+MISSED = FOUND.model_copy(update={"delay": None})
+WORLDS = 40
+
+
+def plan_of(mission, faults, **options):
+    """A plan with a case of each of the faults: `none`, or others."""
+    none = RunSpec(mission=mission, drive="kinematic")
+    cases = tuple(
+        EvaluationCase(
+            mission="m",
+            faults=name,
+            spec=none if name == "none" else none.model_copy(update={"faults": ALARM}),
+        )
+        for name in faults
+    )
+    return EvaluationPlan(cases=cases, seeds=tuple(range(WORLDS)), **options)
+
+
+def results_of(plan, found_in):
+    """Results in which faults are found in these of the worlds."""
+    rows = []
+    for run in plan.runs():
+        case = plan.cases[run.case]
+        row = row_without_end("", case, run.spec, RunOutcome.SUCCESS, "")
+        told = () if case.faults == "none" else (FOUND if run.seed in found_in else MISSED,)
+        rows.append(row.model_copy(update={"seed": run.seed, "detections": told}))
+    return EvaluationResults(plan, tuple(rows))
+
+
+@pytest.mark.parametrize("faults", [["alarm"], ["none", "alarm"], ["none", "alarm", "again"]])
+@pytest.mark.parametrize(
+    ("found_in", "rate", "verdict"),
+    [
+        (range(0), 0.0, Decision.MISSED),
+        (range(WORLDS), 1.0, Decision.MET),
+        (range(0, WORLDS, 2), 0.5, Decision.OPEN),
+    ],
+)
+def test_runs_in_which_nothing_was_wrong_do_not_count(mission, faults, found_in, rate, verdict):
+    stopping = Stopping(require=(parse_requirement("detected >= 0.5"),))
+    plan = plan_of(mission, faults, stopping=stopping)
+    results = results_of(plan, found_in)
+    told = results.rate(plan.plans[0], "detected")
+    assert told.value == rate
+    assert told.runs == WORLDS * sum(name != "none" for name in faults)
+    assert told.low <= rate <= told.high
+    (judged,) = results.verdicts
+    assert judged.verdict is verdict
+    assert judged.worlds == WORLDS
+    assert set(results.frame["detected"].dropna()) == {seed in found_in for seed in range(WORLDS)}
+
+
+@pytest.mark.parametrize("strata", [False, True])
+def test_where_nothing_was_wrong_nothing_is_told_of_it(mission, strata):
+    plan = plan_of(mission, ["none"], strata=strata)
+    results = results_of(plan, range(WORLDS))
+    rate = results.rate(plan.plans[0], "detected")
+    assert math.isnan(rate.value)
+    assert rate.runs == 0
+    assert not any("was wrong" in name for name, _, _ in other_rates(results))
+
+
+def test_of_strata_those_without_faults_have_no_weight(mission):
+    plan = plan_of(mission, ["none", "alarm"], strata=True)
+    results = results_of(plan, range(WORLDS // 4))
+    assert results.rate(plan.plans[0], "detected").value == 0.25
+    assert results.rate(plan.plans[0]).value == 1.0
+
+
+def test_that_faults_are_found_is_not_required_where_there_are_none(mission):
+    stopping = Stopping(require=(parse_requirement("detected >= 0.5"),))
+    with pytest.raises(Invalid, match="there are none"):
+        plan_of(mission, ["none"], stopping=stopping).check()
+    plan_of(mission, ["none", "alarm"], stopping=stopping).check()

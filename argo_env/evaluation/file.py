@@ -64,7 +64,8 @@ class EvaluationFile(Model):
     worlds: Variation = NO_VARIATION
     """what differs from world to world"""
     require: tuple[str, ...] = ()
-    """what must hold, such as `success >= 0.98`: one stops when it is decided"""
+    """what must hold, such as `success >= 0.98`: one stops when it is decided. One alone needs no
+    list"""
     stop: StopEntry = StopEntry()
     control: str | None = None
     """a cheap drive whose runs help to estimate what those of the drive bring, if that pays"""
@@ -94,6 +95,11 @@ class EvaluationFile(Model):
         except Invalid as error:
             raise ValueError(str(error)) from None
         return text
+
+    @field_validator("require", mode="before")
+    @classmethod
+    def _one_alone(cls, said: object) -> object:
+        return (said,) if isinstance(said, str) else said
 
     @field_validator("require")
     @classmethod

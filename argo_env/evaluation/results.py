@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     import pandas
 
 
+_LEAST_BLOCK = 10  # seeds
+
+
 @dataclass(frozen=True)
 class GroupRate:
     """The rate of success of some of a plan's runs, with its interval."""
@@ -113,10 +116,11 @@ class EvaluationResults:
         return dict(sorted(found.items()))
 
     def by_seeds(self, plan: PlanName, blocks: int = 10) -> tuple[GroupRate, ...]:
-        """A plan's rates by blocks of seeds, which should differ by chance only."""
+        """A plan's rates by some blocks of seeds, none too small to tell anything: they should
+        differ by chance only."""
         own = self.of(plan)
         seeds = sorted({row.seed for row in own})
-        size = max(1, -(-len(seeds) // blocks))
+        size = max(_LEAST_BLOCK, -(-len(seeds) // blocks))
         found = []
         for first in range(0, len(seeds), size):
             block = seeds[first : first + size]

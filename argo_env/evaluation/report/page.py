@@ -1,5 +1,6 @@
 """Writes the pages. Equal results give equal bytes."""
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -7,6 +8,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+import yaml
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 from markupsafe import Markup
 
@@ -37,6 +39,7 @@ from argo_env.evaluation.report.words import (
 )
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome
+from argo_env.evaluation.worlds import Variation
 from argo_env.files.folders import make_folder
 from argo_env.formatting import clock
 from argo_env.report.svg import clean
@@ -108,7 +111,7 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
         blocks=[(name, groups) for name, groups in blocks if len(groups) > 1],
         one_each=all(group.one_each for _, groups in blocks for group in groups),
         made=how_it_was_made(results),
-        variation=results.plan.variation.model_dump(exclude_none=True, exclude_defaults=True),
+        variation=_in_yaml(results.plan.variation),
     )
 
 
@@ -151,6 +154,12 @@ def comparison_page(
         powers=[(gain, compared.power(gain)) for gain in _GAINS],
         made=made,
     )
+
+
+def _in_yaml(variation: Variation) -> str:
+    """As a file would say it, in a line; empty if nothing varies."""
+    said = variation.model_dump(mode="json", exclude_none=True, exclude_defaults=True)
+    return yaml.safe_dump(said, default_flow_style=True, width=math.inf).strip() if said else ""
 
 
 def _with_faults(results: EvaluationResults) -> list[PlanName]:

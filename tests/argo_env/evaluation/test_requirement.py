@@ -6,6 +6,7 @@ import pytest
 
 from argo_compiler.errors import Invalid
 from argo_env.evaluation.detection import FaultDetection
+from argo_env.evaluation.file import decode_evaluation
 from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan, Stopping
 from argo_env.evaluation.rates import Decision
 from argo_env.evaluation.report.rates import other_rates
@@ -91,3 +92,8 @@ def test_that_faults_are_found_is_not_required_where_there_are_none(mission):
     with pytest.raises(Invalid, match="there are none"):
         plan_of(mission, ["none"], stopping=stopping).check()
     plan_of(mission, ["none", "alarm"], stopping=stopping).check()
+
+
+def test_one_requirement_alone_needs_no_list():
+    said = decode_evaluation(b"missions: [m.txt]\nrequire: success >= 98 %\n", "file")
+    assert said.require == ("success >= 98 %",)

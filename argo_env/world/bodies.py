@@ -275,8 +275,7 @@ class Bodies(Connection):
         if self._drawn:
             return path
         bare = folder / path.name
-        if not bare.exists():
-            bare.write_text(_undrawn(path), encoding="utf-8")
+        bare.write_text(_undrawn(path), encoding="utf-8")
         return bare
 
     def _filter(self, body: int, group: int, mask: int) -> None:

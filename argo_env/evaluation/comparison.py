@@ -1,5 +1,6 @@
 """Two plans in the same worlds: which is better, and how sure that is."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -28,6 +29,8 @@ class PlanComparison:
     """pairs of which one could not be carried out"""
     alone: tuple[int, int] = (0, 0)
     """runs of each that the other one has not, and that do not count"""
+    any_time: bool = False
+    """whether the number of pairs may depend on what came of them"""
 
     @cached_property
     def successes(self) -> SuccessPairs:
@@ -51,7 +54,7 @@ class PlanComparison:
         found = self._by_world(lambda row: float(row.success), list(self.pairs))
         if not self.pairs:
             return found
-        if self.one_each:
+        if self.one_each and not self.any_time:
             low, high = self.successes.interval()
         else:
             sequence = ConfidenceSequence()
@@ -69,7 +72,10 @@ class PlanComparison:
     @cached_property
     def p_value(self) -> float:
         """How likely a difference in success as great as this is where there is none: by McNemar's
-        exact test if each world has one pair, else by the test over worlds."""
+        exact test if each world has one pair, else by the test over worlds. NaN where the number of
+        pairs may depend on what came of them, so that neither holds."""
+        if self.any_time:
+            return math.nan
         return self.successes.p_value if self.one_each else self.success.p_value
 
     @property
@@ -100,7 +106,9 @@ class PlanComparison:
     @property
     def conclusion(self) -> str:
         """What the comparison shows, in a sentence."""
-        if self.p_value <= 0.05:
+        apart = self.success.low > 0.0 or self.success.high < 0.0
+        better = apart if self.any_time else self.p_value <= 0.05
+        if better:
             return f"{'A' if self.success.value > 0 else 'B'} succeeds more often."
         if self.duration.found:
             faster = "A" if self.duration.value < 0 else "B"
@@ -144,7 +152,11 @@ def compare_plans(
     if said[0] == said[1]:
         said = [f"{first.plan.name}: {said[0]}", f"{second.plan.name}: {said[1]}"]
     alone = len(a) - len(common), len(b) - len(common)
-    return PlanComparison(said[0], said[1], tuple(whole), len(pairs) - len(whole), alone)
+    stopped = any(
+        of.cut_short or of.plan.stopping.require or of.plan.stopping.width is not None
+        for of in (first, second)
+    )
+    return PlanComparison(said[0], said[1], tuple(whole), len(pairs) - len(whole), alone, stopped)
 
 
 def named_plan(results: EvaluationResults, name: str) -> PlanName:

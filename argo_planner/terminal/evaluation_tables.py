@@ -238,6 +238,8 @@ def _difference(found: Difference, scale: float, unit: str) -> tuple[str, str]:
 
 
 def _chance(p_value: float) -> str:
+    if math.isnan(p_value):
+        return ""
     return f"{p_value:.3f}" if p_value >= 0.001 else "< 0.001"
 
 

@@ -20,7 +20,9 @@ def between(low: float, high: float) -> str:
 
 
 def chance(p_value: float) -> str:
-    """A probability that may be very small."""
+    """A probability that may be very small, or unknown."""
+    if math.isnan(p_value):
+        return ""
     return f"{p_value:.3f}" if p_value >= 0.001 else "below 0.001"
 
 

@@ -3,17 +3,19 @@
 import pytest
 
 from argo_env.evaluation.comparison import compare_plans
-from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan
+from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan, Stopping
+from argo_env.evaluation.report.page import comparison_page
+from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome, row_without_end
 from argo_env.run.spec import RunSpec
 
 
-def results_of(mission, seeds, faults=("none",), failing=()):
+def results_of(mission, seeds, faults=("none",), failing=(), stopping=None):
     """Results in which the runs of some worlds fail."""
     spec = RunSpec(mission=mission, drive="route")
     cases = tuple(EvaluationCase(mission="m", faults=name, spec=spec) for name in faults)
-    plan = EvaluationPlan(cases=cases, seeds=tuple(seeds))
+    plan = EvaluationPlan(cases=cases, seeds=tuple(seeds), stopping=stopping or Stopping())
     rows = []
     for run in plan.runs():
         came = RunOutcome.FAILURE if run.seed in failing else RunOutcome.SUCCESS
@@ -46,3 +48,20 @@ def test_runs_without_a_partner_are_counted(mission):
     )
     assert found.successes.pairs == 4
     assert found.alone == (12, 7)
+
+
+@pytest.mark.parametrize(("failing", "shown"), [(range(6), False), (range(30), True)])
+@pytest.mark.parametrize(
+    "stopping", [Stopping(require=(parse_requirement("success >= 0.9"),)), Stopping(width=0.1)]
+)
+def test_where_outcomes_ended_an_evaluation_the_interval_decides(mission, failing, shown, stopping):
+    """By a test that is made for a number of pairs that was said before both are a difference."""
+    one = results_of(mission, range(60), stopping=stopping)
+    other = results_of(mission, range(60), failing=failing)
+    found, fixed = compare_plans(one, other), compare_plans(results_of(mission, range(60)), other)
+    assert found.success.high > fixed.success.high
+    assert (found.success.low > 0.0) is shown
+    assert fixed.conclusion == "A succeeds more often."
+    assert (found.conclusion == fixed.conclusion) is shown
+    assert "the interval of the difference allows for that" in comparison_page(found)
+    assert "nan" not in comparison_page(found).lower()

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from argo_compiler.errors import Conflict, NotFound, Remedy
 from argo_env.evaluation.plan import PlanName
@@ -51,23 +52,17 @@ class PlanComparison:
         """By how much the first one's rate of success is higher, over worlds: the runs of one world
         with several faults depend on each other, and count as one. The interval holds whatever the
         rates are."""
-        found = self._by_world(lambda row: float(row.success), list(self.pairs))
+        shares = _world_means(lambda row: float(row.success), list(self.pairs))
+        found = difference(*shares)
         if not self.pairs:
             return found
         if self.one_each and not self.any_time:
             low, high = self.successes.interval()
         else:
             sequence = ConfidenceSequence()
-            sequence.add((1.0 + gap) / 2.0 for gap in self._gaps())
+            sequence.add(((1.0 + shares[0] - shares[1]) / 2.0).tolist())
             low, high = (2.0 * end - 1.0 for end in sequence.interval)
         return replace(found, low=low, high=high)
-
-    def _gaps(self) -> list[float]:
-        """By world, by how much the first one's share of successes is higher, -1 to 1."""
-        worlds: dict[int, list[int]] = {}
-        for a, b in self.pairs:
-            worlds.setdefault(a.seed, []).append(a.success - b.success)
-        return [sum(gaps) / len(gaps) for gaps in worlds.values()]
 
     @cached_property
     def p_value(self) -> float:
@@ -87,13 +82,13 @@ class PlanComparison:
     def duration(self) -> Difference:
         """By how many seconds the first one takes longer, where both succeeded."""
         both = [pair for pair in self.pairs if pair[0].success and pair[1].success]
-        return self._by_world(lambda row: row.duration or 0.0, both)
+        return difference(*_world_means(lambda row: row.duration or 0.0, both))
 
     @cached_property
     def distance(self) -> Difference:
         """By how many metres the first one drives farther, where both succeeded."""
         both = [pair for pair in self.pairs if pair[0].success and pair[1].success]
-        return self._by_world(lambda row: row.distance or 0.0, both)
+        return difference(*_world_means(lambda row: row.distance or 0.0, both))
 
     def power(self, gain: float) -> float:
         """How likely so many pairs show that one plan succeeds more often by `gain` (0 to 1), if
@@ -114,14 +109,6 @@ class PlanComparison:
             faster = "A" if self.duration.value < 0 else "B"
             return f"No difference in success is shown; {faster} is faster where both succeed."
         return "No difference is shown."
-
-    @staticmethod
-    def _by_world(value: Callable[[RunRow], float], pairs: _Pairs) -> Difference:
-        worlds: dict[int, list[tuple[float, float]]] = {}
-        for a, b in pairs:
-            worlds.setdefault(a.seed, []).append((value(a), value(b)))
-        means = np.array([np.mean(both, axis=0) for both in worlds.values()]).reshape(-1, 2)
-        return difference(means[:, 0], means[:, 1])
 
 
 def compare_plans(
@@ -183,6 +170,17 @@ def _only(results: EvaluationResults) -> PlanName:
             remedies=(Remedy.CHOOSE_PLAN,),
         )
     return results.plan.plans[0]
+
+
+def _world_means(
+    value: Callable[[RunRow], float], pairs: _Pairs
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The mean of each plan's runs in each world, shape (worlds,) each."""
+    worlds: dict[int, list[tuple[float, float]]] = {}
+    for a, b in pairs:
+        worlds.setdefault(a.seed, []).append((value(a), value(b)))
+    means = np.array([np.mean(both, axis=0) for both in worlds.values()]).reshape(-1, 2)
+    return means[:, 0], means[:, 1]
 
 
 def _successes(pairs: _Pairs) -> SuccessPairs:

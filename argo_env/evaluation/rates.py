@@ -55,8 +55,8 @@ def rate_of(
 ) -> PlanRate:
     """The rate of a plan over all its cases, from the rows of the evaluation. Runs that could not
     be carried out are left out, and counted; those of which `holds` says None are left out, too.
-    `any_time`: the interval has to hold whatever ended
-    the evaluation, as where somebody did who saw what came of it."""
+    `any_time`: the interval has to hold whatever ended the evaluation, as where somebody did who
+    saw what came of it."""
     own = [row for row in rows if row.plan == plan]
     ran = [row for row in own if row.carried_out]
     lost = len(own) - len(ran)

@@ -74,7 +74,7 @@ def test_rates_close_in_and_a_failing_run_is_replayed(browsers, address, plan, s
     expect(page.locator("argo-run-badge")).to_contain_text("Driving by itself")
     page.locator("#tab-evaluate").click()
     ann.click(first)
-    expect(told).to_be_visible(timeout=60_000)
+    expect(told).to_be_visible()
     ann.key("F9")
     expect(told).to_have_count(0)
     expect(page.locator("argo-run-band")).to_contain_text("You have the robot")
@@ -94,7 +94,7 @@ def test_an_evaluation_is_ended_and_goes_on(browsers, address, plan, service) ->
     page = ann.page
     page.locator("argo-evaluate-start select[name=worlds]").select_option("10000")
     ann.click(page.locator("#evaluate"))
-    expect(page.locator("#rate")).to_be_visible(timeout=60_000)
+    expect(page.locator("#rate")).to_be_visible()
     begin = page.locator("#evaluate")
     expect(begin).to_have_attribute("aria-disabled", "true")
     expect(page.locator("#why-not")).to_contain_text("is under way: wait for it, or end it")

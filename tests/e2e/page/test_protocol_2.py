@@ -103,7 +103,7 @@ def test_by_mouse(ann, service, capsys) -> None:
 
     def press(name: str) -> None:
         button = ann.page.locator("argo-run").get_by_role("button", name=name, exact=True)
-        expect(button).to_be_enabled(timeout=60_000)
+        expect(button).to_be_enabled()
         ann.click(button)
 
     steer_by(press)

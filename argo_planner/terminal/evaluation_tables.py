@@ -210,7 +210,7 @@ def show_comparison(compared: PlanComparison, console: Console) -> None:
                     soft_wrap=True,
                 )
     console.print(f"[bold]{escape(compared.conclusion)}[/]", soft_wrap=True)
-    if compared.one_each:
+    if compared.one_each and not compared.any_time:
         console.print(
             f"So many pairs show a difference of 5 % with a probability of "
             f"{100 * compared.power(0.05):.0f} %, one of 2 % with "

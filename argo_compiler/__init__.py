@@ -15,7 +15,7 @@ What common jobs need is here by name, and imported when it is first used:
 import logging
 from typing import TYPE_CHECKING
 
-from argo_compiler.lazy_names import lazy_names
+from argo_compiler.base.lazy_names import lazy_names
 
 __version__ = "0.1.0"
 
@@ -59,10 +59,8 @@ __all__ = [
 
 if TYPE_CHECKING:
     from argo_compiler.analysis.analyse import analyse
-    from argo_compiler.catalog import Catalog
-    from argo_compiler.checks import check
-    from argo_compiler.diagnostics import Diagnostic, DiagnosticError
-    from argo_compiler.errors import (
+    from argo_compiler.base.catalog import Catalog
+    from argo_compiler.base.errors import (
         ArgoError,
         Conflict,
         Invalid,
@@ -70,8 +68,9 @@ if TYPE_CHECKING:
         Unavailable,
         Unreachable,
     )
+    from argo_compiler.checks import check
+    from argo_compiler.diagnostics import Diagnostic, DiagnosticError
     from argo_compiler.files.mission_file import read_mission, write_mission
-    from argo_compiler.handover import hand_over
     from argo_compiler.hfsm import (
         ActionFailed,
         ActionStopped,
@@ -82,6 +81,7 @@ if TYPE_CHECKING:
         Progress,
         Resume,
     )
+    from argo_compiler.hfsm.handover import hand_over
     from argo_compiler.hfsm.lowering import lower
     from argo_compiler.il import Condition, Group, Mission, Reaction, Task, Transition
     from argo_compiler.route import Precedence, RouteProblem, Visit, suggest_route
@@ -91,10 +91,10 @@ else:
         __name__,
         {
             "analysis.analyse": ["analyse"],
-            "catalog": ["Catalog"],
+            "base.catalog": ["Catalog"],
             "checks": ["check"],
             "diagnostics": ["Diagnostic", "DiagnosticError"],
-            "errors": [
+            "base.errors": [
                 "ArgoError",
                 "Conflict",
                 "Invalid",
@@ -103,7 +103,7 @@ else:
                 "Unreachable",
             ],
             "files.mission_file": ["read_mission", "write_mission"],
-            "handover": ["hand_over"],
+            "hfsm.handover": ["hand_over"],
             "hfsm": [
                 "ActionFailed",
                 "ActionStopped",

@@ -15,7 +15,7 @@ show missions, machines and records.
 import logging
 from typing import TYPE_CHECKING
 
-from argo_compiler.lazy_names import lazy_names
+from argo_compiler.base.lazy_names import lazy_names
 from argo_env.envs.registration import register_with_gymnasium
 from argo_env.notebooks import register_with_ipython
 

@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from types import TracebackType
 from typing import NoReturn, Self, SupportsIndex
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 
 
 class CopyRefused(Invalid, TypeError):

@@ -51,7 +51,7 @@ def machine_html(machine: "Hfsm") -> str:
 
 def record_html(record: "RunRecord") -> str:
     """The report of a run; only how it went if its site can't be opened by its name."""
-    from argo_compiler.errors import ArgoError
+    from argo_compiler.base.errors import ArgoError
     from argo_env.planning.opening import open_site
     from argo_env.report.html import page
 

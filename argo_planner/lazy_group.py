@@ -10,8 +10,8 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
-from argo_compiler.errors import Invalid
-from argo_compiler.garbage_collector import collector_held
+from argo_compiler.base.errors import Invalid
+from argo_compiler.base.garbage_collector import collector_held
 from argo_planner.terminal.verbosity import common_options
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from argo_compiler.errors import ArgoError, Invalid
+from argo_compiler.base.errors import ArgoError, Invalid
 from argo_env.envs.route import RouteEnv
 from baselines.families import InstanceSet
 from baselines.policy import Policy

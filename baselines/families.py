@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from argo_compiler.errors import NotFound
+from argo_compiler.base.errors import NotFound
 from argo_env.envs.route_instance import RouteInstance
 from argo_env.envs.route_noise import NO_NOISE, RouteNoise
 from argo_env.envs.route_sources import (

@@ -18,7 +18,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from PIL import Image
 
-from argo_compiler.errors import ArgoError, Invalid, Unavailable
+from argo_compiler.base.errors import ArgoError, Invalid, Unavailable
 from argo_compiler.route import RouteProblem, suggest_route
 from argo_env.envs.route import RouteEnv
 from argo_env.files.folders import make_folder

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Protocol, cast
 
-from argo_compiler.errors import NotFound
+from argo_compiler.base.errors import NotFound
 from argo_env.envs.observations import Observation
 
 

@@ -22,7 +22,7 @@ from functools import lru_cache
 from importlib import resources
 from pathlib import Path
 
-from argo_compiler.errors import ArgoError, Conflict, Invalid, NotFound
+from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound
 from argo_compiler.files.writing import write_whole
 from argo_compiler.route import RouteProblem, RouteSuggestion, Tour, suggest_route
 from argo_compiler.route.evaluation import evaluate

@@ -44,7 +44,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from argo_compiler.catalog import (
+from argo_compiler.base.catalog import (
     Area,
     Catalog,
     CheckpointInfo,
@@ -53,8 +53,8 @@ from argo_compiler.catalog import (
     Interval,
     Place,
 )
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import Executor, lower
-from argo_compiler.model import Pose
 from argo_compiler.script import import_script, parse
 from argo_compiler.script.resolve.importing import resolve
 

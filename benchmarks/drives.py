@@ -30,8 +30,8 @@ from typing import Protocol
 import numpy as np
 import yaml
 
+from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, Mission, Task, Transition
-from argo_compiler.model import Pose
 from argo_env.drives.drive import Drive, DriveStatus
 from argo_env.drives.tracked.drive import TrackedDrive
 from argo_env.navigation import Navigator, Path

@@ -26,6 +26,7 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import Any
 
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import ActionSucceeded, Executor, lower
 from argo_compiler.il import (
     Action,
@@ -40,7 +41,6 @@ from argo_compiler.il import (
     Task,
     Transition,
 )
-from argo_compiler.model import Pose
 
 HIGH = 8.0
 

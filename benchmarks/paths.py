@@ -12,7 +12,7 @@ from functools import partial
 import numpy as np
 from scipy.sparse.csgraph import dijkstra
 
-from argo_compiler.model import Pose
+from argo_compiler.base.model import Pose
 from argo_env.navigation import Blockage, Navigator
 from argo_env.planning.generated import generate
 from argo_env.robot.spec import load_robot

@@ -15,7 +15,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.route import NEVER, Objective, RouteProblem, Tour, evaluate
 
 _PRECISION = 10

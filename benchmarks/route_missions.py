@@ -13,7 +13,7 @@ import argparse
 
 import numpy as np
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
 from argo_env.planning import open_site
 from argo_env.run.drives_and_sensors import DRIVES
 from argo_env.run.session import simulate

@@ -25,7 +25,7 @@ from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.route import RouteProblem, Tour, evaluate
 from argo_compiler.route.suggestion import suggest_route
 from benchmarks import peer_lkh, peer_pyvrp

@@ -15,8 +15,8 @@ import time
 import zlib
 from collections.abc import Callable, Iterable, Sequence
 
+from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, Mission, Task, Transition
-from argo_compiler.model import Pose
 from argo_env.navigation.stencil import HEADINGS
 from argo_env.planning import open_site
 from argo_env.planning.opening import OpenedSite

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from argo_compiler.base.model import Pose
 from argo_compiler.il import EventKind
-from argo_compiler.model import Pose
 from argo_env.drives.drive import DriveStatus
 from argo_env.drives.kinematic import KinematicDrive
 from argo_env.faults.walkway import BlockedStairs, Brick, MissingPlate

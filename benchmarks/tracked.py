@@ -16,7 +16,7 @@ from itertools import product
 from multiprocessing import get_context
 from statistics import mean
 
-from argo_compiler.model import Pose
+from argo_compiler.base.model import Pose
 from argo_env.drives.drive import DriveStatus, Trouble
 from argo_env.drives.tracked.belts import Traction
 from argo_env.drives.tracked.drive import TrackedDrive

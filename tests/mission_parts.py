@@ -2,6 +2,7 @@
 
 from hypothesis import strategies as st
 
+from argo_compiler.base.model import Pose
 from argo_compiler.il import (
     Action,
     Condition,
@@ -15,7 +16,6 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
-from argo_compiler.model import Pose
 
 OBJECTS = ("1", "2", "3")
 HERE = Pose(x=0, y=0, z=0)

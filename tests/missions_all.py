@@ -10,9 +10,9 @@ from typing import Any, Literal, Union, get_args, get_origin
 import annotated_types
 from hypothesis import strategies as st
 
+from argo_compiler.base.model import Model
 from argo_compiler.il import Mission
 from argo_compiler.il.velocities import of_ways_on, of_ways_there
-from argo_compiler.model import Model
 
 INTEGERS = st.integers(-(2**63), 2**63 - 1)
 FLOATS = st.floats(allow_nan=False, allow_infinity=False)

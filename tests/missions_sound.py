@@ -6,7 +6,8 @@ script has to be tried as often as what is said.
 
 from hypothesis import strategies as st
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.model import Pose
 from argo_compiler.il import (
     Action,
     Afterwards,
@@ -26,7 +27,6 @@ from argo_compiler.il import (
     Transition,
 )
 from argo_compiler.il.reserved import RESERVED_NAMES
-from argo_compiler.model import Pose
 
 # Signs that text recognition, JSON, the script language or a terminal could trip over.
 ODD = "\"'\\*`\t\n\r\0\x1b#:;.,/()[]-+ äßİﬁ’“–\u00ad\u200b\u2028\ufeff²٣😀and"

@@ -24,7 +24,7 @@ import sys
 from pathlib import Path
 from argo_compiler.analysis import analyse
 from argo_compiler.checks import check
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.files.mission_file import read_mission
 from argo_compiler.hfsm import Executor, lower
 from argo_compiler.script import format_script, import_script, read_script

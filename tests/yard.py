@@ -2,8 +2,8 @@
 
 from itertools import pairwise
 
+from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, Mission, Task, Transition
-from argo_compiler.model import Pose
 from argo_env.drives.drive import DriveStatus
 from argo_env.navigation import Navigator
 from argo_env.planning.opening import OpenedSite

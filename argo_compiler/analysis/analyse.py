@@ -24,9 +24,9 @@ from argo_compiler.analysis.values import find_paths, make_fields
 from argo_compiler.analysis.verification_claims import unproved
 from argo_compiler.analysis.witnessing import make_witnesses
 from argo_compiler.analysis.worst import worst_duration
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.garbage_collector import collector_held
 from argo_compiler.hfsm.lowering import lower
 from argo_compiler.il import Mission
 

@@ -17,7 +17,7 @@ from argo_compiler.analysis.verification import Verifier
 from argo_compiler.analysis.verification_layout import GroupLayout
 from argo_compiler.analysis.verification_walk import Proved
 from argo_compiler.analysis.witness import Invariant, LeastSpent, LeastWitness
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Mission, OnFailure, Task

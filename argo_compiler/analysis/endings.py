@@ -4,11 +4,11 @@ from collections.abc import Iterable, Iterator
 
 from argo_compiler.analysis.kept import KeptLoop
 from argo_compiler.analysis.study import Study
+from argo_compiler.base.listing import quoted
+from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Task
 from argo_compiler.il.docked import at_dock
-from argo_compiler.listing import quoted
-from argo_compiler.model import Pose
 
 _PATHS = 200  # diagnostics that come with a path
 _WAY_OUT = (

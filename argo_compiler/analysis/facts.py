@@ -3,8 +3,8 @@
 from enum import StrEnum
 
 from argo_compiler.analysis.witness import Witnesses
+from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.model import Model
 
 
 class Verdict(StrEnum):

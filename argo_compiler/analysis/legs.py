@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from argo_compiler.analysis.flow import Flow
 from argo_compiler.analysis.travel import Leg, NoWay, Standing, Travel
 from argo_compiler.analysis.values import Paths
-from argo_compiler.graphs import components
+from argo_compiler.base.graphs import components
 from argo_compiler.il import Mission, Task
 
 BEGIN = "begin"

@@ -16,7 +16,7 @@ from argo_compiler.analysis.flow import NOWHERE, Flow
 from argo_compiler.analysis.legs import ANY, BEGIN, FREE, NOTHING, Cost, Legs, QuantityRange, Source
 from argo_compiler.analysis.rounds import GroupRound, Out, Rounds, WayOut, combine
 from argo_compiler.analysis.values import Paths
-from argo_compiler.graphs import components, is_loop
+from argo_compiler.base.graphs import components, is_loop
 
 WORK = 400_000
 """steps after which the search is given up"""

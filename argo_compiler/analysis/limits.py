@@ -11,6 +11,8 @@ from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.travel import NoWay, Travel
 from argo_compiler.analysis.values import told_by_others
 from argo_compiler.analysis.windows import time_limits, windows
+from argo_compiler.base.listing import quoted
+from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.hfsm.conditions import words
@@ -24,8 +26,6 @@ from argo_compiler.il import (
     Response,
     Task,
 )
-from argo_compiler.listing import quoted
-from argo_compiler.model import Pose
 
 AGE_WORK = 3_000_000
 """steps that ages of values may take to look at"""

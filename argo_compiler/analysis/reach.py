@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.transitions import why_never
+from argo_compiler.base.listing import quoted
 from argo_compiler.diagnostics import Diagnostic, Severity
-from argo_compiler.listing import quoted
 
 _REASONS = 3  # ways to a task that a message speaks of
 

@@ -12,9 +12,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from argo_compiler.catalog import Interval
+from argo_compiler.base.catalog import Interval
+from argo_compiler.base.listing import listed
 from argo_compiler.il import Condition, ConditionType
-from argo_compiler.listing import listed
 
 
 @dataclass(frozen=True)

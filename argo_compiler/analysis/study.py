@@ -10,10 +10,10 @@ from argo_compiler.analysis.legs import Legs
 from argo_compiler.analysis.levels import BoundsTooLargeError
 from argo_compiler.analysis.travel import Travel
 from argo_compiler.analysis.values import Paths
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.graphs import components, first_ways, leading_to, way_to
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.graphs import components, first_ways, leading_to, way_to
 from argo_compiler.il import Afterwards, Mission, Response, Task
 
 _NAMES = 6  # of a list or path that a message spells out

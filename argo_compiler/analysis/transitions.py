@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from argo_compiler.analysis.regions import Scale
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.values import GuardStatus, objects_of
+from argo_compiler.base.graphs import first_ways, way_to
 from argo_compiler.diagnostics import Diagnostic, Severity
-from argo_compiler.graphs import first_ways, way_to
 from argo_compiler.hfsm.conditions import all_words, words
 from argo_compiler.il import Action, Condition
 

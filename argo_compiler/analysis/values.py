@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 from argo_compiler.analysis.flow import Flow, LeafFlow
 from argo_compiler.analysis.regions import Fields, Scale, make_scale, sum_bits
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
 from argo_compiler.il import Condition, ConditionType
 
 TRACKED_BITS = 800_000_000

@@ -8,7 +8,7 @@ from argo_compiler.analysis.verification_layout import END, GroupLayout, Place
 from argo_compiler.analysis.verification_states import ClaimedStates
 from argo_compiler.analysis.verification_walk import MissionWalk, Proved
 from argo_compiler.analysis.witness import Invariant, Trap
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
 from argo_compiler.il import Mission
 
 

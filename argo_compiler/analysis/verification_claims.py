@@ -9,7 +9,7 @@ from argo_compiler.analysis.facts import (
 )
 from argo_compiler.analysis.verification import Verifier
 from argo_compiler.analysis.verification_walk import Proved
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
 from argo_compiler.il import Mission
 
 

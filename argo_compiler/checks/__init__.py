@@ -4,7 +4,8 @@ What is found here needs no knowledge of the paths that a run may take. An error
 mission has no agreed meaning and can't be lowered; a warning, that it has one that may surprise.
 """
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.remembering import remembering
 from argo_compiler.checks.groups import check_groups
 from argo_compiler.checks.header import check_header
 from argo_compiler.checks.instant_loops import check_instant_loops
@@ -13,7 +14,6 @@ from argo_compiler.checks.reactions import check_reactions
 from argo_compiler.checks.tasks import TaskChecks
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Mission
-from argo_compiler.remembering import remembering
 
 __all__ = ["check"]
 

@@ -7,6 +7,7 @@ another one if and only if its name says so.
 from bisect import bisect_left
 from collections.abc import Iterator, Mapping
 
+from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.checks.diagnostic import diagnostic_about
 from argo_compiler.checks.instant_loops import MIN_TIME_S
 from argo_compiler.checks.timing import has_timing_or_branch
@@ -16,7 +17,6 @@ from argo_compiler.il.grouping import GroupNesting, GroupRange, group_ranges, pa
 from argo_compiler.il.positions import task_positions
 from argo_compiler.il.subjects import Subjects
 from argo_compiler.il.ways import branches, default_target
-from argo_compiler.nearest_name import nearest_name
 
 MIN_PERIOD_S = 1.0
 """Rounds that are late are made up for at once, so not too many may come to be late in a pause."""

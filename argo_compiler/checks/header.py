@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.errors import Remedy
 from argo_compiler.diagnostics import Diagnostic, Severity
-from argo_compiler.errors import Remedy
 from argo_compiler.il import Mission
 
 _SHOWN = 12  # tasks that are left out, as far as they are named

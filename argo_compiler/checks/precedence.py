@@ -4,8 +4,8 @@ from collections.abc import Iterable, Iterator
 from functools import cached_property
 from graphlib import CycleError, TopologicalSorter
 
+from argo_compiler.base.graphs import Successors, components, reached_from
 from argo_compiler.diagnostics import Diagnostic, Severity
-from argo_compiler.graphs import Successors, components, reached_from
 from argo_compiler.il import Mission, Order
 from argo_compiler.il.velocities import BEGINNING, ways
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
+from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.checks.conditions import ConditionChecks
 from argo_compiler.checks.diagnostic import diagnostic_about
 from argo_compiler.checks.timing import (
@@ -16,7 +17,6 @@ from argo_compiler.il import Action, Mission, OnFailure, Task
 from argo_compiler.il.reserved import RESERVED_NAMES
 from argo_compiler.il.subjects import Subjects
 from argo_compiler.il.ways import branches
-from argo_compiler.nearest_name import nearest_name
 
 MANY_RETRIES = 100
 """that few actions are worth; more look like a mission that hangs"""

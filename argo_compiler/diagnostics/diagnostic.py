@@ -4,9 +4,9 @@ from collections.abc import Iterable, Sequence
 
 from pydantic import Field
 
+from argo_compiler.base.errors import Remedy
+from argo_compiler.base.model import Model
 from argo_compiler.diagnostics.codes.code import Severity
-from argo_compiler.errors import Remedy
-from argo_compiler.model import Model
 
 MAX_EXCERPT = 200
 """characters of the longest source line that is shown with a diagnostic"""

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable
 
+from argo_compiler.base.errors import Invalid
 from argo_compiler.diagnostics.diagnostic import Diagnostic, by_place
 from argo_compiler.diagnostics.text import to_text
-from argo_compiler.errors import Invalid
 
 
 class DiagnosticError(Invalid):

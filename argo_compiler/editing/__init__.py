@@ -8,7 +8,7 @@ that a person's steps can be kept and undone. The edits are data as well
 
 from typing import TYPE_CHECKING
 
-from argo_compiler.lazy_names import lazy_names
+from argo_compiler.base.lazy_names import lazy_names
 
 __all__ = [
     "Consequence",

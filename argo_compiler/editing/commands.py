@@ -18,6 +18,7 @@ from pydantic import (
     model_serializer,
 )
 
+from argo_compiler.base.model import Model, Pose
 from argo_compiler.editing.consequences import Edited
 from argo_compiler.editing.groups import change_group, dissolve_group, rename_group, wrap_tasks
 from argo_compiler.editing.header import set_header, wrong_values
@@ -56,7 +57,6 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
-from argo_compiler.model import Model, Pose
 
 
 class EditCommand(Model):

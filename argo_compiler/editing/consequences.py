@@ -3,13 +3,13 @@
 from collections import Counter
 from collections.abc import Iterator, Mapping
 
+from argo_compiler.base.model import Model
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.refusals import EditConflict, EditInvalid
 from argo_compiler.il import Action, Group, Mission, Task, Transition
 from argo_compiler.il.ways import beginning, branches, default_target
-from argo_compiler.model import Model
 
 _SENSELESS = frozenset(
     [

@@ -5,11 +5,11 @@ from typing import TypedDict, Unpack
 
 from pydantic import ValidationError
 
+from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.editing.consequences import Edited, edited
 from argo_compiler.editing.refusals import EditInvalid, diagnostic, unknown
 from argo_compiler.il import Mission, Mode, Order
-from argo_compiler.model import Pose
 
 
 class HeaderFields(TypedDict, total=False):

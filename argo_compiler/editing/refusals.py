@@ -4,10 +4,10 @@ import re
 import reprlib
 from collections.abc import Collection, Iterable, Sequence
 
+from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound
+from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.diagnostics import Diagnostic, Severity, to_text
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.errors import ArgoError, Conflict, Invalid, NotFound
-from argo_compiler.nearest_name import nearest_name
 
 _SURROGATE = re.compile("[\ud800-\udfff]")
 

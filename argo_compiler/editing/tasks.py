@@ -6,6 +6,7 @@ from typing import TypedDict, Unpack
 
 from pydantic import ValidationError
 
+from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.consequences import Edited, edited
 from argo_compiler.editing.draft import DraftTask, MissionDraft
@@ -21,7 +22,6 @@ from argo_compiler.editing.refusals import (
 )
 from argo_compiler.il import Action, JointState, Mission, OnFailure, Task, TimeWindow, WaitRule
 from argo_compiler.il.ways import branches
-from argo_compiler.model import Pose
 
 
 class TaskFields(TypedDict, total=False):

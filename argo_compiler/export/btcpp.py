@@ -7,6 +7,8 @@ tree can leave tasks out, but can't go back other than by a group's rounds.
 
 from collections.abc import Iterable, Iterator
 
+from argo_compiler.base.model import Pose
+from argo_compiler.base.number_text import number
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.export.exporter import level_refusals, refusal, refuse
 from argo_compiler.export.xml import Attributes, XmlWriter
@@ -25,8 +27,6 @@ from argo_compiler.il import (
 from argo_compiler.il.grouping import GroupNesting, GroupRange
 from argo_compiler.il.reserved import RETURN_TASK
 from argo_compiler.il.ways import default_target, start_task
-from argo_compiler.model import Pose
-from argo_compiler.number_text import number
 
 MAX_MSEC = 2**32 - 1
 

@@ -8,6 +8,7 @@ the events that come in and the data that a driver looks at.
 
 from collections.abc import Sequence
 
+from argo_compiler.base.number_text import number
 from argo_compiler.export.scxml_control import ControlRegion, code, due_round, outcome_states
 from argo_compiler.export.scxml_data import (
     ARGO,
@@ -26,7 +27,6 @@ from argo_compiler.hfsm import Composite, Hfsm, Leaf, Outcome, StateTransition, 
 from argo_compiler.hfsm.model import DONE, RETURN, RepeatRule
 from argo_compiler.il import Condition, ConditionType, Mission, Task
 from argo_compiler.il.ways import start_task
-from argo_compiler.number_text import number
 
 NAMESPACE = "http://www.w3.org/2005/07/scxml"
 

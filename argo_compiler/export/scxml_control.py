@@ -10,6 +10,7 @@ or it waits. `over` says that the event which it would hold for has occurred mea
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
 
+from argo_compiler.base.number_text import number
 from argo_compiler.export.scxml_data import (
     NEVER,
     ActionIds,
@@ -25,7 +26,6 @@ from argo_compiler.hfsm.interrupts import ROWS, Effect, Given, InterruptRow, Sta
 from argo_compiler.hfsm.model import DONE, ReactionState, RepeatRule
 from argo_compiler.hfsm.standing import fixed, there
 from argo_compiler.il import EventKind, Reaction, Response
-from argo_compiler.number_text import number
 
 OUTCOMES = tuple(Outcome)
 """The final states. `outcome` in the data is the position of one, from 1."""

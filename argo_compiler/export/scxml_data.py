@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable
 
+from argo_compiler.base.model import Pose
 from argo_compiler.export.xml import Attributes, XmlWriter
 from argo_compiler.hfsm import Hfsm
 from argo_compiler.il import Action, Condition, Task
-from argo_compiler.model import Pose
 
 ARGO = "urn:argo:mission"
 """The namespace of attributes that say what a state is, for people and for drivers."""

@@ -2,9 +2,9 @@
 
 from typing import Any, get_args
 
+from argo_compiler.base.model import Model
+from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.files.json_places import JsonPath
-from argo_compiler.model import Model
-from argo_compiler.nearest_name import nearest_name
 
 
 def field_hint(model: type[Model], path: JsonPath) -> str:

@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 from typing import Any
 
+from argo_compiler.base.listing import quoted
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.files.json_places import JsonPath
 from argo_compiler.il import Action, EventKind, Mission, Mode, OnFailure, Response, Task
 from argo_compiler.il.velocities import of_ways_there
-from argo_compiler.listing import quoted
 
 VERSION = 3
 """of the mission format that is written"""

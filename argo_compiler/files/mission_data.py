@@ -11,11 +11,11 @@ from typing import Any, NamedTuple
 
 from pydantic import TypeAdapter, ValidationError
 
+from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.files.fields import field_hint
 from argo_compiler.files.json_places import JsonPath, format_path
 from argo_compiler.il import Group, Mission, Reaction, Task
-from argo_compiler.model import Model
 
 MAX_FAULTS = 100
 """that are looked for in one file"""

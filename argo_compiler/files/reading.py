@@ -7,7 +7,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import BinaryIO
 
-from argo_compiler.errors import ArgoError, Invalid, NotFound
+from argo_compiler.base.errors import ArgoError, Invalid, NotFound
 from argo_compiler.files.encodings import encoding_of
 
 _PART = 1 << 20

@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, ValidationError, create_model
 
-from argo_compiler.errors import Invalid, Unavailable
+from argo_compiler.base.errors import Invalid, Unavailable
+from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.files.json_places import JsonPath, JsonText, find_places, format_path
 from argo_compiler.files.reading import decode_text, read_bytes
 from argo_compiler.files.writing import write_whole
-from argo_compiler.nearest_name import nearest_name
 from argo_compiler.route.problem import (
     NEVER,
     EnergyBudget,

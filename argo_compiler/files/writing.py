@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from argo_compiler.errors import Conflict, NotFound, Unavailable
+from argo_compiler.base.errors import Conflict, NotFound, Unavailable
 
 _OPEN_FILES = (Path("/dev/fd"), Path("/proc/self/fd"))
 """the files that this process has open"""

@@ -6,9 +6,9 @@ end from the innermost group outward (G5 to G7), and each transition knows which
 (G2 to G4).
 """
 
+from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, Severity
-from argo_compiler.garbage_collector import collector_held
 from argo_compiler.hfsm.model import (
     DONE,
     MISSION,

@@ -29,10 +29,10 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
+from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Span
 from argo_compiler.hfsm.validation import validate
 from argo_compiler.il import Condition, Reaction, Stop, Task
-from argo_compiler.model import Model
 
 MISSION = "mission"
 """id of the composite that all other states lie in"""

@@ -4,9 +4,9 @@ from enum import StrEnum
 
 from pydantic import Field
 
+from argo_compiler.base.model import Model
 from argo_compiler.hfsm.events import Outcome
 from argo_compiler.il import EventKind
-from argo_compiler.model import Model
 
 
 class GroupProgress(Model):

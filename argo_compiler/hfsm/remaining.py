@@ -4,7 +4,7 @@ import heapq
 from collections.abc import Iterator
 from itertools import count
 
-from argo_compiler.errors import Conflict
+from argo_compiler.base.errors import Conflict
 from argo_compiler.hfsm.model import DONE, RETURN, Composite, Hfsm, Leaf, task_id
 from argo_compiler.hfsm.progress import GroupProgress, Progress
 from argo_compiler.hfsm.tables import CompiledTransition, GroupNode, LeafNode, tables

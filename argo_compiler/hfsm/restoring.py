@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from argo_compiler.errors import Conflict
+from argo_compiler.base.errors import Conflict
 from argo_compiler.hfsm.conditions import CheckpointReading
 from argo_compiler.hfsm.interrupts import Stage
 from argo_compiler.hfsm.model import RETURN, task_id

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from argo_compiler.garbage_collector import collector_held
+from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.hfsm.conditions import Test, reading_test
 from argo_compiler.hfsm.model import (
     MISSION,

@@ -3,7 +3,7 @@
 import math
 from typing import Protocol
 
-from argo_compiler.model import Pose
+from argo_compiler.base.model import Pose
 
 DOCKED_DISTANCE_M = 0.1
 DOCKED_ANGLE = math.radians(5.0)

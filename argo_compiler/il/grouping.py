@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
+from argo_compiler.base.remembering import remembering
 from argo_compiler.il import Group, Mission
 from argo_compiler.il.positions import task_positions
-from argo_compiler.remembering import remembering
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,8 +11,8 @@ from typing import Literal
 
 from pydantic import Field
 
+from argo_compiler.base.model import Model, Pose
 from argo_compiler.diagnostics import Span
-from argo_compiler.model import Model, Pose
 
 MAX_TIME_S = 1e12
 """of each time in a mission, and of its clock: some 30,000 years, as far as a clock in s counts

@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
+from argo_compiler.base.remembering import remembering
 from argo_compiler.il.mission import Mission
-from argo_compiler.remembering import remembering
 
 
 @remembering

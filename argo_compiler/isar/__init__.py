@@ -6,7 +6,7 @@ order. `docs/exchange.md` says what that can hold.
 
 from typing import TYPE_CHECKING
 
-from argo_compiler.lazy_names import lazy_names
+from argo_compiler.base.lazy_names import lazy_names
 
 __all__ = ["Imported", "InspectionView", "find_definition", "from_isar", "read_isar", "to_isar"]
 

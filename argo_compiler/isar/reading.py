@@ -7,7 +7,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.model import Pose
+from argo_compiler.base.quaternions import to_yaw
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
 from argo_compiler.files.mission_file import MAX_BYTES
 from argo_compiler.files.reading import FileError, decode_text
@@ -21,8 +23,6 @@ from argo_compiler.isar.definition import (
     RobotPose,
     TaskDefinition,
 )
-from argo_compiler.model import Pose
-from argo_compiler.quaternions import to_yaw
 
 _WRAPPED = "mission_definition"
 """what isar's API calls the definition in the body of a request"""

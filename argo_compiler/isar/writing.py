@@ -5,13 +5,13 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 from uuid import NAMESPACE_URL, uuid5
 
+from argo_compiler.base.model import Model, Pose
+from argo_compiler.base.quaternions import to_quaternion
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.export.exporter import refusal, refuse
 from argo_compiler.hfsm import ActionSucceeded, Executor, Hfsm, StartAction
 from argo_compiler.il import Action, Mission, Mode, OnFailure, Task
 from argo_compiler.isar.definition import FRAME, IMAGE, INSPECTION, RETURN_TO_HOME
-from argo_compiler.model import Model, Pose
-from argo_compiler.quaternions import to_quaternion
 
 MAX_TASKS = 10_000
 """of the definition, rounds unrolled"""

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.analysis.quantities import time_words
-from argo_compiler.errors import Invalid, NotFound
+from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.il import Mission, Order
 from argo_compiler.reorder.asked import with_requirements
 from argo_compiler.reorder.branches import Branches

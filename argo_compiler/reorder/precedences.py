@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from itertools import combinations, pairwise, product
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_compiler.il import Action
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.units import TaskUnit, Unit

@@ -5,8 +5,8 @@ from typing import Annotated
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
-from argo_compiler.errors import ArgoError, Invalid
-from argo_compiler.model import Model
+from argo_compiler.base.errors import ArgoError, Invalid
+from argo_compiler.base.model import Model
 
 _PART = re.compile(r"\s*(\d+(?:\.\d+)?)\s*(h|hours?|min|minutes?|'|s|seconds?)?(?![^\W\d])")
 _SECONDS = {"h": 3600.0, "m": 60.0, "'": 60.0, "s": 1.0}

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_compiler.il import Action, Group, Mission, Task, Transition
 from argo_compiler.reorder.mission import MissionRoute
 from argo_compiler.reorder.units import Circuit, TaskUnit, Unit

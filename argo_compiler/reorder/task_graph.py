@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from argo_compiler.analysis.flow import NOWHERE, Flow
-from argo_compiler.errors import Invalid, Remedy
-from argo_compiler.graphs import leading_to, reached_from
+from argo_compiler.base.errors import Invalid, Remedy
+from argo_compiler.base.graphs import leading_to, reached_from
 from argo_compiler.hfsm.lowering import lower
 from argo_compiler.il import Action, Condition, Mission
 

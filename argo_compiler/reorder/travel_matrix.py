@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import Conflict, Invalid
+from argo_compiler.base.errors import Conflict, Invalid
 from argo_compiler.il import Action, Mission
 
 _ROUNDING = 1e-6  # of a unit, left by sums of floats

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from argo_compiler.analysis.flow import NOWHERE, Flow
-from argo_compiler.errors import Invalid
-from argo_compiler.graphs import components, is_loop, reached_from
+from argo_compiler.base.errors import Invalid
+from argo_compiler.base.graphs import components, is_loop, reached_from
 from argo_compiler.il import Condition, Mission
 from argo_compiler.reorder.task_graph import Level, TaskGraph
 

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from argo_compiler.analysis.flow import NOWHERE
-from argo_compiler.errors import Invalid, NotFound
+from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.il import Action, Task
-from argo_compiler.nearest_name import nearest_name
 from argo_compiler.reorder.requirements import What
 from argo_compiler.reorder.units import Circuit, Spine, TaskUnit, Unit, stops_of
 

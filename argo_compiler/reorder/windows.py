@@ -1,7 +1,7 @@
 """Time windows of tasks, as the route problem has them."""
 
 from argo_compiler.analysis.quantities import time_words
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_compiler.il import Action, TimeWindow
 from argo_compiler.reorder.travel_matrix import TravelMatrix
 from argo_compiler.reorder.visits import Visits

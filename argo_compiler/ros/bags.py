@@ -8,8 +8,8 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any, NoReturn
 
+from argo_compiler.base.errors import Invalid
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
-from argo_compiler.errors import Invalid
 from argo_compiler.files.reading import FileError, opened
 from argo_compiler.il import Mission
 from argo_compiler.ros.compression import (

@@ -6,11 +6,11 @@ from typing import Any, NoReturn, TypeVar
 
 from pydantic import ValidationError
 
+from argo_compiler.base.quaternions import to_yaw
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import EventKind, Mission
 from argo_compiler.il.velocities import of_ways_there
-from argo_compiler.quaternions import to_yaw
 from argo_compiler.ros.numbers import Numbers
 from argo_compiler.ros.types import RosTypes
 

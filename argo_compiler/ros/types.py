@@ -4,8 +4,8 @@ from enum import Enum
 from functools import cache
 from typing import Any, TypeVar
 
-from argo_compiler.errors import Unavailable
-from argo_compiler.extras import install_line
+from argo_compiler.base.errors import Unavailable
+from argo_compiler.base.extras import install_line
 from argo_compiler.ros.package import PACKAGE, SPECIFICATION, definitions
 
 E = TypeVar("E", bound=Enum)

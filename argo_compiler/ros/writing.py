@@ -2,6 +2,8 @@
 
 from typing import Any, NoReturn
 
+from argo_compiler.base.model import Pose
+from argo_compiler.base.quaternions import to_quaternion
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import (
@@ -16,8 +18,6 @@ from argo_compiler.il import (
     WaitRule,
 )
 from argo_compiler.il.velocities import of_ways_on, of_ways_there
-from argo_compiler.model import Pose
-from argo_compiler.quaternions import to_quaternion
 from argo_compiler.ros.numbers import Numbers
 from argo_compiler.ros.types import RosTypes
 

@@ -7,7 +7,7 @@ from itertools import islice
 from multiprocessing import get_context
 from typing import Any
 
-from argo_compiler.errors import ArgoError, located
+from argo_compiler.base.errors import ArgoError, located
 from argo_compiler.route.problem import RouteProblem
 from argo_compiler.route.suggestion import RouteSuggestion, suggest_route
 

@@ -13,7 +13,7 @@ from enum import StrEnum
 from functools import cache
 from math import inf
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_compiler.route.blocks import Blocks
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.exhaustion import Exhaustion

@@ -5,7 +5,7 @@ Written for reading, and on purpose without anything that the solvers use.
 
 from dataclasses import dataclass
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_compiler.route.problem import NEVER, Objective, Round, RouteProblem, Tour
 
 

@@ -6,7 +6,7 @@ from math import inf
 
 import numpy as np
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_compiler.route.assignment import assignment_bound
 from argo_compiler.route.infeasible_subset import find_infeasible_subset
 from argo_compiler.route.modes import Step

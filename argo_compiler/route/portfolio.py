@@ -3,8 +3,8 @@
 import threading
 from collections.abc import Callable, Sequence
 
-from argo_compiler.errors import NotFound
-from argo_compiler.nearest_name import nearest_name
+from argo_compiler.base.errors import NotFound
+from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.route.cp_sat import CpSat
 from argo_compiler.route.exchange_search import ExchangeSearch
 from argo_compiler.route.first_rules import FirstRules

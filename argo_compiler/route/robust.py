@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import Conflict, Invalid
+from argo_compiler.base.errors import Conflict, Invalid
 from argo_compiler.route.problem import NEVER, RouteProblem, Tour
 from argo_compiler.route.robust_sampling import Completion, Draws, completion
 from argo_compiler.route.robust_spread import TravelSpread

@@ -12,7 +12,7 @@ from math import log1p, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.problem import NEVER, EnergyBudget, RouteProblem, Tour
 from argo_compiler.route.robust_spread import TravelSpread

@@ -2,7 +2,7 @@
 
 from pydantic import Field
 
-from argo_compiler.model import Model
+from argo_compiler.base.model import Model
 
 
 class TravelSpread(Model):

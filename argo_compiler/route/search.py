@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from math import inf
 
-from argo_compiler.errors import Conflict, Invalid
+from argo_compiler.base.errors import Conflict, Invalid
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import RouteProblem, Tour

@@ -2,7 +2,7 @@
 
 from typing import Protocol
 
-from argo_compiler.errors import Conflict
+from argo_compiler.base.errors import Conflict
 from argo_compiler.route.problem import RouteProblem
 from argo_compiler.route.search import Search
 

@@ -7,7 +7,7 @@ often, from several threads.
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 
 
 @dataclass(frozen=True)

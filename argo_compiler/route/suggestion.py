@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_compiler.route.problem import RouteProblem, Tour
 from argo_compiler.route.stop import SearchProgress, SolverTurn, StopCriterion, gap
 

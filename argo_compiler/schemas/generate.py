@@ -8,9 +8,9 @@ from typing import Any
 
 from pydantic.json_schema import GenerateJsonSchema
 
+from argo_compiler.base.model import Model
 from argo_compiler.hfsm import Hfsm, Progress
 from argo_compiler.il import Mission
-from argo_compiler.model import Model
 from argo_compiler.schemas import SchemaName
 
 MODELS: dict[SchemaName, type[Model]] = {

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.model import Pose
+from argo_compiler.base.model import Pose
 from argo_env.drives.drive import DriveStatus, Incident
 from argo_env.drives.timetable import Timetable, steps
 from argo_env.navigation.path import Motion, Path

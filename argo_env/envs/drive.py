@@ -9,7 +9,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_env.drives.tracked.body import FLIPPER_LIMITS, TIME_STEP
 from argo_env.envs import lidar
 from argo_env.envs.copying import Copying

@@ -1,6 +1,6 @@
 """The site that Drive-v0 drives on: its world, the robot's body in it, and the ways there."""
 
-from argo_compiler.errors import NotFound
+from argo_compiler.base.errors import NotFound
 from argo_env.closing import Closing
 from argo_env.drives.tracked.body import TrackedBody
 from argo_env.envs.guide import Guide

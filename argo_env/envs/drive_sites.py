@@ -2,8 +2,8 @@
 
 from pydantic import Field, StrictInt
 
-from argo_compiler.errors import ArgoError, Invalid
-from argo_compiler.model import Model
+from argo_compiler.base.errors import ArgoError, Invalid
+from argo_compiler.base.model import Model
 from argo_env.envs.drive_site import DriveSite
 from argo_env.envs.options import LONGEST, check_floors
 from argo_env.faults.kinds import AnyFault

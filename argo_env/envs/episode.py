@@ -6,7 +6,7 @@ from typing import Any, cast
 import gymnasium as gym
 import numpy as np
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 
 Parts = Mapping[str, type | tuple[type, ...]]
 """the types of what a state has, by name"""

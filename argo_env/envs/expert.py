@@ -7,8 +7,8 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import Invalid
-from argo_compiler.model import Pose
+from argo_compiler.base.errors import Invalid
+from argo_compiler.base.model import Pose
 from argo_env.drives.tracked.body import FLIPPER_LIMITS
 from argo_env.drives.tracked.flippers import CAREFUL, Flight, Flippers, find_flight
 from argo_env.drives.tracked.follower import Follower

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
-from argo_compiler.errors import Unreachable
+from argo_compiler.base.errors import Unreachable
 from argo_env.navigation import Navigator
 from argo_env.navigation.path import wrap
 from argo_env.robot.pose import BodyPose

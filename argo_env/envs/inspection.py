@@ -9,7 +9,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from argo_compiler.errors import Invalid, NotFound
+from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.il import EventKind
 from argo_env.envs.copying import Copying
 from argo_env.envs.episode import (

@@ -5,8 +5,8 @@ from typing import Annotated, cast
 import numpy as np
 from pydantic import Field, StrictInt
 
-from argo_compiler.errors import ArgoError
-from argo_compiler.model import Model
+from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.model import Model
 from argo_env.drives.route import RouteDrive
 from argo_env.faults.kinds import KINDS, AnyFault, settle
 from argo_env.faults.robot import EmergencyStop

@@ -8,9 +8,9 @@ from itertools import accumulate
 
 import numpy as np
 
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import ActionFailed
 from argo_compiler.il import Action, EventKind, Mission, Task
-from argo_compiler.model import Pose
 from argo_env.closing import Closing
 from argo_env.drives.battery import ESTIMATE_ERROR, estimated_charge
 from argo_env.navigation import Navigator

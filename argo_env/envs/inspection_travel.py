@@ -7,8 +7,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import Unreachable
-from argo_compiler.model import Pose
+from argo_compiler.base.errors import Unreachable
+from argo_compiler.base.model import Pose
 from argo_env.navigation import Navigator
 from argo_env.robot.pose import BodyPose
 

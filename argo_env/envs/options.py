@@ -8,10 +8,10 @@ import numpy as np
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from argo_compiler.errors import Invalid, NotFound
+from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.model import Model
 from argo_compiler.files.fields import field_hint
 from argo_compiler.files.json_places import format_path
-from argo_compiler.model import Model
 from argo_env.files.yaml_messages import message_of, path_in_data
 
 Options = TypeVar("Options", bound=Model)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import NotFound, Unavailable
+from argo_compiler.base.errors import NotFound, Unavailable
 
 _DPI = 100
 

@@ -11,8 +11,8 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 from pydantic import StrictBool, StrictInt
 
-from argo_compiler.errors import Invalid, NotFound
-from argo_compiler.model import Model
+from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.model import Model
 from argo_env.envs.observations import Observation, dict_space
 from argo_env.envs.options import (
     LONGEST,

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 
 DOCK = 0
 """the node where every route ends"""

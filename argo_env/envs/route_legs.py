@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from itertools import pairwise, product
 from typing import Protocol
 
-from argo_compiler.model import Pose
+from argo_compiler.base.model import Pose
 from argo_env.envs.route_aisles import WIDTH
 from argo_env.envs.route_instance import Stair
 from argo_env.envs.route_site_times import navigator_without

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from argo_compiler.model import Model
+from argo_compiler.base.model import Model
 from argo_env.envs.route_instance import Stair
 
 _FIRST, _LAST = 0.1, 0.9

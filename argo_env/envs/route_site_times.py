@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import Unreachable
+from argo_compiler.base.errors import Unreachable
 from argo_env.envs.route_instance import Stair
 from argo_env.navigation import Navigator
 from argo_env.navigation.blockage import Blockage

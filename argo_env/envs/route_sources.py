@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from argo_compiler.errors import NotFound
-from argo_compiler.model import Model
+from argo_compiler.base.errors import NotFound
+from argo_compiler.base.model import Model
 from argo_env.envs.route_aisles import DEPTH, WIDTH, aisle_times, stairs_of
 from argo_env.envs.route_instance import RouteInstance, Stair, make_instance, with_hidden
 from argo_env.envs.route_noise import NO_NOISE, RouteNoise, draw_blocked, draw_failing

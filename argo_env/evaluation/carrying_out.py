@@ -5,7 +5,7 @@ import threading
 import traceback
 from dataclasses import dataclass
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_env.evaluation.plan import EvaluationCase
 from argo_env.evaluation.row import RunOutcome, RunRow, row_of, row_without_end
 from argo_env.planning.opening import OpenedSite, open_site

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import Conflict, NotFound, Remedy
+from argo_compiler.base.errors import Conflict, NotFound, Remedy
 from argo_env.evaluation.plan import PlanName
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, ValidationError
 
-from argo_compiler.errors import Conflict, Invalid, NotFound
+from argo_compiler.base.errors import Conflict, Invalid, NotFound
+from argo_compiler.base.model import Model
 from argo_compiler.files.reading import read_bytes
 from argo_compiler.files.writing import write_whole
-from argo_compiler.model import Model
 from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow

@@ -1,6 +1,6 @@
 """Whether the robot found what was wrong, and after how long."""
 
-from argo_compiler.model import Model
+from argo_compiler.base.model import Model
 from argo_env.evaluation.fault_signs import can_be_found, may_be_of
 from argo_env.run.record import RunRecord
 from argo_env.site import Site

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_compiler.il import Mission
 from argo_env.evaluation.evaluating import Evaluating, EvaluationProgress
 from argo_env.evaluation.folder import digest_of, open_rows

@@ -2,9 +2,9 @@
 
 from pydantic import Field, field_validator, model_validator
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
+from argo_compiler.base.model import Model
 from argo_compiler.files.reading import decode_text, require_size
-from argo_compiler.model import Model
 from argo_env.evaluation.plan import AS_WRITTEN, NO_FAULTS, parse_seeds
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.worlds import NO_VARIATION, Variation

@@ -8,10 +8,10 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from argo_compiler.errors import Conflict, Invalid, NotFound, Remedy, Unavailable
+from argo_compiler.base.errors import Conflict, Invalid, NotFound, Remedy, Unavailable
+from argo_compiler.base.model import Model
 from argo_compiler.files.reading import read_bytes
 from argo_compiler.files.writing import write_whole
-from argo_compiler.model import Model
 from argo_env.evaluation.batches import is_enough
 from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.results import EvaluationResults

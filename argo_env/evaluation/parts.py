@@ -7,8 +7,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from argo_compiler.errors import Unavailable
-from argo_compiler.extras import install_line
+from argo_compiler.base.errors import Unavailable
+from argo_compiler.base.extras import install_line
 from argo_env.evaluation.row import RunRow
 from argo_env.files.checked_lines import sync_folder
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from pydantic import Field
 
 import argo_compiler
-from argo_compiler.errors import Conflict, Invalid
-from argo_compiler.model import Model
+from argo_compiler.base.errors import Conflict, Invalid
+from argo_compiler.base.model import Model
 from argo_env.evaluation.requirement import RateRequirement
 from argo_env.evaluation.worlds import NO_VARIATION, Variation
 from argo_env.faults.distribution import NOTHING

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from pydantic import Field, model_validator
 
-from argo_compiler.errors import Invalid
-from argo_compiler.model import Model
+from argo_compiler.base.errors import Invalid
+from argo_compiler.base.model import Model
 
 if TYPE_CHECKING:
     from argo_env.evaluation.row import RunRow

@@ -5,8 +5,8 @@ from enum import StrEnum
 
 from pydantic import Field
 
+from argo_compiler.base.model import Model
 from argo_compiler.il import Action
-from argo_compiler.model import Model
 from argo_env.evaluation.detection import FaultDetection, detections
 from argo_env.evaluation.false_alarms import false_alarms
 from argo_env.evaluation.plan import EvaluationCase, PlanName

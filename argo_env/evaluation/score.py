@@ -9,8 +9,8 @@ from typing import TypeVar
 import numpy as np
 from pydantic import Field, model_validator
 
+from argo_compiler.base.model import Model
 from argo_compiler.files.reading import decode_text, read_bytes
-from argo_compiler.model import Model
 from argo_env.evaluation.row import RunRow
 from argo_env.evaluation.statistics.pairs import difference
 from argo_env.evaluation.statistics.strata import Estimate

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from argo_compiler.errors import Conflict, NotFound, Unavailable
+from argo_compiler.base.errors import Conflict, NotFound, Unavailable
 from argo_env.evaluation.parts import (
     PARTS,
     can_write_parts,

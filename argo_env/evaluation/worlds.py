@@ -5,8 +5,8 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from argo_compiler.errors import Invalid, NotFound
-from argo_compiler.model import Model
+from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.model import Model
 from argo_env.faults.distribution import FaultDistribution
 from argo_env.run.conditions import RunConditions, ValueProfile, ValueStep
 from argo_env.run.rig import true_values

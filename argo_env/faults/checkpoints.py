@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from argo_compiler.catalog import CheckpointKind
-from argo_compiler.errors import Invalid, NotFound
+from argo_compiler.base.catalog import CheckpointKind
+from argo_compiler.base.errors import Invalid, NotFound
 from argo_env.faults.fault import TimedFault
 from argo_env.seeding import draw
 from argo_env.site import Site, SiteCheckpoint

@@ -5,8 +5,8 @@ from pathlib import Path
 
 from pydantic import Field, model_validator
 
+from argo_compiler.base.model import Model
 from argo_compiler.files.reading import decode_text, read_bytes, require_size
-from argo_compiler.model import Model
 from argo_env.faults.kinds import AnyFault
 from argo_env.faults.reading import MAX_BYTES
 from argo_env.files.yaml_file import parse_yaml

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
-from argo_compiler.model import Model
+from argo_compiler.base.model import Model
 from argo_env.seeding import draw
 from argo_env.site import Site
 from argo_env.site.shapes import Element

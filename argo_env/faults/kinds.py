@@ -5,8 +5,8 @@ from typing import Annotated
 
 from pydantic import Field
 
-from argo_compiler.errors import ArgoError
-from argo_compiler.model import Model
+from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.model import Model
 from argo_env.faults.checkpoints import AbnormalValue, DisplacedCheckpoint
 from argo_env.faults.fault import Fault
 from argo_env.faults.plant import AbnormalPump, GasLeakFault, HotSpotFault, PlatformAlarm

@@ -4,7 +4,7 @@ import errno
 import os
 from pathlib import Path
 
-from argo_compiler.errors import Conflict, Unavailable
+from argo_compiler.base.errors import Conflict, Unavailable
 
 
 def check_folder(path: Path) -> None:

@@ -6,10 +6,10 @@ from typing import Any, NamedTuple, TypeVar
 import yaml
 from pydantic import ValidationError
 
+from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span, with_excerpts
 from argo_compiler.files.fields import field_hint
 from argo_compiler.files.json_places import JsonPath, format_path
-from argo_compiler.model import Model
 from argo_env.files.yaml_messages import message_of, path_in_data
 
 MAX_FINDINGS = 20

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from argo_compiler.lazy_names import lazy_names
+from argo_compiler.base.lazy_names import lazy_names
 
 __all__ = ["Blockage", "Motion", "Navigator", "Path"]
 

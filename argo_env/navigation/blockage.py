@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.model import Pose
+from argo_compiler.base.model import Pose
 from argo_env.navigation.graphs import graph_of
 from argo_env.navigation.lattice import MARGIN, Lattice
 from argo_env.navigation.path import Path

@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import Invalid, Unreachable
-from argo_compiler.model import Pose
+from argo_compiler.base.errors import Invalid, Unreachable
+from argo_compiler.base.model import Pose
 from argo_env.files.parts import NOWHERE, Parts
 from argo_env.navigation.arrivals import times_to
 from argo_env.navigation.blockage import Blockage, close, closed_cells, turns_over

@@ -8,7 +8,7 @@ from typing import overload
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.model import Pose
+from argo_compiler.base.model import Pose
 from argo_env.robot.calibration import MotionKind, drive_kind
 from argo_env.robot.spec import RobotSpec
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from argo_compiler.model import Pose
+from argo_compiler.base.model import Pose
 from argo_env.navigation.path import Motion, Path, merge, wrap
 from argo_env.navigation.smoothing import connect, turn
 

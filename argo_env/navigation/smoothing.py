@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.model import Pose
+from argo_compiler.base.model import Pose
 from argo_env.navigation.lattice import DRIVING_LEVEL, MARGIN, TURNING_LEVEL
 from argo_env.navigation.path import Motion, Path, merge, wrap
 from argo_env.navigation.raster import CELL, Grid

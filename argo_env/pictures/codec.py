@@ -10,8 +10,8 @@ from typing import IO
 
 from PIL import GifImagePlugin, Image
 
-from argo_compiler.errors import Unavailable
-from argo_compiler.extras import install_line
+from argo_compiler.base.errors import Unavailable
+from argo_compiler.base.extras import install_line
 
 GIF_COLOURS = 128
 

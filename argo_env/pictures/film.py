@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from argo_compiler.errors import Invalid, Unavailable, located
+from argo_compiler.base.errors import Invalid, Unavailable, located
 from argo_compiler.files.writing import check_place, drafting
 from argo_env.pictures.codec import find_ffmpeg, make_palette, write_gif, write_mp4
 from argo_env.pictures.frames import FilmShot, draw, draw_all, shots_of

@@ -9,7 +9,7 @@ from loky import ProcessPoolExecutor
 from loky.process_executor import BrokenProcessPool
 from PIL import Image
 
-from argo_compiler.errors import Unavailable
+from argo_compiler.base.errors import Unavailable
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.caption import add_caption, add_verdict
 from argo_env.pictures.chase import ChaseCamera

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from argo_compiler.errors import Conflict, Invalid
+from argo_compiler.base.errors import Conflict, Invalid
 from argo_env.drives.flipper_motion import FLAT, RAISED
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from argo_compiler.errors import Unavailable
+from argo_compiler.base.errors import Unavailable
 from argo_compiler.files.writing import write_whole
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.light import compose, depth_shading, shade, sun_camera

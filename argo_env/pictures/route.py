@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from argo_compiler.errors import Unavailable
+from argo_compiler.base.errors import Unavailable
+from argo_compiler.base.model import Pose
 from argo_compiler.files.writing import write_folder
 from argo_compiler.il import Action, Task
-from argo_compiler.model import Pose
 from argo_compiler.reorder.mission import MissionRoute
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.problem import Tour

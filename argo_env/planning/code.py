@@ -10,7 +10,11 @@ import numpy as np
 
 _ROOT = Path(__file__).parents[2]
 _FOLDERS = ("files", "navigation", "planning", "robot", "site")
-_MODULES = ("argo_compiler/catalog.py", "argo_compiler/model.py", "argo_compiler/analysis/legs.py")
+_MODULES = (
+    "argo_compiler/base/catalog.py",
+    "argo_compiler/base/model.py",
+    "argo_compiler/analysis/legs.py",
+)
 
 
 @lru_cache(maxsize=1)

@@ -1,6 +1,6 @@
 """Generated sites that have been checked: what can't be driven is drawn again."""
 
-from argo_compiler.errors import ArgoError, Unreachable
+from argo_compiler.base.errors import ArgoError, Unreachable
 from argo_env.navigation.navigator import Navigator
 from argo_env.planning.checking import unseen_checkpoints, unserved_floors
 from argo_env.robot.spec import RobotSpec, load_robot

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 
 from argo_compiler.analysis import NoWay
-from argo_compiler.errors import ArgoError
-from argo_compiler.model import Pose
+from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.model import Pose
 from argo_env.files.parts import Arrays, Parts
 from argo_env.navigation.path import Motion, Path
 

@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from argo_compiler.base.errors import Unreachable
+from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.errors import Unreachable
 from argo_compiler.il import Action, Mission, Task
-from argo_compiler.model import Pose
 
 if TYPE_CHECKING:
     from argo_env.navigation import Navigator

@@ -1,8 +1,8 @@
 """From where each checkpoint of a mission would be read: what isar's missions have to say."""
 
+from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, Mission
 from argo_compiler.isar import InspectionView
-from argo_compiler.model import Pose
 from argo_env.navigation import Navigator
 
 

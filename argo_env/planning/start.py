@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
+from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, Mission
-from argo_compiler.model import Pose
 
 
 def start_pose(mission: Mission, docks: Mapping[int, Pose]) -> Pose:

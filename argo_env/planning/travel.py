@@ -3,9 +3,9 @@
 from typing import TYPE_CHECKING
 
 from argo_compiler.analysis import Leg, NoWay, Standing
-from argo_compiler.errors import Unreachable
+from argo_compiler.base.errors import Unreachable
+from argo_compiler.base.model import Pose
 from argo_compiler.il import MAX_TIME_S, Action, Mission, Task
-from argo_compiler.model import Pose
 from argo_env.drives.timetable import steps
 from argo_env.navigation.path import Motion, Path
 from argo_env.planning.kept_ways import as_data, kept_way

@@ -6,8 +6,8 @@ from contextlib import closing, contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
-from argo_compiler.errors import Invalid, Unavailable
-from argo_compiler.extras import install_line
+from argo_compiler.base.errors import Invalid, Unavailable
+from argo_compiler.base.extras import install_line
 from argo_compiler.files.writing import check_place
 from argo_env.recording.best_effort import BestEffort
 from argo_env.recording.output import RecordingFile

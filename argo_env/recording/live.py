@@ -7,9 +7,9 @@ from importlib.util import find_spec
 from threading import Lock, Thread
 from typing import TYPE_CHECKING, Any, cast
 
-from argo_compiler.errors import Unavailable
-from argo_compiler.extras import install_line
-from argo_compiler.model import Model
+from argo_compiler.base.errors import Unavailable
+from argo_compiler.base.extras import install_line
+from argo_compiler.base.model import Model
 from argo_env.recording.files import require_libraries
 from argo_env.recording.plain_schema import plain_schema
 

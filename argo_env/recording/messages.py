@@ -11,10 +11,10 @@ from foxglove_schemas_protobuf.Quaternion_pb2 import Quaternion as QuaternionMes
 from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
 from google.protobuf.timestamp_pb2 import Timestamp
 
-from argo_compiler.model import Pose
-from argo_env.recording.robot_model import Colour, Quaternion, from_rpy
+from argo_compiler.base.model import Pose
 from argo_env.recording.writer import nanoseconds
 from argo_env.robot.pose import BodyPose
+from argo_env.robot.robot_model import Colour, Quaternion, from_rpy
 from argo_env.site.shapes import Vector
 
 WORLD = "world"

@@ -8,9 +8,9 @@ from foxglove_schemas_protobuf.JointStates_pb2 import JointStates
 from foxglove_schemas_protobuf.PoseInFrame_pb2 import PoseInFrame
 
 from argo_env.recording.messages import BASE, WORLD, attitude, set_rotation, set_time, set_vector
-from argo_env.recording.robot_model import Joint, Quaternion, RobotModel
 from argo_env.recording.topic_writer import TopicWriter
 from argo_env.robot.pose import BodyPose
+from argo_env.robot.robot_model import Joint, Quaternion, RobotModel
 from argo_env.site.shapes import Vector
 
 LIMB_PERIOD = 1.0

@@ -4,7 +4,7 @@ import os
 from contextlib import suppress
 from pathlib import Path
 
-from argo_compiler.errors import Unavailable
+from argo_compiler.base.errors import Unavailable
 
 
 class UnwritableRecording(Unavailable):

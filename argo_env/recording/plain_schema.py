@@ -8,7 +8,7 @@ be left out.
 
 from typing import Any
 
-from argo_compiler.model import Model
+from argo_compiler.base.model import Model
 
 Schema = dict[str, Any]
 

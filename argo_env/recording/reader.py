@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from pydantic import ValidationError
 
-from argo_compiler.errors import Invalid, NotFound, Remedy
+from argo_compiler.base.errors import Invalid, NotFound, Remedy
 from argo_compiler.files.json_places import format_path
 from argo_compiler.files.reading import FileError, FileProblem, read_bytes
 from argo_env.files.yaml_messages import message_of

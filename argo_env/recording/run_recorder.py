@@ -15,12 +15,12 @@ from argo_env.navigation import Path as Way
 from argo_env.recording import messages, scene
 from argo_env.recording.files import VERSION
 from argo_env.recording.motion import Limbs, MotionTopics
-from argo_env.recording.robot_model import read_model
 from argo_env.recording.shots import write_shot
 from argo_env.recording.topic_writer import TopicWriter
 from argo_env.recording.topics import BatteryState, MissionState, mission_state
 from argo_env.recording.writer import media_type
 from argo_env.report.files import to_json
+from argo_env.robot.robot_model import read_model
 from argo_env.robot.spec import robot_folder
 from argo_env.run.headline import Tone
 from argo_env.run.log import Entry

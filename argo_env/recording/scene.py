@@ -10,7 +10,7 @@ from foxglove_schemas_protobuf.SpherePrimitive_pb2 import SpherePrimitive
 from foxglove_schemas_protobuf.TextPrimitive_pb2 import TextPrimitive
 
 from argo_env.recording.messages import WORLD, colour, pose, timestamp, vector
-from argo_env.recording.robot_model import (
+from argo_env.robot.robot_model import (
     Colour,
     Quaternion,
     RobotModel,

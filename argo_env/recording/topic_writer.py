@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Protocol
 
-from argo_compiler.model import Model
+from argo_compiler.base.model import Model
 
 if TYPE_CHECKING:  # what the extra brings
     from google.protobuf.message import Message

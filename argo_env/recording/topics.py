@@ -1,7 +1,7 @@
 """What is recorded as JSON, beside Foxglove's own messages and the parts of the run record."""
 
+from argo_compiler.base.model import Model
 from argo_compiler.il import Action, EventKind
-from argo_compiler.model import Model
 from argo_env.run.machine import Machine
 
 

@@ -10,7 +10,7 @@ from mcap.well_known import MessageEncoding, SchemaEncoding
 from mcap.writer import CompressionType, Writer
 from mcap_protobuf.schema import build_file_descriptor_set
 
-from argo_compiler.model import Model
+from argo_compiler.base.model import Model
 from argo_env.recording.output import RecordingFile
 from argo_env.recording.plain_schema import plain_schema
 

@@ -4,8 +4,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, TypeAdapter
 
+from argo_compiler.base.model import Model, Pose
 from argo_compiler.il import EventKind, Task
-from argo_compiler.model import Model, Pose
 
 
 class StartOrder(Model):

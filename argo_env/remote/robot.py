@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from argo_compiler.errors import Unavailable
+from argo_compiler.base.errors import Unavailable
 from argo_compiler.hfsm import StartAction
 from argo_compiler.il import EventKind
 from argo_env.navigation import Blockage, Navigator, Path

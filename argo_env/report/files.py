@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from argo_compiler.errors import Conflict, Unavailable
+from argo_compiler.base.errors import Conflict, Unavailable
 from argo_compiler.files.writing import write_folder
 from argo_env.report.html import page
 from argo_env.run.record import RunRecord

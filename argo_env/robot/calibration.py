@@ -4,7 +4,7 @@ from enum import StrEnum
 
 from pydantic import Field
 
-from argo_compiler.model import Model
+from argo_compiler.base.model import Model
 
 
 class MotionKind(StrEnum):

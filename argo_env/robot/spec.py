@@ -9,8 +9,8 @@ from typing import TypeVar
 import yaml
 from pydantic import BaseModel, Field, ValidationError, model_validator
 
-from argo_compiler.errors import Invalid, NotFound
-from argo_compiler.model import Model
+from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.model import Model
 from argo_env.files import resources
 from argo_env.robot.calibration import Calibration, MotionKind
 

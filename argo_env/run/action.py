@@ -3,10 +3,10 @@
 import math
 from collections.abc import Callable
 
-from argo_compiler.errors import ArgoError, Unreachable
+from argo_compiler.base.errors import ArgoError, Unreachable
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import ActionFailed, ActionStopped, ActionSucceeded, StartAction
 from argo_compiler.il import Action, Task
-from argo_compiler.model import Pose
 from argo_env.drives.drive import DriveStatus
 from argo_env.navigation import Navigator, Path
 from argo_env.navigation.blockage import leads_through

@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 
+from argo_compiler.base.errors import Conflict
+from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
-from argo_compiler.errors import Conflict
-from argo_compiler.handover import hand_over, match
 from argo_compiler.hfsm import ByHand, Executor, Progress, lower
+from argo_compiler.hfsm.handover import hand_over, match
 from argo_compiler.il import Mission
-from argo_compiler.model import Model
 from argo_env.robot.pose import BodyPose
 from argo_env.run.machine import Machine
 from argo_env.run.record import Anomaly

@@ -4,7 +4,7 @@ import math
 
 from pydantic import Field
 
-from argo_compiler.model import Model, Pose
+from argo_compiler.base.model import Model, Pose
 
 
 class ValueStep(Model):

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from argo_compiler.errors import Invalid, Remedy
+from argo_compiler.base.errors import Invalid, Remedy
 from argo_compiler.hfsm import (
     ActionStopped,
     CancelAction,

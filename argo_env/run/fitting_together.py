@@ -1,6 +1,6 @@
 """Whether what a run is made of fits together: the machine, the site and the spec."""
 
-from argo_compiler.errors import Conflict
+from argo_compiler.base.errors import Conflict
 from argo_compiler.hfsm import Cause, lower
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.run.machine import Machine

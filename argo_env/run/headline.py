@@ -4,7 +4,7 @@ from collections import Counter
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from argo_compiler.model import Model
+from argo_compiler.base.model import Model
 from argo_env.formatting import clock
 
 if TYPE_CHECKING:  # it is made of this

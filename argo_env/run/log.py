@@ -11,7 +11,8 @@ from typing import Literal
 
 from pydantic import TypeAdapter, ValidationError
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
+from argo_compiler.base.model import Model
 from argo_compiler.hfsm import (
     ActionFailed,
     ActionStopped,
@@ -28,7 +29,6 @@ from argo_compiler.hfsm import (
 )
 from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import EventKind, Task
-from argo_compiler.model import Model
 from argo_env.faults.kinds import AnyFault
 from argo_env.files.yaml_messages import message_of
 from argo_env.robot.pose import BodyPose, Place

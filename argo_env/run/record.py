@@ -9,12 +9,12 @@ from enum import StrEnum
 
 from pydantic import computed_field, model_validator
 
-from argo_compiler.catalog import CheckpointKind, Interval
+from argo_compiler.base.catalog import CheckpointKind, Interval
+from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.hfsm import Hfsm, Outcome
 from argo_compiler.hfsm.progress import TaskTally
 from argo_compiler.il import Action, EventKind, Mission, Response
-from argo_compiler.model import Model
 from argo_env.drives.drive import Trouble
 from argo_env.faults.kinds import AnyFault
 from argo_env.formatting import where

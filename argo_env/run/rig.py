@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_env.drives.battery import Battery
 from argo_env.drives.drive import Drive
 from argo_env.drives.powertrain import Powertrain

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.robot.spec import load_robot
 from argo_env.run.beginning import machine_of

@@ -7,11 +7,11 @@ from contextlib import ExitStack, contextmanager
 
 import numpy as np
 
-from argo_compiler.errors import Conflict, Invalid, NotFound
+from argo_compiler.base.errors import Conflict, Invalid, NotFound
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import ByHand, Event, GiveBack, Occurred, Resume, Tick
 from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import Mission, Task
-from argo_compiler.model import Pose
 from argo_env.closing import Closing
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.start import start_pose

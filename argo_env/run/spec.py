@@ -4,12 +4,12 @@ from typing import Any
 
 from pydantic import Field, ValidationError, field_validator
 
+from argo_compiler.base.errors import Invalid
+from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.errors import Invalid
 from argo_compiler.files.json_places import format_path
 from argo_compiler.hfsm import Event
 from argo_compiler.il import Mission
-from argo_compiler.model import Model
 from argo_env.faults.kinds import AnyFault
 from argo_env.files.yaml_messages import message_of
 from argo_env.run.beginning import RunBeginning

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from argo_compiler.errors import ArgoError, Conflict, Invalid, NotFound
-from argo_compiler.handover import match
+from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound
 from argo_compiler.hfsm import (
     ByHand,
     Cancel,
@@ -17,6 +16,7 @@ from argo_compiler.hfsm import (
     TakeOver,
 )
 from argo_compiler.hfsm.events import ReadingGiven
+from argo_compiler.hfsm.handover import match
 from argo_compiler.il import Mission, Task
 from argo_env.faults.fault import Fault, TimedFault
 from argo_env.faults.kinds import AnyFault, settle_one

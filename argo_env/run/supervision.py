@@ -1,6 +1,6 @@
 """A person has the robot: what they may let it do, and what it has done for them."""
 
-from argo_compiler.errors import Conflict, Invalid
+from argo_compiler.base.errors import Conflict, Invalid
 from argo_compiler.hfsm import ByHand
 from argo_compiler.il import Action, Mission, Task
 from argo_env.run.log import Entry

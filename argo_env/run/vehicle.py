@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import StartAction
-from argo_compiler.model import Pose
 from argo_env.drives.powertrain import Powertrain
 from argo_env.navigation import Blockage, Path
 from argo_env.navigation.retreat import driven, recent

@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import Cause, Outcome, Progress, TraceEntry
 from argo_compiler.il import Action, Mission
 from argo_compiler.il.docked import at_dock
 from argo_compiler.il.reserved import RESERVED_NAMES
-from argo_compiler.model import Pose
 from argo_env.formatting import told_apart
 from argo_env.run.headline import AS_PLANNED
 from argo_env.run.log import RunLog

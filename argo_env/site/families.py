@@ -9,8 +9,8 @@ from collections.abc import Collection
 
 import numpy as np
 
-from argo_compiler.catalog import CheckpointKind, Interval
-from argo_compiler.errors import Invalid
+from argo_compiler.base.catalog import CheckpointKind, Interval
+from argo_compiler.base.errors import Invalid
 from argo_env.seeding import generator
 from argo_env.site.equipment import MOUNT_LENGTH
 from argo_env.site.family import Family, Stairs

@@ -6,8 +6,8 @@ from typing import Any
 
 from pydantic import Field, ValidationError, field_validator
 
-from argo_compiler.errors import Invalid
-from argo_compiler.model import Model
+from argo_compiler.base.errors import Invalid
+from argo_compiler.base.model import Model
 from argo_env.files.yaml_messages import message_of
 
 PREFIX = "generated:"

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from argo_compiler.catalog import CheckpointKind, Interval
-from argo_compiler.errors import Invalid, NotFound
-from argo_compiler.model import Pose
+from argo_compiler.base.catalog import CheckpointKind, Interval
+from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.model import Pose
 from argo_env.files import resources
 from argo_env.site.family import PREFIX, is_family
 from argo_env.site.index import SolidIndex

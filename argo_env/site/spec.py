@@ -11,8 +11,8 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from argo_compiler.catalog import CheckpointKind, Interval
-from argo_compiler.model import Model
+from argo_compiler.base.catalog import CheckpointKind, Interval
+from argo_compiler.base.model import Model
 
 LEDGE = 5e-3  # m, up to which two heights are level for a robot
 MAX_BYTES = 50_000_000

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from argo_compiler.errors import NotFound
+from argo_compiler.base.errors import NotFound
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
 from argo_env.surroundings.sources import GasLeak, PumpSound, Source

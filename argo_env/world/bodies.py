@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.catalog import CheckpointKind
+from argo_compiler.base.catalog import CheckpointKind
 from argo_env.files import resources
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec, robot_folder

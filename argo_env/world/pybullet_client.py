@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import Unavailable
+from argo_compiler.base.errors import Unavailable
 from argo_env.closing import Closing
 from argo_env.site.shapes import Vector
 

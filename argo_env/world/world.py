@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import Remedy, Unavailable
+from argo_compiler.base.errors import Remedy, Unavailable
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
 from argo_env.site import Site

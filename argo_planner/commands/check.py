@@ -5,9 +5,9 @@ from typing import Annotated
 
 import typer
 
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.diagnostics import Diagnostic, has_errors, summary
 from argo_compiler.diagnostics.codes.code import Severity
-from argo_compiler.errors import ArgoError
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.files import STANDARD_OUTPUT, check_outputs, read_upload, write_text
 from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from argo_compiler.errors import Unavailable
+from argo_compiler.base.errors import Unavailable
 from argo_env.files import cache
 from argo_planner.use_cases.doctor import examine
 

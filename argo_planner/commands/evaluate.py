@@ -10,7 +10,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_env.evaluation.controlled import ControlledMean, run_controlled, with_drive
 from argo_env.evaluation.evaluating import Evaluating
 from argo_env.evaluation.folder import (

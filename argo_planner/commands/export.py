@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from argo_compiler.errors import Invalid, NotFound
+from argo_compiler.base.errors import Invalid, NotFound
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.completion import among
 from argo_planner.terminal.files import (

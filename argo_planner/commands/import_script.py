@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_compiler.files.mission_file import decode_mission, mission_text
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.files import (

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
-from argo_compiler.errors import Unavailable
-from argo_compiler.extras import install_line
+from argo_compiler.base.errors import Unavailable
+from argo_compiler.base.extras import install_line
 from argo_compiler.il import Mission
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.files import read_upload

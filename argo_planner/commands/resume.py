@@ -9,7 +9,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_env.files.folders import make_folder
 from argo_env.planning.opening import open_site
 from argo_env.recording.files import check_recording

@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from argo_compiler.errors import Invalid, Unavailable
-from argo_compiler.extras import install_line
+from argo_compiler.base.errors import Invalid, Unavailable
+from argo_compiler.base.extras import install_line
 from argo_env.planning.opening import open_site
 from argo_env.recording.live import require_foxglove
 from argo_planner.terminal.options import SiteOption

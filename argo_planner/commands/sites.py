@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from argo_compiler.errors import ArgoError, Invalid, located
+from argo_compiler.base.errors import ArgoError, Invalid, located
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_planner.terminal import completion
 from argo_planner.terminal.files import check_outputs, say_written, write_content, write_text

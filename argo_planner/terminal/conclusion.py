@@ -10,7 +10,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_env.faults.kinds import changed_site
 from argo_env.report.files import PAGE
 from argo_env.robot.spec import RobotSpec

@@ -2,7 +2,7 @@
 
 import math
 
-from argo_compiler.errors import ArgoError, Conflict, Invalid
+from argo_compiler.base.errors import ArgoError, Conflict, Invalid
 from argo_compiler.hfsm import Event
 from argo_planner.use_cases.running import EVENTS, READING, event_named
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from argo_compiler.errors import Conflict, Invalid, Remedy, Unavailable
+from argo_compiler.base.errors import Conflict, Invalid, Remedy, Unavailable
 from argo_compiler.files.mission_file import read_mission_bytes
 from argo_compiler.files.reading import read_bytes
 from argo_compiler.files.writing import check_place, is_stream, write_folder, write_whole

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from argo_compiler.errors import Conflict, Invalid
+from argo_compiler.base.errors import Conflict, Invalid
 from argo_env.report.files import RECORD
 from argo_env.run.journal import Journal, open_journal
 from argo_env.run.record import RunRecord

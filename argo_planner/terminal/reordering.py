@@ -5,7 +5,7 @@ from dataclasses import replace
 from rich.console import Console
 from rich.markup import escape
 
-from argo_compiler.errors import Conflict
+from argo_compiler.base.errors import Conflict
 from argo_env.formatting import clock
 from argo_env.planning.opening import OpenedSite
 from argo_env.run.record import Reordering

@@ -5,7 +5,7 @@ import shlex
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from argo_compiler.errors import ArgoError, Remedy
+from argo_compiler.base.errors import ArgoError, Remedy
 
 if TYPE_CHECKING:
     from argo_compiler.diagnostics import Diagnostic

@@ -4,9 +4,9 @@ import platform
 from importlib.util import find_spec
 
 from argo_compiler import __version__
-from argo_compiler.errors import ArgoError
-from argo_compiler.extras import install_line
-from argo_compiler.model import Model
+from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.extras import install_line
+from argo_compiler.base.model import Model
 from argo_env.files import cache
 
 _EXTRAS: dict[str, tuple[str, tuple[str, ...]]] = {

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import cast
 
 import argo_compiler
-from argo_compiler.errors import ArgoError, Conflict, Invalid, NotFound, located
+from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound, located
 from argo_compiler.files.reading import read_bytes
 from argo_compiler.il import Mission
 from argo_env.evaluation.file import DrawnFaults, EvaluationFile, MissionEntry

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from argo_compiler.base.errors import NotFound
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.errors import NotFound
 from argo_compiler.export import EXPORTERS, Exporter
 from argo_compiler.hfsm import lower
 from argo_compiler.isar import to_isar

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.errors import Invalid, Remedy
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import (
     Diagnostic,
@@ -17,16 +18,15 @@ from argo_compiler.diagnostics import (
     has_errors,
     with_excerpts,
 )
-from argo_compiler.errors import Invalid, Remedy
 from argo_compiler.files.mission_file import MissionFile, decode_mission
 from argo_compiler.files.reading import opened
 from argo_compiler.il import Mission
 from argo_compiler.isar import find_definition, from_isar
 from argo_compiler.ros import Received, decode_bag, is_bag_content, read_bag
 from argo_compiler.script.syntax.text.source import Source as Script
-from argo_compiler.stages import stage
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.speeds_to_drive_at import too_fast
+from argo_env.stages import stage
 
 _log = logging.getLogger(__name__)
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from argo_compiler.errors import Conflict, Remedy
+from argo_compiler.base.errors import Conflict, Remedy
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.problem import NEVER, RouteProblem, Tour
 from argo_env.formatting import clock

@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from argo_compiler.analysis import analyse
+from argo_compiler.base.errors import ArgoError, Conflict, Invalid, Remedy, located
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.errors import ArgoError, Conflict, Invalid, Remedy, located
 from argo_compiler.files.reading import decode_text, require_size
 from argo_compiler.il import Mission
 from argo_compiler.reorder.mission import MissionRoute, require_known
@@ -19,7 +19,6 @@ from argo_compiler.route.robust_sampling import Completion, Draws, completion
 from argo_compiler.route.robust_spread import TravelSpread
 from argo_compiler.route.stop import SearchProgress
 from argo_compiler.route.suggestion import RouteSuggestion, suggest_route
-from argo_compiler.stages import stage
 from argo_env.files.yaml_file import parse_yaml
 from argo_env.formatting import clock
 from argo_env.planning.opening import OpenedSite
@@ -27,6 +26,7 @@ from argo_env.planning.route_matrix import plan_mission
 from argo_env.planning.travel import SiteTravel
 from argo_env.run.record import Reordering
 from argo_env.seeding import generator
+from argo_env.stages import stage
 from argo_planner.use_cases.importing import ImportedMission
 
 TIME_LIMIT = 5.0

@@ -4,7 +4,7 @@ import json
 import logging
 import math
 
-from argo_compiler.errors import Invalid, NotFound
+from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.hfsm import Cancel, Event, GiveBack, Occurred, Pause, Resume, TakeOver, lower
 from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import EventKind, Mission

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from argo_compiler.errors import Conflict
+from argo_compiler.base.errors import Conflict
 from argo_compiler.files.reading import decode_text, require_size
 from argo_env.planning.flaws import Flaw, Standing, look_over
 from argo_env.planning.opening import OpenedSite

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import Invalid, NotFound
+from argo_compiler.base.errors import Invalid, NotFound
 from argo_env.envs.observations import Observation
 from argo_env.envs.route_instance import DOCK
 from argo_env.seeding import generator

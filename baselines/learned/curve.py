@@ -7,7 +7,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 
-from argo_compiler.errors import ArgoError, Invalid, NotFound
+from argo_compiler.base.errors import ArgoError, Invalid, NotFound
 from baselines.learned.extra import check_learned
 
 Points = list[tuple[int, float]]

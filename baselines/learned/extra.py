@@ -2,8 +2,8 @@
 
 from importlib.util import find_spec
 
-from argo_compiler.errors import Unavailable
-from argo_compiler.extras import install_line
+from argo_compiler.base.errors import Unavailable
+from argo_compiler.base.extras import install_line
 
 
 def check_learned() -> None:

@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from benchmarks.instances.text import LARGEST, Numbers, Source
 
 _KEYWORD = re.compile(r"\s*([A-Za-z][A-Za-z_0-9]*)\s*(?::\s*(.*?)\s*)?", re.ASCII)

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from benchmarks.instances.named import NamedProblem
 from benchmarks.instances.text import read_source
 from benchmarks.instances.tsplib import read_tsplib

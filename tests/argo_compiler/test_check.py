@@ -3,7 +3,8 @@
 import pytest
 from pydantic import ValidationError
 
-from argo_compiler.catalog import Area, Catalog, CheckpointInfo, CheckpointKind, Interval
+from argo_compiler.base.catalog import Area, Catalog, CheckpointInfo, CheckpointKind, Interval
+from argo_compiler.base.model import Pose
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import Severity, Span
 from argo_compiler.il import (
@@ -21,7 +22,6 @@ from argo_compiler.il import (
     Task,
     Transition,
 )
-from argo_compiler.model import Pose
 
 
 def measure(name, *ways, object_id="1", **fields):

@@ -2,6 +2,7 @@
 
 import pytest
 
+from argo_compiler.base.model import Pose
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import Severity
 from argo_compiler.il import (
@@ -16,7 +17,6 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
-from argo_compiler.model import Pose
 from tests.argo_compiler.test_check import CHAIN, chain, codes, group, measure, when
 
 HERE = Pose(x=0, y=0, z=0, yaw=0)

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 from pydantic import ValidationError
 
+from argo_compiler.base.model import Pose
 from argo_compiler.files.mission_file import mission_text
 from argo_compiler.hfsm import Executor, Hfsm, Progress, lower
 from argo_compiler.il import (
@@ -27,7 +28,6 @@ from argo_compiler.il import (
     Task,
     Transition,
 )
-from argo_compiler.model import Pose
 from argo_compiler.schemas import SchemaName, read_schema
 from argo_compiler.schemas.generate import MODELS, schema_text
 

@@ -1,6 +1,6 @@
 import pytest
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
 from argo_env.navigation import Navigator
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_planner.terminal import stage_display

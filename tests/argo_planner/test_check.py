@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.diagnostics import has_errors
-from argo_compiler.errors import ArgoError
 from argo_planner.cli import app
 from argo_planner.terminal.files import read_upload
 from argo_planner.use_cases.checking import check_source

@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 import argo_planner.use_cases.doctor
 from argo_compiler import __version__
-from argo_compiler.extras import install_line
+from argo_compiler.base.extras import install_line
 from argo_env.files import cache
 from argo_env.planning.opening import forget_sites, open_site
 from argo_planner.cli import app

@@ -2,7 +2,7 @@
 
 import pytest
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.hfsm import Cancel, GiveBack, Occurred, Pause, Resume, TakeOver
 from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import EventKind

@@ -4,13 +4,13 @@ import json
 
 import pytest
 
+from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.model import Pose
 from argo_compiler.checks import check
-from argo_compiler.errors import ArgoError
 from argo_compiler.files.mission_file import mission_text
 from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_compiler.isar import InspectionView, to_isar
-from argo_compiler.model import Pose
 from argo_compiler.ros import Storage, to_ros1_bag, to_ros2_bag
 from argo_planner.terminal.files import read_upload
 from argo_planner.use_cases.exporting import exporters

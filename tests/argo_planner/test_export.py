@@ -5,8 +5,8 @@ import xml.etree.ElementTree as ET
 import pytest
 from typer.testing import CliRunner
 
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.errors import ArgoError
 from argo_compiler.export import EXPORTERS
 from argo_compiler.files.mission_file import write_mission
 from argo_compiler.il import EventKind, Mission, Reaction, Response, Task, Transition

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_planner.cli import app
 
 NOBODY = 65534

@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from argo_compiler.errors import ArgoError, Conflict, Invalid, Remedy
+from argo_compiler.base.errors import ArgoError, Conflict, Invalid, Remedy
 from argo_compiler.files.mission_file import write_mission
 from argo_compiler.files.writing import write_folder
 from argo_planner.cli import app

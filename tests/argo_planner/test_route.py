@@ -7,10 +7,10 @@ import pytest
 from PIL import Image
 from typer.testing import CliRunner
 
+from argo_compiler.base.model import Pose
 from argo_compiler.files.mission_file import read_mission, write_mission
 from argo_compiler.hfsm import Hfsm
 from argo_compiler.il import Action, EventKind, Group, Order, Task, TimeWindow, WaitRule
-from argo_compiler.model import Pose
 from argo_compiler.route import RouteSuggestion, Tour, evaluate
 from argo_env.planning.opening import OpenedSite
 from argo_env.run.record import RunRecord

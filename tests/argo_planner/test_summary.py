@@ -5,7 +5,7 @@ import io
 import pytest
 from rich.console import Console
 
-from argo_compiler.catalog import CheckpointKind, Interval
+from argo_compiler.base.catalog import CheckpointKind, Interval
 from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Afterwards, EventKind, Mission, Reaction, Response, Task
 from argo_env.faults.plant import GasLeakFault

@@ -2,8 +2,8 @@
 
 import pytest
 
+from argo_compiler.base.errors import Conflict, Invalid, Remedy
 from argo_compiler.diagnostics import Diagnostic, Severity
-from argo_compiler.errors import Conflict, Invalid, Remedy
 from argo_planner.terminal.words import order_said, said, with_options
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_env.envs.route import RouteEnv
 from argo_env.envs.route_sources import TEST, TRAINING
 from argo_env.site.family import parse_family

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.route import suggest_route
 from argo_env.envs.route_instance import score_route
 from argo_env.envs.route_noise import RouteNoise

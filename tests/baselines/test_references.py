@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.route import RouteSuggestion, Tour, evaluate
 from argo_env.envs.route_noise import RouteNoise
 from baselines import references

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from argo_compiler.base.model import Pose
 from argo_compiler.checks import check
 from argo_compiler.il import Action
-from argo_compiler.model import Pose
 from argo_env.drives.drive import DriveStatus
 from argo_env.drives.route import RouteDrive
 from argo_env.drives.timetable import Timetable

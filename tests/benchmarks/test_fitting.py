@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.errors import ArgoError
-from argo_compiler.model import Pose
+from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.model import Pose
 from argo_env.drives.drive import DriveStatus
 from argo_env.drives.route import RouteDrive
 from argo_env.files import resources

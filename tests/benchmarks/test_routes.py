@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.route import (
     NEVER,
     EnergyBudget,

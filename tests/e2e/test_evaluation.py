@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from argo_compiler.errors import NotFound
+from argo_compiler.base.errors import NotFound
 from argo_env.evaluation.store import read_rows
 
 MISSION = "scenarios/umad/missions/mission_1.txt"

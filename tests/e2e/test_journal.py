@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 import yaml
 
+from argo_compiler.base.model import Pose
 from argo_compiler.files.mission_file import write_mission
 from argo_compiler.hfsm import Occurred, Pause, Resume
 from argo_compiler.hfsm.events import ReadingGiven
@@ -32,7 +33,6 @@ from argo_compiler.il import (
     TimeWindow,
     WaitRule,
 )
-from argo_compiler.model import Pose
 from argo_env.run.journal import open_journal
 from argo_env.run.record import RunRecord
 from argo_env.run.session import resume

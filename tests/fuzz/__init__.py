@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.script import import_script
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.fuzz.laws import try_sentence

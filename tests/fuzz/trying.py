@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from argo_compiler.analysis import analyse
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import Severity
-from argo_compiler.errors import ArgoError
 from argo_compiler.files.mission_file import read_mission
 from argo_compiler.hfsm import (
     ActionFailed,

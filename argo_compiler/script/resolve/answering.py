@@ -3,9 +3,9 @@
 from dataclasses import dataclass, replace
 from typing import NoReturn
 
+from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Afterwards, EventKind, Response
-from argo_compiler.model import Pose
 from argo_compiler.script.resolve.accepting import said, words_of
 from argo_compiler.script.resolve.locating import Locator
 from argo_compiler.script.syntax.text.source import Diagnostics

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING, NoReturn
 
-from argo_compiler.catalog import CheckpointInfo
+from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.script.resolve.branching import CaseBranches
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.counting import skipping

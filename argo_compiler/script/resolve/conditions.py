@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from itertools import product
 
-from argo_compiler.catalog import CheckpointInfo
+from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.il import Condition, ConditionType
 from argo_compiler.il.bounds import contradict, cover_all
 from argo_compiler.script.resolve import units

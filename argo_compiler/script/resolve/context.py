@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from argo_compiler.catalog import CheckpointInfo
+from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action
 from argo_compiler.script.resolve.conditions import ConditionResolver

@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from typing import NoReturn
 
-from argo_compiler.catalog import CheckpointInfo
+from argo_compiler.base.catalog import CheckpointInfo
+from argo_compiler.base.listing import listed
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action
-from argo_compiler.listing import listed
 from argo_compiler.script.resolve import making
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.manners import Manners

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from argo_compiler.base.listing import listed
 from argo_compiler.il import Action, OnFailure
-from argo_compiler.listing import listed
 from argo_compiler.script.resolve.branching import CaseBranches
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.program import Do, ProgramBlock, leads_away

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
+from argo_compiler.base.errors import Remedy
+from argo_compiler.base.listing import listed
 from argo_compiler.diagnostics import Span
-from argo_compiler.errors import Remedy
-from argo_compiler.listing import listed
 from argo_compiler.script.syntax.text.source import Diagnostics
 from argo_compiler.script.syntax.tree.places import Coordinates
 from argo_compiler.script.syntax.tree.script import AreaChosen, Areas, ScriptHeader

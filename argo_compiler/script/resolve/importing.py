@@ -3,11 +3,11 @@
 from contextlib import suppress
 from functools import cache
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.garbage_collector import collector_held
+from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
-from argo_compiler.garbage_collector import collector_held
 from argo_compiler.il import Mission, Mode
-from argo_compiler.model import Model
 from argo_compiler.script.resolve.assembly import assemble
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.header import header_values

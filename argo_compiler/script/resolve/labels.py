@@ -1,8 +1,8 @@
 """Which checkpoints a label means: `#4`, `valve R25`, `gauges 1 to 5`."""
 
-from argo_compiler.catalog import CheckpointInfo
+from argo_compiler.base.catalog import CheckpointInfo
+from argo_compiler.base.listing import listed
 from argo_compiler.diagnostics import Span
-from argo_compiler.listing import listed
 from argo_compiler.script.resolve.lookup import Lookup, agrees, told
 from argo_compiler.script.syntax.text.source import Diagnostics
 from argo_compiler.script.syntax.tree.nouns import Kind, Labelled

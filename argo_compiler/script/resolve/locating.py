@@ -2,9 +2,9 @@
 
 from typing import Literal
 
-from argo_compiler.catalog import Area
-from argo_compiler.listing import listed
-from argo_compiler.model import Pose
+from argo_compiler.base.catalog import Area
+from argo_compiler.base.listing import listed
+from argo_compiler.base.model import Pose
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.syntax.text.source import Diagnostics
 from argo_compiler.script.syntax.tree.places import (

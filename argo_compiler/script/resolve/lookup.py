@@ -5,10 +5,10 @@ from collections.abc import Collection, Iterable
 
 from rapidfuzz.distance import OSA
 
-from argo_compiler.catalog import Area, Catalog, CheckpointInfo, CheckpointKind, Floor, Place
+from argo_compiler.base.catalog import Area, Catalog, CheckpointInfo, CheckpointKind, Floor, Place
+from argo_compiler.base.listing import listed
+from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Span
-from argo_compiler.listing import listed
-from argo_compiler.model import Pose
 from argo_compiler.script.syntax.text.source import Diagnostics
 from argo_compiler.script.syntax.text.spelling import nearest
 from argo_compiler.script.syntax.tree.nouns import Kind, Quantity

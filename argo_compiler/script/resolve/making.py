@@ -1,8 +1,8 @@
 """Makes the nodes of a program."""
 
+from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action, WaitRule
-from argo_compiler.model import Pose
 from argo_compiler.script.resolve.program import Do
 
 

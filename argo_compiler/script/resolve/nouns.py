@@ -4,9 +4,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import NoReturn
 
-from argo_compiler.catalog import CheckpointInfo
+from argo_compiler.base.catalog import CheckpointInfo
+from argo_compiler.base.listing import listed
 from argo_compiler.diagnostics import Span
-from argo_compiler.listing import listed
 from argo_compiler.script.resolve.labels import LabelResolver
 from argo_compiler.script.resolve.lookup import Lookup, agrees, told
 from argo_compiler.script.syntax.text.source import Diagnostics, RefusedError

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from itertools import groupby, pairwise, product
 
-from argo_compiler.catalog import CheckpointInfo
+from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.checks.precedence import check_precedence
 from argo_compiler.diagnostics import Severity, Span
 from argo_compiler.il import Action, Mission, Order

@@ -1,6 +1,6 @@
 """Patrols of floors, and through places."""
 
-from argo_compiler.model import Pose
+from argo_compiler.base.model import Pose
 from argo_compiler.script.resolve import making
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.limiting import make_round, timed

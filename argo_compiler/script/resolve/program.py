@@ -9,10 +9,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Span
 from argo_compiler.editing.linked import Linked, LinkedList
 from argo_compiler.il import Action, Condition, JointState, OnFailure, TimeWindow, WaitRule
-from argo_compiler.model import Pose
 from argo_compiler.script.syntax.tree.places import Steps
 
 Alternatives = tuple[tuple[Condition, ...], ...]

@@ -4,11 +4,11 @@ import math
 from dataclasses import replace
 from typing import NoReturn
 
-from argo_compiler.catalog import Area
+from argo_compiler.base.catalog import Area
+from argo_compiler.base.errors import Remedy
+from argo_compiler.base.listing import listed
+from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Span
-from argo_compiler.errors import Remedy
-from argo_compiler.listing import listed
-from argo_compiler.model import Pose
 from argo_compiler.script.resolve import making
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.header import AreaChoice, HeaderValues

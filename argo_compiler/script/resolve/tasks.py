@@ -1,6 +1,6 @@
 """The tasks that an order plans."""
 
-from argo_compiler.catalog import CheckpointInfo
+from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.script.resolve import making
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.manners import Manners

@@ -7,8 +7,8 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
+from argo_compiler.base.listing import listed
 from argo_compiler.il import Mode, Order
-from argo_compiler.listing import listed
 from argo_compiler.script.syntax.area_cells import AreaCells
 from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.building.figures import seconds

@@ -1,6 +1,6 @@
 """What is said about a sentence that makes no sense: at which words, and what may stand there."""
 
-from argo_compiler.listing import listed
+from argo_compiler.base.listing import listed
 from argo_compiler.script.syntax.grammar.parser import StumbleError
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.text.spelling import candidates

@@ -3,7 +3,7 @@
 import re
 from dataclasses import dataclass
 
-from argo_compiler.listing import listed
+from argo_compiler.base.listing import listed
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.text.spelling import candidates, nearest
 from argo_compiler.script.syntax.understanding import Understanding

@@ -5,8 +5,8 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
+from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.garbage_collector import collector_held
 from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.case_lists import CaseLists
 from argo_compiler.script.syntax.cells import Cells

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_compiler.files.reading import decode_text, read_bytes, require_size
 
 MAX_BYTES = 32_000_000

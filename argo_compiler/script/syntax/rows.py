@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from argo_compiler.listing import listed
+from argo_compiler.base.listing import listed
 from argo_compiler.script.syntax.asking import Asking, ask_of_remark
 from argo_compiler.script.syntax.priorities import Priorities, PriorityScale, scale_of
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, Source, quotes

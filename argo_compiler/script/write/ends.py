@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
 from argo_compiler.il import Action, Mission, Task, Transition, WaitRule
 
 _DOCK = re.compile(r"DOCK(?: \(\d+\))?")

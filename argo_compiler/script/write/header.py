@@ -2,9 +2,9 @@
 
 import re
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.model import Pose
 from argo_compiler.il import Mission, Mode, Order
-from argo_compiler.model import Pose
 from argo_compiler.script.write.steps import StepsSaid
 from argo_compiler.script.write.text import duration, point, quote
 

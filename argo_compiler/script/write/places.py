@@ -2,8 +2,8 @@
 
 import re
 
-from argo_compiler.catalog import Catalog
-from argo_compiler.model import Pose
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.model import Pose
 from argo_compiler.script.syntax.words.language import Language
 from argo_compiler.script.syntax.words.lexer import words
 from argo_compiler.script.write.text import point

@@ -5,7 +5,7 @@ as a person would write them; the rest stands in the exact forms. Reading the sc
 mission again, so that formatting it once more changes nothing.
 """
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Mission

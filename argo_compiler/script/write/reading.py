@@ -8,10 +8,10 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from enum import StrEnum
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, Severity, Span
 from argo_compiler.il import Action, Condition, ConditionType, Group, Mission, Task
-from argo_compiler.model import Model
 from argo_compiler.script.write.protocol import lines_of, parts_said
 from argo_compiler.script.write.steps import Said
 from argo_compiler.script.write.text import INDENT, number, wrapped

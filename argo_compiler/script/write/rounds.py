@@ -3,10 +3,10 @@
 from collections import Counter
 from dataclasses import dataclass
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, Group, Mission, Stop, Task, Transition
 from argo_compiler.il.grouping import GroupNesting
-from argo_compiler.model import Pose
 from argo_compiler.script.write.conditions import conditions
 from argo_compiler.script.write.text import duration, times
 

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, Severity, Span
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Action, Group, Mission, Task, Transition

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from math import degrees, radians
 
-from argo_compiler.model import Pose
+from argo_compiler.base.model import Pose
 from argo_compiler.script.syntax.words.numbers import read_figure
 
 WIDTH = 100

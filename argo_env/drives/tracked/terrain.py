@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from argo_compiler.catalog import CheckpointKind
+from argo_compiler.base.catalog import CheckpointKind
 from argo_env.site import SiteCheckpoint
 from argo_env.site.index import ElementIndex
 from argo_env.site.shapes import WALKING_ROLES, Box, Element, Role, Vector

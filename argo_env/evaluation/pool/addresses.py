@@ -3,7 +3,7 @@
 import socket
 from urllib.parse import urlsplit
 
-from argo_compiler.errors import Invalid, Unavailable
+from argo_compiler.base.errors import Invalid, Unavailable
 
 _PATIENCE = 5.0  # s until somebody who listens has taken a connection
 

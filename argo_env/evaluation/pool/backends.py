@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from importlib.util import find_spec
 
-from argo_compiler.errors import Invalid, Unavailable
-from argo_compiler.extras import install_line
+from argo_compiler.base.errors import Invalid, Unavailable
+from argo_compiler.base.extras import install_line
 from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.worker_processes import usable_processors
 

@@ -11,7 +11,7 @@ from distributed import Client, KilledWorker, LocalCluster, rpc
 from distributed import wait as wait_for
 from distributed.client import FutureCancelledError
 
-from argo_compiler.errors import Unavailable
+from argo_compiler.base.errors import Unavailable
 from argo_env.evaluation.pool.addresses import require_listener
 from argo_env.evaluation.pool.backend import WorkerDiedError
 

@@ -10,7 +10,7 @@ from typing import Any
 import ray
 from ray.exceptions import GetTimeoutError, RayTaskError, WorkerCrashedError
 
-from argo_compiler.errors import Unavailable
+from argo_compiler.base.errors import Unavailable
 from argo_env.evaluation.pool.addresses import require_listener
 from argo_env.evaluation.pool.backend import WorkerDiedError
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_env.evaluation.folder import FAILING
 from argo_env.evaluation.places import FailurePlace, failure_places_of
 from argo_env.evaluation.plots import failure_places

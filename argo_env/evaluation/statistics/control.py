@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_env.evaluation.statistics.rates import LEVEL
 from argo_env.evaluation.statistics.strata import Estimate
 

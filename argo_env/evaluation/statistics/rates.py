@@ -6,7 +6,7 @@ from statistics import NormalDist
 
 from scipy.special import betaincinv
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 
 LEVEL = 0.95
 """of all intervals, unless another is asked for"""

@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_env.evaluation.statistics.rates import LEVEL, clopper_pearson
 
 

@@ -6,7 +6,7 @@ from collections.abc import Collection
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.listing import listed
+from argo_compiler.base.listing import listed
 from argo_env.navigation import Navigator
 from argo_env.navigation.views import find_views, possible_views, sight_target
 from argo_env.planning.checking import unseen_checkpoints

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_env.navigation import Navigator
 from argo_env.planning.checking import unseen_checkpoints, unserved_floors
 from argo_env.planning.flaws.checkpoints import checkpoint_flaws

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.listing import listed
+from argo_compiler.base.listing import listed
 from argo_env.site import Site
 from argo_env.site.shapes import WALKING_ROLES, half_extents
 from argo_env.site.spec import Rect

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.listing import listed
+from argo_compiler.base.listing import listed
 from argo_env.navigation import Navigator
 from argo_env.navigation.lattice import MARGIN
 from argo_env.planning.catalog import APART, patrol_corners

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from argo_compiler.catalog import CheckpointKind
+from argo_compiler.base.catalog import CheckpointKind
 from argo_env.sensing.vision.faces import FACES
 from argo_env.sensing.vision.instrument import Indicator, Instrument, grid, turned
 

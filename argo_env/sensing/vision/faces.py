@@ -11,7 +11,7 @@ from pathlib import Path
 
 from PIL import Image, ImageDraw, ImageFont
 
-from argo_compiler.catalog import CheckpointKind
+from argo_compiler.base.catalog import CheckpointKind
 from argo_env.files import resources
 
 PIXELS_PER_METRE = 3600

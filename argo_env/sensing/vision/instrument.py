@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from argo_compiler.catalog import CheckpointKind
+from argo_compiler.base.catalog import CheckpointKind
 from argo_env.sensing.vision.faces import PIXELS_PER_METRE, FaceShape, face_file
 
 Points = NDArray[np.float64]

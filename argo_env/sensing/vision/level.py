@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.catalog import CheckpointKind
+from argo_compiler.base.catalog import CheckpointKind
 from argo_env.sensing.vision.faces import FACES
 from argo_env.sensing.vision.instrument import Indicator, Instrument, grid
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import Invalid, Unavailable
-from argo_compiler.extras import install_line
+from argo_compiler.base.errors import Invalid, Unavailable
+from argo_compiler.base.extras import install_line
 from argo_env.robot.pose import BodyPose
 from argo_env.seeding import generator
 from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError

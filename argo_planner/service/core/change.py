@@ -4,9 +4,9 @@ from bisect import bisect_left
 from collections.abc import Sequence
 from typing import Any, Generic, TypeVar
 
+from argo_compiler.base.model import Model
 from argo_compiler.editing.commands import SetHeader
 from argo_compiler.il import Group, Mission, Reaction, Task
-from argo_compiler.model import Model
 
 Item = TypeVar("Item", Task, Group, Reaction)
 HEADER = tuple(name for name in SetHeader.model_fields if name != "kind")

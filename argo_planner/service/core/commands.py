@@ -5,9 +5,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from argo_compiler.base.model import Model
 from argo_compiler.editing import Consequence, Edit
 from argo_compiler.il import Mission
-from argo_compiler.model import Model
 from argo_planner.service.core.change import MissionChange
 
 MOST_EDITS = 1000

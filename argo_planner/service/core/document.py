@@ -6,9 +6,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from argo_compiler.errors import Conflict, NotFound
+from argo_compiler.base.errors import Conflict, NotFound
+from argo_compiler.base.model import Model
 from argo_compiler.il import Mission
-from argo_compiler.model import Model
 from argo_planner.service.core.commands import Revision
 from argo_planner.service.core.limits import require_name
 from argo_planner.service.core.plan import MissionPlan

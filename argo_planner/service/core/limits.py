@@ -4,7 +4,7 @@ import re
 import unicodedata
 from collections.abc import Iterator
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_compiler.il import Mission
 from argo_planner.service.core.change import MissionChange
 from argo_planner.service.core.refusals import PlanTooLarge

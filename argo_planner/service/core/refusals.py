@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable
 
+from argo_compiler.base.errors import ArgoError, Conflict, Invalid
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.errors import ArgoError, Conflict, Invalid
 
 
 class StaleRevision(Conflict):

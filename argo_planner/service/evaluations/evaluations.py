@@ -6,7 +6,7 @@ from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
 
-from argo_compiler.errors import ArgoError, Conflict, NotFound, Unavailable
+from argo_compiler.base.errors import ArgoError, Conflict, NotFound, Unavailable
 from argo_planner.service.evaluations.kept import EvaluationFolder, KeptEvaluation
 from argo_planner.service.evaluations.replay import ReplayedRun, ReplayOrder, replay_run
 from argo_planner.service.jobs.evaluation import (

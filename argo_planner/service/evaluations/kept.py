@@ -9,10 +9,10 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from argo_compiler.errors import ArgoError, NotFound, Unavailable
+from argo_compiler.base.errors import ArgoError, NotFound, Unavailable
+from argo_compiler.base.model import Model
 from argo_compiler.files.reading import FileError, read_bytes
 from argo_compiler.files.writing import write_whole
-from argo_compiler.model import Model
 from argo_env.evaluation.folder import REPORT
 from argo_env.files.folders import make_folder
 from argo_planner.service.jobs.evaluation import EvaluationOrder, cut_short

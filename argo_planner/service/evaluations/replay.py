@@ -3,8 +3,8 @@
 from datetime import datetime
 from pathlib import Path
 
-from argo_compiler.errors import NotFound
-from argo_compiler.model import Model
+from argo_compiler.base.errors import NotFound
+from argo_compiler.base.model import Model
 from argo_env.evaluation.folder import kept_plan
 from argo_env.evaluation.store import read_rows
 from argo_env.run.log import Entry

@@ -6,11 +6,11 @@ from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 
 from argo_compiler.analysis import Analysis, analyse
+from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.model import Model
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
-from argo_compiler.errors import ArgoError
 from argo_compiler.il import Mission
-from argo_compiler.model import Model
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.planning.poses_to_read_from import unseen_from_poses
 from argo_planner.service.processes.orphans import end_with_parent

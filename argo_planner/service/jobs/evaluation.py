@@ -10,9 +10,9 @@ from pathlib import Path
 
 from pydantic import Field, field_validator, model_validator
 
-from argo_compiler.errors import Invalid, NotFound
+from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.model import Model
 from argo_compiler.il import Mission
-from argo_compiler.model import Model
 from argo_env.evaluation.carrying_out import WorkOrder, carry_out
 from argo_env.evaluation.evaluating import Evaluating
 from argo_env.evaluation.evaluation import Evaluation

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator
 
-from argo_compiler.model import Model
+from argo_compiler.base.model import Model
 from argo_planner.service.jobs.evaluation import EvaluationAsked
 from argo_planner.service.jobs.order import OrderFound, OrderProgress
 from argo_planner.service.jobs.standing import EvaluationStanding

@@ -6,7 +6,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
-from argo_compiler.errors import ArgoError, Conflict, NotFound, Unavailable
+from argo_compiler.base.errors import ArgoError, Conflict, NotFound, Unavailable
 from argo_planner.service.jobs.job import EvaluationJob, Job, JobState
 from argo_planner.service.processes.work import JobProcess
 

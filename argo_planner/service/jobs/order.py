@@ -1,7 +1,7 @@
 """The search for a mission's best order."""
 
+from argo_compiler.base.model import Model
 from argo_compiler.il import Mission
-from argo_compiler.model import Model
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.route.stop import SearchProgress
 from argo_env.planning.opening import open_site

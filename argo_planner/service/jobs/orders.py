@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from datetime import datetime
 
-from argo_compiler.errors import Conflict, NotFound
+from argo_compiler.base.errors import Conflict, NotFound
 from argo_compiler.il import Mission
 from argo_compiler.reorder.requirements import Requirements
 from argo_planner.service.jobs.job import OrderJob

@@ -3,7 +3,7 @@
 from collections import Counter
 from statistics import median
 
-from argo_compiler.model import Model
+from argo_compiler.base.model import Model
 from argo_env.evaluation.evaluating import EvaluationProgress
 from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.rates import Decision, IntervalMethod, PlanRate, quick_rate

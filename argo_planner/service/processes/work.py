@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 from multiprocessing.connection import Connection
 from typing import Any, Generic, TypeVar
 
-from argo_compiler.errors import ArgoError, Unavailable
+from argo_compiler.base.errors import ArgoError, Unavailable
 from argo_planner.service.processes.orphans import end_with_parent
 
 Result = TypeVar("Result")

@@ -5,9 +5,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Mission
-from argo_compiler.model import Model
 from argo_planner.service.core.commands import Revision
 from argo_planner.service.core.document import PlanDocument, PlanVersion
 from argo_planner.service.jobs.analysis import AnalysisFound

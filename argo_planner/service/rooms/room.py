@@ -5,10 +5,10 @@ from collections.abc import Callable, Coroutine
 from datetime import datetime
 from typing import Any, TypeVar
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.errors import Conflict
+from argo_compiler.base.model import Model
 from argo_compiler.checks import check
-from argo_compiler.errors import Conflict
-from argo_compiler.model import Model
 from argo_planner.service.core.commands import PlanCommand, ReplaceFrom, Revision
 from argo_planner.service.core.document import (
     PlanDocument,

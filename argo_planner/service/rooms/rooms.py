@@ -5,7 +5,7 @@ from collections.abc import Callable
 from datetime import datetime
 from functools import partial
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
 from argo_compiler.il import Mission
 from argo_planner.service.jobs.analysis import Analyst
 from argo_planner.service.rooms.room import PlanRoom

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 
-from argo_compiler.errors import ArgoError, Conflict
+from argo_compiler.base.errors import ArgoError, Conflict
 from argo_compiler.hfsm import Cancel, GiveBack, Occurred, Pause, Resume, TakeOver
 from argo_compiler.hfsm.events import ReadingGiven
 from argo_env.drives.powertrain import Powertrain

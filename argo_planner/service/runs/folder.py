@@ -7,8 +7,8 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from argo_compiler.errors import NotFound, Unavailable
-from argo_compiler.model import Model
+from argo_compiler.base.errors import NotFound, Unavailable
+from argo_compiler.base.model import Model
 from argo_env.files.checked_lines import sync_folder
 from argo_env.run.journal import open_journal
 from argo_env.run.log import Entry

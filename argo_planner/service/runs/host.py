@@ -7,8 +7,8 @@ from datetime import datetime
 from enum import StrEnum
 from pathlib import Path
 
-from argo_compiler.errors import ArgoError, Conflict
-from argo_compiler.model import Model
+from argo_compiler.base.errors import ArgoError, Conflict
+from argo_compiler.base.model import Model
 from argo_env.run.log import Entry
 from argo_planner.service.rooms.mailbox import Mailbox
 from argo_planner.service.runs.disk import DiskThread

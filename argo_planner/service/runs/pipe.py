@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from multiprocessing.connection import Connection
 from typing import Any
 
-from argo_compiler.model import Model
+from argo_compiler.base.model import Model
 from argo_planner.service.runs.requests import RunRequest
 
 

@@ -3,8 +3,8 @@
 import logging
 from collections.abc import Iterable, Sequence
 
-from argo_compiler.errors import ArgoError, NotFound
-from argo_compiler.model import Model
+from argo_compiler.base.errors import ArgoError, NotFound
+from argo_compiler.base.model import Model
 from argo_planner.service.rooms.mailbox import Mailbox
 from argo_planner.service.runs.disk import DiskThread
 from argo_planner.service.runs.folder import KeptRun, RunFolder

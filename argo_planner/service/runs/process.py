@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from argo_compiler.errors import Unavailable
-from argo_compiler.model import Model
+from argo_compiler.base.errors import Unavailable
+from argo_compiler.base.model import Model
 from argo_planner.service.runs.pipe import RobotText
 from argo_planner.service.runs.requests import RunOrder, RunRequest
 from argo_planner.service.runs.state import RunState

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from argo_compiler.errors import NotFound
+from argo_compiler.base.errors import NotFound
 from argo_planner.service.runs.state import RunState, RunStatus
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from argo_compiler.errors import Conflict, NotFound
+from argo_compiler.base.errors import Conflict, NotFound
 from argo_planner.service.runs.requests import RequestState, RunRequest
 
 MOST_TOLD = 50

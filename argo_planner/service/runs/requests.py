@@ -5,8 +5,8 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field
 
+from argo_compiler.base.model import Model, Pose
 from argo_compiler.il import EventKind, Mission
-from argo_compiler.model import Model, Pose
 from argo_env.faults.kinds import AnyFault
 from argo_planner.service.core.commands import CommandId
 from argo_planner.service.world.obstacles import Obstacle

@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from argo_compiler.base.model import Model
 from argo_compiler.il import EventKind
-from argo_compiler.model import Model
 from argo_env.run.headline import Headline
 from argo_env.run.log import Entry
 from argo_env.run.record import Reading

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from argo_compiler.errors import Conflict, NotFound
+from argo_compiler.base.errors import Conflict, NotFound
 from argo_compiler.hfsm import ByHand
 from argo_compiler.il import Action, Mission, Task
 from argo_env.run.simulation import Simulation

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from argo_compiler.model import Model
+from argo_compiler.base.model import Model
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
 from argo_env.run.observer import Observer

@@ -9,7 +9,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from uuid import uuid4
 
-from argo_compiler.errors import ArgoError, Unavailable
+from argo_compiler.base.errors import ArgoError, Unavailable
 from argo_compiler.files.writing import write_whole
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.recording.live import LiveWriter, served_live

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from argo_compiler.errors import Conflict, NotFound, Unavailable
+from argo_compiler.base.errors import Conflict, NotFound, Unavailable
 from argo_compiler.il import Mission
 from argo_env.closing import Closing
 from argo_env.files.checked_lines import sync_folder

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
+from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.model import Model
 
 _log = logging.getLogger(__name__)
 MOST_NOTES = 200

@@ -5,8 +5,8 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from argo_compiler.errors import ArgoError, NotFound
-from argo_compiler.model import Model
+from argo_compiler.base.errors import ArgoError, NotFound
+from argo_compiler.base.model import Model
 from argo_env.files.checked_lines import checked_object
 from argo_planner.service.storage.plan_file import base_object, earlier_file, plan_content
 

@@ -9,7 +9,7 @@ from enum import StrEnum
 from pathlib import Path
 from urllib.parse import unquote
 
-from argo_compiler.errors import ArgoError, Invalid, Unavailable
+from argo_compiler.base.errors import ArgoError, Invalid, Unavailable
 from argo_planner.service.core.limits import require_name
 
 SHORTEST_TOKEN = 16

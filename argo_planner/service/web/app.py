@@ -9,7 +9,7 @@ from typing import Any
 from fastapi import APIRouter, FastAPI, Response
 
 from argo_compiler import __version__
-from argo_compiler.model import Model
+from argo_compiler.base.model import Model
 from argo_planner.service.web import (
     commands,
     evaluations,

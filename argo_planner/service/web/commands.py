@@ -6,8 +6,8 @@ from typing import Annotated
 from fastapi import APIRouter, Response
 from pydantic import Discriminator, Field
 
-from argo_compiler.errors import NotFound
-from argo_compiler.model import Model
+from argo_compiler.base.errors import NotFound
+from argo_compiler.base.model import Model
 from argo_compiler.script.write.reading import MissionReading
 from argo_planner.service.core.commands import (
     CommandId,

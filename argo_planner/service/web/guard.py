@@ -10,7 +10,7 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_planner.service.web.access import AccessToken, TokenBook, TokenMissing, visitor
 from argo_planner.service.web.problems import Problem, TooLarge, answer, plain, problem_of
 

@@ -5,8 +5,8 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Response
 from pydantic import Field
 
-from argo_compiler.errors import Conflict, Invalid, NotFound
-from argo_compiler.model import Model
+from argo_compiler.base.errors import Conflict, Invalid, NotFound
+from argo_compiler.base.model import Model
 from argo_compiler.reorder.mission import require_known
 from argo_compiler.reorder.requirements import Requirements
 from argo_planner.service.core.commands import CommandId, ReplacePlan

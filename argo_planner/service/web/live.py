@@ -9,7 +9,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query, WebSocket, WebSocketDisconnect
 from pydantic import ValidationError
 
-from argo_compiler.errors import ArgoError, Unavailable
+from argo_compiler.base.errors import ArgoError, Unavailable
 from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
 from argo_planner.service.rooms.messages import SelectTasks
 from argo_planner.service.web.access import Visitor

@@ -5,9 +5,9 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Response
 
+from argo_compiler.base.errors import Conflict, NotFound
+from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.errors import Conflict, NotFound
-from argo_compiler.model import Model
 from argo_planner.service.runs.pictures import picture_of
 from argo_planner.service.storage.notes import read_notes
 from argo_planner.service.web.jobs import JobId

@@ -12,11 +12,11 @@ from urllib.parse import quote
 from fastapi import APIRouter, Path, Query, Request, Response
 from pydantic import Field
 
+from argo_compiler.base.errors import NotFound
+from argo_compiler.base.model import Model
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, has_errors
-from argo_compiler.errors import NotFound
 from argo_compiler.il import Mission
-from argo_compiler.model import Model
 from argo_env.planning.opening import OpenedSite
 from argo_planner.service.core.change import difference
 from argo_planner.service.core.commands import Revision

@@ -10,7 +10,7 @@ from pathlib import Path
 from fastapi import APIRouter, Response
 from fastapi.responses import HTMLResponse
 
-from argo_compiler.errors import NotFound
+from argo_compiler.base.errors import NotFound
 
 router = APIRouter(include_in_schema=False)
 

@@ -15,8 +15,7 @@ from fastapi.exceptions import (
 from pydantic import Field
 from starlette.exceptions import HTTPException
 
-from argo_compiler.diagnostics import Diagnostic, DiagnosticError
-from argo_compiler.errors import (
+from argo_compiler.base.errors import (
     ArgoError,
     Conflict,
     Invalid,
@@ -25,7 +24,8 @@ from argo_compiler.errors import (
     Unavailable,
     Unreachable,
 )
-from argo_compiler.model import Model
+from argo_compiler.base.model import Model
+from argo_compiler.diagnostics import Diagnostic, DiagnosticError
 from argo_planner.service.core.commands import Revision
 from argo_planner.service.core.refusals import ChangedSince, EditRefused, StaleRevision
 from argo_planner.service.web.access import AccessDenied, TokenMissing

@@ -14,8 +14,8 @@ from fastapi import Depends, Header, Path, Request, Response
 from fastapi.security import APIKeyCookie, HTTPBearer
 from pydantic import Field
 
-from argo_compiler.errors import Invalid
-from argo_compiler.model import Model
+from argo_compiler.base.errors import Invalid
+from argo_compiler.base.model import Model
 from argo_env.planning.opening import OpenedSite
 from argo_planner.service.evaluations.evaluations import Evaluations
 from argo_planner.service.jobs.jobs import Jobs

@@ -6,8 +6,8 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query, Response, WebSocket
 from pydantic import Field
 
-from argo_compiler.errors import ArgoError, Invalid, NotFound
-from argo_compiler.model import Model
+from argo_compiler.base.errors import ArgoError, Invalid, NotFound
+from argo_compiler.base.model import Model
 from argo_env.faults.kinds import AnyFault
 from argo_env.report.files import PAGE, RECORD
 from argo_env.run.drives_and_sensors import DRIVES, SENSORS

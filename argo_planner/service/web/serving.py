@@ -12,7 +12,7 @@ from pathlib import Path
 
 import uvicorn
 
-from argo_compiler.errors import Unavailable
+from argo_compiler.base.errors import Unavailable
 from argo_env.planning.opening import OpenedSite
 from argo_planner.service.evaluations.evaluations import Evaluations
 from argo_planner.service.jobs.analysis import Analyst

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Response
 
-from argo_compiler.model import Model
+from argo_compiler.base.model import Model
 from argo_planner.service.core.commands import CommandId, ReplaceFrom, ReplacePlan
 from argo_planner.service.core.document import PlanVersion
 from argo_planner.service.core.refusals import StaleRevision

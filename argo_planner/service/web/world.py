@@ -7,10 +7,10 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Path, Request, Response
 from pydantic import Field
 
-from argo_compiler.catalog import CheckpointKind
-from argo_compiler.errors import Invalid
+from argo_compiler.base.catalog import CheckpointKind
+from argo_compiler.base.errors import Invalid
+from argo_compiler.base.model import Model, Pose
 from argo_compiler.il import Task
-from argo_compiler.model import Model, Pose
 from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.missions import sound
 from argo_planner.service.web.problems import documented

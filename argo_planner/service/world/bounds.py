@@ -1,7 +1,7 @@
 """How far away things can be said to stand."""
 
-from argo_compiler.errors import Invalid
-from argo_compiler.model import Pose
+from argo_compiler.base.errors import Invalid
+from argo_compiler.base.model import Pose
 
 FARTHEST = 10_000.0
 """m from the middle of the site's frame"""

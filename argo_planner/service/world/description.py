@@ -4,9 +4,9 @@ import hashlib
 import math
 from collections.abc import Sequence
 
-from argo_compiler.catalog import CheckpointKind, Interval
-from argo_compiler.errors import ArgoError
-from argo_compiler.model import Model, Pose
+from argo_compiler.base.catalog import CheckpointKind, Interval
+from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.model import Model, Pose
 from argo_env.navigation import Navigator
 from argo_env.navigation.raster import CELL
 from argo_env.navigation.stencil import HEADINGS, heading_angle

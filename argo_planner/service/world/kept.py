@@ -5,8 +5,8 @@ from pathlib import Path
 
 from pydantic import Field, ValidationError
 
-from argo_compiler.errors import Unavailable
-from argo_compiler.model import Model
+from argo_compiler.base.errors import Unavailable
+from argo_compiler.base.model import Model
 from argo_env.files.checked_lines import sync_folder
 from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.world.obstacles import Obstacle

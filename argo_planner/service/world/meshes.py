@@ -7,10 +7,10 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.catalog import CheckpointKind
+from argo_compiler.base.catalog import CheckpointKind
 from argo_env.files import resources
 from argo_env.planning.opening import OpenedSite
-from argo_env.recording.robot_model import Quaternion, RobotModel, Visual, read_model
+from argo_env.robot.robot_model import Quaternion, RobotModel, Visual, read_model
 from argo_env.robot.spec import robot_folder
 from argo_env.site.railings import THICKNESS, TOE_PLATE
 from argo_env.site.shapes import Box, Element, Role, Solid

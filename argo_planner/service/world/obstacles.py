@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, field_validator
 
-from argo_compiler.errors import Invalid
-from argo_compiler.model import Model, Pose
+from argo_compiler.base.errors import Invalid
+from argo_compiler.base.model import Model, Pose
 from argo_env.navigation import Blockage, Navigator
 from argo_env.navigation.blockage import LAYER
 from argo_env.navigation.raster import CELL

@@ -5,14 +5,14 @@ from enum import StrEnum
 from itertools import pairwise
 
 from argo_compiler.analysis import Leg, NoWay
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.errors import ArgoError, Invalid, NotFound
+from argo_compiler.base.model import Model, Pose
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, has_errors
-from argo_compiler.errors import ArgoError, Invalid, NotFound
 from argo_compiler.il import Action, Mission, OnFailure, Task
 from argo_compiler.il.grouping import group_ranges
 from argo_compiler.il.ways import beginning, branches, default_target
-from argo_compiler.model import Model, Pose
 from argo_env.navigation import Path
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.travel import SiteTravel

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_env.navigation import Navigator
 from argo_env.navigation.graphs import costs_of
 from argo_env.navigation.lattice import LEVEL, MARGIN, standing_rise

@@ -3,9 +3,9 @@
 import itertools
 
 from argo_compiler.analysis import Leg, NoWay
-from argo_compiler.catalog import Area, Catalog
+from argo_compiler.base.catalog import Area, Catalog
+from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, Condition, ConditionType, Mission, Task, Transition
-from argo_compiler.model import Pose
 from tests.argo_compiler.analysis.worlds import checkpoint
 
 DOCK = Pose(x=5, y=0, z=0)

@@ -3,6 +3,7 @@
 import pytest
 
 from argo_compiler.analysis import analyse
+from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import CODES, Severity
 from argo_compiler.il import (
     Action,
@@ -15,7 +16,6 @@ from argo_compiler.il import (
     TimeWindow,
     WaitRule,
 )
-from argo_compiler.model import Pose
 from tests.argo_compiler.analysis.building import CATALOG, DOCK, Steady, mission, task, way
 
 FAR = Pose(x=-1, y=0, z=0)

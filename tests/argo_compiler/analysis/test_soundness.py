@@ -5,7 +5,7 @@ from hypothesis import HealthCheck, assume, event, given, settings
 from hypothesis import strategies as st
 
 from argo_compiler.analysis import Verdict, analyse
-from argo_compiler.catalog import Area, Catalog
+from argo_compiler.base.catalog import Area, Catalog
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.hfsm import Cause, lower

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from argo_compiler.analysis import Leg, NoWay
 from argo_compiler.analysis.flow import Flow
 from argo_compiler.analysis.values import told_by_others
-from argo_compiler.catalog import Area, Catalog, CheckpointInfo, CheckpointKind, Interval
+from argo_compiler.base.catalog import Area, Catalog, CheckpointInfo, CheckpointKind, Interval
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import (
     ActionFailed,
     ActionStopped,
@@ -36,7 +37,6 @@ from argo_compiler.il import (
     Task,
     Transition,
 )
-from argo_compiler.model import Pose
 from tests.mission_parts import HERE, OBJECTS, groups_over, transitions, wait_rules, windows
 
 STEPS = 80

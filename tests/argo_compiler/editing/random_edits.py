@@ -2,6 +2,7 @@
 
 import random
 
+from argo_compiler.base.model import Pose
 from argo_compiler.editing import commands
 from argo_compiler.il import (
     Action,
@@ -21,7 +22,6 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
-from argo_compiler.model import Pose
 
 HERE = Pose(x=1, y=2, z=0)
 

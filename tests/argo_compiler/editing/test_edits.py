@@ -5,6 +5,7 @@ import inspect
 import pytest
 
 from argo_compiler import editing
+from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics.codes import CODES
 from argo_compiler.editing import EditConflict, EditInvalid, EditNotFound, commands
 from argo_compiler.editing.commands import FUNCTIONS, apply, read_edit
@@ -23,7 +24,6 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
-from argo_compiler.model import Pose
 
 HIGH = Condition(type="MEASURED_VALUE_GREATER", object_id="1", param1=5)
 DOCK = Pose(x=0, y=0, z=0)

@@ -6,13 +6,13 @@ from collections import Counter
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from argo_compiler.base.errors import Conflict, Invalid, NotFound
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import Severity
 from argo_compiler.diagnostics.codes import CODES
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing import EditError
 from argo_compiler.editing.commands import FUNCTIONS, apply, read_edit
-from argo_compiler.errors import Conflict, Invalid, NotFound
 from argo_compiler.hfsm import lower
 from argo_compiler.il import Mission
 from tests.argo_compiler.editing.random_edits import random_edit

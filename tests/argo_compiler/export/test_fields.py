@@ -2,6 +2,7 @@
 
 import pytest
 
+from argo_compiler.base.model import Pose
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, Span, has_errors
 from argo_compiler.export import EXPORTERS
@@ -26,7 +27,6 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
-from argo_compiler.model import Pose
 from argo_compiler.ros import ros2_types, to_message
 
 HERE, THERE = Pose(x=0, y=0, z=0), Pose(x=1, y=2, z=3, yaw=1)

@@ -5,6 +5,7 @@ import xml.etree.ElementTree as ET
 import pytest
 from hypothesis import assume, given, settings
 
+from argo_compiler.base.model import Pose
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import Severity
 from argo_compiler.export.scxml import to_scxml
@@ -33,7 +34,6 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
-from argo_compiler.model import Pose
 from tests.argo_compiler.export.charts import ARGO, NS, Chart
 from tests.argo_compiler.export.executing import Both, play
 from tests.argo_compiler.hfsm.random_missions import busy_cases, cases

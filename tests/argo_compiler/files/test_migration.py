@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.files.mission_file import decode_mission
 from argo_compiler.il import Action, Group, Mission, Stop, Task, Transition
 from argo_compiler.il.velocities import BEGINNING, of_ways_on, of_ways_there, ways
-from argo_compiler.model import Pose
 
 DOCK = {"x": 0.0, "y": 0.0, "z": 0.0, "yaw": 0.0}
 

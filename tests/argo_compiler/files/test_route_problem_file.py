@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from argo_compiler.errors import ArgoError, Invalid
+from argo_compiler.base.errors import ArgoError, Invalid
 from argo_compiler.files.route_problem_file import (
     parse_route_problem,
     read_route_problem,

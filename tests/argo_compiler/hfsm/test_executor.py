@@ -2,7 +2,7 @@ import json
 
 import pytest
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.hfsm import (
     ActionFailed,
     ActionStopped,

@@ -2,6 +2,7 @@
 
 import pytest
 
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import (
     Cancel,
     Cause,
@@ -20,7 +21,6 @@ from argo_compiler.il import (
     Reaction,
     Response,
 )
-from argo_compiler.model import Pose
 from tests.argo_compiler.hfsm.play import Play, badly, stopped, task, well
 
 DOCK = Pose(x=1, y=0, z=0)

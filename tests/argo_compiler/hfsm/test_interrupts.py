@@ -9,7 +9,8 @@ from itertools import product
 
 import pytest
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import (
     ActionStopped,
     ActionSucceeded,
@@ -28,7 +29,6 @@ from argo_compiler.hfsm.interrupts import ACTIVE, ROWS, TABLE, TRANSIENT, Given,
 from argo_compiler.hfsm.progress import Waiting
 from argo_compiler.hfsm.standing import InterruptState, advance
 from argo_compiler.il import Afterwards, EventKind, Mission, Reaction, Response, Task
-from argo_compiler.model import Pose
 from tests.argo_compiler.hfsm.interrupt_rules import Alarmed, Rules
 
 EVENTS = (EventKind.GAS_LEAK, EventKind.LOW_BATTERY, EventKind.EMERGENCY_STOP)

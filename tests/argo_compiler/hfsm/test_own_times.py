@@ -2,7 +2,7 @@
 
 import pytest
 
-from argo_compiler.handover import hand_over, match
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import (
     ActionFailed,
     ActionStopped,
@@ -24,6 +24,7 @@ from argo_compiler.hfsm import (
     Tick,
     lower,
 )
+from argo_compiler.hfsm.handover import hand_over, match
 from argo_compiler.il import (
     Action,
     Afterwards,
@@ -41,7 +42,6 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
-from argo_compiler.model import Pose
 from tests.argo_compiler.hfsm.play import Play, badly, stopped, task, well
 
 CLEAR = Occurred(EventKind.ALL_CLEAR)

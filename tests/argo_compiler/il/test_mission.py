@@ -3,6 +3,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
+from argo_compiler.base.model import Pose
 from argo_compiler.il import (
     Action,
     Condition,
@@ -16,7 +17,6 @@ from argo_compiler.il import (
     Task,
     Transition,
 )
-from argo_compiler.model import Pose
 
 FLOATS = st.floats(allow_nan=False, allow_infinity=False)
 TEXTS = st.text(max_size=8)

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.catalog import Catalog, CheckpointInfo, CheckpointKind, Interval
+from argo_compiler.base.catalog import Catalog, CheckpointInfo, CheckpointKind, Interval
+from argo_compiler.base.model import Pose
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.hfsm import lower
@@ -29,7 +30,6 @@ from argo_compiler.il import (
     WaitRule,
 )
 from argo_compiler.isar import InspectionView, from_isar, read_isar, to_isar
-from argo_compiler.model import Pose
 from tests.argo_compiler.isar.conftest import assert_isar_takes
 
 VIEWS = {

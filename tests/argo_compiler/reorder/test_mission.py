@@ -9,9 +9,9 @@ import pytest
 from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
-from argo_compiler.errors import ArgoError
 from argo_compiler.hfsm import Outcome
 from argo_compiler.il import Action, Mission, Order
 from argo_compiler.reorder.mission import route_problem

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import lower
 from argo_compiler.il import (
     Action,
@@ -23,7 +24,6 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
-from argo_compiler.model import Pose
 from argo_compiler.reorder.mission import late_visits, route_problem
 from argo_compiler.reorder.requirements import Requirements, parse_seconds
 from argo_compiler.reorder.rewriting import apply_route

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from hypothesis import strategies as st
 
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import (
     ActionFailed,
     ActionStopped,
@@ -29,7 +30,6 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
-from argo_compiler.model import Pose
 from argo_compiler.reorder.travel_matrix import TravelMatrix
 from argo_compiler.route import Tour, evaluate
 

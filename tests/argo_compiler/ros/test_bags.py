@@ -12,8 +12,8 @@ from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2 import Reader as Ros2Reader
 from rosbags.rosbag2 import Writer as Ros2Writer
 
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.errors import ArgoError
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_compiler.ros import (
     Storage,

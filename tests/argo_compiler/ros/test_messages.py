@@ -7,6 +7,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import DiagnosticError, Severity, Span
 from argo_compiler.il import (
     Action,
@@ -21,7 +22,6 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
-from argo_compiler.model import Pose
 from argo_compiler.ros import (
     from_message,
     message_package,

@@ -16,7 +16,7 @@ from functools import partial
 
 import numpy as np
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.route import RouteProblem, RouteSuggestion, suggest_route
 from tests.argo_compiler.route.odd_problems import odd_problem
 from tests.argo_compiler.route.second_reading import Best, Reading

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from argo_compiler.errors import ArgoError, Invalid
+from argo_compiler.base.errors import ArgoError, Invalid
 from argo_compiler.route import (
     NEVER,
     EnergyBudget,

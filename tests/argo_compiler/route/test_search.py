@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from argo_compiler.errors import Conflict, Invalid, NotFound
+from argo_compiler.base.errors import Conflict, Invalid, NotFound
 from argo_compiler.route import (
     Precedence,
     RouteProblem,

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from argo_compiler.catalog import (
+from argo_compiler.base.catalog import (
     Area,
     Catalog,
     CheckpointInfo,
@@ -15,7 +15,7 @@ from argo_compiler.catalog import (
     Interval,
     Place,
 )
-from argo_compiler.model import Pose
+from argo_compiler.base.model import Pose
 from argo_compiler.script import import_script
 
 NAMES = {

@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 from hypothesis import assume, given, settings
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.model import Pose
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.files.mission_file import read_mission
@@ -25,7 +26,6 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
-from argo_compiler.model import Pose
 from argo_compiler.script import format_script, import_script
 from argo_compiler.script.write.reading import read_back
 from tests.argo_compiler.hfsm.random_missions import missions as tangled_missions

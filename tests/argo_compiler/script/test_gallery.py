@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.script import import_script
 from argo_compiler.script.write.reading import read_back

@@ -3,7 +3,7 @@ is read, asked about or warned of, never dropped."""
 
 import pytest
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.il import EventKind, Order
 from argo_compiler.script import import_script

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from argo_compiler.catalog import Catalog, Place
+from argo_compiler.base.catalog import Catalog, Place
+from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.il import (
     Afterwards,
@@ -17,7 +18,6 @@ from argo_compiler.il import (
     Response,
     Stop,
 )
-from argo_compiler.model import Pose
 from argo_compiler.script import import_script, parse
 
 PLAN = """\

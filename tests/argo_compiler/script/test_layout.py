@@ -2,7 +2,7 @@
 
 import pytest
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
 from argo_compiler.il import Order
 from argo_compiler.script import Resolved, import_script, parse

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.il import Mission
 from argo_compiler.script import import_script

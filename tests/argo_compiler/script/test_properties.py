@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.catalog import Catalog, CheckpointKind
+from argo_compiler.base.catalog import Catalog, CheckpointKind
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.script import import_script
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.errors import Remedy
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
-from argo_compiler.errors import Remedy
 from argo_compiler.il import Action
 from argo_compiler.script import import_script
 from argo_compiler.script.resolve.importing import Resolved

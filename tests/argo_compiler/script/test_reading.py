@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.diagnostics import DiagnosticError, Severity
-from argo_compiler.errors import ArgoError
 from argo_compiler.script import import_script, parse, read_script
 from argo_compiler.script.syntax.parsing import MAX_LINES
 from argo_compiler.script.syntax.reading import MAX_BYTES

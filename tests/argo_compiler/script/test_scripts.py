@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.errors import Remedy
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
-from argo_compiler.errors import Remedy
 from argo_compiler.il import Action, Group, Mission, Mode, Order, Stop, Transition
 from argo_compiler.script import Resolved, import_script, read_script
 

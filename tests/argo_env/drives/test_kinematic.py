@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from argo_compiler.model import Pose
+from argo_compiler.base.model import Pose
 from argo_env.drives.drive import DriveStatus
 from argo_env.drives.kinematic import KinematicDrive
 from argo_env.navigation import Path

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.optimize import linprog
 
-from argo_compiler.model import Pose
+from argo_compiler.base.model import Pose
 from argo_env.drives import support
 from argo_env.drives.support import STEP, GroundMemory, ground_memory, resting, resting_poses
 from argo_env.navigation.path import Motion

@@ -15,7 +15,7 @@ import pytest
 from gymnasium.vector import AutoresetMode
 
 import argo_env  # noqa: F401
-from argo_compiler.errors import ArgoError, Invalid, NotFound, Unavailable
+from argo_compiler.base.errors import ArgoError, Invalid, NotFound, Unavailable
 from tests.argo_env.envs import rollouts
 
 DRIVE, INSPECT = "argo/Drive-v0", "argo/Inspect-v0"

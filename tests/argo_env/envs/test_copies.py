@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import argo_env  # noqa: F401
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_env.drives.kinematic import KinematicDrive
 from argo_env.drives.tracked.body import TrackedBody
 from argo_env.drives.tracked.drive import TrackedDrive

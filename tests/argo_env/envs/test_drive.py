@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import argo_env  # noqa: F401
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_env.envs import lidar
 from argo_env.envs.drive import CONTACT, GOAL, PROGRESS, TIME, TIPPING
 from argo_env.envs.expert import Expert

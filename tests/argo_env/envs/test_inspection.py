@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import argo_env  # noqa: F401
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_env.drives.drive import Incident, Trouble
 from argo_env.drives.route import RouteDrive
 from argo_env.envs.inspection import ABNORMAL, DEAD, DOCKED, FINDING, READING

@@ -10,7 +10,7 @@ import pytest
 from gymnasium.error import ResetNeeded
 
 import argo_env  # noqa: F401
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_env.envs import ENVIRONMENTS
 from argo_env.envs.drive import DriveEnv
 from argo_env.envs.inspection import InspectEnv

@@ -14,7 +14,7 @@ from gymnasium.utils.env_checker import check_env
 from stable_baselines3.common.env_checker import check_env as check_for_baselines
 
 import argo_env  # noqa: F401
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_env.envs import ENVIRONMENTS
 from tests.argo_env.envs import rollouts
 

@@ -7,7 +7,7 @@ from gymnasium.vector import AutoresetMode
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_env.envs.route import RouteEnv
 from argo_env.envs.route_instance import DOCK, make_instance, score_route
 from argo_env.envs.route_sources import TEST, TRAINING, RandomRoutes, RouteFaults, SiteRoutes

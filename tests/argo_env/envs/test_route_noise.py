@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_env.envs.route import RouteEnv
 from argo_env.envs.route_instance import DOCK, TICK, score_route
 from argo_env.envs.route_noise import RouteNoise

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_env.evaluation.controlled import PILOT, run_controlled, with_drive
 from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan
 from argo_env.evaluation.results import EvaluationResults

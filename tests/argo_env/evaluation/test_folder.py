@@ -2,7 +2,7 @@
 
 import pytest
 
-from argo_compiler.errors import Conflict
+from argo_compiler.base.errors import Conflict
 from argo_env.evaluation.carrying_out import WorkOrder
 from argo_env.evaluation.controlled import with_drive
 from argo_env.evaluation.folder import digest_of, kept_plan, open_rows, read_results

@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from argo_compiler.errors import Conflict, Invalid
+from argo_compiler.base.errors import Conflict, Invalid
 from argo_env.evaluation.plan import parse_seeds
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.worlds import Variation

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_env.evaluation.detection import FaultDetection
 from argo_env.evaluation.file import decode_evaluation
 from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan, Stopping

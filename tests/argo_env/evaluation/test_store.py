@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from argo_compiler.errors import Conflict, NotFound, Unavailable
+from argo_compiler.base.errors import Conflict, NotFound, Unavailable
 from argo_env.evaluation import parts, store
 from argo_env.evaluation.detection import FaultDetection
 from argo_env.evaluation.parts import write_part

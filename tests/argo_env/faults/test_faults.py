@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 from pydantic import ValidationError
 
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.errors import ArgoError
 from argo_compiler.schemas.generate import schema_of
 from argo_env.faults.kinds import KINDS, FaultFile, changed_site, settle
 from argo_env.faults.reading import decode_faults, read_faults

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.errors import Unreachable
-from argo_compiler.model import Pose
+from argo_compiler.base.errors import Unreachable
+from argo_compiler.base.model import Pose
 from argo_env.navigation import Blockage
 from tests.conftest import examples
 from tests.yard import yard

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.sparse.csgraph import dijkstra
 
-from argo_compiler.errors import ArgoError, NotFound, Unreachable
-from argo_compiler.model import Pose
+from argo_compiler.base.errors import ArgoError, NotFound, Unreachable
+from argo_compiler.base.model import Pose
 from argo_env.navigation import Navigator
 from argo_env.navigation.navigator import SNAP_DISTANCE
 from argo_env.navigation.views import camera_positions, sight_target

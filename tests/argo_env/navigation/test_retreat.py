@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.model import Pose
+from argo_compiler.base.model import Pose
 from argo_env.navigation import Path
 from argo_env.navigation.path import wrap
 from argo_env.navigation.retreat import driven, recent, way_back

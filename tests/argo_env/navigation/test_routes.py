@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse.csgraph import dijkstra
 
-from argo_compiler.errors import NotFound
-from argo_compiler.model import Pose
+from argo_compiler.base.errors import NotFound
+from argo_compiler.base.model import Pose
 from argo_env.navigation import Blockage
 from argo_env.navigation.regions import find_cuts, make_partition
 from argo_env.navigation.routes import Routes

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from argo_compiler.errors import ArgoError, Unreachable
-from argo_compiler.model import Pose
+from argo_compiler.base.errors import ArgoError, Unreachable
+from argo_compiler.base.model import Pose
 from argo_env.navigation import Navigator
 from argo_env.robot.calibration import Calibration
 from argo_env.robot.spec import load_robot

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Mission, Task
 from argo_env.pictures import check_film, frames, overview, write_film, write_overview

@@ -5,8 +5,8 @@ import math
 
 import pytest
 
-from argo_compiler.catalog import Catalog
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.errors import ArgoError
 from argo_env.navigation import Navigator
 from argo_env.planning.catalog import make_catalog, patrol
 from argo_env.site import make_site

@@ -16,9 +16,9 @@ from pathlib import Path
 import pytest
 import yaml
 
-from argo_compiler.errors import ArgoError, Conflict, Invalid, NotFound
+from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound
+from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, Task
-from argo_compiler.model import Pose
 from argo_env.files import cache
 from argo_env.files.parts import Parts
 from argo_env.navigation import Blockage, Navigator

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import argo_env.planning.route_matrix as route_matrix
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.model import Pose
 from argo_compiler.il import Order
-from argo_compiler.model import Pose
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.rewriting import apply_route
 from argo_compiler.route import Tour, evaluate

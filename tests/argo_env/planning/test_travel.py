@@ -3,8 +3,8 @@
 import pytest
 
 from argo_compiler.analysis import Leg, NoWay, analyse, unproved_bounds
+from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, Mission, Task, Transition
-from argo_compiler.model import Pose
 from argo_env.planning.travel import SiteTravel
 from tests.yard import simulated
 

@@ -4,9 +4,9 @@ from types import SimpleNamespace
 
 import pytest
 
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import Occurred, Pause, Resume
 from argo_compiler.il import Afterwards, EventKind, Group, Reaction, Response
-from argo_compiler.model import Pose
 from argo_env.recording.files import recording_to
 from argo_env.recording.reader import read_recording
 from argo_env.run.session import simulate

@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_env.recording.best_effort import BestEffort
 from argo_env.recording.files import recording_to
 from argo_env.recording.reader import read_recording

@@ -8,7 +8,7 @@ import pytest
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 from websockets.sync.client import connect
 
-from argo_compiler.errors import Unavailable
+from argo_compiler.base.errors import Unavailable
 from argo_env.recording.live import served_live
 from argo_env.recording.run_recorder import RunRecorder
 from argo_env.run.simulation import Simulation

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from mcap.reader import make_reader
 from mcap.writer import Writer
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_env.recording import files
 from argo_env.recording.files import check_recording, recording_to
 from argo_env.recording.reader import read_recording

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.errors import Unavailable
+from argo_compiler.base.errors import Unavailable
 from argo_compiler.hfsm import Cancel, GiveBack, Outcome, TakeOver
 from argo_compiler.il import EventKind
 from argo_env.remote.channel import Channel

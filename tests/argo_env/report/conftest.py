@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from argo_compiler.catalog import CheckpointKind, Interval
+from argo_compiler.base.catalog import CheckpointKind, Interval
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Condition, ConditionType, Group, Mission, Task, Transition

@@ -6,8 +6,8 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, EventKind, Mission, Task, Transition
-from argo_compiler.model import Pose
 from argo_env.faults.plant import GasLeakFault, PlatformAlarm
 from argo_env.report.charge import charge_curve
 from argo_env.report.html import page

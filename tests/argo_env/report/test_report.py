@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.il import Action, Group, Mission, Task, Transition
 from argo_env.report import write_report
 from argo_env.report.html import page

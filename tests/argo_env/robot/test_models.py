@@ -8,8 +8,8 @@ import pybullet
 import pytest
 import yourdfpy
 
-from argo_compiler.catalog import CheckpointKind
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.catalog import CheckpointKind
+from argo_compiler.base.errors import ArgoError
 from argo_env.files import resources
 from argo_env.robot.spec import load_robot, robot_folder
 

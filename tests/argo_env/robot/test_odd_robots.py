@@ -3,7 +3,7 @@
 import pytest
 from pydantic import ValidationError
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_compiler.il import Mission, Task
 from argo_env.planning.opening import open_site
 from argo_env.robot.spec import RobotSpec, load_robot

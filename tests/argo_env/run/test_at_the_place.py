@@ -4,8 +4,8 @@ import math
 
 import pytest
 
+from argo_compiler.base.model import Pose
 from argo_compiler.il import JointState
-from argo_compiler.model import Pose
 from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError
 from tests.yard import (
     Entries,

@@ -2,7 +2,7 @@
 
 import pytest
 
-from argo_compiler.errors import Conflict, Invalid, NotFound
+from argo_compiler.base.errors import Conflict, Invalid, NotFound
 from argo_compiler.hfsm import ByHand, Cancel, GiveBack, Outcome, Pause, Resume, TakeOver
 from argo_compiler.il import Action, Task
 from argo_env.faults.checkpoints import AbnormalValue

@@ -2,7 +2,7 @@
 
 import pytest
 
-from argo_compiler.errors import NotFound
+from argo_compiler.base.errors import NotFound
 from argo_compiler.il import Action, Group, Mission, Task, Transition
 from argo_env.faults.reading import decode_faults
 from argo_env.planning.opening import open_site

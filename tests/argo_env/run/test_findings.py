@@ -4,9 +4,9 @@ import json
 
 import pytest
 
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import Occurred, Pause
 from argo_compiler.il import Afterwards, EventKind, Reaction, Response
-from argo_compiler.model import Pose
 from argo_env.drives.drive import Trouble
 from argo_env.run.headline import Tone
 from argo_env.run.record import Anomaly, Contact, Mishap, RunRecord

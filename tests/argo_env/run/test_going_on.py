@@ -6,8 +6,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from argo_compiler.base.errors import Conflict, Invalid
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.errors import Conflict, Invalid
 from argo_compiler.hfsm import ByHand, Executor, GiveBack, Outcome, TakeOver, lower
 from argo_compiler.il import EventKind, Group
 from argo_compiler.il.mission import TimeWindow

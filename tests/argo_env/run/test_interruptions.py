@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import Cancel, Occurred, Outcome, Pause, Resume
 from argo_compiler.il import Afterwards, EventKind, Group, OnFailure, Reaction, Response
-from argo_compiler.model import Pose
 from argo_env.formatting import clock
 from argo_env.report import write_report
 from argo_env.report.waiting import waits

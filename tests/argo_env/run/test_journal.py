@@ -13,7 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import argo_env.run.journal
-from argo_compiler.errors import ArgoError, Conflict, Remedy, Unavailable
+from argo_compiler.base.errors import ArgoError, Conflict, Remedy, Unavailable
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import (
     ActionFailed,
     ActionStopped,
@@ -26,7 +27,6 @@ from argo_compiler.hfsm import (
     Tick,
 )
 from argo_compiler.il import Afterwards, EventKind, Group, Reaction, Response
-from argo_compiler.model import Pose
 from argo_env.navigation import Navigator
 from argo_env.run.journal import (
     Header,

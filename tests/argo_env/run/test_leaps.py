@@ -6,7 +6,7 @@ import random
 
 import pytest
 
-from argo_compiler.errors import Conflict
+from argo_compiler.base.errors import Conflict
 from argo_compiler.hfsm import Cancel, GiveBack, Occurred, Pause, Resume, TakeOver
 from argo_compiler.il import (
     Action,

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from argo_compiler.errors import ArgoError, Invalid
+from argo_compiler.base.errors import ArgoError, Invalid
 from argo_compiler.hfsm import Cancel, GiveBack, Occurred, Pause, Resume, TakeOver
 from argo_compiler.il import Mission, Task, Transition
 from argo_env.faults.kinds import (

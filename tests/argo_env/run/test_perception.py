@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import Cause, Occurred, Outcome, Resume
 from argo_compiler.il import Afterwards, EventKind, OnFailure, Reaction, Response
-from argo_compiler.model import Pose
 from argo_env.faults.kinds import FaultFile
 from argo_env.faults.schedule import Schedule
 from argo_env.navigation import Blockage

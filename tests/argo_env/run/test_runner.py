@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import argo_env.run.ending
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, Condition, ConditionType, Group, Mission, Task, Transition
 from argo_compiler.il.docked import at_dock
-from argo_compiler.model import Pose
 from argo_env.navigation import Path
 from argo_env.navigation.path import Motion
 from argo_env.robot.calibration import MotionKind

@@ -2,9 +2,9 @@
 
 import pytest
 
-from argo_compiler.errors import ArgoError, Invalid
+from argo_compiler.base.errors import ArgoError, Invalid
+from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, Mission, Task, Transition
-from argo_compiler.model import Pose
 from argo_env.run.drives_and_sensors import DRIVES
 from argo_env.run.rig import true_values
 from tests.yard import Watching, simulated

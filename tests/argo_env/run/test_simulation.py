@@ -10,7 +10,7 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.errors import ArgoError, Conflict, Invalid, NotFound
+from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound
 from argo_compiler.hfsm import (
     ActionSucceeded,
     ByHand,

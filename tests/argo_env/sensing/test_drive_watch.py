@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import Pause, Resume
 from argo_compiler.il import EventKind
-from argo_compiler.model import Pose
 from argo_env.drives.powertrain import Powertrain
 from argo_env.drives.route import RouteDrive
 from argo_env.faults.kinds import FaultFile

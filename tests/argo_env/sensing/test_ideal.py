@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from argo_compiler.errors import NotFound
+from argo_compiler.base.errors import NotFound
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.ideal import IdealSensor, draw_values
 from argo_env.sensing.sensor import MeasurementError

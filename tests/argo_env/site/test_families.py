@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.errors import ArgoError
-from argo_compiler.model import Pose
+from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.model import Pose
 from argo_env.planning import open_site
 from argo_env.planning.generated import generate
 from argo_env.site import make_site

@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_env.files import resources
 from argo_env.site import load_site
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from argo_compiler.errors import NotFound
+from argo_compiler.base.errors import NotFound
 from argo_env.site.equipment import DOCK_DISTANCE
 from argo_env.site.shapes import Role
 from argo_env.site.site import site_names

@@ -2,7 +2,7 @@
 
 import pytest
 
-from argo_compiler.errors import ArgoError, NotFound
+from argo_compiler.base.errors import ArgoError, NotFound
 from argo_env.surroundings import Alarm, GasLeak, HotSpot, PumpSound, Surroundings
 from argo_env.surroundings.surroundings import Release
 

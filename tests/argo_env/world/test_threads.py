@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from argo_compiler.garbage_collector import collector_held
+from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.script import import_script
 from argo_env.drives.tracked.body import TrackedBody
 from argo_env.planning.opening import open_site

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import argo_env.world.world
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_env.robot.pose import BodyPose
 from argo_env.world.world import World
 

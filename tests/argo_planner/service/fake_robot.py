@@ -11,7 +11,7 @@ from contextlib import suppress
 from websockets.exceptions import WebSocketException
 from websockets.sync.client import connect
 
-from argo_compiler.model import Pose
+from argo_compiler.base.model import Pose
 from tests.argo_env.remote.fakes import FakeRobot
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from argo_compiler.errors import Conflict, NotFound, Unavailable
+from argo_compiler.base.errors import Conflict, NotFound, Unavailable
 from argo_planner.service.runs import requests as asked
 from argo_planner.service.runs.host import RunHost
 from argo_planner.service.runs.state import RunMode, RunStatus

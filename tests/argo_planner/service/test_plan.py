@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import Severity
 from argo_compiler.editing import commands as edits
-from argo_compiler.errors import ArgoError
 from argo_compiler.il import Action, Group, Mission, Task, Transition
 from argo_planner.service.core.change import HEADER, applied, difference
 from argo_planner.service.core.commands import (

@@ -7,9 +7,9 @@ from itertools import count
 
 import pytest
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.errors import Conflict
 from argo_compiler.editing import commands as edits
-from argo_compiler.errors import Conflict
 from argo_planner.service.core.commands import EditPlan
 from argo_planner.service.rooms import mailbox as mailboxes
 from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from argo_compiler.errors import Conflict, NotFound
+from argo_compiler.base.errors import Conflict, NotFound
 from argo_compiler.script import import_script
 from argo_env.planning.opening import OpenedSite
 from argo_env.run.record import RunRecord

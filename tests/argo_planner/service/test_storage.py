@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
+from argo_compiler.base.errors import Conflict, Invalid, NotFound
 from argo_compiler.editing import commands as edits
-from argo_compiler.errors import Conflict, Invalid, NotFound
 from argo_compiler.il import Mission
 from argo_env.files.checked_lines import checked_line, checked_object
 from argo_planner.service.core.commands import EditPlan, UndoEdit

@@ -7,8 +7,8 @@ import pytest
 import trimesh
 import yourdfpy
 
-from argo_compiler.catalog import CheckpointKind
-from argo_compiler.errors import NotFound
+from argo_compiler.base.catalog import CheckpointKind
+from argo_compiler.base.errors import NotFound
 from argo_env.planning import open_site
 from argo_env.robot.spec import robot_folder
 from argo_env.site.shapes import Box, Role, half_extents

@@ -6,7 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from argo_compiler.errors import Conflict, NotFound
+from argo_compiler.base.errors import Conflict, NotFound
+from argo_compiler.base.model import Pose
 from argo_compiler.il import (
     Action,
     Condition,
@@ -18,7 +19,6 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
-from argo_compiler.model import Pose
 from argo_env.planning import open_site
 from argo_env.planning.opening import OpenedSite
 from argo_env.run.journal import open_journal

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from argo_compiler.errors import Invalid, NotFound, Unreachable
-from argo_compiler.model import Pose
+from argo_compiler.base.errors import Invalid, NotFound, Unreachable
+from argo_compiler.base.model import Pose
 from argo_env.navigation.lattice import build_lattice
 from argo_env.navigation.navigator import SNAP_DISTANCE, nearest_state
 from argo_env.navigation.stencil import HEADINGS

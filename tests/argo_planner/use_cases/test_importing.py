@@ -2,8 +2,8 @@
 
 import pytest
 
+from argo_compiler.base.errors import ArgoError, Invalid, Remedy
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.errors import ArgoError, Invalid, Remedy
 from argo_compiler.files.mission_file import mission_text
 from argo_compiler.hfsm import lower
 from argo_compiler.isar import to_isar

@@ -4,12 +4,12 @@ import json
 
 import pytest
 
+from argo_compiler.base.errors import Conflict, Invalid, NotFound, Remedy
+from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.errors import Conflict, Invalid, NotFound, Remedy
 from argo_compiler.files.mission_file import mission_text
 from argo_compiler.hfsm import Hfsm, Occurred, Pause
 from argo_compiler.il import EventKind, Order
-from argo_compiler.model import Pose
 from argo_env.faults.reading import decode_faults
 from argo_env.report.files import PAGE
 from argo_env.run.record import RunRecord

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.route import NEVER, Objective, Tour, evaluate
 from argo_compiler.route.suggestion import suggest_route
 from benchmarks.instances import Kind, read_known_route, read_route_problem

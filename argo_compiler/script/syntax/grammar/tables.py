@@ -16,7 +16,7 @@ from typing import Any
 
 from lark import Lark
 
-from argo_compiler.garbage_collector import collector_held
+from argo_compiler.base.garbage_collector import collector_held
 
 STARTS = ["sentence", "location"]
 _NAME = "sentence"

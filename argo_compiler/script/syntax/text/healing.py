@@ -22,8 +22,8 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from argo_compiler.base.listing import listed
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.listing import listed
 from argo_compiler.script.syntax.text.source import (
     MAX_LINE,
     Diagnostics,

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NoReturn, TypeVar
 
+from argo_compiler.base.errors import Remedy
 from argo_compiler.diagnostics import MAX_EXCERPT, Diagnostic, Severity, Span, span_at
-from argo_compiler.errors import Remedy
 
 MAX_LINE = 2000
 """characters in a line; a longer one is refused unread"""

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
-from argo_compiler.catalog import CheckpointKind
+from argo_compiler.base.catalog import CheckpointKind
 from argo_compiler.script.syntax.tree.node import Node
 from argo_compiler.script.syntax.tree.places import FloorName
 

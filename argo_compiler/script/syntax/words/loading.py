@@ -8,8 +8,8 @@ from importlib.resources import files
 from inspect import signature
 from typing import Any, TypeVar
 
+from argo_compiler.base.listing import listed
 from argo_compiler.il import EventKind, Mode, Order
-from argo_compiler.listing import listed
 from argo_compiler.script.syntax.tree.nouns import Kind
 from argo_compiler.script.syntax.words.lexicon import Entry, Lexicon, expand
 from argo_compiler.script.syntax.words.numbers import Figure

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import (
     ActionFailed,
     ActionStopped,
@@ -21,7 +22,6 @@ from argo_compiler.hfsm import (
     lower,
 )
 from argo_compiler.il import Action, EventKind, Mission, Mode, Task
-from argo_compiler.model import Pose
 
 MAX_STEPS = 1000  # actions of one trace; a plan that takes more does not end
 SAME_PLACE = 0.5  # m

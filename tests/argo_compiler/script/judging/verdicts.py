@@ -6,10 +6,10 @@ from enum import StrEnum
 from typing import Any
 
 from argo_compiler.analysis import analyse
-from argo_compiler.catalog import Catalog
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.errors import ArgoError
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
-from argo_compiler.errors import ArgoError
 from argo_compiler.il import Mission
 from argo_compiler.script import import_script
 from tests.argo_compiler.script.judging.cases import Case

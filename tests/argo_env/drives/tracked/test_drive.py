@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from argo_compiler.model import Pose
+from argo_compiler.base.model import Pose
 from argo_env.drives.drive import DriveStatus, Trouble
 from argo_env.drives.tracked.drive import TrackedDrive
 from argo_env.drives.tracked.stall_watch import WINDOW, StallWatch

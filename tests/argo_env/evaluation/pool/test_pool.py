@@ -11,7 +11,7 @@ from importlib.util import find_spec
 
 import pytest
 
-from argo_compiler.errors import ArgoError, Invalid
+from argo_compiler.base.errors import ArgoError, Invalid
 from argo_env.evaluation.pool import backends
 from argo_env.evaluation.pool.backends import BACKENDS, make_backend
 from argo_env.evaluation.pool.pool import Pool

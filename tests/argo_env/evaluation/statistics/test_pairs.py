@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_env.evaluation.statistics.control import ControlVariate, controlled_mean
 from argo_env.evaluation.statistics.pairs import SuccessPairs, difference, power
 

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import binomtest
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_env.evaluation.statistics.rates import clopper_pearson, runs_for_width, wilson
 from argo_env.evaluation.statistics.strata import Stratum, allocation, stratified_rate
 

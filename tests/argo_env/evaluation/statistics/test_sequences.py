@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from argo_compiler.errors import Invalid
+from argo_compiler.base.errors import Invalid
 from argo_env.evaluation.statistics.rates import clopper_pearson
 from argo_env.evaluation.statistics.sequences import ConfidenceSequence
 

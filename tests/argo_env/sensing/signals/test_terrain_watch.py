@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from argo_compiler.base.model import Pose
 from argo_compiler.il import EventKind
-from argo_compiler.model import Pose
 from argo_env.drives.drive import DriveStatus
 from argo_env.drives.kinematic import KinematicDrive
 from argo_env.robot.pose import BodyPose

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.errors import Unreachable
+from argo_compiler.base.errors import Unreachable
 from argo_env.navigation.views import face_normal
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import robot_folder

@@ -7,8 +7,8 @@ import sys
 import numpy as np
 import pytest
 
-from argo_compiler.catalog import CheckpointKind
-from argo_compiler.errors import NotFound
+from argo_compiler.base.catalog import CheckpointKind
+from argo_compiler.base.errors import NotFound
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.sensor import MeasurementError
 from argo_env.sensing.vision.faces import draw_face, face_file

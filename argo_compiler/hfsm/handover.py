@@ -3,12 +3,12 @@
 from collections.abc import Iterator, Sequence
 from typing import TypeVar
 
+from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.hfsm.progress import ByHand, GroupProgress, Progress
 from argo_compiler.il import Action, Mission, OnFailure, Response
 from argo_compiler.il.grouping import group_ranges
 from argo_compiler.il.reserved import RETURN_TASK
-from argo_compiler.model import Model
 
 AnyModel = TypeVar("AnyModel", bound=Model)
 

@@ -7,9 +7,7 @@ from pathlib import Path
 import pytest
 
 import argo_env.closing
-from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span
-from argo_compiler.editing import EditConflict, EditError, EditInvalid, EditNotFound
-from argo_compiler.errors import (
+from argo_compiler.base.errors import (
     ArgoError,
     Conflict,
     Invalid,
@@ -18,6 +16,8 @@ from argo_compiler.errors import (
     Unavailable,
     Unreachable,
 )
+from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span
+from argo_compiler.editing import EditConflict, EditError, EditInvalid, EditNotFound
 from argo_compiler.files.reading import FileError, FileProblem, NoFile, UnreadableFile
 from argo_env.recording.output import UnwritableRecording
 from argo_planner.service.core.refusals import (

@@ -6,11 +6,11 @@ import pytest
 from hypothesis import assume, given, reject, settings
 from hypothesis import strategies as st
 
+from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.model import Pose
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.diagnostics.codes import CODES
-from argo_compiler.errors import ArgoError
-from argo_compiler.handover import hand_over, match
 from argo_compiler.hfsm import (
     ActionFailed,
     ActionStopped,
@@ -26,6 +26,7 @@ from argo_compiler.hfsm import (
     Tick,
     lower,
 )
+from argo_compiler.hfsm.handover import hand_over, match
 from argo_compiler.hfsm.progress import (
     GroupProgress,
     Phase,
@@ -44,7 +45,6 @@ from argo_compiler.il import (
     Task,
     Transition,
 )
-from argo_compiler.model import Pose
 from tests.argo_compiler.hfsm.random_missions import missions, outcome_lists
 from tests.conftest import examples
 

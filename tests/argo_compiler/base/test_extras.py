@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from argo_compiler.extras import install_line
+from argo_compiler.base.extras import install_line
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from argo_env.recording.messages import attitude
-from argo_env.recording.robot_model import add, from_rpy, multiply, read_model, rotate
 from argo_env.robot.pose import BodyPose
+from argo_env.robot.robot_model import add, from_rpy, multiply, read_model, rotate
 from argo_env.robot.spec import load_robot, robot_folder
 from tests.conftest import examples
 

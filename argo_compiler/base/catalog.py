@@ -7,7 +7,7 @@ from enum import StrEnum
 
 from pydantic import Field, model_validator
 
-from argo_compiler.model import Model, Pose
+from argo_compiler.base.model import Model, Pose
 
 
 class CheckpointKind(StrEnum):

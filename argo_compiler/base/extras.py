@@ -22,7 +22,7 @@ def _source(extra: str) -> str:
     try:
         origin = distribution(PROJECT).read_text("direct_url.json")  # PEP 610
     except PackageNotFoundError:
-        return _checkout(Path(__file__).parents[1], extra)
+        return _checkout(Path(__file__).parents[2], extra)
     if origin is None:
         return shlex.quote(f"{PROJECT}[{extra}]")
     found = json.loads(origin)

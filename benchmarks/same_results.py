@@ -1,28 +1,41 @@
-"""Whether runs and episodes come out byte for byte as with the code of another checkout.
+"""Compare all results with those of another checkout, byte for byte.
 
     git worktree add ../before COMMIT
-    python -m benchmarks.same_results ../before               # route, kinematic, tracked, drive
-    python -m benchmarks.same_results ../before kinematic     # or only some of them
+    python -m benchmarks.same_results ../before                      # all groups
+    python -m benchmarks.same_results ../before plans kinematic      # or only some of them
+    python -m benchmarks.same_results --write digests.txt            # the digests of this checkout,
+    python -m benchmarks.same_results digests.txt                    # to compare with later
 
-`route`, `kinematic` and `tracked` run the shipped missions and each shipped file of faults with the
-drive of that name, and compare the records; `drive` takes random actions in Drive-v0, and compares
-all that it returns, and its states. Each checkout computes in a process of its own, which prints a
-digest of each result; what differs is named, and the command then fails.
+`plans`, `routes` and `journals` run the commands of `argo` as a user would: they read, check,
+explain, compile and export scripts and missions, search for routes, and keep and continue runs.
+All files that a command writes, its exit status and what it prints count; times that were measured
+on the wall clock do not. `route`, `kinematic` and `tracked` run the shipped missions and each
+shipped file of faults with the drive of that name, and compare the records; `drive` takes random
+actions in Drive-v0, and compares all that it returns, and its states.
+
+Each checkout computes in a process of its own, which prints a digest of each result. The command
+names each result that differs, and then fails.
 """
 
 import argparse
 import hashlib
+import importlib
 import os
+import re
+import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import zip_longest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 UMAD = ROOT / "scenarios" / "umad"
-GROUPS = ("route", "kinematic", "tracked", "drive")
+COMMANDS = ("plans", "routes", "journals")
+GROUPS = (*COMMANDS, "route", "kinematic", "tracked", "drive")
 SEEDS = {"route": 4, "kinematic": 4, "tracked": 1}
+EXPORTS = ("scxml", "btcpp", "flexbe", "ros", "isar", "mermaid", "dot")
 
 
 def records(drive: str) -> Iterator[tuple[str, bytes]]:
@@ -97,15 +110,173 @@ def episodes() -> Iterator[tuple[str, bytes]]:
             yield f"drive: seed {seed}, {len(told)} values", repr(told).encode()
 
 
+Case = tuple[str, Sequence[Sequence[str]]]
+"""A name, and the commands that are run one after another in a folder of their own."""
+
+
+def plan_cases() -> Iterator[Case]:
+    """Yield the cases that read, check, explain, compile, export and rewrite missions."""
+    areas = ("--start-area", "1", "--end-area", "2")
+    for name in ("mission_1.txt", "protocol_2.txt", "protocol_3.txt", "any_order.txt"):
+        options = areas if name in ("mission_1.txt", "any_order.txt") else ()
+        source = f"missions/{name}"
+        yield (
+            name,
+            (
+                ("import", source, "-o", "mission.json", *options),
+                ("explain", source, "--format", "json", *options),
+                ("compile", "mission.json", "-o", "machine.json", "--mermaid", "machine.mmd"),
+                ("format", "mission.json", "-o", "script.txt"),
+                ("import", "script.txt", "-o", "again.json"),
+                *(("export", "mission.json", "--to", to, "-o", f"as_{to}") for to in EXPORTS),
+            ),
+        )
+    yield "rounds_and_windows", (("compile", "missions/rounds_and_windows.json", "-o", "m.json"),)
+    scripts = sorted(path.name for path in (ROOT / "tests").glob("**/script/people/*.txt"))
+    for name in scripts:
+        check = ("check", f"people/{name}", "--format", "json")
+        yield name, (check, ("import", f"people/{name}", "-o", "mission.json"))
+
+
+def route_cases() -> Iterator[Case]:
+    """Yield the cases that search for routes which are proven well within the time limit."""
+    base = ("route", "missions/any_order.txt", "--time-limit", "60", "-o", "new.json")
+    for name, options in {
+        "any order": (),
+        "budget": ("--budget", "10min"),
+        "budget, before": ("--budget", "15min", "--before", "14, 8"),
+        "kept order": ("--budget", "8min", "--keep-order"),
+        "no order": ("--before", "14, 8", "--before", "8, 14"),
+        "verified, at risk": ("--budget", "12min", "--verify", "--risk", "cautious"),
+        "robust": ("--robust", "--risk", "simulated"),
+        "areas": ("--start-area", "1", "--end-area", "2"),
+    }.items():
+        yield name, ((*base, *options),)
+    optimised = ("--optimise", "--drive", "route", "--report", "report")
+    yield "optimised run", (("run", "missions/any_order.txt", *optimised),)
+
+
+def journal_cases() -> Iterator[Case]:
+    """Yield the cases that keep runs in journals and reports, and resume runs that were cut off."""
+    areas = ("--start-area", "1", "--end-area", "2")
+    ground, upstairs = "faults/ground.txt", "faults/upstairs.txt"
+    for name, options in {
+        "mission_1": ("missions/mission_1.txt", *areas),
+        "mission_1, other values": ("missions/mission_1.txt", "--value", "8=9.5", "--seed", "3"),
+        "mission_1, events": ("missions/mission_1.txt", "--event", "60=gas_leak"),
+        "protocol_2": ("missions/protocol_2.txt",),
+        "protocol_3": ("missions/protocol_3.txt", "--seed", "2"),
+        "rounds_and_windows": ("missions/rounds_and_windows.json",),
+        **{
+            f"{path.stem}, {Path(script).stem}": (script, "--faults", f"faults/{path.name}")
+            for path in sorted((UMAD / "faults").glob("*.yaml"))
+            for script in (ground, upstairs)
+        },
+    }.items():
+        for drive in ("route", "kinematic"):
+            run = ("run", *options, "--drive", drive, "--report", "report")
+            again = ("resume", "report/run.journal", "--report", "again")
+            yield f"{name}, {drive}", (run, ("CUT", "report/run.journal"), again)
+
+
+def command_results(group: str) -> Iterator[tuple[str, bytes]]:
+    """Yield the name of each case of commands, and all that it printed and wrote."""
+    cases = {"plans": plan_cases, "routes": route_cases, "journals": journal_cases}[group]()
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name).resolve()
+        shutil.copytree(UMAD / "missions", folder / "inputs" / "missions")
+        shutil.copytree(UMAD / "faults", folder / "inputs" / "faults")
+        shutil.copytree(ROOT / "tests/argo_compiler/script/people", folder / "inputs" / "people")
+        _load_commands(folder)
+        for case, commands in cases:
+            place = folder / "case"
+            shutil.copytree(folder / "inputs", place)
+            known = set(place.rglob("*"))
+            statuses = [_carry_out(command, place) for command in commands]
+            content = repr(statuses).encode()
+            for path in sorted(set(place.rglob("*")) - known):
+                if path.is_file():
+                    content += f"\n{path.relative_to(place)}\n".encode() + _timeless(path, folder)
+            shutil.rmtree(place)
+            yield f"{group}: {case}, exit statuses {statuses}", content
+
+
+def _load_commands(folder: Path) -> None:
+    """Import what commands import, so that the processes forked for them need no time to load."""
+    listing = folder / "modules"
+    command = ("run", "inputs/missions/protocol_3.txt", "--report", "first")
+    if _carry_out(command, folder, listing):
+        raise SystemExit((folder / "printed").read_text())
+    for module in listing.read_text().split():
+        importlib.import_module(module)
+    shutil.rmtree(folder / "first")
+
+
+def _carry_out(command: Sequence[str], folder: Path, modules: Path | None = None) -> int:
+    """Run a command of `argo` in a forked process, with what it prints in the file `printed`.
+
+    `CUT FILE` cuts a file of lines off after the first half. Returns the exit status; `modules`
+    names a file for the names of Argo's modules that the command has imported.
+    """
+    if command[0] == "CUT":
+        lines = (folder / command[1]).read_bytes().splitlines(keepends=True)
+        (folder / command[1]).write_bytes(b"".join(lines[: max(1, len(lines) // 2)]))
+        return 0
+    sys.stdout.flush()
+    child = os.fork()
+    if child:
+        return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    status = 1
+    try:
+        os.chdir(folder)
+        output = os.open("printed", os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+        os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+        os.dup2(output, 1)
+        os.dup2(output, 2)
+        os.environ["COLUMNS"] = "120"
+        sys.argv = ["argo", *command]
+        from argo_planner.entry import main as argo
+
+        try:
+            argo()
+            status = 0
+        except SystemExit as end:
+            status = end.code if isinstance(end.code, int) else 0 if end.code is None else 1
+        if modules:
+            names = [name for name in sys.modules if name.startswith("argo_")]
+            modules.write_text("\n".join(names))
+        sys.stdout.flush()
+        sys.stderr.flush()
+    finally:
+        os._exit(status)
+
+
+def _timeless(path: Path, folder: Path) -> bytes:
+    """Return the content of a file without names of temporary folders and wall-clock times."""
+    content = path.read_bytes().replace(str(folder).encode(), b"FOLDER")
+    if path.name == "printed":
+        content = re.sub(rb"\d+(\.\d+)? s\b.*", b"TIME", content)
+    return content
+
+
 def digests(groups: list[str]) -> None:
-    """Prints a line for each result: its digest, and its name."""
+    """Print a line for each result: its digest, and its name."""
     for group in groups:
-        for name, content in episodes() if group == "drive" else records(group):
+        results = (
+            command_results(group)
+            if group in COMMANDS
+            else episodes()
+            if group == "drive"
+            else records(group)
+        )
+        for name, content in results:
             print(hashlib.sha256(content).hexdigest()[:16], name, flush=True)
+            if folder := os.environ.get("SAME_RESULTS_KEEP"):
+                (Path(folder) / re.sub(r"\W+", "_", name)).write_bytes(content)
 
 
-def asked(root: Path, groups: list[str], cache: str) -> list[str]:
-    """The lines of the digests with the code of a checkout; they are shown as they come."""
+def computed(root: Path, groups: list[str], cache: str) -> list[str]:
+    """Return the lines of the digests with the code of a checkout, and show them as they come."""
     environment = os.environ | {"PYTHONPATH": str(root), "ARGO_CACHE_DIR": cache}
     command = (sys.executable, __file__, "--digests", *groups)
     lines = []
@@ -122,23 +293,33 @@ def asked(root: Path, groups: list[str], cache: str) -> list[str]:
 
 
 def main() -> None:
-    """Names what differs."""
+    """Name the results that differ."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("checkout", type=Path, help="folder with the code to compare with")
+    parser.add_argument("before", type=Path, help="checkout, or file of digests, to compare with")
     parser.add_argument("groups", nargs="*", metavar="group", help=", ".join(GROUPS))
+    parser.add_argument(
+        "--write", action="store_true", help="write this checkout's digests to the file instead"
+    )
     options = parser.parse_args()
     groups = options.groups or list(GROUPS)
     if unknown := set(groups) - set(GROUPS):
         parser.error(f"there is no {sorted(unknown)[0]}; there are: {', '.join(GROUPS)}")
-    before = options.checkout.resolve()
-    with tempfile.TemporaryDirectory() as old, tempfile.TemporaryDirectory() as new:
-        different = [
-            f"before {a}\n today {b}"
-            for a, b in zip(asked(before, groups, old), asked(ROOT, groups, new), strict=True)
-            if a != b
-        ]
+    before: Path = options.before.resolve()
+    if not options.write and not before.exists():
+        parser.error(f"{before} is neither a checkout nor a file of digests")
+    with tempfile.TemporaryDirectory() as old_cache, tempfile.TemporaryDirectory() as new_cache:
+        if options.write:
+            before.write_text("\n".join(computed(ROOT, groups, new_cache)) + "\n")
+            return
+        if before.is_dir():
+            old = computed(before, groups, old_cache)
+        else:
+            kept = before.read_text().splitlines()
+            old = [line for line in kept if line[17:].split(":", 1)[0] in groups]
+        new = computed(ROOT, groups, new_cache)
+    different = [f"before {a}\n today {b}" for a, b in zip_longest(old, new) if a != b]
     print("\n".join(different) or "all are the same")
     raise SystemExit(bool(different))
 

@@ -87,7 +87,7 @@ class RayCluster:
         """Ray begins new workers by itself."""
 
     def close(self) -> None:
-        ray.shutdown()
+        ray.shutdown(wait_for_processes=True)
 
 
 def _require_cluster(address: str) -> None:

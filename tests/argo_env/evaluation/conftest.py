@@ -1,9 +1,14 @@
 """What the tests of evaluations share: a short mission, and plans of it."""
 
+from collections.abc import Iterator
+from importlib.util import find_spec
+
 import pytest
 
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan
+from argo_env.evaluation.pool.backend import WorkerBackend
+from argo_env.evaluation.pool.backends import make_backend
 from argo_env.planning.opening import open_site
 from argo_env.run.spec import RunSpec
 
@@ -35,3 +40,24 @@ def plan(mission) -> EvaluationPlan:
     """The short mission in ten worlds, by travel times."""
     case = EvaluationCase(mission="short", spec=RunSpec(mission=mission, drive="route"))
     return EvaluationPlan(cases=(case,), seeds=tuple(range(10)))
+
+
+PACKAGES = {"processes": "loky", "ray": "ray", "dask": "distributed"}
+NEEDED = [
+    pytest.param(
+        name,
+        marks=pytest.mark.skipif(
+            find_spec(package) is None, reason=f"needs `{package}`: pip install '.[cluster]'"
+        ),
+    )
+    for name, package in PACKAGES.items()
+]
+
+
+@pytest.fixture(scope="session", params=NEEDED)
+def backend(request: pytest.FixtureRequest) -> Iterator[WorkerBackend]:
+    """Each back end once, with two workers: pytest puts the tests of one together, as a cluster
+    takes seconds to start."""
+    made = make_backend(request.param, 2)
+    yield made
+    made.close()

@@ -19,13 +19,6 @@ from tests.argo_env.evaluation.conftest import short_mission
 EMERGENCY = decode_faults(b"faults: [{kind: emergency_stop, at: 10}]", "test").faults
 
 
-@pytest.fixture(scope="module", params=["processes", "ray", "dask"])
-def backend(request):
-    made = make_backend(request.param, 2)
-    yield made
-    made.close()
-
-
 @pytest.fixture(scope="module")
 def processes():
     made = make_backend("processes", 2)

@@ -2,7 +2,7 @@
 
 PYTHON ?= python3.11
 BIN := .venv/bin
-INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+INSTALL := $(BIN)/uv pip install --quiet --python $(BIN)/python --constraint constraints.txt
 
 # The suite starts `argo` in many processes: what they compile is kept in .venv, whatever the
 # environment says.
@@ -16,7 +16,7 @@ PAGE := argo_planner/page
 NPM := npm --prefix $(PAGE)
 export PATH := $(PATH):$(CURDIR)/$(BIN)
 
-.PHONY: demo page test test-long lint format generated help clean
+.PHONY: demo page test test-all test-campaigns lint lint-python lint-page format generated help clean
 
 demo: .venv/demo.stamp ## run mission #1 and write its report
 	$(BIN)/argo run scenarios/umad/missions/mission_1.txt --site umad --seed 0 \
@@ -29,13 +29,21 @@ test: .venv/test.stamp page ## run the suite, but for what takes long; says whic
 	$(NPM) run --silent test
 	$(PYTEST) -m "not long" $(TWO_WORKERS) --durations 15 --durations-min 3
 
-test-long: .venv/test.stamp page ## run what takes long: the wheel, kills, what is as large as can be
-	$(PYTEST) -m long $(TWO_WORKERS) --durations 0 --durations-min 3
+test-all: .venv/test.stamp page ## run the whole suite, as CI does
+	$(NPM) run --silent test
+	$(PYTEST) $(TWO_WORKERS) --durations 30 --durations-min 3
 
-lint: .venv/test.stamp $(PAGE)/node_modules/stamp ## style and types
+test-campaigns: .venv/test.stamp page ## run the whole suite with all random examples, kills and repetitions
+	ARGO_EXAMPLES=full $(PYTEST) $(TWO_WORKERS) --durations 30 --durations-min 3
+
+lint: lint-python lint-page ## check style and types
+
+lint-python: .venv/test.stamp
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+lint-page: $(PAGE)/node_modules/stamp
 	$(NPM) run --silent check
 
 format: .venv/test.stamp ## put the style right where that can be done by itself
@@ -59,6 +67,7 @@ clean: ## remove the environment and what was made
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' \
 		|| { echo "Argo needs CPython 3.11: name it with 'make PYTHON=/path/to/python3.11'"; exit 1; }
 	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt uv
 	touch $@
 
 .venv/demo.stamp: .venv/python.stamp pyproject.toml constraints.txt
@@ -66,7 +75,7 @@ clean: ## remove the environment and what was made
 	touch $@
 
 .venv/test.stamp: .venv/python.stamp pyproject.toml constraints.txt
-	$(INSTALL) torch==2.13.0
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile torch==2.13.0
 	$(INSTALL) --editable '.[dev,film]'
 	touch .venv/demo.stamp $@
 

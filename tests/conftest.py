@@ -1,10 +1,15 @@
 """What the whole suite shares. Import it as `from tests.conftest import examples`."""
 
 import atexit
+import json
 import os
 import shutil
 import tempfile
+from collections import defaultdict
+from collections.abc import Iterable
+from itertools import islice
 from pathlib import Path
+from typing import TypeVar
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -15,7 +20,10 @@ from xdist.scheduler import LoadFileScheduling
 # As many workers run as there are cores: threads of numerical libraries would wait for each other.
 os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
+_T = TypeVar("_T")
+
 EXAMPLES = os.environ.get("ARGO_EXAMPLES")
+"""Unset for the suite, `full` for all campaigns, a number for the campaign of one property."""
 
 # How long an example takes depends on what else the machine does: no answer may depend on that.
 _UNTIMED = settings(deadline=None, database=None, suppress_health_check=[HealthCheck.too_slow])
@@ -35,52 +43,102 @@ if "ARGO_CACHE_DIR" not in os.environ:
     atexit.register(shutil.rmtree, os.environ["ARGO_CACHE_DIR"], ignore_errors=True)
 
 
-def examples(suite: int) -> int:
-    """How many random examples to try: `suite`, or what ARGO_EXAMPLES says for a campaign.
+def examples(full: int) -> int:
+    """Return how many random examples, kills or other repetitions a test makes.
 
-    The suite tries the same ones each time, a campaign others each time.
+    The suite makes a quarter of `full`, the same ones each time. `make test-campaigns` makes all
+    of them, and a campaign of one property as many as ARGO_EXAMPLES says; both make others each
+    time.
     """
-    return int(EXAMPLES or suite)
+    if EXAMPLES is None:
+        return -(-full // 4)
+    return full if EXAMPLES == "full" else int(EXAMPLES)
 
 
-_ORDER = ("e2e", "argo_env", "baselines")
-"""The folders whose files take longest come first, so that no worker waits for another's last."""
+def sample(items: Iterable[_T]) -> Iterable[_T]:
+    """Return every fourth of the items in the suite, and all of them in a campaign."""
+    return islice(items, 0, None, None if EXAMPLES else 4)
 
 
+_CLUSTERS = "a Ray and a Dask cluster"
 _SHARED = {
     "tests/argo_env/planning/test_travel.py": "missions on UMAD",
     "tests/argo_env/run/test_runner.py": "missions on UMAD",
     "tests/argo_env/drives/tracked/test_body.py": "the tracked drive's world",
     "tests/argo_env/drives/tracked/test_drive.py": "the tracked drive's world",
+    "tests/argo_env/evaluation/pool/test_pool.py": _CLUSTERS,
+    "tests/argo_env/evaluation/test_evaluating.py": _CLUSTERS,
 }
-"""Files that share a fixture that takes long, and what it is."""
+"""The fixture that takes long and that files share."""
 
 
 def work_unit(test: str) -> str:
-    """What one worker runs of all that the test belongs to: its file, in its order.
+    """Return the name of the unit that a test belongs to: one worker runs it, in its order.
 
-    So fixtures are made once, and what one test leaves behind is left to the same others each time.
+    A unit is a file, the files that share a fixture, or the tests of the page, which share a
+    browser. So fixtures are made once, and what a test leaves behind meets the same others each
+    time.
     """
     file = test.split("::", 1)[0]
-    return _SHARED.get(file, file)
+    return "the page" if file.startswith("tests/e2e/page/") else _SHARED.get(file, file)
 
 
-class _ByFile(LoadFileScheduling):
+class _ByUnit(LoadFileScheduling):
     def _split_scope(self, nodeid: str) -> str:
         return work_unit(nodeid)
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> LoadFileScheduling:
-    return _ByFile(config, log)
+    return _ByUnit(config, log)
 
 
+_DURATIONS = Path(__file__).with_name("durations.json")
+"""Seconds that the tests of each unit took when they were last recorded: those of `make test`, and
+those marked `long`."""
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--record-durations", action="store_true", help=f"write {_DURATIONS.name} anew"
+    )
+
+
+@pytest.hookimpl(trylast=True)  # after tests were deselected
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Brings what takes longest to the front."""
-    root = Path(__file__).parent
+    """Put the units that take longest first, so that no worker waits for another's last."""
+    recorded = json.loads(_DURATIONS.read_text(encoding="utf-8"))
+    parts: dict[str, set[bool]] = defaultdict(set)
+    for item in items:
+        parts[work_unit(item.nodeid)].add("long" in item.keywords)
 
-    def place(item: pytest.Item) -> int:
-        folder = item.path.relative_to(root).parts[0]
-        return _ORDER.index(folder) if folder in _ORDER else len(_ORDER)
+    def seconds(item: pytest.Item) -> float:
+        unit = work_unit(item.nodeid)
+        return sum(recorded.get(unit, (0, 0))[part] for part in parts[unit])
 
-    items.sort(key=place)
+    items.sort(key=lambda item: (-seconds(item), work_unit(item.nodeid)))
+
+
+class _DurationRecorder:
+    """A plugin that adds up how long the tests of each unit take, and writes it at the end."""
+
+    def __init__(self) -> None:
+        self._seconds: dict[str, list[float]] = defaultdict(lambda: [0.0, 0.0])
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        self._seconds[work_unit(report.nodeid)]["long" in report.keywords] += report.duration
+
+    def pytest_sessionfinish(self) -> None:
+        rounded = {
+            unit: [round(seconds) for seconds in pair]
+            for unit, pair in sorted(self._seconds.items())
+            if sum(pair) >= 2
+        }
+        lines = [f"  {json.dumps(unit)}: {json.dumps(pair)}" for unit, pair in rounded.items()]
+        _DURATIONS.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    is_worker = hasattr(config, "workerinput")
+    if config.getoption("--record-durations") and not is_worker:
+        config.pluginmanager.register(_DurationRecorder())

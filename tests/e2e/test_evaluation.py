@@ -14,6 +14,7 @@ import pytest
 
 from argo_compiler.base.errors import NotFound
 from argo_env.evaluation.store import read_rows
+from tests.conftest import examples
 
 MISSION = "scenarios/umad/missions/mission_1.txt"
 AREAS = ("--start-area", "1", "--end-area", "2")
@@ -317,7 +318,7 @@ def undisturbed(long_file, tmp_path_factory):
     return sorted(read_rows(out), key=lambda row: row.key)
 
 
-KILLS = 20
+KILLS = examples(20)
 
 
 @pytest.mark.long

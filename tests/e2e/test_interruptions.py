@@ -18,6 +18,7 @@ import yaml
 from argo_compiler.files.mission_file import write_mission
 from argo_env.run.journal import open_journal
 from argo_env.run.record import RunRecord
+from tests.conftest import examples
 from tests.e2e.conftest import answer_signals
 from tests.e2e.test_journal import (
     ANNOUNCED,
@@ -30,7 +31,7 @@ from tests.e2e.test_journal import (
 )
 from tests.yard import SITE, measure, mission, simulated, yard
 
-INTERRUPTIONS = int(os.environ.get("ARGO_INTERRUPTIONS", "50"))
+INTERRUPTIONS = examples(50)
 FULL = Path("/dev/full")
 STATUS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 

@@ -3,7 +3,6 @@
 ARGO_KILLS=200 makes it a campaign.
 """
 
-import os
 import random
 import re
 import signal
@@ -37,10 +36,11 @@ from argo_env.run.journal import open_journal
 from argo_env.run.record import RunRecord
 from argo_env.run.session import resume
 from argo_env.run.spec import logged
+from tests.conftest import examples
 from tests.yard import SITE, measure, mission, opened, simulated, waypoint, yard
 
 ROOT = Path(__file__).parents[2]
-KILLS = int(os.environ.get("ARGO_KILLS", "8"))
+KILLS = examples(32)
 LONGEST = 4.0  # s that a process lives; a whole run takes about as long
 
 PLAN = mission(

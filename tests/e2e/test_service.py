@@ -20,6 +20,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from argo_compiler.il import Mission
 from argo_planner.service.core.commands import Revision
 from tests.argo_planner.service.test_plan import Follower, mission
+from tests.conftest import examples
 
 TOKEN = "token-of-the-test-of-kills"
 HEADERS = {"authorization": f"Bearer {TOKEN}"}
@@ -254,5 +255,5 @@ def test_nothing_is_lost_or_done_twice_when_the_service_is_killed(serving: Servi
 
 
 @pytest.mark.long
-def test_fifty_subscribers_for_a_minute_and_two_kills(serving: Serving) -> None:
-    asyncio.run(play(serving, seconds=60, subscribers=50, kills=2))
+def test_fifty_subscribers_and_two_kills(serving: Serving) -> None:
+    asyncio.run(play(serving, seconds=examples(60), subscribers=50, kills=2))

@@ -30,6 +30,7 @@ from argo_compiler.hfsm.progress import Waiting
 from argo_compiler.hfsm.standing import InterruptState, advance
 from argo_compiler.il import Afterwards, EventKind, Mission, Reaction, Response, Task
 from tests.argo_compiler.hfsm.interrupt_rules import Alarmed, Rules
+from tests.conftest import sample
 
 EVENTS = (EventKind.GAS_LEAK, EventKind.LOW_BATTERY, EventKind.EMERGENCY_STOP)
 CLEAR = EventKind.ALL_CLEAR
@@ -206,8 +207,8 @@ def test_one_reaction_alone_and_two_that_interrupt_each_other():
 
 @pytest.mark.long
 @pytest.mark.rule("R7", "R9", "R10")
-def test_all_pairs():
-    _, tried = explore_all(sets(2, (None, CLEAR, EVENTS[1]), (1, 2), responses=PAIRED))
+def test_pairs():
+    _, tried = explore_all(sample(sets(2, (None, CLEAR, EVENTS[1]), (1, 2), responses=PAIRED)))
     print("sets, states, steps:", *tried)
 
 
@@ -215,7 +216,7 @@ def test_all_pairs():
 @pytest.mark.rule("R7", "R9", "R10")
 def test_three_reactions():
     three = sets(3, (CLEAR, EVENTS[0]), (1, 2), responses=PAIRED[1:], **PLAIN)
-    _, tried = explore_all(three)
+    _, tried = explore_all(sample(three))
     print("sets, states, steps:", *tried)
 
 

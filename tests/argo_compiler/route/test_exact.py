@@ -1,6 +1,5 @@
 """What is suggested against trying all routes, for random problems with any mix of constraints."""
 
-import os
 from dataclasses import replace
 
 import numpy as np
@@ -20,8 +19,9 @@ from argo_compiler.route import (
 )
 from tests.argo_compiler.route.random_problems import random_problem
 from tests.argo_compiler.route.second_reading import best_worth
+from tests.conftest import examples
 
-PROBLEMS = int(os.environ.get("ARGO_ROUTE_PROBLEMS", "120"))
+PROBLEMS = examples(120)
 
 
 @pytest.mark.parametrize("part", range(4))

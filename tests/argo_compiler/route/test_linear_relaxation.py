@@ -1,6 +1,5 @@
 """The linear relaxation against trying all routes: never above the best, whatever GLOP says."""
 
-import os
 import time
 from math import inf
 
@@ -15,8 +14,9 @@ from argo_compiler.route.pruning import Pruned, prune, shortest
 from argo_compiler.route.search import Search, SearchLimits
 from tests.argo_compiler.route.random_problems import random_problem
 from tests.argo_compiler.route.second_reading import best_worth
+from tests.conftest import examples
 
-PROBLEMS = int(os.environ.get("ARGO_ROUTE_PROBLEMS", "120"))
+PROBLEMS = examples(120)
 
 
 def _relaxed(

@@ -1,6 +1,5 @@
 """An inspection goes from event to event: all that it tells is what it tells step by step."""
 
-import os
 import random
 
 import pytest
@@ -11,9 +10,10 @@ from argo_env.planning.opening import open_site
 from argo_env.run.conditions import RunConditions
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
+from tests.conftest import examples
 
 SITE = open_site("umad")
-EXAMPLES = int(os.environ.get("ARGO_EXAMPLES", "20"))
+EXAMPLES = examples(20)
 FAULTS = (
     "{kind: low_battery, charge: 0.12}",
     "{kind: low_battery, charge: 0.006}",

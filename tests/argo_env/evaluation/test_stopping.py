@@ -10,6 +10,7 @@ from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome, row_without_end
 from argo_env.run.spec import RunSpec
+from tests.conftest import examples
 
 
 def simulated(plan, rng, share):
@@ -24,20 +25,15 @@ def simulated(plan, rng, share):
     return EvaluationResults(plan, tuple(rows))
 
 
-@pytest.mark.parametrize(
-    "evaluations",
-    [pytest.param(100, id="100"), pytest.param(500, id="500", marks=pytest.mark.long)],
-)
 @pytest.mark.parametrize(("share", "asked"), [(0.85, 0.8), (0.9, 0.95)])
-def test_the_interval_covers_where_a_requirement_decides_when_to_stop(
-    mission, share, asked, evaluations
-):
+def test_the_interval_covers_where_a_requirement_decides_when_to_stop(mission, share, asked):
     """An exact interval covers the rate in 93 of 100 of the first ones only."""
     plan = EvaluationPlan(
         cases=(EvaluationCase(mission="m", spec=RunSpec(mission=mission, drive="route")),),
         seeds=tuple(range(400)),
         stopping=Stopping(require=(parse_requirement(f"success >= {asked}"),)),
     )
+    evaluations = examples(400)
     rng = np.random.default_rng(9)
     held = groups = early = 0
     for _ in range(evaluations):

@@ -1,7 +1,6 @@
 """Runs go from event to event where the robot touches nothing: the record, and the journal, are
 those of a run that goes step by step, to the last bit."""
 
-import os
 import random
 
 import pytest
@@ -25,6 +24,7 @@ from argo_env.run.conditions import RunConditions
 from argo_env.run.observer import Observer
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec, logged
+from tests.conftest import examples
 
 SITE = open_site("umad")
 PAPER_FAULTS = (
@@ -136,7 +136,7 @@ def outcome(spec, **options) -> str:
         return str(error)
 
 
-EXAMPLES = int(os.environ.get("ARGO_EXAMPLES", "60"))
+EXAMPLES = examples(60)
 
 
 @pytest.mark.parametrize("seed", range(EXAMPLES))

@@ -9,6 +9,7 @@ import pytest
 
 from argo_planner.service.web.app import document
 from tests.argo_planner.service.served import ALL, Served
+from tests.conftest import examples
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "openapi.json"
 
@@ -55,8 +56,6 @@ def test_no_answer_is_against_the_document(service: Served, tmp_path: Path) -> N
 
 
 @pytest.mark.long
-def test_ten_thousand_cases_with_links_are_answered_as_documented(
-    service: Served, tmp_path: Path
-) -> None:
-    count = asked(service, 60, "coverage,fuzzing,stateful", tmp_path)
-    assert count >= 10_000
+def test_cases_with_links_are_answered_as_documented(service: Served, tmp_path: Path) -> None:
+    count = asked(service, examples(60), "coverage,fuzzing,stateful", tmp_path)
+    assert count >= examples(10_000)

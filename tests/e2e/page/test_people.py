@@ -6,6 +6,7 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.argo_planner.service.served import ALL, Served
+from tests.conftest import examples
 from tests.e2e.page.person import Line, Person
 from tests.e2e.page.test_list import order, plan, row, tasks
 
@@ -181,5 +182,5 @@ def test_a_short_time_offline_loses_nothing(browsers, service, plan) -> None:
     away(browsers, service, plan, 3)
 
 
-def test_a_minute_offline_loses_nothing(browsers, service, plan) -> None:
-    away(browsers, service, plan, 60)
+def test_a_long_time_offline_loses_nothing(browsers, service, plan) -> None:
+    away(browsers, service, plan, examples(60))

@@ -6,8 +6,9 @@ import pytest
 from argo_compiler.base.errors import Invalid
 from argo_env.evaluation.statistics.rates import clopper_pearson
 from argo_env.evaluation.statistics.sequences import ConfidenceSequence
+from tests.conftest import examples
 
-EVALUATIONS = 2_000
+EVALUATIONS = examples(2_000)
 EVERY = 20
 
 

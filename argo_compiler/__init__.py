@@ -16,8 +16,7 @@ import logging
 from typing import TYPE_CHECKING
 
 from argo_compiler.base.lazy_names import lazy_names
-
-__version__ = "0.1.0"
+from argo_compiler.base.version import __version__ as __version__
 
 __all__ = [
     "ActionFailed",

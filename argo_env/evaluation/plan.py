@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import Field
 
-import argo_compiler
 from argo_compiler.base.errors import Conflict, Invalid
 from argo_compiler.base.model import Model
+from argo_compiler.base.version import __version__
 from argo_env.evaluation.requirement import RateRequirement
 from argo_env.evaluation.worlds import NO_VARIATION, Variation
 from argo_env.faults.distribution import NOTHING
@@ -124,7 +124,7 @@ class EvaluationPlan(Model):
         """What the run is known by: a hash of all that it depends on, of what its case is called,
         and of Argo's version."""
         case = self.cases[run.case]
-        said = (argo_compiler.__version__, case.digest, case.mission, case.policy, case.faults)
+        said = (__version__, case.digest, case.mission, case.policy, case.faults)
         text = "\n".join((*said, run.spec.model_dump_json()))
         return hashlib.sha256(text.encode()).hexdigest()[:24]
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from foxglove_schemas_protobuf.Log_pb2 import Log
 
-from argo_compiler import __version__
+from argo_compiler.base.version import __version__
 from argo_compiler.hfsm import Occurred
 from argo_env.navigation import Path as Way
 from argo_env.recording import messages, scene

@@ -11,15 +11,9 @@ from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound, lo
 from argo_compiler.base.version import __version__
 from argo_compiler.files.reading import read_bytes
 from argo_compiler.il import Mission
+from argo_env.evaluation.case import AS_WRITTEN, NO_FAULTS, EvaluationCase
 from argo_env.evaluation.file import DrawnFaults, EvaluationFile, MissionEntry
-from argo_env.evaluation.plan import (
-    AS_WRITTEN,
-    NO_FAULTS,
-    EvaluationCase,
-    EvaluationPlan,
-    Stopping,
-    parse_seeds,
-)
+from argo_env.evaluation.plan import EvaluationPlan, Stopping, parse_seeds
 from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.evaluation.pool.backends import make_backend
 from argo_env.evaluation.requirement import parse_requirement

@@ -13,10 +13,10 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 from markupsafe import Markup
 
 from argo_compiler.base.version import __version__
+from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.comparison import PlanComparison
 from argo_env.evaluation.durations import duration_curve
 from argo_env.evaluation.folder import COMPARISON, REPORT, write_file
-from argo_env.evaluation.plan import PlanName
 from argo_env.evaluation.plots import (
     detection_delays,
     durations,

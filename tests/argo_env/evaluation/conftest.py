@@ -3,7 +3,8 @@
 import pytest
 
 from argo_compiler.il import Action, Mission, Task, Transition
-from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan
+from argo_env.evaluation.case import EvaluationCase
+from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.planning.opening import open_site
 from argo_env.run.spec import RunSpec
 

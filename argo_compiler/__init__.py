@@ -57,7 +57,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from argo_compiler.analysis.analyse import analyse
+    from argo_compiler.analysis.analysing import analyse
     from argo_compiler.base.catalog import Catalog
     from argo_compiler.base.errors import (
         ArgoError,
@@ -89,7 +89,7 @@ else:
     __getattr__, __dir__ = lazy_names(
         __name__,
         {
-            "analysis.analyse": ["analyse"],
+            "analysis.analysing": ["analyse"],
             "base.catalog": ["Catalog"],
             "checks": ["check"],
             "diagnostics": ["Diagnostic", "DiagnosticError"],

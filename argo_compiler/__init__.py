@@ -16,8 +16,7 @@ import logging
 from typing import TYPE_CHECKING
 
 from argo_compiler.base.lazy_names import lazy_names
-
-__version__ = "0.1.0"
+from argo_compiler.base.version import __version__ as __version__
 
 __all__ = [
     "ActionFailed",
@@ -58,7 +57,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from argo_compiler.analysis.analyse import analyse
+    from argo_compiler.analysis.analysing import analyse
     from argo_compiler.base.catalog import Catalog
     from argo_compiler.base.errors import (
         ArgoError,
@@ -90,7 +89,7 @@ else:
     __getattr__, __dir__ = lazy_names(
         __name__,
         {
-            "analysis.analyse": ["analyse"],
+            "analysis.analysing": ["analyse"],
             "base.catalog": ["Catalog"],
             "checks": ["check"],
             "diagnostics": ["Diagnostic", "DiagnosticError"],

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from argo_compiler import __version__
 from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.version import __version__
 from argo_planner.lazy_group import LazyCommand, LazyGroup
 from argo_planner.terminal.output import guard_output
 from argo_planner.terminal.signals import ignore_signals, raise_interrupted

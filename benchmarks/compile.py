@@ -56,7 +56,7 @@ from argo_compiler.base.catalog import (
 from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import Executor, lower
 from argo_compiler.script import import_script, parse
-from argo_compiler.script.resolve.importing import resolve
+from argo_compiler.script.resolve.importing import resolve_script
 
 ROOT = Path(__file__).parents[1]
 SIZES = (1_000, 10_000, 30_000, 100_000)
@@ -179,7 +179,7 @@ def stages(text: str, catalog: Catalog) -> dict[str, float]:
         return result
 
     script = timed("parse", parse, text, *_names(catalog))
-    resolved = timed("resolve", resolve, script, catalog)
+    resolved = timed("resolve", resolve_script, script, catalog)
     machine = timed("lower", lower, resolved.mission)
     timed("executor", Executor, machine)
     seconds["total"] = sum(seconds.values())
@@ -189,7 +189,7 @@ def stages(text: str, catalog: Catalog) -> dict[str, float]:
 def peak_memory(text: str, catalog: Catalog) -> float:
     """MB that Python objects took at most on the way."""
     tracemalloc.start()
-    mission = resolve(parse(text, *_names(catalog)), catalog).mission
+    mission = resolve_script(parse(text, *_names(catalog)), catalog).mission
     Executor(lower(mission))
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()

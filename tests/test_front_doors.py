@@ -4,7 +4,6 @@ which are the front doors, and others that are made in the same way.
 
 import ast
 import importlib
-import pkgutil
 import re
 import subprocess
 import sys
@@ -47,14 +46,6 @@ def test_each_name_is_what_type_checkers_are_told(package):
     assert set(offering.__all__) <= set(dir(offering))
     for name, module in told.items():
         assert getattr(offering, name) is getattr(importlib.import_module(module), name)
-
-
-@pytest.mark.parametrize("package", LAZY)
-def test_no_name_is_that_of_a_module(package):
-    """Such a module would take the name's place as soon as it is imported."""
-    offering = importlib.import_module(package)
-    modules = {module.name for module in pkgutil.iter_modules(offering.__path__)}
-    assert not modules & set(offering.__all__)
 
 
 @pytest.mark.parametrize("package", LAZY)

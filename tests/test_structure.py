@@ -2,6 +2,8 @@
 
 import ast
 import re
+import subprocess
+import sys
 from collections import defaultdict
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
@@ -63,6 +65,13 @@ def room_of(module):
     return module if folder in KNOWS else folder
 
 
+def require_no_circle(imports):
+    try:
+        list(TopologicalSorter(imports).static_order())
+    except CycleError as error:
+        pytest.fail(" imports ".join(reversed(error.args[1])))
+
+
 @pytest.mark.parametrize("package", KNOWS)
 def test_packages_import_in_one_direction(package):
     imported = {
@@ -81,10 +90,72 @@ def test_folders_import_each_other_in_no_circle():
         for other in imports_of(module) - FRONT_DOORS:
             if room_of(other) != room_of(module):
                 rooms[room_of(module)].add(room_of(other))
-    try:
-        list(TopologicalSorter(rooms).static_order())
-    except CycleError as error:
-        pytest.fail(" imports ".join(reversed(error.args[1])))
+    require_no_circle(rooms)
+
+
+def test_files_import_each_other_in_no_circle():
+    """Nor do they late, or for type checkers; a package's `__init__` is a file like any other."""
+    require_no_circle({module: imports_of(module) for module in trees()})
+
+
+COMPREHENSIONS = ast.ListComp | ast.SetComp | ast.DictComp | ast.GeneratorExp
+
+
+def run_by(node):
+    """What is below a node, without what is in functions, classes and comprehensions."""
+    for child in ast.iter_child_nodes(node):
+        yield child
+        if not isinstance(child, ast.FunctionDef | ast.ClassDef | ast.Lambda | COMPREHENSIONS):
+            yield from run_by(child)
+
+
+def bound_in(package):
+    """The names that a package has or offers, each with the module that it may be."""
+    for node in run_by(trees()[package]):
+        if isinstance(node, ast.ImportFrom):
+            yield from ((a.asname or a.name, f"{node.module}.{a.name}") for a in node.names)
+        elif isinstance(node, ast.Import):
+            yield from ((a.asname or a.name.split(".")[0], a.name) for a in node.names)
+        elif isinstance(node, ast.FunctionDef | ast.ClassDef):
+            yield node.name, None
+        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            yield node.id, None
+        elif isinstance(node, ast.Call) and ast.unparse(node.func) == "lazy_names":
+            homes = ast.literal_eval(node.args[1])
+            yield from ((name, None) for names in homes.values() for name in names)
+
+
+def test_no_name_of_a_package_hides_a_module():
+    hidden = [
+        f"{package}.{name}"
+        for package in PACKAGES & set(trees())
+        for name, module in bound_in(package)
+        if f"{package}.{name}" in trees() and module != f"{package}.{name}"
+    ]
+    assert not hidden
+
+
+IMPORTS = """
+import sys
+from functools import reduce
+from importlib import import_module
+from types import ModuleType
+for dotted in sys.argv[1:]:
+    module = import_module(dotted)
+    package, *rest = dotted.split(".")
+    found = reduce(getattr, rest, import_module(package))
+    if found is not module or not isinstance(module, ModuleType):
+        print(dotted)
+"""
+
+
+def test_each_module_is_found_where_its_name_says():
+    """By `import a.b.c as x`, whatever of the project has been imported before."""
+    modules = sorted(module for module in trees() if not module.endswith(".__main__"))
+    said = subprocess.run(
+        [sys.executable, "-c", IMPORTS, *modules], cwd=ROOT, capture_output=True, text=True
+    )
+    assert (said.returncode, said.stdout) == (0, ""), said.stderr
 
 
 def test_the_checkers_of_witnesses_share_no_code_with_the_analysis():
@@ -120,12 +191,14 @@ def imported_into(module):
 
 @pytest.mark.parametrize("package", KNOWS)
 def test_names_are_imported_from_their_home_or_from_the_package_that_offers_them(package):
+    """A module of that package has them from their home."""
     strays = [
         f"{module} imports {alias.name} from {node.module}, which has it from elsewhere"
         for module in trees()
         if module.split(".")[0] == package
         for node in ast.walk(trees()[module])
-        if isinstance(node, ast.ImportFrom) and node.module in set(trees()) - PACKAGES
+        if isinstance(node, ast.ImportFrom) and node.module in trees()
+        if node.module not in PACKAGES or module.startswith(f"{node.module}.")
         for alias in node.names
         if alias.name in imported_into(node.module)
     ]

@@ -1,6 +1,6 @@
 """The analysis of a mission over all its paths: what can't happen, and what it takes."""
 
-from argo_compiler.analysis.analyse import analyse
+from argo_compiler.analysis.analysing import analyse
 from argo_compiler.analysis.bound_verification import unproved_bounds
 from argo_compiler.analysis.facts import (
     Analysis,

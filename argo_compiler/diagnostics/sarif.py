@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from argo_compiler import __version__
+from argo_compiler.base.version import __version__
 from argo_compiler.diagnostics.codes import CODES
 from argo_compiler.diagnostics.diagnostic import Diagnostic
 

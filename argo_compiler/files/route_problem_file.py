@@ -28,7 +28,7 @@ from argo_compiler.route.problem import (
     RouteProblem,
     Visit,
 )
-from argo_compiler.route.suggestion import RouteSuggestion
+from argo_compiler.route.suggested import RouteSuggestion
 
 VERSION = 1
 MAX_BYTES = 200_000_000

@@ -54,7 +54,6 @@ if TYPE_CHECKING:
         Event,
         GiveBack,
         Occurred,
-        Outcome,
         Pause,
         ReadingGiven,
         Resume,
@@ -73,6 +72,7 @@ if TYPE_CHECKING:
         StateTransition,
         TransitionKind,
     )
+    from argo_compiler.hfsm.outcome import Outcome
     from argo_compiler.hfsm.progress import (
         ByHand,
         Progress,
@@ -96,7 +96,6 @@ else:
                 "Event",
                 "GiveBack",
                 "Occurred",
-                "Outcome",
                 "Pause",
                 "ReadingGiven",
                 "Resume",
@@ -115,6 +114,7 @@ else:
                 "StateTransition",
                 "TransitionKind",
             ],
+            "outcome": ["Outcome"],
             "progress": ["ByHand", "Progress", "ReadingKind", "ReadingProgress", "TaskTally"],
             "trace": ["Cause", "TraceEntry"],
         },

@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 
 from argo_compiler.hfsm.course import MissionCourse
-from argo_compiler.hfsm.events import Outcome
 from argo_compiler.hfsm.interrupts import Effect, Stage, Trigger
+from argo_compiler.hfsm.outcome import Outcome
 from argo_compiler.hfsm.progress import ByHand
 from argo_compiler.hfsm.standing import InterruptState, TakenRow, advance
 from argo_compiler.hfsm.tables import ReactionNode, Tables

@@ -1,13 +1,9 @@
 """What goes into an executor and what comes out: events and commands."""
 
 from dataclasses import dataclass
-from enum import StrEnum
-from typing import TYPE_CHECKING
 
+from argo_compiler.hfsm.progress import ByHand
 from argo_compiler.il import EventKind, Task
-
-if TYPE_CHECKING:  # progress tells an outcome, which is defined here
-    from argo_compiler.hfsm.progress import ByHand
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +83,7 @@ class GiveBack:
     """A person gives the robot back, and the mission goes on as it would from a progress that was
     handed over with this."""
 
-    by_hand: "tuple[ByHand, ...]" = ()
+    by_hand: tuple[ByHand, ...] = ()
     """what they did or skipped, in this order"""
 
 
@@ -122,22 +118,3 @@ class CancelAction:
 
 
 Command = StartAction | CancelAction
-
-
-class Outcome(StrEnum):
-    """How a mission has ended."""
-
-    COMPLETED = "completed"
-    """all was done that the plan asked for"""
-    COMPLETED_WITH_FAILURES = "completed with failures"
-    """the plan came to its end, and a task that is not optional had failed for good"""
-    RETURNED = "returned"
-    """at the dock, after a failure or an event"""
-    SHELTERED = "sheltered"
-    """in a safe area, after an event"""
-    FAILED = "failed"
-    """the way to the dock or to a safe area failed as well"""
-    ABORTED = "aborted"
-    """where the robot stood, after a failure or an event"""
-    CANCELLED = "cancelled"
-    """by a person"""

@@ -18,7 +18,6 @@ from argo_compiler.hfsm.events import (
     Event,
     GiveBack,
     Occurred,
-    Outcome,
     Pause,
     ReadingGiven,
     Resume,
@@ -27,6 +26,7 @@ from argo_compiler.hfsm.events import (
     Tick,
 )
 from argo_compiler.hfsm.model import DONE, MISSION, Hfsm
+from argo_compiler.hfsm.outcome import Outcome
 from argo_compiler.hfsm.progress import ByHand, Progress
 from argo_compiler.hfsm.restoring import (
     group_progress,

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from argo_compiler.hfsm.events import Outcome
 from argo_compiler.hfsm.interrupts import ROWS, Effect, Given, InterruptRow, Stage, Trigger
+from argo_compiler.hfsm.outcome import Outcome
 from argo_compiler.il import Afterwards, EventKind, Reaction, Response
 
 Reactions = Mapping[EventKind, Reaction]

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from argo_compiler.base.remembering import remembering
-from argo_compiler.il import Group, Mission
+from argo_compiler.il.mission import Group, Mission
 from argo_compiler.il.positions import task_positions
 
 

@@ -1,6 +1,6 @@
 """Names that the machine gives to tasks of its own; no task of a mission may have them."""
 
-from argo_compiler.il import EventKind
+from argo_compiler.il.mission import EventKind
 
 RETURN_TASK = "return to dock"
 """the drive back to the dock after a failure"""

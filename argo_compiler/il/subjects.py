@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from functools import cached_property
 
 from argo_compiler.diagnostics.subject import Named, parse_subject, subject_of
-from argo_compiler.il import Mission
+from argo_compiler.il.mission import Mission
 
 
 class Subjects:

@@ -12,7 +12,8 @@ from argo_compiler.route.problem import (
     Visit,
 )
 from argo_compiler.route.stop import SearchProgress
-from argo_compiler.route.suggestion import RouteSuggestion, suggest_route
+from argo_compiler.route.suggested import RouteSuggestion
+from argo_compiler.route.suggestion import suggest_route
 
 __all__ = [
     "NEVER",

@@ -9,7 +9,8 @@ from typing import Any
 
 from argo_compiler.base.errors import ArgoError, located
 from argo_compiler.route.problem import RouteProblem
-from argo_compiler.route.suggestion import RouteSuggestion, suggest_route
+from argo_compiler.route.suggested import RouteSuggestion
+from argo_compiler.route.suggestion import suggest_route
 
 
 def suggest_routes(

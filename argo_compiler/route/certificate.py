@@ -19,7 +19,7 @@ from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.exhaustion import Exhaustion
 from argo_compiler.route.problem import RouteProblem, Tour
 from argo_compiler.route.relaxation import Relaxation
-from argo_compiler.route.suggestion import RouteSuggestion
+from argo_compiler.route.suggested import RouteSuggestion
 
 _TRIVIAL = "no route is worth more than all visits, or costs less than nothing"
 _PLAIN = 20_000

@@ -17,7 +17,7 @@ from argo_compiler.route.pruning import longest, prune
 from argo_compiler.route.search import Observers, Search, SearchLimits
 from argo_compiler.route.solver import RouteSolver
 from argo_compiler.route.stop import FirstFeasible
-from argo_compiler.route.suggestion import RouteSuggestion
+from argo_compiler.route.suggested import RouteSuggestion
 
 _CHECK = 2.0
 """s for one check of whether some requirements can be met together"""

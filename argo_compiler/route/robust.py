@@ -20,7 +20,8 @@ from argo_compiler.base.errors import Conflict, Invalid
 from argo_compiler.route.problem import NEVER, RouteProblem, Tour
 from argo_compiler.route.robust_sampling import Completion, Draws, completion
 from argo_compiler.route.robust_spread import TravelSpread
-from argo_compiler.route.suggestion import RouteSuggestion, suggest_route
+from argo_compiler.route.suggested import RouteSuggestion
+from argo_compiler.route.suggestion import suggest_route
 
 SEARCHED = 2000
 """samples on which routes are compared in the search"""

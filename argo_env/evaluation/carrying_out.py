@@ -6,7 +6,7 @@ import traceback
 from dataclasses import dataclass
 
 from argo_compiler.base.errors import ArgoError
-from argo_env.evaluation.plan import EvaluationCase
+from argo_env.evaluation.case import EvaluationCase
 from argo_env.evaluation.row import RunOutcome, RunRow, row_of, row_without_end
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.robot.spec import load_robot

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Conflict, NotFound, Remedy
-from argo_env.evaluation.plan import PlanName
+from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
 from argo_env.evaluation.statistics.pairs import Difference, SuccessPairs, difference, power

@@ -4,7 +4,7 @@ from bisect import bisect_left
 from dataclasses import dataclass
 from itertools import accumulate
 
-from argo_env.evaluation.plan import PlanName
+from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.results import EvaluationResults
 
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 from argo_env.evaluation.batches import batches
 from argo_env.evaluation.carrying_out import TOOK_TOO_LONG, WorkOrder, carry_out
-from argo_env.evaluation.plan import EvaluationPlan, PlanName, PlannedRun
+from argo_env.evaluation.case import PlanName
+from argo_env.evaluation.plan import EvaluationPlan, PlannedRun
 from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.evaluation.pool.pool import Finished, Pool
 from argo_env.evaluation.results import EvaluationResults

@@ -5,9 +5,10 @@ from pathlib import Path
 
 from argo_compiler.base.errors import Invalid
 from argo_compiler.il import Mission
+from argo_env.evaluation.case import NO_FAULTS, EvaluationCase
 from argo_env.evaluation.evaluating import Evaluating, EvaluationProgress
 from argo_env.evaluation.folder import digest_of, open_rows
-from argo_env.evaluation.plan import NO_FAULTS, EvaluationCase, EvaluationPlan, Stopping
+from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.evaluation.pool.backends import PROCESSES, make_backend
 from argo_env.evaluation.requirement import parse_requirement

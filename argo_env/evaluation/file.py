@@ -5,7 +5,8 @@ from pydantic import Field, field_validator, model_validator
 from argo_compiler.base.errors import Invalid
 from argo_compiler.base.model import Model
 from argo_compiler.files.reading import decode_text, require_size
-from argo_env.evaluation.plan import AS_WRITTEN, NO_FAULTS, parse_seeds
+from argo_env.evaluation.case import AS_WRITTEN, NO_FAULTS
+from argo_env.evaluation.plan import parse_seeds
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.worlds import NO_VARIATION, Variation
 from argo_env.files.yaml_file import parse_yaml

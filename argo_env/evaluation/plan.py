@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import Field
 
-import argo_compiler
 from argo_compiler.base.errors import Conflict, Invalid
 from argo_compiler.base.model import Model
+from argo_compiler.base.version import __version__
+from argo_env.evaluation.case import EvaluationCase, PlanName
 from argo_env.evaluation.requirement import RateRequirement
 from argo_env.evaluation.worlds import NO_VARIATION, Variation
 from argo_env.faults.distribution import NOTHING
@@ -18,58 +19,6 @@ from argo_env.run.spec import RunSpec
 
 if TYPE_CHECKING:
     from argo_env.evaluation.row import RunRow
-
-NO_FAULTS = "none"
-"""the name of the case in which nothing goes wrong"""
-AS_WRITTEN = "as written"
-"""the policy that keeps the mission's order"""
-
-
-class EvaluationCase(Model):
-    """One of the things that are run again and again, each time with another seed."""
-
-    mission: str
-    """what it is called in tables"""
-    policy: str = AS_WRITTEN
-    """in which order the mission's tasks are done"""
-    faults: str = NO_FAULTS
-    """what the faults of this case are called"""
-    spec: RunSpec
-    """all but the seed, and what varies from world to world"""
-    digest: str = ""
-    """of the site's and the robot's descriptions, which the spec only names"""
-    weight: float = Field(default=1.0, gt=0)
-    """how often missions are like this, beside the other cases of the same plan"""
-
-    @property
-    def plan(self) -> "PlanName":
-        """What it is a case of: rates are told of plans, over all their faults and seeds."""
-        spec = self.spec
-        return PlanName(self.mission, self.policy, spec.site, spec.robot, spec.drive, spec.sensor)
-
-
-@dataclass(frozen=True, order=True)
-class PlanName:
-    """What is evaluated, under whatever faults."""
-
-    mission: str
-    policy: str
-    site: str
-    robot: str
-    drive: str
-    sensor: str
-
-    def __str__(self) -> str:
-        return self.beside(())
-
-    def beside(self, others: Sequence["PlanName"]) -> str:
-        """Its name in words: the mission, and of the rest what is not the same for all."""
-        parts = [self.mission]
-        for name in ("policy", "site", "robot", "drive", "sensor"):
-            own = getattr(self, name)
-            if any(getattr(other, name) != own for other in others):
-                parts.append(own)
-        return ", ".join(parts)
 
 
 class Stopping(Model):
@@ -124,7 +73,7 @@ class EvaluationPlan(Model):
         """What the run is known by: a hash of all that it depends on, of what its case is called,
         and of Argo's version."""
         case = self.cases[run.case]
-        said = (argo_compiler.__version__, case.digest, case.mission, case.policy, case.faults)
+        said = (__version__, case.digest, case.mission, case.policy, case.faults)
         text = "\n".join((*said, run.spec.model_dump_json()))
         return hashlib.sha256(text.encode()).hexdigest()[:24]
 

@@ -6,7 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from argo_env.evaluation.plan import EvaluationPlan, PlanName
+from argo_env.evaluation.case import PlanName
+from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.row import RunOutcome, RunRow
 from argo_env.evaluation.statistics.rates import Rate, clopper_pearson, wilson
 from argo_env.evaluation.statistics.sequences import ConfidenceSequence

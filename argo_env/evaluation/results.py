@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from argo_env.evaluation.plan import EvaluationPlan, PlanName
+from argo_env.evaluation.case import PlanName
+from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.rates import (
     IntervalMethod,
     PlanRate,

@@ -1,20 +1,33 @@
 """Travel times and energy of a robot on a site, for the analysis of missions."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from argo_compiler.analysis import Leg, NoWay, Standing
 from argo_compiler.base.errors import Unreachable
 from argo_compiler.base.model import Pose
 from argo_compiler.il import MAX_TIME_S, Action, Mission, Task
 from argo_env.drives.timetable import steps
+from argo_env.files.parts import Parts
 from argo_env.navigation.path import Motion, Path
 from argo_env.planning.kept_ways import as_data, kept_way
 from argo_env.planning.start import start_pose
 from argo_env.robot.calibration import MotionKind
+from argo_env.robot.spec import RobotSpec
+from argo_env.site import Site
 
 if TYPE_CHECKING:
     from argo_env.navigation import Navigator
-    from argo_env.planning.opening import OpenedSite
+
+
+class NavigatedSite(Protocol):
+    """A site whose navigator is made when it is first asked for."""
+
+    site: Site
+    robot: RobotSpec
+    parts: Parts
+
+    @property
+    def navigator(self) -> "Navigator": ...
 
 
 class SiteTravel:
@@ -25,7 +38,7 @@ class SiteTravel:
     drive's are.
     """
 
-    def __init__(self, on: "Navigator | OpenedSite", time_step: float = 0.1) -> None:
+    def __init__(self, on: "Navigator | NavigatedSite", time_step: float = 0.1) -> None:
         self._on = on
         self._robot = on.robot
         self._parts = on.parts

@@ -14,12 +14,6 @@ from argo_env.recording.output import RecordingFile
 
 _log = logging.getLogger(__name__)
 
-VERSION = "2"
-"""of what a recording of Argo's holds"""
-MAGIC = b"\x89MCAP0\r\n"
-"""what every .mcap file begins and ends with (MCAP specification)"""
-
-
 _LIBRARIES = ("mcap", "mcap_protobuf", "foxglove_schemas_protobuf")
 
 

@@ -11,7 +11,8 @@ from argo_compiler.base.errors import Invalid, NotFound, Remedy
 from argo_compiler.files.json_places import format_path
 from argo_compiler.files.reading import FileError, FileProblem, read_bytes
 from argo_env.files.yaml_messages import message_of
-from argo_env.recording.files import MAGIC, VERSION, require_libraries
+from argo_env.recording.files import require_libraries
+from argo_env.recording.format import MAGIC, VERSION
 from argo_env.recording.sections import Content, data_section, is_sound_end, trailing, unreadable
 from argo_env.run.record import Reading, RunRecord, TaskRun
 from argo_env.site import Site, make_site

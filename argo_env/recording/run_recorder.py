@@ -9,11 +9,11 @@ from pathlib import Path
 
 from foxglove_schemas_protobuf.Log_pb2 import Log
 
-from argo_compiler import __version__
+from argo_compiler.base.version import __version__
 from argo_compiler.hfsm import Occurred
 from argo_env.navigation import Path as Way
 from argo_env.recording import messages, scene
-from argo_env.recording.files import VERSION
+from argo_env.recording.format import VERSION
 from argo_env.recording.motion import Limbs, MotionTopics
 from argo_env.recording.shots import write_shot
 from argo_env.recording.topic_writer import TopicWriter

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from io import BytesIO
 from typing import TYPE_CHECKING
 
-from argo_env.recording.files import MAGIC
+from argo_env.recording.format import MAGIC
 
 if TYPE_CHECKING:  # what the extra brings
     from mcap.records import Attachment, McapRecord

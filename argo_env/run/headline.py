@@ -1,14 +1,10 @@
 """The headline of a run: the same words on the terminal, in reports, recordings and films."""
 
 from collections import Counter
+from collections.abc import Mapping, Sequence
 from enum import StrEnum
-from typing import TYPE_CHECKING
 
 from argo_compiler.base.model import Model
-from argo_env.formatting import clock
-
-if TYPE_CHECKING:  # it is made of this
-    from argo_env.run.record import Finding, RunRecord
 
 AS_PLANNED = "everything was done as planned"
 """the verdict of a success of which there is nothing more to say"""
@@ -41,49 +37,40 @@ class Headline(Model):
         return f"{self.word}: {self.text}."
 
 
-def headline(record: "RunRecord") -> Headline:
-    """The headline of a run. What was found, touched and slipped is counted, each thing once."""
-    result = record.result
+def headline(
+    verdict: str,
+    *,
+    success: bool,
+    ended: bool,
+    only_failures: bool,
+    noticed: Mapping[str, Sequence[str]],
+) -> Headline:
+    """Return the headline of a run with this result.
+
+    `noticed`: what was found, touched and slipped, in words, each thing once, by what it is called.
+    """
     counts = ", ".join(
         f"{len(things)} {name}{'s' if len(things) > 1 else ''}"
-        for name, things in (
-            ("finding", record.findings),
-            ("late task", record.late),
-            ("contact", record.contacts),
-            ("mishap", record.mishaps),
-        )
+        for name, things in noticed.items()
         if things
     )
-    noticed = _noticed(record)
-    if not result.success:
-        word, tone = ("No success", Tone.BAD) if result.ended else ("Interrupted", Tone.NOTICE)
-        if result.only_failures:
+    said = _first([what for things in noticed.values() for what in things])
+    if not success:
+        word, tone = ("No success", Tone.BAD) if ended else ("Interrupted", Tone.NOTICE)
+        if only_failures:
             word, tone = "Completed with failures", Tone.NOTICE
-        text = f"{result.verdict}. {counts}: {noticed}" if counts else result.verdict
+        text = f"{verdict}. {counts}: {said}" if counts else verdict
         return Headline(word=word, text=text, tone=tone)
     if not counts:
-        return Headline(word="Success", text=result.verdict, tone=Tone.GOOD)
-    if result.verdict != AS_PLANNED:
-        noticed += f". {result.verdict[:1].upper()}{result.verdict[1:]}"
-    return Headline(word=f"Done, {counts}", text=noticed, tone=Tone.NOTICE)
+        return Headline(word="Success", text=verdict, tone=Tone.GOOD)
+    if verdict != AS_PLANNED:
+        said += f". {verdict[:1].upper()}{verdict[1:]}"
+    return Headline(word=f"Done, {counts}", text=said, tone=Tone.NOTICE)
 
 
-def _noticed(record: "RunRecord") -> str:
-    """The things to look at, in words; of many the first."""
-    said = [in_words(finding) for finding in record.findings]
-    said += [f"{run.task} ended after its time window" for run in record.late]
-    said += [f"{c.link} touched {c.element} at {clock(c.start)}" for c in record.contacts]
-    said += [f"{m.trouble} at {clock(m.t)}" for m in record.mishaps]
+def _first(said: Sequence[str]) -> str:
+    """Return the things to look at in one line; of many the first."""
     times = list(Counter(said).items())
     named = [what if n == 1 else f"{what}, {n} times" for what, n in times[:_NAMED]]
     more = sum(n for _, n in times[_NAMED:])
     return "; ".join([*named, *([f"and {more} more"] if more else [])])
-
-
-def in_words(finding: "Finding") -> str:
-    """A finding with what came of it: of a reading, that no reaction answers it goes unsaid, as its
-    value is what the mission was to find out."""
-    if finding.is_reading:
-        return finding.what + (f" ({finding.answer})" if finding.answered else "")
-    over = "" if finding.over_at is None else f", over at {clock(finding.over_at)}"
-    return f"{finding.what} at {clock(finding.t)} ({finding.answer}){over}"

@@ -15,9 +15,9 @@ from typing import Literal, NoReturn, Self, TypeVar
 
 from pydantic import ValidationError
 
-from argo_compiler import __version__
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound, Remedy, Unavailable
 from argo_compiler.base.model import Model
+from argo_compiler.base.version import __version__
 from argo_env.closing import Closing
 from argo_env.files.checked_lines import (
     checked_line,

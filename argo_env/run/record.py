@@ -17,7 +17,7 @@ from argo_compiler.hfsm.progress import TaskTally
 from argo_compiler.il import Action, EventKind, Mission, Response
 from argo_env.drives.drive import Trouble
 from argo_env.faults.kinds import AnyFault
-from argo_env.formatting import where
+from argo_env.formatting import clock, where
 from argo_env.run.headline import Headline, headline
 from argo_env.site.shapes import Vector
 from argo_env.site.spec import Rect
@@ -228,6 +228,15 @@ class Finding(Anomaly):
     """in words: by what, or that none did"""
     over_at: float | None = None
     """s, when it was told to be over; None: it was not"""
+
+    @property
+    def in_words(self) -> str:
+        """What it is and what came of it: of a reading, that no reaction answers it goes unsaid, as
+        its value is what the mission was to find out."""
+        if self.is_reading:
+            return self.what + (f" ({self.answer})" if self.answered else "")
+        over = "" if self.over_at is None else f", over at {clock(self.over_at)}"
+        return f"{self.what} at {clock(self.t)} ({self.answer}){over}"
 
 
 class Interruption(Model):
@@ -462,7 +471,20 @@ class RunRecord(Model):
     @property
     def headline(self) -> Headline:
         """How the run went, in a line."""
-        return headline(self)
+        return headline(
+            self.result.verdict,
+            success=self.result.success,
+            ended=self.result.ended,
+            only_failures=self.result.only_failures,
+            noticed={
+                "finding": [finding.in_words for finding in self.findings],
+                "late task": [f"{run.task} ended after its time window" for run in self.late],
+                "contact": [
+                    f"{c.link} touched {c.element} at {clock(c.start)}" for c in self.contacts
+                ],
+                "mishap": [f"{m.trouble} at {clock(m.t)}" for m in self.mishaps],
+            },
+        )
 
     @property
     def late(self) -> tuple[WindowRun, ...]:

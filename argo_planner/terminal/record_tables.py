@@ -8,7 +8,7 @@ from rich.table import Table
 
 from argo_env.formatting import clock, where
 from argo_env.report.waiting import waits
-from argo_env.run.headline import Tone, in_words
+from argo_env.run.headline import Tone
 from argo_env.run.record import RunRecord, WindowKept
 
 _WIDE = 100
@@ -43,7 +43,7 @@ def _noticed(record: RunRecord) -> Iterator[str]:
     """A line for each thing that the headline counts, and for faults that did not happen."""
     for finding in record.findings:
         detail = "" if finding.is_reading or not finding.detail else f": {finding.detail}"
-        yield ", ".join(filter(None, (in_words(finding), finding.whereabouts))) + detail
+        yield ", ".join(filter(None, (finding.in_words, finding.whereabouts))) + detail
     for contact in record.contacts:
         yield (
             f"contact at {clock(contact.start)}: {contact.link} with {contact.element}, "

@@ -3,10 +3,10 @@
 import platform
 from importlib.util import find_spec
 
-from argo_compiler import __version__
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.base.extras import install_line
 from argo_compiler.base.model import Model
+from argo_compiler.base.version import __version__
 from argo_env.files import cache
 
 _EXTRAS: dict[str, tuple[str, tuple[str, ...]]] = {

@@ -7,19 +7,13 @@ from importlib import import_module
 from pathlib import Path
 from typing import cast
 
-import argo_compiler
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound, located
+from argo_compiler.base.version import __version__
 from argo_compiler.files.reading import read_bytes
 from argo_compiler.il import Mission
+from argo_env.evaluation.case import AS_WRITTEN, NO_FAULTS, EvaluationCase
 from argo_env.evaluation.file import DrawnFaults, EvaluationFile, MissionEntry
-from argo_env.evaluation.plan import (
-    AS_WRITTEN,
-    NO_FAULTS,
-    EvaluationCase,
-    EvaluationPlan,
-    Stopping,
-    parse_seeds,
-)
+from argo_env.evaluation.plan import EvaluationPlan, Stopping, parse_seeds
 from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.evaluation.pool.backends import make_backend
 from argo_env.evaluation.requirement import parse_requirement
@@ -89,7 +83,7 @@ def plan_evaluation(
 def files_of(file: EvaluationFile, folder: Path) -> Iterator[bytes]:
     """What an evaluation depends on, as far as it is in files: two that give the same are the same
     evaluation. Policies that are functions are not in files, and never the same."""
-    yield argo_compiler.__version__.encode()
+    yield __version__.encode()
     yield file.model_dump_json().encode()
     if any(policy not in (AS_WRITTEN, OPTIMISED) for policy in file.policies):
         yield os.urandom(16)

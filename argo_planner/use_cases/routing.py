@@ -18,7 +18,8 @@ from argo_compiler.route.robust import suggest_robust_route
 from argo_compiler.route.robust_sampling import Completion, Draws, completion
 from argo_compiler.route.robust_spread import TravelSpread
 from argo_compiler.route.stop import SearchProgress
-from argo_compiler.route.suggestion import RouteSuggestion, suggest_route
+from argo_compiler.route.suggested import RouteSuggestion
+from argo_compiler.route.suggestion import suggest_route
 from argo_env.files.yaml_file import parse_yaml
 from argo_env.formatting import clock
 from argo_env.planning.opening import OpenedSite

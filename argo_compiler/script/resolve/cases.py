@@ -1,14 +1,14 @@
 """What is done if something is so: after a value, after a failure, after an event."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.script.resolve.branching import CaseBranches
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.counting import skipping
 from argo_compiler.script.resolve.excluding import put_together
-from argo_compiler.script.resolve.failing import Failures, is_failure
+from argo_compiler.script.resolve.failing import Failures, OrderPlanner, is_failure
 from argo_compiler.script.resolve.program import (
     Ahead,
     Choice,
@@ -24,14 +24,11 @@ from argo_compiler.script.syntax.text.source import RefusedError
 from argo_compiler.script.syntax.tree.conditions import SaidCondition, Test, TooLate
 from argo_compiler.script.syntax.tree.orders import Case, Rest
 
-if TYPE_CHECKING:  # a case's orders are planned as any others are
-    from argo_compiler.script.resolve.planning import Planner
-
 
 class Cases:
     """Plans cases behind what they are looked at after."""
 
-    def __init__(self, context: Context, planner: "Planner") -> None:
+    def __init__(self, context: Context, planner: OrderPlanner) -> None:
         self.context = context
         self.diagnostics = context.diagnostics
         self.branches = CaseBranches(context, planner.carry_out)

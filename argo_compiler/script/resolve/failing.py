@@ -2,21 +2,19 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from argo_compiler.base.listing import listed
 from argo_compiler.il import Action, OnFailure
 from argo_compiler.script.resolve.branching import CaseBranches
 from argo_compiler.script.resolve.context import Context
+from argo_compiler.script.resolve.manners import Manners
 from argo_compiler.script.resolve.program import Do, ProgramBlock, leads_away
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.conditions import InState, SaidCondition, TaskState, Test
 from argo_compiler.script.syntax.tree.nouns import Pronoun
 from argo_compiler.script.syntax.tree.orders import Case, PlainWord, ScriptOrder
 from argo_compiler.script.syntax.tree.places import DockLocation
-
-if TYPE_CHECKING:  # a case's orders are planned as any others are
-    from argo_compiler.script.resolve.planning import Planner
 
 _POLICIES = {
     PlainWord.ABORT: OnFailure.ABORT,
@@ -27,10 +25,22 @@ _EXCEPTIONS = (TaskState.FAILED, TaskState.UNREADABLE, TaskState.STALE)
 """states that can't be asked for turned round"""
 
 
+class OrderPlanner(Protocol):
+    """What a case's orders are planned by, as any others are."""
+
+    manners: Manners
+
+    def carry_out(self, orders_: Sequence[ScriptOrder], block: ProgramBlock) -> None:
+        """Carry orders out, one after the other, at the end of a block."""
+
+    def order(self, order: ScriptOrder, block: ProgramBlock) -> None:
+        """Carry one order out; one that can't be is given up."""
+
+
 class Failures:
     """Plans what follows failures. Raises RefusedError where that is not clear."""
 
-    def __init__(self, context: Context, planner: "Planner", branches: CaseBranches) -> None:
+    def __init__(self, context: Context, planner: OrderPlanner, branches: CaseBranches) -> None:
         self.context = context
         self.diagnostics = context.diagnostics
         self.planner = planner

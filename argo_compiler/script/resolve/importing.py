@@ -37,7 +37,7 @@ class Resolved(Model):
 
 
 @collector_held()
-def resolve(
+def resolve_script(
     script: Script, catalog: Catalog, start_area: int | None = None, end_area: int | None = None
 ) -> Resolved:
     """The mission that the script asks for on the catalogue's site."""
@@ -59,10 +59,10 @@ def import_script(
     start_area: int | None = None,
     end_area: int | None = None,
 ) -> Resolved:
-    """The mission of the script `text`; see `parse` and `resolve`, whose errors it raises."""
+    """The mission of the script `text`; raises what `parse` and `resolve_script` raise."""
     places = [place.name for place in catalog.places]
     names = [checkpoint.name for checkpoint in catalog.checkpoints]
-    return resolve(parse(text, places, source_name, names), catalog, start_area, end_area)
+    return resolve_script(parse(text, places, source_name, names), catalog, start_area, end_area)
 
 
 def _mission(

@@ -2,7 +2,7 @@
 
 from argo_env.evaluation.plots.delays import detection_delays
 from argo_env.evaluation.plots.differences import paired_differences
-from argo_env.evaluation.plots.durations import durations
+from argo_env.evaluation.plots.duration_curves import durations
 from argo_env.evaluation.plots.forest import forest_of_rates
 from argo_env.evaluation.plots.outcomes import outcomes_by_faults
 from argo_env.evaluation.plots.pairs import pairs_that_differ

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from argo_env.evaluation.plan import PlanName
+from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.plots.canvas import (
     FONT,
     INK,

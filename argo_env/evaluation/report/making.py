@@ -1,6 +1,6 @@
 """How an evaluation was made, without the time of day: equal rows have an equal report."""
 
-import argo_compiler
+from argo_compiler.base.version import __version__
 from argo_env.evaluation.report.words import counted, ranges
 from argo_env.evaluation.results import EvaluationResults
 
@@ -34,7 +34,7 @@ def how_it_was_made(results: EvaluationResults) -> list[tuple[str, list[str]]]:
     if stopping:
         looked = f"one looks after {counted(plan.stopping.every, 'seed')}"
         made.append(("Stops", [*stopping, looked]))
-    made.append(("Argo", [argo_compiler.__version__]))
+    made.append(("Argo", [__version__]))
     return made
 
 

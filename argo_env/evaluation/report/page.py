@@ -12,11 +12,11 @@ import yaml
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 from markupsafe import Markup
 
-import argo_compiler
+from argo_compiler.base.version import __version__
+from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.comparison import PlanComparison
 from argo_env.evaluation.durations import duration_curve
 from argo_env.evaluation.folder import COMPARISON, REPORT, write_file
-from argo_env.evaluation.plan import PlanName
 from argo_env.evaluation.plots import (
     detection_delays,
     durations,
@@ -122,7 +122,7 @@ def comparison_page(
     worlds = len({a.seed for a, _ in compared.pairs})
     both = any(a.success and b.success for a, b in compared.pairs)
     pairs = compared.successes
-    made = [("Argo", argo_compiler.__version__)]
+    made = [("Argo", __version__)]
     made += [(name, str(at)) for name, at in (("A is in", first), ("B is in", second)) if at]
     success = compared.success
     in_percents = replace(

@@ -3,7 +3,7 @@
 from collections import Counter
 from dataclasses import dataclass
 
-from argo_env.evaluation.plan import PlanName
+from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.rates import PlanRate, success, world_means
 from argo_env.evaluation.report.words import meaning
 from argo_env.evaluation.requirement import QUANTITIES

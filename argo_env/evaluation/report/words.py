@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from argo_env.evaluation.plan import PlanName
+from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.rates import Decision, IntervalMethod
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.formatting import clock

@@ -12,9 +12,9 @@ from typing import Any, Literal
 
 from pydantic import TypeAdapter, ValidationError
 
-from argo_compiler import __version__
 from argo_compiler.base.errors import Invalid, NotFound, Unavailable
 from argo_compiler.base.model import Model
+from argo_compiler.base.version import __version__
 from argo_compiler.il import Mission
 from argo_env.closing import Closing
 from argo_env.files.checked_lines import (

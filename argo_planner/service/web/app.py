@@ -8,8 +8,8 @@ from typing import Any
 
 from fastapi import APIRouter, FastAPI, Response
 
-from argo_compiler import __version__
 from argo_compiler.base.model import Model
+from argo_compiler.base.version import __version__
 from argo_planner.service.web import (
     commands,
     evaluations,

@@ -26,7 +26,7 @@ from argo_compiler.route.relaxation import Relaxation
 from tests.argo_compiler.route.random_problems import random_problem
 
 CHECKING = {"blocks", "exhaustion", "relaxation", "certificate"}
-MAY_USE = CHECKING | {"problem", "evaluation", "suggestion"}
+MAY_USE = CHECKING | {"problem", "evaluation", "suggested"}
 
 
 def problems(first: int, count: int, most: int = 5) -> list[tuple[RouteProblem, RouteSuggestion]]:

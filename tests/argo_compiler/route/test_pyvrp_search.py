@@ -8,7 +8,8 @@ import pytest
 from argo_compiler.route import NEVER, Precedence, Round, RouteProblem, Visit, evaluate
 from argo_compiler.route.problem import EnergyBudget
 from argo_compiler.route.pyvrp_search import PyvrpSearch
-from argo_compiler.route.suggestion import RouteSuggestion, suggest_route
+from argo_compiler.route.suggested import RouteSuggestion
+from argo_compiler.route.suggestion import suggest_route
 from tests.argo_compiler.route.random_problems import random_problem
 from tests.argo_compiler.route.second_reading import best_worth
 

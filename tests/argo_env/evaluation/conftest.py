@@ -6,7 +6,8 @@ from importlib.util import find_spec
 import pytest
 
 from argo_compiler.il import Action, Mission, Task, Transition
-from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan
+from argo_env.evaluation.case import EvaluationCase
+from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.evaluation.pool.backends import make_backend
 from argo_env.planning.opening import open_site

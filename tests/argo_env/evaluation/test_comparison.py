@@ -2,8 +2,9 @@
 
 import pytest
 
+from argo_env.evaluation.case import EvaluationCase
 from argo_env.evaluation.comparison import compare_plans
-from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan, Stopping
+from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.report.page import comparison_page
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.results import EvaluationResults

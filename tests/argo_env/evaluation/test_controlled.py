@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from argo_compiler.base.errors import ArgoError
+from argo_env.evaluation.case import EvaluationCase
 from argo_env.evaluation.controlled import PILOT, run_controlled, with_drive
-from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan
+from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome, RunRow, row_without_end
 from argo_env.run.spec import RunSpec

@@ -3,8 +3,9 @@
 import pytest
 
 from argo_env.evaluation.carrying_out import WorkOrder, carry_out
+from argo_env.evaluation.case import EvaluationCase
 from argo_env.evaluation.evaluating import Evaluating
-from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan, Stopping
+from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.pool.backends import make_backend
 from argo_env.evaluation.rates import Decision, IntervalMethod
 from argo_env.evaluation.requirement import parse_requirement

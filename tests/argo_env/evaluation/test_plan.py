@@ -31,7 +31,7 @@ def test_a_key_is_that_of_all_that_a_run_depends_on(plan, monkeypatch):
     }
     varied = plan.model_copy(update={"variation": Variation(speed=(0.8, 0.9))})
     keys.add(varied.key(varied.run(0, 5)))
-    monkeypatch.setattr("argo_compiler.__version__", "99")
+    monkeypatch.setattr("argo_env.evaluation.plan.__version__", "99")
     keys.add(key_of(plan))
     assert len(keys) == 8
 

@@ -10,9 +10,10 @@ from matplotlib.figure import Figure
 
 import argo_compiler
 from argo_env.evaluation import plots
+from argo_env.evaluation.case import EvaluationCase
 from argo_env.evaluation.comparison import compare_plans
 from argo_env.evaluation.detection import FaultDetection
-from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan, Stopping
+from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.report.failing import reasons
 from argo_env.evaluation.report.page import (
     comparison_page,

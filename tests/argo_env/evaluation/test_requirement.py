@@ -5,9 +5,10 @@ import math
 import pytest
 
 from argo_compiler.base.errors import Invalid
+from argo_env.evaluation.case import EvaluationCase
 from argo_env.evaluation.detection import FaultDetection
 from argo_env.evaluation.file import decode_evaluation
-from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan, Stopping
+from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.rates import Decision
 from argo_env.evaluation.report.rates import other_rates
 from argo_env.evaluation.requirement import parse_requirement

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from argo_env.evaluation.batches import batches
-from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan, Stopping
+from argo_env.evaluation.case import EvaluationCase
+from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.rates import IntervalMethod
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.results import EvaluationResults

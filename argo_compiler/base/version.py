@@ -1,0 +1,3 @@
+"""Argo's version."""
+
+__version__ = "0.1.0"

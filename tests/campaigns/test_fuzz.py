@@ -1,6 +1,6 @@
 """Short runs of the fuzzer; CONTRIBUTING has the long ones."""
 
-from tests.fuzz import fuzz, fuzz_sentences
+from tests.campaigns.fuzz import fuzz, fuzz_sentences
 
 
 def test_mutated_scripts_and_files_end_in_missions_or_diagnostics() -> None:

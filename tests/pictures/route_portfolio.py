@@ -1,7 +1,7 @@
 """A picture of the portfolio at work: which solver has its turn when, and what is known by then.
 
-    python -m benchmarks.route_portfolio docs/images/route-portfolio.png
-    python -m benchmarks.route_portfolio out.png --time-limit 10 --workers 1
+    python -m tests.pictures.route_portfolio docs/images/route-portfolio.png
+    python -m tests.pictures.route_portfolio out.png --time-limit 10 --workers 1
 
 Searches one problem of each kind, made from random places, and draws the solvers' turns above the
 curve of the best route and its bound. Nothing else should run on the machine.
@@ -63,7 +63,7 @@ def draw(name: str, made: RouteSuggestion, turns: Axes, curve: Axes) -> None:
 
 def main() -> None:
     """Searches and draws."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.route_portfolio")
+    parser = argparse.ArgumentParser(prog="python -m tests.pictures.route_portfolio")
     parser.add_argument("output", type=Path)
     parser.add_argument("--time-limit", type=float, default=5.0, help="s for each problem")
     parser.add_argument("--workers", type=int, default=2)

@@ -1,6 +1,6 @@
 """The pictures of `docs/evaluating.md`: mission #1 with less time than it has, and several faults.
 
-python -m benchmarks.evaluation_pictures docs/images
+python -m tests.pictures.evaluation docs/images
 """
 
 import sys

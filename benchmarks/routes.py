@@ -23,6 +23,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 
 from argo_compiler.base.errors import ArgoError
@@ -133,7 +134,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--lkh", type=Path, help="the program LKH-3, as a peer too")
     parser.add_argument("--json", type=Path, help="where the rows are written as well")
     given = parser.parse_args(arguments)
-    peers = [Peer("PyVRP", peer_pyvrp.why_not, peer_pyvrp.search)] if given.peers else []
+    peers = []
+    if given.peers and find_spec("pyvrp"):
+        peers.append(Peer("PyVRP", peer_pyvrp.why_not, peer_pyvrp.search))
+    elif given.peers:
+        print("PyVRP is not installed: it is left out")
     if given.lkh:
         peers.append(Peer("LKH-3", peer_lkh.why_not, partial(peer_lkh.search, given.lkh)))
     rows: list[Row] = []

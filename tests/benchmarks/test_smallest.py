@@ -1,4 +1,7 @@
-"""Each benchmark in its smallest size: it runs to its end, and prints its table."""
+"""Each benchmark in its smallest size: it runs to its end, and prints its table.
+
+That of published route problems is in `test_routes.py`.
+"""
 
 import os
 import re

@@ -150,8 +150,8 @@ def _episodes(seeds: Iterator[int]) -> Work:
 
 
 def importing() -> Work:
-    """The import of a script of 2,000 tasks, most of whose lines differ; those that make the script
-    are of this checkout."""
+    """Import a script of 2,000 tasks, most of whose lines differ; what makes the script is of this
+    checkout."""
     from compile import make_catalog, make_script  # beside this file
 
     from argo_compiler.script import import_script

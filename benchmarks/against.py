@@ -18,7 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import cycle
 from pathlib import Path
 from statistics import median
@@ -149,6 +149,19 @@ def _episodes(seeds: Iterator[int]) -> Work:
     return work
 
 
+def importing() -> Work:
+    """Import a script of 2,000 tasks, most of whose lines differ; what makes the script is of this
+    checkout."""
+    from compile import make_catalog, make_script  # beside this file
+
+    from argo_compiler.script import import_script
+
+    catalog = make_catalog()
+    import_script(make_script(200, catalog), catalog)
+    script = make_script(2_000, catalog)
+    return lambda: import_script(script, catalog)
+
+
 def report() -> Work:
     """The report of a run of mission #1 with its picture, as the second one on a site."""
     from argo_env.planning import open_site
@@ -190,6 +203,7 @@ CASES: dict[str, tuple[Callable[[], Work], int]] = {
     "route": (route, 10),
     "inspect": (inspect, 3),
     "inspect-known": (inspect_known, 3),
+    "import": (importing, 1),
     "report": (report, 1),
     "film": (film, 1),
 }
@@ -217,15 +231,15 @@ def _mission_run(file: str, drive: str, start_area: int | None, end_area: int | 
     return lambda: simulate(spec, site)
 
 
-def main() -> None:
-    """Prints a line for each case."""
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Print a line for each case."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("checkout", type=Path, help="folder with the code to compare with")
     parser.add_argument("cases", nargs="*", metavar="case", help=", ".join(CASES))
     parser.add_argument("--repeats", type=int, default=5, help="turns that count")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     for name in options.cases:
         if name not in CASES:
             parser.error(f"there is no case {name}; there are: {', '.join(CASES)}")

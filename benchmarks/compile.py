@@ -2,7 +2,6 @@
 
     python benchmarks/compile.py
     python benchmarks/compile.py --sizes 1000 10000 --repeats 5
-    python benchmarks/compile.py --sizes 10000 100000 --beside ../other-checkout
 
 The script is made for each number of tasks, always the same one. Of its steps
 
@@ -20,9 +19,6 @@ for nothing), the median of the repeats, after the grammars have been loaded, wh
 Growth is the time for a task over that at the size before: 1 is linear. The memory is the most that
 Python objects took at once, in a run of its own.
 
-With another checkout beside, only the import is measured, from text to mission: of the same script,
-in turn with this checkout and with the other one, each time in a process of its own.
-
 For scale, the same number of flat states, each with one transition to the next, is declared in
 python-statemachine where it is installed. That reads no script, checks nothing and nests nothing:
 it is the least that building a machine of this size takes there.
@@ -31,17 +27,12 @@ it is the least that building a machine of this size takes there.
 import argparse
 import gc
 import importlib.util
-import os
 import random
 import statistics
-import subprocess
-import sys
-import tempfile
 import time
 import tracemalloc
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 from argo_compiler.base.catalog import (
@@ -55,13 +46,10 @@ from argo_compiler.base.catalog import (
 )
 from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import Executor, lower
-from argo_compiler.script import import_script, parse
+from argo_compiler.script import parse
 from argo_compiler.script.resolve.importing import resolve_script
 
-ROOT = Path(__file__).parents[1]
 SIZES = (1_000, 10_000, 30_000, 100_000)
-PEER_LIMIT = 1_000
-"""states; more take python-statemachine minutes"""
 
 
 def make_catalog() -> Catalog:
@@ -209,53 +197,18 @@ def flat_statemachine(states: int) -> float:
     return time.process_time() - began
 
 
-def import_once(path: Path) -> float:
-    """Seconds that the script at `path` takes to become a mission."""
-    catalog = make_catalog()
-    import_script(make_script(200, catalog), catalog)
-    gc.collect()
-    began = time.process_time()
-    import_script(path.read_text(), catalog)
-    return time.process_time() - began
-
-
-def compare(sizes: Sequence[int], repeats: int, other: Path) -> None:
-    """Prints how long imports take here and in another checkout, in turn."""
-    print(f"{'tasks':>7} {'here':>8} {'there':>8} {'ratio':>6}   seconds, medians")
-    before = 0.0
-    with tempfile.TemporaryDirectory() as folder:
-        for size in sizes:
-            path = Path(folder) / "script.txt"
-            path.write_text(make_script(size, make_catalog()))
-            turns = [(_elsewhere(ROOT, path), _elsewhere(other, path)) for _ in range(repeats)]
-            here, there = (statistics.median(seconds) for seconds in zip(*turns, strict=True))
-            ratio = statistics.median(one / two for one, two in turns)
-            growth = f"   {here / before:.1f} times the size before" if before else ""
-            print(f"{size:>7} {here:>8.3f} {there:>8.3f} {ratio:>6.2f}{growth}", flush=True)
-            before = here
-
-
-def _elsewhere(checkout: Path, path: Path) -> float:
-    """As `import_once`, by the compiler of a checkout."""
-    command = [sys.executable, __file__, "--once", str(path)]
-    where = {**os.environ, "PYTHONPATH": str(checkout.resolve())}
-    return float(subprocess.run(command, env=where, check=True, stdout=subprocess.PIPE).stdout)
-
-
-def main() -> None:
-    """Prints the tables."""
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sizes", type=int, nargs="+", default=SIZES, help="numbers of tasks")
     parser.add_argument("--repeats", type=int, default=3, help="of which the median is shown")
-    parser.add_argument("--beside", type=Path, metavar="CHECKOUT", help="to compare imports with")
-    parser.add_argument("--once", type=Path, help=argparse.SUPPRESS)
-    arguments = parser.parse_args()
-    if arguments.once is not None:
-        print(import_once(arguments.once))
-        return
-    if arguments.beside is not None:
-        compare(arguments.sizes, arguments.repeats, arguments.beside)
-        return
+    parser.add_argument(
+        "--states",
+        type=int,
+        default=1_000,
+        help="of python-statemachine, which takes minutes for more",
+    )
+    given = parser.parse_args(arguments)
     from argo_compiler.script.syntax.repeats import repeats
 
     catalog = make_catalog()
@@ -264,10 +217,10 @@ def main() -> None:
     print(f"first mission of 200 tasks, grammars loaded: {time.process_time() - began:.2f} s\n")
     print(f"{'tasks':>7} {'stage':<9} {'seconds':>9} {'µs/task':>9} {'growth per task':>16}")
     before: dict[str, float] = {}
-    for size in arguments.sizes:
+    for size in given.sizes:
         text = make_script(size, catalog)
         runs = []
-        for _ in range(arguments.repeats):
+        for _ in range(given.repeats):
             repeats.cache_clear()  # lines that the compiler has read before
             runs.append(stages(text, catalog))
         for stage in runs[0]:
@@ -281,10 +234,10 @@ def main() -> None:
     if importlib.util.find_spec("statemachine") is None:
         print("python-statemachine is not installed: no flat machine to compare with")
         return
-    seconds = flat_statemachine(PEER_LIMIT)
+    seconds = flat_statemachine(given.states)
     print(
-        f"python-statemachine, {PEER_LIMIT} flat states: {seconds:.3f} s,"
-        f" {seconds / PEER_LIMIT * 1e6:.1f} µs/state"
+        f"python-statemachine, {given.states} flat states: {seconds:.3f} s,"
+        f" {seconds / given.states * 1e6:.1f} µs/state"
     )
 
 

@@ -20,7 +20,7 @@ import argparse
 import os
 import statistics
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import cache
@@ -236,23 +236,21 @@ def describe_fit(drives: list[TimedDrive], robot: RobotSpec, source: str) -> lis
     return lines
 
 
-def main() -> None:
-    """Prints the comparison, or fits the calibration and prints that."""
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Print the comparison, or fit the calibration and print that."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--site", default="umad")
     parser.add_argument("--missions", type=int, default=24)
     parser.add_argument("--seed", type=seed_number, help="of the first mission; the others follow")
     parser.add_argument("--workers", type=int, default=min(2, os.cpu_count() or 1))
     parser.add_argument("--fit", action="store_true", help="write the calibration anew")
-    arguments = parser.parse_args()
-    first = arguments.seed
+    given = parser.parse_args(arguments)
+    first = given.seed
     if first is None:
-        first = FIRST_FITTED_SEED if arguments.fit else FIRST_SEED
-    seeds = range(first, first + arguments.missions)
-    with ProcessPoolExecutor(
-        arguments.workers, initializer=_prepare, initargs=(arguments.site,)
-    ) as pool:
-        if not arguments.fit:
+        first = FIRST_FITTED_SEED if given.fit else FIRST_SEED
+    seeds = range(first, first + given.missions)
+    with ProcessPoolExecutor(given.workers, initializer=_prepare, initargs=(given.site,)) as pool:
+        if not given.fit:
             jobs = [(seed, drive) for seed in seeds for drive in (*CHEAP, "tracked")]
             runs = []
             for done in pool.map(_run, jobs):
@@ -266,7 +264,7 @@ def main() -> None:
     calibration = fit(drives, robot)
     robot = robot.model_copy(update={"calibration": calibration})
     source = (
-        f"{len(seeds)} missions on {arguments.site} (seeds {seeds[0]} to {seeds[-1]}), "
+        f"{len(seeds)} missions on {given.site} (seeds {seeds[0]} to {seeds[-1]}), "
         f"{sum(failed for _, failed in timed)} ways left out that failed"
     )
     write(calibration, describe_fit(drives, robot, source))

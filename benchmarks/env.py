@@ -4,6 +4,7 @@
     python benchmarks/env.py route      # or only: route, drive, inspect
     python benchmarks/env.py resets     # memory over 1,000 resets of each environment
     python benchmarks/env.py expert     # how often the expert of Drive-v0 gets to its goal
+    python benchmarks/env.py batches    # what spreading a batch over processes gains
 
 Peers that are not installed are named as such. A step is a transition: the steps in which a batch
 begins episodes anew are not counted. What is timed is `step` of the
@@ -12,12 +13,14 @@ the timing; Jumanji's compiled loops include the drawing. Each
 figure is the best of some windows of time, since other work on the machine only ever slows.
 """
 
+import argparse
 import gc
 import importlib
-import sys
+import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 import gymnasium as gym
@@ -26,14 +29,17 @@ import numpy as np
 import argo_env  # noqa: F401
 from argo_env.envs import ENVIRONMENTS
 from argo_env.envs.expert import Expert
+from argo_env.envs.workers import core_count
 
-WINDOWS, WINDOW = 5, 1.0  # s
+WINDOWS = 5
 NODES = 20
+BATCH_STEPS = {"argo/Drive-v0": 100, "argo/Inspect-v0": 25}
+_TICK = os.sysconf("SC_CLK_TCK")
 Stepper = Iterator[tuple[int, float]]
 """Yields how many transitions were made and how long (s) that took."""
 
 
-def best(stepper: Stepper, window: float = WINDOW) -> float:
+def best(stepper: Stepper, window: float) -> float:
     """Transitions per second in the best window of time."""
     next(stepper)
     rates = []
@@ -176,38 +182,46 @@ def jumanji_rollout(name: str) -> Stepper:
         yield int(moved), time.perf_counter() - begun
 
 
-def report(name: str, stepper: Callable[[], Stepper], needs: str | None = None) -> None:
-    """Prints one figure, or that the peer is not installed."""
+def report(
+    given: argparse.Namespace, name: str, stepper: Callable[[], Stepper], needs: str | None = None
+) -> None:
+    """Print one figure, or that the peer is not installed."""
     if needs is not None:
         try:
             importlib.import_module(needs)
         except ImportError:
             print(f"{name:48s} not installed", flush=True)
             return
-    print(f"{name:48s} {best(stepper()):14,.0f} steps/s", flush=True)
+    print(f"{name:48s} {best(stepper(), given.window):14,.0f} steps/s", flush=True)
 
 
-def route() -> None:
+def route(given: argparse.Namespace) -> None:
     """Route-v0 beside RL4CO and Jumanji."""
     for count in (1, 64, 1024):
         print(f"-- routes, {NODES} nodes, batch {count}")
         if count == 1:
             env = gym.make("argo/Route-v0", checkpoints=NODES, disable_env_checker=True).unwrapped
-            report("argo/Route-v0 (single)", lambda env=env: single(env, legal()))
+            report(given, "argo/Route-v0 (single)", lambda env=env: single(env, legal()))
         else:
-            report("argo/Route-v0 (vector)", lambda count=count: argo_batch(count))
-        report("RL4CO OP", lambda count=count: rl4co_batch(count), "rl4co")
+            report(given, "argo/Route-v0 (vector)", lambda count=count: argo_batch(count))
+        report(given, "RL4CO OP", lambda count=count: rl4co_batch(count), "rl4co")
         for name in ("TSP-v1", "CVRP-v1"):
             report(
-                f"Jumanji {name}", lambda n=name, count=count: jumanji_batch(n, count), "jumanji"
+                given,
+                f"Jumanji {name}",
+                lambda n=name, count=count: jumanji_batch(n, count),
+                "jumanji",
             )
             if count == 1:
                 report(
-                    f"Jumanji {name}, a compiled loop", lambda n=name: jumanji_rollout(n), "jumanji"
+                    given,
+                    f"Jumanji {name}, a compiled loop",
+                    lambda n=name: jumanji_rollout(n),
+                    "jumanji",
                 )
 
 
-def peers() -> None:
+def peers(given: argparse.Namespace) -> None:
     """The PyBullet environments of others."""
 
     def panda(name: str) -> Stepper:
@@ -224,20 +238,20 @@ def peers() -> None:
         return single(env, lambda _: env.action_space.sample())
 
     for name in ("PandaReach-v3", "PandaPickAndPlace-v3"):
-        report(f"panda-gym {name}", lambda name=name: panda(name), "panda_gym")
-    report("gym-pybullet-drones HoverAviary", drones, "gym_pybullet_drones")
+        report(given, f"panda-gym {name}", lambda name=name: panda(name), "panda_gym")
+    report(given, "gym-pybullet-drones HoverAviary", drones, "gym_pybullet_drones")
 
 
-def drive() -> None:
+def drive(given: argparse.Namespace) -> None:
     """Drive-v0 beside other PyBullet environments."""
     print("-- driving: 24 steps of physics at 240 Hz and 54 rays in each step of Drive-v0")
     env = gym.make("argo/Drive-v0", disable_env_checker=True).unwrapped
     env.action_space.seed(0)
-    report("argo/Drive-v0", lambda: single(env, lambda _: env.action_space.sample()))
-    peers()
+    report(given, "argo/Drive-v0", lambda: single(env, lambda _: env.action_space.sample()))
+    peers(given)
 
 
-def inspect() -> None:
+def inspect(given: argparse.Namespace) -> None:
     """Inspect-v0, whose step is a whole drive and a measurement."""
     print("-- inspecting: a step is a drive and a measurement, about a minute of simulated time")
     env = gym.make("argo/Inspect-v0", disable_env_checker=True).unwrapped
@@ -250,14 +264,15 @@ def inspect() -> None:
             times.append(env._run.now)
             yield steps, seconds
 
-    report("argo/Inspect-v0", timed)
+    report(given, "argo/Inspect-v0", timed)
     gains = np.diff(times)
     print(f"{'':48s} {np.mean(gains[gains > 0]):14,.0f} s simulated in a step")
-    peers()
+    peers(given)
 
 
-def resets(count: int = 1000) -> None:
-    """Prints what each environment's memory grows by over many resets."""
+def resets(given: argparse.Namespace) -> None:
+    """Print what each environment's memory grows by over many resets."""
+    count = given.count or 1000
     for id in ENVIRONMENTS:
         env = gym.make(id, disable_env_checker=True).unwrapped
 
@@ -280,12 +295,12 @@ def resets(count: int = 1000) -> None:
         env.close()
 
 
-def expert(count: int = 16) -> None:
-    """Prints how often the expert gets to its goal on UMAD, by where the goal is."""
+def expert(given: argparse.Namespace) -> None:
+    """Print how often the expert gets to its goal on UMAD, by where the goal is."""
     env: Any = gym.make("argo/Drive-v0", disable_env_checker=True).unwrapped
     ways: dict[str, list[tuple[bool, float, float, bool]]] = {}
     begun, steps = time.perf_counter(), 0
-    for seed in range(1_000_000, 1_000_000 + count):
+    for seed in range(1_000_000, 1_000_000 + (given.count or 16)):
         env.reset(seed=seed)
         rise = env.goal[2] - env.pose.z
         way = "same floor" if abs(rise) < 1.0 else "upwards" if rise > 0 else "downwards"
@@ -307,20 +322,79 @@ def expert(count: int = 16) -> None:
     env.close()
 
 
-def main() -> None:
-    """Runs what the arguments name."""
-    parts = {
-        "route": route,
-        "drive": drive,
-        "inspect": inspect,
-        "resets": resets,
-        "expert": expert,
-    }
-    for name in sys.argv[1:] or ("route", "drive", "inspect"):
-        if name not in parts:
-            sys.exit(f"no part `{name}`; there are: {', '.join(parts)}")
-        parts[name]()
+def batches(given: argparse.Namespace) -> None:
+    """Print what spreading a batch over processes gains: steps a second with one and with several.
 
+    The numbers of processes take turns. Each line tells what processor time other work took
+    meanwhile: where that is much, there was no free core to gain from. Linux only.
+    """
+    processes = core_count()
+    for id, steps in BATCH_STEPS.items():
+        ratios = []
+        for seed in range(given.rounds):
+            one, many = (batch_rate(id, given.count or 8, n, seed, steps) for n in (1, processes))
+            ratios.append(many / one)
+        print(f"{id}: {median(ratios):.2f} times as many with {processes} processes")
+
+
+def batch_rate(id: str, count: int, processes: int, seed: int, steps: int) -> float:
+    """Return the steps per second of a batch with random legal actions."""
+    batch: Any = gym.make_vec(id, count, processes=processes).unwrapped
+    rng = np.random.default_rng(seed)
+    observation, _ = batch.reset(seed=100 * seed)
+    begun, all_before, own_before = time.perf_counter(), used_by_all(), own()
+    for _ in range(steps):
+        if "mask" in observation:
+            mask = observation["mask"]
+            actions = (rng.random(mask.shape) * mask).argmax(axis=1)
+        else:
+            actions = rng.uniform(-1.0, 1.0, batch.action_space.shape).astype(np.float32)
+        observation, *_ = batch.step(actions)
+    wall = time.perf_counter() - begun
+    mine = own() - own_before
+    others = max(0.0, used_by_all() - all_before - mine)
+    batch.close()
+    rate = count * steps / wall
+    print(
+        f"{id}, {processes} processes: {rate:.1f} steps/s, {wall:.1f} s; CPU {mine:.1f} s, that of "
+        f"others {others:.1f} s",
+        flush=True,
+    )
+    return rate
+
+
+def own() -> float:
+    """Return the processor time (s) of this process and its children that are alive."""
+    pids = Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
+    stats = [Path(f"/proc/{pid}/stat").read_text() for pid in [str(os.getpid()), *pids]]
+    return sum(sum(map(int, stat.rsplit(")", 1)[1].split()[11:13])) for stat in stats) / _TICK
+
+
+def used_by_all() -> float:
+    """Return the processor time (s) of everything on the machine."""
+    fields = [int(field) for field in Path("/proc/stat").read_text().split("\n")[0].split()[1:9]]
+    return (sum(fields) - fields[3] - fields[4]) / _TICK
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the parts that the command line names."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("parts", nargs="*", metavar="part", help=", ".join(PARTS))
+    parser.add_argument("--window", type=float, default=1.0, help="s of each window of time")
+    parser.add_argument("--count", type=int, help="of resets, episodes or environments of a batch")
+    parser.add_argument("--rounds", type=int, default=5, help="of batches")
+    given = parser.parse_args(arguments)
+    for name in given.parts or ("route", "drive", "inspect"):
+        if name not in PARTS:
+            parser.error(f"no part `{name}`; there are: {', '.join(PARTS)}")
+        PARTS[name](given)
+
+
+PARTS: dict[str, Callable[[argparse.Namespace], None]] = {
+    part.__name__: part for part in (route, drive, inspect, resets, expert, batches)
+}
 
 if __name__ == "__main__":
     main()

@@ -16,7 +16,7 @@ With `--power`: how often two plans with a known difference are told apart.
 import argparse
 import resource
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -120,7 +120,7 @@ def measure(name: str, drive: str, runs: int) -> None:
     )
 
 
-def show_power(comparisons: int = 2_000) -> None:
+def show_power(comparisons: int) -> None:
     """Prints how often plans are told apart whose difference is known, and how often one that is
     compared with itself is."""
     rng = np.random.default_rng(0)
@@ -147,16 +147,17 @@ def show_power(comparisons: int = 2_000) -> None:
     print(f"a plan beside itself: a difference in {same} of {comparisons} comparisons")
 
 
-def main() -> None:
-    """Measures what the command line asks for."""
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Measure what the command line asks for."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--runs", type=int, default=200, help="with `route`")
     parser.add_argument("--kinematic", type=int, default=20, help="runs with `kinematic`")
     parser.add_argument("--backend", choices=[*BACKENDS], nargs="*", default=[*BACKENDS])
     parser.add_argument("--power", action="store_true", help="of comparisons, and nothing else")
-    asked = parser.parse_args()
+    parser.add_argument("--comparisons", type=int, default=2_000, help="of --power")
+    asked = parser.parse_args(arguments)
     if asked.power:
-        show_power()
+        show_power(asked.comparisons)
         return
     for name in asked.backend:
         for drive, runs in (("route", asked.runs), ("kinematic", asked.kinematic)):

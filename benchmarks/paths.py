@@ -4,9 +4,10 @@ Times are CPU seconds of this process, so that other processes disturb them less
 hyperthreads are still shared, so run it on a quiet machine.
 """
 
+import argparse
 import resource
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 
 import numpy as np
@@ -17,10 +18,9 @@ from argo_env.navigation import Blockage, Navigator
 from argo_env.planning.generated import generate
 from argo_env.robot.spec import load_robot
 from argo_env.site import load_site
-from argo_env.site.family import TEST_SEEDS, Family
+from argo_env.site.family import TEST_SEEDS, Family, parse_family
 
-PAIRS = 100
-LARGE = Family(floors=12, size=(30, 20), checkpoints=500, seed=TEST_SEEDS)
+LARGE = str(Family(floors=12, size=(30, 20), checkpoints=500, seed=TEST_SEEDS))
 
 Query = tuple[Pose, Pose | int]
 
@@ -66,7 +66,7 @@ def poses(navigator: Navigator, states: np.ndarray) -> list[Pose]:
     ]
 
 
-def paths_on_umad() -> Navigator:
+def paths_on_umad(count: int) -> Navigator:
     """Prints what single paths on UMAD take."""
     site, robot = load_site("umad"), load_robot()
     navigator = Navigator(site, robot)
@@ -79,15 +79,15 @@ def paths_on_umad() -> Navigator:
     random = np.random.default_rng(1)
     z = navigator.lattice.poses()[:, 2]
     floors = [np.flatnonzero(np.abs(z - floor.z) < 0.1) for floor in site.spec.floors]
-    anywhere = poses(navigator, random.integers(navigator.lattice.size, size=2 * PAIRS))
+    anywhere = poses(navigator, random.integers(navigator.lattice.size, size=2 * count))
     ids = [c.id for c in site.checkpoints]
     views = [navigator.viewing_pose(id) for id in ids]
     legs = [(start, id) for start in (*site.docks.values(), *views) for id in random.choice(ids, 6)]
     spread = poses(
         navigator,
-        np.array([random.choice(floors[k]) for k in random.integers(len(floors), size=2 * PAIRS)]),
+        np.array([random.choice(floors[k]) for k in random.integers(len(floors), size=2 * count)]),
     )
-    on_the_ground = poses(navigator, random.choice(floors[0], size=2 * PAIRS))
+    on_the_ground = poses(navigator, random.choice(floors[0], size=2 * count))
     print("Paths on UMAD, median/95th percentile/worst, cold and again:")
     measure_queries(navigator, "from docks and checkpoints to checkpoints", legs)
     measure_queries(navigator, "random poses, floors drawn evenly", pairs(spread))
@@ -129,7 +129,7 @@ def _range(values: np.ndarray) -> str:
     return f"{values.min():.3f} to {values.max():.3f}"
 
 
-def matrices(umad: Navigator) -> None:
+def matrices(umad: Navigator, name: str) -> None:
     """Prints what travel times between all checkpoints take, on UMAD and on a large site."""
     fresh = Navigator(umad.site, umad.robot)
     fresh.prepare()
@@ -137,9 +137,9 @@ def matrices(umad: Navigator) -> None:
     first = timed(lambda: fresh.travel_times(ids))
     again = timed(lambda: fresh.travel_times(ids))
     print(f"Travel times of {len(ids)} checkpoints on UMAD: {first:.2f} s, again {again:.2f} s")
-    print(f"{LARGE}:")
+    print(f"{name}:")
     started = time.process_time()
-    large = generate(LARGE)
+    large = generate(parse_family(name))
     print(f"  drawn and checked in {time.process_time() - started:.1f} s; {memory()}")
     ids = [c.id for c in large.site.checkpoints]
     print(f"  {large.lattice.size} states, {large.lattice.costs.nnz} moves")
@@ -148,9 +148,13 @@ def matrices(umad: Navigator) -> None:
     print(f"  travel times of {len(ids)} checkpoints: {took:.1f} s; {memory()}")
 
 
-def main() -> None:
-    """Prints all of it."""
-    matrices(paths_on_umad())
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Print all of it."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--pairs", type=int, default=100, help="of poses of each kind")
+    parser.add_argument("--large", default=LARGE, help="a generated site, beside UMAD")
+    given = parser.parse_args(arguments)
+    matrices(paths_on_umad(given.pairs), given.large)
 
 
 if __name__ == "__main__":

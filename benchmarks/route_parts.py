@@ -1,99 +1,30 @@
 """What each part of the route search gains: `python -m benchmarks.route_parts`.
 
-    python -m benchmarks.route_parts --only PyVRP --problems windows prizes --count 8
+    python -m benchmarks.route_parts --only PyVRP --problems windows optional --count 8
     python -m benchmarks.route_parts --folder FOLDER --time-limit 10 --alone
 
-Solves each problem with all parts, and with all but one, on one worker: those generated here, of
-several kinds, from seeds, or those in a folder as `benchmarks.routes` reads them. Prints for each
-part how often the route is worse without it and how often better, what share of the prize and of
-the cost it gains, how many proofs are lost, and for how many problems no route is found any more.
+Solves each problem with all parts, and with all but one, on one worker: those of the kinds of
+`benchmarks.routes_limits`, from seeds, or those in a folder as `benchmarks.routes` reads them.
+Prints for each part how often the route is worse without it and how often better, what share of the
+prize and of the cost it gains, how many proofs are lost, and for how many problems no route is
+found any more.
 With `--alone` it also prints the same of each part by itself, after the first rules.
 """
 
 import argparse
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
 import numpy as np
 
-from argo_compiler.route import (
-    EnergyBudget,
-    Objective,
-    Precedence,
-    Round,
-    RouteProblem,
-    RouteSuggestion,
-    Visit,
-    suggest_route,
-)
+from argo_compiler.route import RouteProblem, RouteSuggestion, suggest_route
 from argo_compiler.route.portfolio import FIRST, solver_names
 from benchmarks.instances import read_route_problem
 from benchmarks.options import seed_number
 from benchmarks.routes import find_files
-
-
-def plain(rng: np.random.Generator, n: int) -> RouteProblem:
-    """Visits in a square, where a drive uphill takes longer; none takes time itself."""
-    at = rng.uniform(0, 1000, (n + 1, 2))
-    uphill = 0.5 * np.maximum(at[None, :, 1] - at[:, None, 1], 0.0)
-    travel = np.rint(np.hypot(*(at[:, None] - at).T).T + uphill).astype(np.int64)
-    return RouteProblem(tuple(Visit(f"{k}") for k in range(n)), travel)
-
-
-def windows(rng: np.random.Generator, n: int) -> RouteProblem:
-    """Windows around the times of some order of neighbours, so that there is a route."""
-    one = plain(rng, n)
-    visits, time, here, left = list(one.visits), 0, n, set(range(n))
-    while left:
-        near = sorted(left, key=lambda v: int(one.travel[here, v]))[:3]
-        then = int(rng.choice(near))
-        time += int(one.travel[here, then])
-        early, late = (int(e) for e in rng.integers(0, 600, 2))
-        visits[then] = Visit(f"{then}", earliest=max(0, time - early), latest=time + late)
-        left.remove(then)
-        here = then
-    return RouteProblem(tuple(visits), one.travel, objective=list(Objective)[int(rng.integers(2))])
-
-
-def prizes(rng: np.random.Generator, n: int) -> RouteProblem:
-    """As much as possible in a third to a half of what all would take."""
-    one = plain(rng, n)
-    limit = int(rng.uniform(0.3, 0.5) * 0.75 * 1000 * n**0.5)
-    visits = tuple(Visit(f"{k}", 0, False, int(rng.integers(1, 101))) for k in range(n))
-    return RouteProblem(visits, one.travel, max_duration=limit)
-
-
-def precedence(rng: np.random.Generator, n: int) -> RouteProblem:
-    """Pairs and chains that are all in one hidden order."""
-    one, hidden, found = plain(rng, n), rng.permutation(n), []
-    for _ in range(n // 2):
-        chosen = hidden[np.sort(rng.permutation(n)[: int(rng.integers(2, 4))])].tolist()
-        found.append(Precedence(tuple(chosen), " before ".join(map(str, chosen))))
-    return RouteProblem(one.visits, one.travel, tuple(found))
-
-
-def rounds(rng: np.random.Generator, n: int) -> RouteProblem:
-    """Rounds of three or four visits, and visits by themselves."""
-    one, order = plain(rng, n), rng.permutation(n).tolist()
-    chosen = [order[k : k + 3 + k % 2] for k in range(0, n // 2, 4)]
-    found = tuple(Round(f"{k}", tuple(members), 2) for k, members in enumerate(chosen))
-    return RouteProblem(one.visits, one.travel, rounds=found)
-
-
-def battery(rng: np.random.Generator, n: int) -> RouteProblem:
-    """A battery that has to be charged every few visits, at one of two docks."""
-    one = plain(rng, n + 2)
-    rows = [*range(n), n + 2, n, n + 1]
-    travel = one.travel[np.ix_(rows, rows)]
-    budget = EnergyBudget(travel // 2, int(travel.max()) * 2, overhead=50)
-    return RouteProblem(one.visits[:n], travel, battery=budget, chargers=("dock 1", "dock 2"))
-
-
-KINDS: dict[str, Callable[[np.random.Generator, int], RouteProblem]] = {
-    one.__name__: one for one in (plain, windows, prizes, precedence, rounds, battery)
-}
+from benchmarks.routes_limits import KINDS, places
 
 
 @dataclass(frozen=True)
@@ -150,7 +81,8 @@ def generated(kinds: Sequence[str], count: int, size: int, seed: int) -> Iterato
     for number in range(count):
         for kind in kinds:
             rng = np.random.default_rng([seed, number, sum(kind.encode())])
-            yield KINDS[kind](rng, max(4, int(rng.integers(size // 2, size + 1))))
+            there = places(max(4, int(rng.integers(size // 2, size + 1))), rng)
+            yield KINDS[kind](there, rng)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

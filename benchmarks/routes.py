@@ -1,28 +1,28 @@
 """Published route problems beside their known values and beside other solvers.
 
-    python -m benchmarks.routes FOLDER
-    python -m benchmarks.routes FOLDER --time-limit 30 --workers 2 --only 'ftv*' --json routes.json
+    python -m benchmarks.routes FOLDER ...
+    python -m benchmarks.routes FOLDER --time-limit 30 --workers 2 --only 'ftv*'
     python -m benchmarks.routes FOLDER --lkh LKH-3.0.6/LKH
 
-Reads all TSPLIB (.tsp, .atsp, .sop), OPLib (.oplib) and TSPTW (.tw) files in a folder and below,
-and prints for each what `suggest_route` finds and proves within the time limit, and what its peers
-find in the same time and with the same seed, on one core, where they can state the problem: PyVRP
-knows no precedence, LKH no optional visits, and neither gives bounds. Costs are those of the file;
-of orienteering problems it is the score, and more is better. `off` is by how much a value is worse
-than the best known one (benchmarks/known_values.py). Each route is evaluated again, apart from the
-solvers. `python -m benchmarks.routes_table routes.json` makes a Markdown table of it.
+Reads all TSPLIB (.tsp, .atsp, .sop), OPLib (.oplib) and TSPTW (.tw) files in the folders and below,
+and prints for each, as a line of a Markdown table, what `suggest_route` finds and proves within the
+time limit, and what its peers find in the same time and with the same seed, on one core, where they
+can state the problem: PyVRP knows no precedence, LKH no optional visits, and neither gives bounds.
+Costs are those of the file; of orienteering problems it is the score, and more is better. `off` is
+by how much a value is worse than the best known one (benchmarks/known_values.py). Each route is
+evaluated again, apart from the solvers.
 """
 
 import argparse
-import json
 import os
 import platform
 import sys
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 
 from argo_compiler.base.errors import ArgoError
@@ -32,7 +32,7 @@ from benchmarks import peer_lkh, peer_pyvrp
 from benchmarks.instances import Kind, NamedProblem, read_route_problem
 from benchmarks.known_values import Known, known_of
 from benchmarks.options import seed_number
-from benchmarks.routes_table import PeerFinding, Row, header, row_text, summary
+from benchmarks.routes_table import PeerFinding, Row, head, line, summary
 
 ENDINGS = (".tsp", ".atsp", ".sop", ".oplib", ".tw")
 
@@ -65,10 +65,14 @@ def find_files(folder: Path, only: str) -> list[Path]:
 
 
 def measure(
-    path: Path, time_limit: float, workers: int, seed: int, peers: Sequence[Peer] = ()
+    path: Path,
+    named: NamedProblem,
+    time_limit: float,
+    workers: int,
+    seed: int,
+    peers: Sequence[Peer] = (),
 ) -> Row:
-    """What is found for the problem in a file. Raises ArgoError if the file holds none."""
-    named = read_route_problem(path)
+    """Return what is found for the problem that was read from a file."""
     known = known_of(path, named.kind)
     started = time.perf_counter()
     found = suggest_route(named.problem, time_limit, seed, workers)
@@ -82,9 +86,14 @@ def measure(
     wrong = wrong or _contradiction(named.kind, value, bound, found.proven, known)
     theirs = tuple(_ask(peer, named, time_limit, seed) for peer in peers)
     return Row(
-        path.stem, named.kind, len(named.nodes) + 1 + (named.kind == Kind.SOP), known, value,
+        path.stem, named.kind, _size(named), known, value,
         bound, found.proven, seconds, found.method, theirs, wrong,
     )  # fmt: skip
+
+
+def _size(named: NamedProblem) -> int:
+    """Return the number of nodes, as the file counts them."""
+    return len(named.nodes) + 1 + (named.kind == Kind.SOP)
 
 
 def _ask(peer: Peer, named: NamedProblem, time_limit: float, seed: int) -> PeerFinding:
@@ -124,35 +133,34 @@ def _contradiction(
 def main(arguments: Sequence[str] | None = None) -> int:
     """Prints all of it. Status 1: a route is not what its solver says."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("folder", type=Path)
+    parser.add_argument("folders", type=Path, nargs="+")
     parser.add_argument("--time-limit", type=float, default=30.0, help="s for each problem")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--seed", type=seed_number, default=0)
     parser.add_argument("--only", default="*", metavar="GLOB", help="names of files, such as 'ft*'")
     parser.add_argument("--peers", action=argparse.BooleanOptionalAction, default=True)
     parser.add_argument("--lkh", type=Path, help="the program LKH-3, as a peer too")
-    parser.add_argument("--json", type=Path, help="where the rows are written as well")
     given = parser.parse_args(arguments)
-    peers = [Peer("PyVRP", peer_pyvrp.why_not, peer_pyvrp.search)] if given.peers else []
+    peers = []
+    if given.peers and find_spec("pyvrp"):
+        peers.append(Peer("PyVRP", peer_pyvrp.why_not, peer_pyvrp.search))
+    elif given.peers:
+        print("PyVRP is not installed: it is left out")
     if given.lkh:
         peers.append(Peer("LKH-3", peer_lkh.why_not, partial(peer_lkh.search, given.lkh)))
     rows: list[Row] = []
-    setting = _setting(given.time_limit, given.workers, given.seed)
     try:
-        paths = find_files(given.folder, given.only)
-        print(setting)
-        print(header([peer.name for peer in peers]))
-        for path in paths:
-            rows.append(measure(path, given.time_limit, given.workers, given.seed, peers))
-            print(row_text(rows[-1]), flush=True)
-            if given.json:
-                written = {"setting": setting, "rows": [asdict(row) for row in rows]}
-                given.json.write_text(json.dumps(written, indent=1) + "\n", encoding="utf-8")
+        paths = [path for folder in given.folders for path in find_files(folder, given.only)]
+        read = [(read_route_problem(path), path) for path in paths]
+        print(_setting(given.time_limit, given.workers, given.seed) + "\n")
+        print("\n".join(head([peer.name for peer in peers])))
+        for named, path in sorted(read, key=lambda one: (one[0].kind, _size(one[0]), one[1].stem)):
+            rows.append(measure(path, named, given.time_limit, given.workers, given.seed, peers))
+            print(line(rows[-1]), flush=True)
     except ArgoError as error:
         print(error, file=sys.stderr)
         return 2
-    for line in summary(rows):
-        print(line)
+    print("".join(f"\n- {said}" for said in summary(rows)))
     return int(any(row.wrong for row in rows))
 
 

@@ -10,7 +10,7 @@ the machine. It is asked for that nothing takes longer than a tenth of its limit
 
 import argparse
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -122,13 +122,13 @@ def rows(
                 yield size, name, limit, beyond, there
 
 
-def main() -> None:
-    """Prints the table."""
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Print the table."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.routes_limits")
     parser.add_argument("--sizes", type=int, nargs="+", default=[20, 100, 400, 1000])
     parser.add_argument("--limits", type=float, nargs="+", default=[0.5, 1.0, 2.0, 5.0], help="s")
     parser.add_argument("--workers", type=int, default=1)
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     print("| visits | kind | limit | beyond it | route | kept |\n|---|---|---|---|---|---|")
     for size, name, limit, beyond, there in rows(given.sizes, given.limits, given.workers):
         kept = "yes" if beyond <= 0.1 * limit + 0.2 else "no"

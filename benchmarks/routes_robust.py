@@ -5,7 +5,8 @@ UMAD: with readings that may be left out for some maximum durations, and with no
 shares of what the shortest route takes. Times spread as in `CAUTIOUS`.
 """
 
-from collections.abc import Iterator
+import argparse
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import permutations
 
@@ -19,19 +20,17 @@ from argo_compiler.route.suggestion import suggest_route
 from argo_env.planning import open_site
 from argo_env.seeding import generator
 
-PROBLEMS = 20
 VISITS = 6
 READING = 10.0
 """s that a reading takes"""
 UNIT = 0.1
-TIME_LIMIT = 30.0
 JUDGED = 10_000
 
 
-def small_problems() -> Iterator[RouteProblem]:
+def small_problems(count: int) -> Iterator[RouteProblem]:
     """Random ones, every second with some time windows, that leave 12 % more time than the shortest
     route takes."""
-    for seed in range(PROBLEMS):
+    for seed in range(count):
         rng = generator(seed, "robust routes")
         at = rng.uniform(0, 300, (VISITS + 1, 2))
         up = np.maximum(at[None, :, 1] - at[:, None, 1], 0.0)
@@ -48,12 +47,12 @@ def small_problems() -> Iterator[RouteProblem]:
         yield replace(problem, visits=tuple(visits), max_duration=int(1.12 * usual.cost))
 
 
-def compare_with_all_orders() -> None:
+def compare_with_all_orders(count: int, time_limit: float) -> None:
     """Prints how much surer the routes are than the usual ones, and how much less sure than the
     surest order."""
     gained, missed = [], []
-    for seed, problem in enumerate(small_problems()):
-        found = suggest_robust_route(problem, CAUTIOUS, TIME_LIMIT, seed, confidence=1.0)
+    for seed, problem in enumerate(small_problems(count)):
+        found = suggest_robust_route(problem, CAUTIOUS, time_limit, seed, confidence=1.0)
         draws = Draws(CAUTIOUS, JUDGED, generator(seed, "all orders"))
         assert found.nominal.route is not None
         usual, sure = (
@@ -63,7 +62,7 @@ def compare_with_all_orders() -> None:
         every = [completion(problem, Tour(o), draws) for o in permutations(range(VISITS))]
         gained.append(sure - usual)
         missed.append(max(one.probability for one in every) - sure)
-    print(f"{PROBLEMS} problems of {VISITS} visits that all have to be made, in percentage points:")
+    print(f"{count} problems of {VISITS} visits that all have to be made, in percentage points:")
     for what, values in (("surer than the usual route", gained), ("below the surest", missed)):
         mean, most = 100 * float(np.mean(values)), 100 * max(values)
         print(f"  {what}: {mean:.2f} on average, {most:.2f} at most")
@@ -87,20 +86,26 @@ def _said(found: RobustSuggestion) -> str:
     )
 
 
-def main() -> None:
-    """Prints all of it."""
-    compare_with_all_orders()
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Print all of it."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--problems", type=int, default=20, help="random ones")
+    parser.add_argument("--minutes", nargs="*", type=float, default=(10, 15, 20), help="on UMAD")
+    parser.add_argument("--shares", nargs="*", type=float, default=(1.02, 1.05, 1.1, 1.2))
+    parser.add_argument("--time-limit", type=float, default=30.0, help="s of each search")
+    given = parser.parse_args(arguments)
+    compare_with_all_orders(given.problems, given.time_limit)
     problem = umad()
     optional = tuple(replace(visit, mandatory=False, prize=1) for visit in problem.visits)
     print(f"UMAD, {problem.size} checkpoints, {READING:g} s each:")
-    for minutes in (10, 15, 20):
+    for minutes in given.minutes:
         limited = replace(problem, visits=optional, max_duration=round(minutes * 60 / UNIT))
-        found = suggest_robust_route(limited, CAUTIOUS, TIME_LIMIT)
-        print(f"  {minutes} min: {_said(found)}", flush=True)
-    shortest = suggest_route(problem, TIME_LIMIT).cost
-    for share in (1.02, 1.05, 1.1, 1.2):
+        found = suggest_robust_route(limited, CAUTIOUS, given.time_limit)
+        print(f"  {minutes:g} min: {_said(found)}", flush=True)
+    shortest = suggest_route(problem, given.time_limit).cost
+    for share in given.shares:
         limited = replace(problem, max_duration=int(share * shortest))
-        found = suggest_robust_route(limited, CAUTIOUS, TIME_LIMIT, confidence=1.0)
+        found = suggest_robust_route(limited, CAUTIOUS, given.time_limit, confidence=1.0)
         print(f"  {share:g} times the shortest, nothing left out: {_said(found)}", flush=True)
 
 

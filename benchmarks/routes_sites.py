@@ -9,6 +9,7 @@ import time
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib.util import find_spec
 
 import numpy as np
 from numpy.typing import NDArray
@@ -193,16 +194,17 @@ def summary(rows: Sequence[Row]) -> str:
     )
 
 
-def missions(count: int, seed: int, time_limit: float) -> None:
+def missions(names: Sequence[str], count: int, seed: int, time_limit: float) -> None:
     """Prints how fast random missions on sites are proven."""
-    sites = [site_matrix(name) for name in SITES]
+    sites = [site_matrix(name) for name in names]
     rows = []
     for number in range(count):
         rng = np.random.default_rng([seed, number])
         rows.append(timed(mission(rng, sites[number % len(sites)]), time_limit))
     print(f"missions of 2 to 20 checkpoints, any mix of constraints: {summary(rows)}")
     for name in ("optional", "precedence", "windows", "rounds", "battery"):
-        print(f"  with {name:<10} {summary([row for row in rows if name[0] in row.mixture])}")
+        if some := [row for row in rows if name[0] in row.mixture]:
+            print(f"  with {name:<10} {summary(some)}")
     methods = Counter(row.suggestion.method for row in rows)
     print("  " + ", ".join(f"{method} {n}" for method, n in methods.most_common()))
 
@@ -229,6 +231,9 @@ def beside_pyvrp(seed: int, time_limit: float) -> None:
     print(
         f"  after {time_limit:g} s {ours.cost * UNIT:.0f} s with a certified gap of {ours.gap:.1%}"
     )
+    if find_spec("pyvrp") is None:
+        print("  PyVRP is not installed: it is left out")
+        return
     route = peer_pyvrp.search(problem, time_limit, seed)
     if route is None:
         print("  PyVRP found none")
@@ -237,17 +242,18 @@ def beside_pyvrp(seed: int, time_limit: float) -> None:
     print(f"  PyVRP {theirs * UNIT:.0f} s in the same time: ours is {ours.cost / theirs:.3f} of it")
 
 
-def main() -> None:
-    """Runs what was asked for, or all."""
-    parser = argparse.ArgumentParser(description=__doc__)
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run what was asked for, or all."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--missions", type=int, default=1000, help="random missions on sites")
+    parser.add_argument("--sites", nargs="+", default=SITES, help="of these missions")
     parser.add_argument("--large", type=int, default=11, help="problems of 80 and of 40")
     parser.add_argument("--peer", type=float, default=30.0, help="s beside PyVRP; 0: not")
     parser.add_argument("--time-limit", type=float, default=20.0, help="s for a mission")
     parser.add_argument("--seed", type=seed_number, default=1)
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     if given.missions:
-        missions(given.missions, given.seed, given.time_limit)
+        missions(given.sites, given.missions, given.seed, given.time_limit)
     if given.large:
         large(given.seed, given.large)
     if given.peer:

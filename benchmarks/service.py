@@ -41,20 +41,20 @@ SIZES = (200, 2_000)
 def service(folder: Path) -> Iterator[tuple[str, int]]:
     """A service of its own; its address and its process."""
     command = [sys.executable, "-m", "argo_planner", "serve", str(folder), "--port", "0"]
-    process = subprocess.Popen(
-        command, stderr=subprocess.PIPE, text=True, env=os.environ | {"ARGO_TOKEN": TOKEN}
-    )
-    assert process.stderr is not None
-    try:
+    environment = os.environ | {"ARGO_TOKEN": TOKEN}
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment) as process:
+        assert process.stderr is not None
         for line in process.stderr:
             if "http://" in line:
                 address = line.partition("http://")[2].strip().strip("/")
                 break
-        threading.Thread(target=process.stderr.read, daemon=True).start()
-        yield address, process.pid
-    finally:
-        process.terminate()
-        process.wait()
+        rest = threading.Thread(target=process.stderr.read)
+        rest.start()
+        try:
+            yield address, process.pid
+        finally:
+            process.terminate()
+            rest.join()
 
 
 def mission(size: int) -> dict[str, object]:
@@ -131,7 +131,7 @@ def follow_poses(address: str, count: int, seconds: float, gaps: Connection) -> 
     gaps.send(asyncio.run(all_of_them()))
 
 
-def measure_poses(address: str, process: int, followers: int, seconds: float = 20.0) -> None:
+def measure_poses(address: str, process: int, followers: int, seconds: float) -> None:
     """Prints what it costs to tell many where the robot is."""
     with httpx.Client(base_url=f"http://{address}", headers=HEADERS, timeout=60) as client:
         made = client.post("/api/missions", json={"name": "poses", "mission": mission(200)})
@@ -228,17 +228,18 @@ def stalled_client(address: str, id: str) -> Iterator[None]:
         yield
 
 
-def main() -> None:
-    """Prints all of it."""
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Print all of it."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--tasks", type=int, nargs="*", default=SIZES)
     parser.add_argument("--edits", type=int, default=200)
     parser.add_argument("--subscribers", type=int, default=50)
     parser.add_argument("--poses", action="store_true", help="of poses only")
-    options = parser.parse_args()
+    parser.add_argument("--seconds", type=float, default=20.0, help="for which poses are heard")
+    options = parser.parse_args(arguments)
     print(f"  {'':52s}  median    95 %")
     with tempfile.TemporaryDirectory() as folder, service(Path(folder)) as (address, process):
-        measure_poses(address, process, options.subscribers)
+        measure_poses(address, process, options.subscribers, options.seconds)
         for size in () if options.poses else options.tasks:
             measure(address, size, options.edits, options.subscribers)
 

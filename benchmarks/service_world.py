@@ -30,11 +30,11 @@ LARGE = "generated:floors=12,size=40x40,checkpoints=500,seed=7"
 TASKS = 40
 
 
-def main() -> None:
-    """Prints a table for each site."""
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Print a table for each site."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--site", action="append", help="a site (umad and a large one)")
-    sites = parser.parse_args().site or ["umad", LARGE]
+    sites = parser.parse_args(arguments).site or ["umad", LARGE]
     with tempfile.TemporaryDirectory() as folder:
         os.environ["ARGO_CACHE_DIR"] = folder
         for reference in sites:

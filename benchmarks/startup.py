@@ -22,13 +22,15 @@ SHEET = ROOT / "scenarios" / "umad" / "missions" / "mission_1.txt"
 AREAS = ("--start-area", "1", "--end-area", "2")
 
 
-def main() -> None:
-    """Prints a line for each command."""
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Print a line for each command."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--repeats", type=int, default=9, help="turns that count")
-    repeats = parser.parse_args().repeats
+    parser.add_argument("--only", default="", metavar="WORD", help="commands whose name has it")
+    given = parser.parse_args(arguments)
     with tempfile.TemporaryDirectory() as folder:
-        measured = measure(commands(Path(folder)), repeats)
+        chosen = {name: c for name, c in commands(Path(folder)).items() if given.only in name}
+        measured = measure(chosen, given.repeats)
     for name, (paired, least, seconds, limit) in measured.items():
         asked = f"at most {limit:g}" if limit else ""
         print(f"{name:24} {paired:6.2f} {least:6.2f}   {seconds:6.3f} s   {asked}")
@@ -37,13 +39,13 @@ def main() -> None:
 def commands(folder: Path) -> dict[str, tuple[Sequence[str], float | None]]:
     """The commands by their names, with the ratio that each may have."""
     argo = (sys.executable, "-m", "argo_planner")
-    mission = str(folder / "mission.json")
+    into = ("-o", str(folder / "mission.json"), "--force")  # of the turn before
     return {
         "argo --help": ((*argo, "--help"), 2.5),
         "import argo_compiler": ((sys.executable, "-c", "import argo_compiler"), 1.5),
         "import argo_env": ((sys.executable, "-c", "import argo_env"), None),
         "argo check, mission #1": ((*argo, "check", str(SHEET), *AREAS), 6.0),
-        "argo import, mission #1": ((*argo, "import", str(SHEET), "-o", mission, *AREAS), 6.0),
+        "argo import, mission #1": ((*argo, "import", str(SHEET), *AREAS, *into), 6.0),
         "argo run --help": ((*argo, "run", "--help"), None),
     }
 

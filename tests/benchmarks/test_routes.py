@@ -1,7 +1,6 @@
 """The benchmark of published route problems, on small ones of its own."""
 
 import dataclasses
-import json
 import sys
 
 import numpy as np
@@ -22,7 +21,7 @@ from benchmarks import peer_lkh, peer_pyvrp
 from benchmarks.instances import Kind
 from benchmarks.known_values import Known, known_of
 from benchmarks.routes import find_files, main
-from benchmarks.routes_table import PeerFinding, Row, markdown, read_rows, summary
+from benchmarks.routes_table import PeerFinding, Row, line, summary
 
 ATSP = """NAME: three
 TYPE: ATSP
@@ -47,29 +46,20 @@ def folder(tmp_path):
 
 def test_the_table_of_two_problems(folder, capsys):
     pytest.importorskip("pyvrp")
-    into = folder / "rows.json"
-    assert main([str(folder), "--time-limit", "0.3", "--workers", "1", "--json", str(into)]) == 0
-    late, three = json.loads(into.read_text())["rows"]
-    assert (late["value"], late["bound"], late["proven"]) == (15.0, 15.0, True)
-    assert late["peers"] == [{"name": "PyVRP", "value": 15.0, "none_because": None}]
-    assert late["known"] == {"value": 15.0, "bound": None, "rounded": 0.5}
-    assert (three["value"], three["bound"], three["peers"][0]["value"]) == (7.0, 7.0, 7.0)
-    assert three["known"] is None
-    lines = capsys.readouterr().out.splitlines()
-    assert "15?" in lines[2]
-    assert lines[-2:] == [
-        "ATSP: 1 problems, 1 proven (1 of 1 with up to 100 nodes), best known value or better 1 "
-        f"times, {three['seconds']:.1f} s in all; PyVRP best known value 1 times of 1",
-        "TSPTW: 1 problems, 1 proven (1 of 1 with up to 100 nodes), best known value or better 1 "
-        f"times, {late['seconds']:.1f} s in all; PyVRP best known value 1 times of 1",
-    ]
-    setting, rows = read_rows(into)
-    assert setting.startswith("0.3 s for each problem")
-    table = list(markdown(rows))
-    assert table[0].endswith("| by | PyVRP |")
-    assert table[2].startswith("| ATSP three | 3 | - | 7 | 0 | 7 | yes |")
-    assert table[2].endswith("| 7, 0 |")
-    assert table[-2:] == [f"- {line}" for line in lines[-2:]]
+    assert main([str(folder), "--time-limit", "0.3", "--workers", "1"]) == 0
+    setting, _, head, _, three, late, _, *said = capsys.readouterr().out.splitlines()
+    assert setting.startswith("0.3 s for each problem, 1 workers")
+    assert head == "|  | nodes | known | ours | off | bound | proven | time | by | PyVRP |"
+    assert three.startswith("| ATSP three | 3 | - | 7 | 0 | 7 | yes | ")
+    assert three.endswith(" | 7, 0 |")
+    assert late.startswith("| TSPTW late | 3 | 15? | 15 | 0 | 15 | yes | ")
+    assert late.endswith(" | 15, 0 |")
+    for kind, one in zip(("ATSP", "TSPTW"), said, strict=True):
+        assert one.startswith(
+            f"- {kind}: 1 problems, 1 proven (1 of 1 with up to 100 nodes), best known value or "
+            "better 1 times, "
+        )
+        assert one.endswith(" s in all; PyVRP best known value 1 times of 1")
 
 
 def test_files_are_picked_by_name(folder, capsys):
@@ -112,6 +102,10 @@ def test_values_are_off_by_a_share_of_the_best():
     lines = list(summary([cost, score]))
     assert "P best known value 1 times of 1; L not asked: precedence" in lines[0]
     assert len(lines) == 2
+    told = line(dataclasses.replace(cost, wrong="it says more"))
+    assert told == (
+        "| ATSP x | 5 | 10? | 12 | 50.00 % | 1 | no | 1.0 s | y WRONG: it says more | 8, 0 |  |"
+    )
 
 
 LKH = """#!{python}

@@ -28,7 +28,7 @@ HAPPENS = {
 
 def test_random_missions_come_to_all_there_is():
     """In a process of its own: the campaign takes the place of Hypothesis's strategies."""
-    campaign = [sys.executable, "-m", "tests.argo_compiler.hfsm.campaign", "--count", "500"]
+    campaign = [sys.executable, "-m", "tests.campaigns.machines", "--count", "500"]
     done = subprocess.run(campaign, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     happened = json.loads(done.stdout.splitlines()[-1])

@@ -1,6 +1,6 @@
 """What a route means, and what is claimed of it, against a second reading of both.
 
-More problems than here: `python -m tests.argo_compiler.route.odd_campaign --help`.
+More problems than here: `python -m tests.campaigns.odd_routes --help`.
 """
 
 import numpy as np
@@ -18,9 +18,9 @@ from argo_compiler.route import (
     evaluate,
     suggest_route,
 )
-from tests.argo_compiler.route.odd_campaign import finding, findings, numbered
 from tests.argo_compiler.route.odd_problems import odd_tour
 from tests.argo_compiler.route.second_reading import Reading
+from tests.campaigns.odd_routes import finding, findings, numbered
 from tests.conftest import examples, sample
 
 WAYS = np.array([[50, 10, 100], [12, 60, 13], [14, 15, 16]])

@@ -11,7 +11,7 @@ from argo_compiler.script import import_script, parse
 from argo_compiler.script.syntax.repeats import repeats
 from argo_compiler.script.syntax.tree.script import Script
 from tests.argo_compiler.script.conftest import CATALOG
-from tests.fuzz.sentences import sayer, text_of
+from tests.campaigns.fuzz.sentences import sayer, text_of
 
 PLACES = [place.name for place in CATALOG.places]
 LINES = [

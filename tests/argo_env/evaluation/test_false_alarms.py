@@ -13,8 +13,8 @@ from argo_env.run.conditions import RunConditions, ValueProfile
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_planner.use_cases.importing import Upload, import_mission
-from benchmarks.fault_causes import causes_of
-from benchmarks.fault_pairs import draw
+from tests.campaigns.fault_causes import causes_of
+from tests.campaigns.fault_pairs import draw
 from tests.conftest import examples
 
 FAULTS = resources.scenarios() / "umad" / "faults"

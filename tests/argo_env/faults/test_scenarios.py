@@ -11,7 +11,7 @@ from argo_env.faults.kinds import KINDS
 from argo_env.faults.reading import read_faults
 from argo_env.files import resources
 from argo_env.run.spec import logged
-from benchmarks.faults import random_mission
+from tests.campaigns.faults import random_mission
 from tests.conftest import examples
 from tests.yard import Watching, simulated
 
@@ -160,7 +160,7 @@ def test_found_and_answered(missions, navigator, clean, kind):
 
 @pytest.mark.parametrize("seed", range(examples(1)))
 def test_no_false_alarm_in_a_random_mission(navigator, seed):
-    """One of those that `python -m benchmarks.faults --clean 100` runs."""
+    """One of those that `python -m tests.campaigns.faults --clean 100` runs."""
     mission = random_mission(navigator, 100 + seed)
     record = simulated(mission, navigator, seed=100 + seed)
     assert record.anomalies == ()

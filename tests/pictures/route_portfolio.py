@@ -1,13 +1,14 @@
 """A picture of the portfolio at work: which solver has its turn when, and what is known by then.
 
-    python -m benchmarks.route_portfolio docs/images/route-portfolio.png
-    python -m benchmarks.route_portfolio out.png --time-limit 10 --workers 1
+    python -m tests.pictures.route_portfolio docs/images/route-portfolio.png
+    python -m tests.pictures.route_portfolio out.png --time-limit 10 --workers 1
 
 Searches one problem of each kind, made from random places, and draws the solvers' turns above the
 curve of the best route and its bound. Nothing else should run on the machine.
 """
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -61,13 +62,13 @@ def draw(name: str, made: RouteSuggestion, turns: Axes, curve: Axes) -> None:
     curve.set_xlabel("s", fontsize=8)
 
 
-def main() -> None:
-    """Searches and draws."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.route_portfolio")
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Search and draw."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("output", type=Path)
     parser.add_argument("--time-limit", type=float, default=5.0, help="s for each problem")
     parser.add_argument("--workers", type=int, default=2)
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     figure, axes = plt.subplots(
         6, 2, figsize=(11, 13), height_ratios=[1.2, 1] * 3, sharex="none", layout="constrained"
     )

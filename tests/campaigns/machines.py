@@ -1,4 +1,4 @@
-"""Random machines and the reference: `python -m tests.argo_compiler.hfsm.campaign --count 40000`.
+"""Random machines and the reference: `python -m tests.campaigns.machines --count 40000`.
 
 Each machine has a number, from which it is drawn again: `--first 17 --count 1`. The last line tells
 what has happened, and how often.

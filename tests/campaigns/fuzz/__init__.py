@@ -16,12 +16,12 @@ from pathlib import Path
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.script import import_script
 from tests.argo_compiler.script.conftest import CATALOG
-from tests.fuzz.laws import try_sentence
-from tests.fuzz.mutating import Composer, Mutator, Restructurer
-from tests.fuzz.sentences import Sayer, sayer, text_of
-from tests.fuzz.trying import try_mission, try_script
+from tests.campaigns.fuzz.laws import try_sentence
+from tests.campaigns.fuzz.mutating import Composer, Mutator, Restructurer
+from tests.campaigns.fuzz.sentences import Sayer, sayer, text_of
+from tests.campaigns.fuzz.trying import try_mission, try_script
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 MEMORY = Path("/dev/shm")
 MEMORY_BYTES = 4_000_000_000
 SECONDS = 60

@@ -1,4 +1,4 @@
-"""How well the robot senses gas, heat, sound and obstacles: `python -m benchmarks.signals`.
+"""How well the robot senses gas, heat, sound and obstacles: `python -m tests.campaigns.signals`.
 
 Random drives over a site are looked at again and again by the watches alone: without any source for
 false alarms, and with one source or obstacle at a time for what is found, and from how far.
@@ -286,20 +286,21 @@ def tell(name: str, results: list[Found]) -> None:
     print(f"{name}: found {len(hits)} of {len(reached)}; {text}", flush=True)
 
 
-def main() -> None:
-    """Runs all of it."""
-    parser = argparse.ArgumentParser(description=__doc__)
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run all of it."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--site", default="umad")
     parser.add_argument("--placements", type=int, default=60)
     parser.add_argument("--missions", type=int, default=100)
     parser.add_argument("--drives", type=int, default=20)
-    arguments = parser.parse_args()
-    navigator = open_site(arguments.site).navigator
+    parser.add_argument("--duration", type=float, default=300.0, help="s of each drive at least")
+    given = parser.parse_args(arguments)
+    navigator = open_site(given.site).navigator
     site, robot = navigator.site, navigator.robot
-    placements = range(arguments.placements)
+    placements = range(given.placements)
     with World(site, robot) as world:
         began = time.process_time()
-        tracks = list(drives(navigator, world, arguments.drives, 300.0))
+        tracks = list(drives(navigator, world, given.drives, given.duration))
         seconds = sum(t[-1][0] for t in tracks)
         print(
             f"{len(tracks)} drives, {seconds:.0f} s, kinematic: "
@@ -334,7 +335,7 @@ def main() -> None:
             ("alarm", EventKind.PLATFORM_ALARM, "alarm", lambda *_: Alarm()),
         ):
             tell(name, [source(kind, watch, make, world, tracks, k) for k in placements])
-        false_alarms(world, tracks, arguments.missions)
+        false_alarms(world, tracks, given.missions)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""How well the camera reads checkpoints: `python -m benchmarks.perception`.
+"""How well the camera reads checkpoints: `python -m tests.campaigns.perception`.
 
 Each trial puts a checkpoint of UMAD elsewhere than planned (within a sphere of 10 cm, turned and
 rolled by up to ±90°), lets it show any value of its scale in light of 0.3 to 1, in a third of the
@@ -246,16 +246,16 @@ def report(trials: Sequence[Trial]) -> Iterator[str]:
     yield f"time for a reading: median {np.median(seconds):.2f} s, 95 % {slow:.2f} s"
 
 
-def main() -> None:
-    """Runs the trials and prints what came out."""
-    parser = argparse.ArgumentParser(description=__doc__)
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the trials and print what came out."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument(
         "--seed", type=seed_number, default=2018, help="default: the seed of the report"
     )
     parser.add_argument("--trials", type=int, default=600)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--out", type=Path, help="a file for all trials, a line of JSON each")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     trials = []
     with options.out.open("w", encoding="utf-8") if options.out else nullcontext() as file:
         for trial in run_trials(options.seed, options.trials, options.jobs):

@@ -1,7 +1,7 @@
 """Short runs of the fuzzer; CONTRIBUTING has the long ones."""
 
+from tests.campaigns.fuzz import fuzz, fuzz_sentences
 from tests.conftest import examples
-from tests.fuzz import fuzz, fuzz_sentences
 
 
 def test_mutated_scripts_and_files_end_in_missions_or_diagnostics() -> None:

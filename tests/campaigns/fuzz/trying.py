@@ -27,7 +27,7 @@ from argo_compiler.hfsm import (
 from argo_compiler.il import Action, EventKind, Mission, Task
 from argo_compiler.script import decode_script, format_script, import_script
 from tests.argo_compiler.script.conftest import CATALOG
-from tests.fuzz.laws import unplaced
+from tests.campaigns.fuzz.laws import unplaced
 
 STEPS = 30
 """events that the machine of a mission is given"""

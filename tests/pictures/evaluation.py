@@ -1,9 +1,10 @@
 """The pictures of `docs/evaluating.md`: mission #1 with less time than it has, and several faults.
 
-python -m benchmarks.evaluation_pictures docs/images
+python -m tests.pictures.evaluation docs/images
 """
 
-import sys
+import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -24,12 +25,11 @@ from argo_env.planning.opening import open_site
 from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
 from argo_planner.use_cases.routing import suggest_order
 
-UMAD = Path("scenarios/umad")
+UMAD = Path(__file__).parents[2] / "scenarios" / "umad"
 FAULTS = ("connection_loss", "drive_dysfunction", "emergency_stop", "low_battery", "worn_battery")
-WORLDS = 60
 
 
-def evaluated() -> EvaluationResults:
+def evaluated(worlds: int) -> EvaluationResults:
     """Mission #1 as it is written and in the best order, with less time than it has."""
     site = open_site("umad").prepare()
     script = UMAD / "missions" / "mission_1.txt"
@@ -46,15 +46,19 @@ def evaluated() -> EvaluationResults:
         plans,
         site,
         faults={"none": (), **faults},
-        seeds=range(WORLDS),
+        seeds=range(worlds),
         worlds=Variation(speed=(0.75, 1.0), charge=(0.5, 1.0)),
         name="mission #1",
     ).run()
 
 
-def main(folder: Path) -> None:
-    """Writes the pictures."""
-    results = evaluated()
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Write the pictures."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--worlds", type=int, default=60)
+    given = parser.parse_args(arguments)
+    results = evaluated(given.worlds)
     first, second = results.plan.plans
     rates = Figure(figsize=(11, 4.6), layout="constrained")
     left, right = rates.subplots(1, 2)
@@ -65,10 +69,10 @@ def main(folder: Path) -> None:
     outcomes_by_faults(results, left, first)
     paired_differences(compare_plans(results, results, first, second), right)
     for figure, name in ((rates, "evaluation-rates"), (why, "evaluation-why")):
-        path = folder / f"{name}.png"
+        path = given.folder / f"{name}.png"
         figure.savefig(path, dpi=110)
         print(path)
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main()

@@ -6,8 +6,8 @@ from argo_compiler.il import EventKind
 from argo_env.faults.kinds import KINDS, FaultFile
 from argo_env.planning import open_site
 from argo_env.run.record import Anomaly
-from benchmarks.fault_causes import given_up_without_cause, without_cause
-from benchmarks.fault_pairs import draw, examine, pairs, undisturbed
+from tests.campaigns.fault_causes import given_up_without_cause, without_cause
+from tests.campaigns.fault_pairs import draw, examine, pairs, undisturbed
 
 SHORT = (("darmstadt", 2), ("darmstadt", 31))
 

@@ -1,7 +1,7 @@
 """What the worst inputs of a megabyte cost: `argo check` of each kind, in a process of its own.
 
-    python -m benchmarks.hostile
-    python -m benchmarks.hostile --only "nested groups" "a number of 400 digits"
+    python -m tests.campaigns.hostile
+    python -m tests.campaigns.hostile --only "nested groups" "a time of 1e300 s"
 
 Reads, checks, lowers and analyses what it can, with the travel times of a site. Memory is limited
 to 2 GB; the processor's time and the greatest memory are measured by the system. Ends with status 1
@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import count
 from pathlib import Path
 from typing import Any
@@ -305,22 +305,22 @@ def answer(path: Path, site: str) -> tuple[str, float, float]:
     return how, used.ru_utime + used.ru_stime, used.ru_maxrss / 1000
 
 
-def main() -> int:
-    """Prints the table."""
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--only", nargs="+", default=(), help="names of inputs")
     parser.add_argument("--site", default="umad")
-    arguments = parser.parse_args()
+    given = parser.parse_args(arguments)
     worst = (0.0, 0.0)
     bad = 0
     began = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
         for number, (name, ending, text) in enumerate(inputs()):
-            if arguments.only and name not in arguments.only:
+            if given.only and name not in given.only:
                 continue
             path = Path(folder) / f"{number}{ending}"
             path.write_text(text)
-            how, seconds, memory = answer(path, arguments.site)
+            how, seconds, memory = answer(path, given.site)
             path.unlink()
             over = seconds > LIMIT_S or how not in ("accepted", "refused")
             bad += over

@@ -1,16 +1,16 @@
 """Every finding has a cause: runs with two faults each, of all kinds in all pairs.
 
-    python -m benchmarks.fault_pairs --runs 1000
-    python -m benchmarks.fault_pairs --runs 1000 --drive route
-    python -m benchmarks.fault_pairs --first 17 --runs 1
+    python -m tests.campaigns.fault_pairs --runs 1000
+    python -m tests.campaigns.fault_pairs --runs 1000 --drive route
+    python -m tests.campaigns.fault_pairs --first 17 --runs 1
 
 Each run has a number, from which all is drawn: the site, a short mission through one or two
 checkpoints, whether it answers to what is found, and two faults, whose kinds go through all pairs,
 either one first, that the drive can find. They begin and end around the moments at which the
 undisturbed mission goes on to the next task: before, at and after them, and in between. Every
 fourth run is cut off somewhere and resumed. What is found, told as over, failed at or given up must
-have a cause among the two (benchmarks/fault_causes.py); what has none is printed with the line that
-makes it again.
+have a cause among the two (tests/campaigns/fault_causes.py); what has none is printed with the line
+that makes it again.
 """
 
 import argparse
@@ -38,9 +38,9 @@ from argo_env.run.session import simulate
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec, logged
 from argo_env.seeding import generator
-from benchmarks.fault_causes import given_up_without_cause, without_cause
-from benchmarks.faults import random_mission
 from benchmarks.options import seed_number
+from tests.campaigns.fault_causes import given_up_without_cause, without_cause
+from tests.campaigns.faults import random_mission
 
 MISSIONS = (
     *(("darmstadt", seed) for seed in (1, 2, 3, 10, 14, 22, 31)),
@@ -84,7 +84,7 @@ class FaultPair:
     def __str__(self) -> str:
         faults = [f.model_dump(mode="json", exclude_none=True) for f in self.spec.faults]
         return (
-            f"python -m benchmarks.fault_pairs --first {self.number} --runs 1 --drive "
+            f"python -m tests.campaigns.fault_pairs --first {self.number} --runs 1 --drive "
             f"{self.spec.drive}  # {self.spec.site}, seed {self.spec.seed}: "
             + yaml.safe_dump({"faults": faults}, default_flow_style=True, width=10_000).strip()
         )
@@ -225,14 +225,14 @@ def examine(number: int, drive: str, missions: Sequence[tuple[str, int]] = MISSI
     return PairOutcome(case, len(record.findings), record.result.success, uncaused, given_up)
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Runs what the command line asks for, and prints what had no cause."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--runs", type=int, default=1000)
     parser.add_argument("--first", type=seed_number, default=0, help="number of the first run")
     parser.add_argument("--drive", choices=DRIVES, default=KinematicDrive.name)
     parser.add_argument("--processes", type=int, default=1)
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     numbers = range(given.first, given.first + given.runs)
     findings = uncaused = successes = given_up = 0
     with ProcessPoolExecutor(given.processes) as pool:

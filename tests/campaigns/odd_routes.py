@@ -1,6 +1,6 @@
 """What `suggest_route` claims of odd problems, against all their routes: any number of them.
 
-    python -m tests.argo_compiler.route.odd_campaign --count 100000 --first 0 --processes 2
+    python -m tests.campaigns.odd_routes --count 100000 --first 0 --processes 2
 
 prints each disagreement with the number that makes its problem again, and how many there were.
 """
@@ -9,7 +9,7 @@ import argparse
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
@@ -125,14 +125,14 @@ def chunks(first: int, count: int) -> Iterator[range]:
         yield range(start, min(start + CHUNK, first + count))
 
 
-def main() -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--count", type=int, default=10_000, help="how many problems")
     parser.add_argument("--first", type=int, default=0, help="the number of the first")
     parser.add_argument("--processes", type=int, default=1)
     parser.add_argument("--rounds", action="store_true", help="mostly with timed rounds")
     parser.add_argument("--solver", action="append", default=[], help="only this one")
-    chosen = parser.parse_args()
+    chosen = parser.parse_args(arguments)
     work = partial(findings, timed=chosen.rounds, solvers=tuple(chosen.solver))
     kinds, methods, begun = Counter[str](), Counter[str](), time.monotonic()
     with ProcessPoolExecutor(chosen.processes) as pool:

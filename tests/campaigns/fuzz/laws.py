@@ -15,7 +15,7 @@ from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.il import Mission
 from argo_compiler.script import format_script, import_script
 from tests.argo_compiler.script.conftest import CATALOG
-from tests.fuzz.sentences import Said, Sayer, text_of
+from tests.campaigns.fuzz.sentences import Said, Sayer, text_of
 
 FRAME = """\
 Mission Protocol #1

@@ -1,45 +1,31 @@
 """What the robot finds by itself, and what it takes for something where there is nothing.
 
-    python -m benchmarks.faults --clean 100
-    python -m benchmarks.faults --scenarios
-    python -m benchmarks.faults --bricks 50
+    python -m tests.campaigns.faults --clean 100
+    python -m tests.campaigns.faults --bricks 50
 
 `--clean` runs random missions without any fault: a start in one of the docks, one to three
 checkpoints anywhere on the site, and an end in one of the docks, all drawn from the mission's seed,
 which also draws the noise of all sensors. Whatever is found there is a false alarm.
-
-`--scenarios` runs the shipped scenarios of faults, each with several seeds, and prints what was
-found, and how long after the fault had begun.
 
 `--bricks` runs random missions to one checkpoint and back with a brick somewhere on the planned way
 on a level floor, turned in any way, and counts what was found, touched and reached all the same.
 """
 
 import argparse
-import statistics
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Sequence
 from itertools import pairwise
-from pathlib import Path
 
-from argo_compiler.hfsm import Resume
 from argo_compiler.il import Action, EventKind, Mission, Task, Transition
-from argo_compiler.script import import_script, read_script
-from argo_env.faults.reading import read_faults
 from argo_env.faults.walkway import Brick
-from argo_env.files import resources
 from argo_env.navigation import Navigator
 from argo_env.planning import OpenedSite, open_site
-from argo_env.planning.catalog import make_catalog
 from argo_env.run.drives_and_sensors import DRIVES
-from argo_env.run.record import RunRecord
 from argo_env.run.session import simulate
-from argo_env.run.spec import RunSpec, logged
+from argo_env.run.spec import RunSpec
 from argo_env.seeding import generator
 from benchmarks.options import seed_number
-
-OPERATOR = 300.0  # s, when a person lets a mission go on that waits for one
 
 
 def random_mission(navigator: Navigator, seed: int) -> Mission:
@@ -86,36 +72,6 @@ def clean(navigator: Navigator, count: int, first_seed: int, drive: str) -> None
         f"simulated time, {simulated / wall:.0f} times real time: {sum(alarms.values())} false "
         f"alarms, {failed} missions without success"
     )
-
-
-def scenarios(navigator: Navigator, seeds: int, drive: str) -> None:
-    """Runs each shipped scenario and prints when its fault was found."""
-    catalog = make_catalog(navigator)
-    folder = resources.scenarios() / "umad" / "faults"
-    print(
-        "| fault | runs | as intended | found after (s), median | largest |\n|---|---|---|---|---|"
-    )
-    for path in sorted(folder.glob("*.yaml")):
-        script = folder / f"{_mission_of(path)}.txt"
-        mission = import_script(read_script(script), catalog).mission
-        usual: set[str] = set()
-        delays, good = [], 0
-        for seed in range(seeds):
-            spec = RunSpec(
-                mission=mission,
-                site=navigator.site.name,
-                seed=seed,
-                drive=drive,
-                faults=read_faults(path),
-                events=logged((OPERATOR, Resume())),
-            )
-            record = simulate(spec, OpenedSite.of_navigator(navigator))
-            kinds = {str(a.kind) for a in record.anomalies}
-            usual = usual or kinds
-            good += kinds == usual and len(record.anomalies) <= 2 and record.contacts == ()
-            delays += _delay(record)
-        found = f"{statistics.median(delays):.1f} | {max(delays):.1f}" if delays else "| "
-        print(f"| {path.stem} | {seeds} | {good} | {found} |", flush=True)
 
 
 def bricks(navigator: Navigator, count: int, first_seed: int, drive: str) -> None:
@@ -169,39 +125,22 @@ def _chained(site: str, *tasks: Task) -> Mission:
     return Mission(site=site, tasks=(*linked, tasks[-1]))
 
 
-def _mission_of(path: Path) -> str:
-    """The name of the mission that a scenario is made for, from its second line."""
-    second = path.read_text(encoding="utf-8").splitlines()[1]
-    return second.removeprefix("# Made for ").partition(".txt")[0]
-
-
-def _delay(record: RunRecord) -> list[float]:
-    began = record.faults[0].begins
-    return [a.t - began for a in record.anomalies[:1]]
-
-
-def main() -> None:
-    """What the command line asks for."""
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Do what the command line asks for."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--clean", type=int, metavar="N", help="random missions without a fault")
-    parser.add_argument("--scenarios", type=int, metavar="SEEDS", nargs="?", const=3)
     parser.add_argument("--bricks", type=int, metavar="N", help="missions with one in the way")
     parser.add_argument("--site", default="umad")
     parser.add_argument("--seed", type=seed_number, default=0, help="of the first mission")
     parser.add_argument("--drive", choices=DRIVES, default="kinematic")
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
+    if not given.clean and not given.bricks:
+        parser.error("say --clean N or --bricks N")
     navigator = open_site(given.site).prepare().navigator
-    todo: list[Callable[[], None]] = []
     if given.clean:
-        todo.append(lambda: clean(navigator, given.clean, given.seed, given.drive))
-    if given.scenarios:
-        todo.append(lambda: scenarios(navigator, given.scenarios, given.drive))
+        clean(navigator, given.clean, given.seed, given.drive)
     if given.bricks:
-        todo.append(lambda: bricks(navigator, given.bricks, given.seed, given.drive))
-    if not todo:
-        parser.error("say --clean N, --scenarios or --bricks N")
-    for work in todo:
-        work()
+        bricks(navigator, given.bricks, given.seed, given.drive)
 
 
 if __name__ == "__main__":

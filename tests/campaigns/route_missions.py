@@ -1,7 +1,7 @@
 """Mission sheets "in any order" on UMAD: what is predicted, and what the simulator drives.
 
-    python -m benchmarks.route_missions
-    python -m benchmarks.route_missions --sheets 3 --drive tracked
+    python -m tests.campaigns.route_missions
+    python -m tests.campaigns.route_missions --sheets 3 --drive tracked
 
 A sheet lists 4, 8 or 20 checkpoints, drawn and in an order drawn from its seed, and starts and ends
 docked in starting area 1. Its best order is asked for as `argo route` does, and driven. The times
@@ -10,6 +10,7 @@ driven in it.
 """
 
 import argparse
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -42,20 +43,21 @@ def sheet(catalog: Catalog, size: int, seed: int) -> str:
     return "\n".join(lines) + "\n"
 
 
-def main() -> None:
-    """Runs the sheets and prints a table."""
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the sheets and print a table."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
+    parser.add_argument("--sizes", type=int, nargs="+", default=SIZES, help="checkpoints")
     parser.add_argument("--sheets", type=int, default=2, help="of each size")
     parser.add_argument("--seed", type=seed_number, default=0, help="of the first sheet")
     parser.add_argument("--drive", choices=DRIVES, default="kinematic")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     site = open_site("umad")
     print("| checkpoints | sheet | as written | predicted | driven | off | proven |")
     print("|---|---|---|---|---|---|---|")
     worst = 0.0
-    for size in SIZES:
+    for size in options.sizes:
         for seed in range(options.seed, options.seed + options.sheets):
             upload = Upload("sheet.txt", sheet(site.catalog, size, seed).encode())
             found = suggest_order(import_mission(upload, site), site, seed=seed)

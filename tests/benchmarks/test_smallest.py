@@ -1,0 +1,58 @@
+"""Each benchmark in its smallest size: it runs to its end, and prints its table.
+
+That of published route problems is in `test_routes.py`.
+"""
+
+import os
+import re
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SMALL = "generated:floors=1,size=12x12,checkpoints=2,seed=1"
+
+COMMANDS = {
+    "compile --sizes 20 --repeats 1 --states 10": r"20 total .*\n.* MB of text",
+    "env route --window 0.005": r"Route-v0 \(vector\) +[\d,]+ steps/s",
+    "env drive inspect --window 0.005": r"Drive-v0 +[\d,]+ steps/s(.|\n)* s simulated in a step",
+    "evaluate --power --comparisons 20": r"a plan beside itself: a difference in 0 of 20 ",
+    "hfsm --events 50 --repeats 1": r"Argo +[\d,]+ +",
+    "hfsm --states": r"Argo: 4 states",
+    "route_parts --problems plain --count 1 --size 4 --time-limit 0.1 --only PyVRP --alone": (
+        r"\nPyVRP (.|\n)*\nall but PyVRP "
+    ),
+    "routes_limits --sizes 4 --limits 0.1": r"\| 4 \| rounds \| 0.1 s \| [\d.]+ s \| yes \| ",
+    "routes_robust --problems 1 --minutes 10 --shares 1.1 --time-limit 0.2": (
+        r"10 min: usual \d+ readings(.|\n)*1.1 times the shortest"
+    ),
+    "routes_sites --missions 2 --large 0 --peer 0 --sites umad": r"2 of 2 proven",
+    "startup --repeats 1 --only import,": r"argo import, mission #1 +[\d.]+ +[\d.]+ +[\d.]+ s",
+    "tracked --laps slab --repeats 1": r"slab +[\d.]+ s in ",
+}
+"""what is printed by each, which is the name of a module and its arguments"""
+LONG = {
+    "against . import --repeats 1": r"import +[\d.]+ +[\d.]+ +[\d.]+ ",
+    "drives --missions 1 --site darmstadt --workers 1": r"tracked +0.00 % ",
+    "env resets --count 2": r"Inspect-v0 +2 resets: ",
+    "env expert --count 1": r"upwards +1 of 1 reached",
+    "env batches --count 1 --rounds 1": r"Inspect-v0: [\d.]+ times as many with \d+ processes",
+    "evaluate --runs 2 --kinematic 0 --backend processes": r"processes +route +2 runs: ",
+    f"paths --pairs 2 --large {SMALL}": r"travel times of 2 checkpoints: [\d.]+ s",
+    "service --tasks 10 --edits 3 --subscribers 2 --seconds 3": (
+        r"2 followers of a run: (.|\n)*one hears nothing: seen by all +[\d.]+ "
+    ),
+    f"service_world --site {SMALL}": r"preview with obstacles +1 parts",
+}
+
+
+@pytest.mark.parametrize(
+    "command", [*COMMANDS, *(pytest.param(each, marks=pytest.mark.long) for each in LONG)]
+)
+def test_runs_to_its_end(command, capfd, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    monkeypatch.setenv("ARGO_CACHE_DIR", os.environ["ARGO_CACHE_DIR"])  # one of them changes it
+    name, *arguments = command.split()
+    import_module(f"benchmarks.{name}").main(arguments)
+    assert re.search((COMMANDS | LONG)[command], capfd.readouterr().out)

@@ -1,0 +1,35 @@
+"""Each campaign in its smallest size: it runs to its end, and finds nothing false.
+
+That of random machines is in `tests/argo_compiler/hfsm/test_random_missions.py`.
+"""
+
+import re
+from importlib import import_module
+
+import pytest
+
+COMMANDS = {
+    "fault_pairs --runs 1 --drive route": r"of \d findings 0 without a cause; 0 missions given up",
+    "faults --clean 1 --drive route --site darmstadt": r"0 false alarms, 0 missions without succ",
+    "faults --bricks 1 --seed 1": r"found in 1, touched in 0, the mission done all the same in 1",
+    "fuzz.__main__ --runs 20 --jobs 1": r"20 runs in ",
+    "fuzz.__main__ --sentences --runs 5 --jobs 1": r"5 runs in ",
+    "hostile --only zeros": r"zeros .* refused\nworst: ",
+    "odd_routes --count 5": r"5 problems in \d+ s: 0 disagree {}, 0 not proven",
+    "perception --trials 1 --jobs 1": r"wrong readings: 0 of 1 \(0.0 %\) of all readings",
+    "route_missions --sizes 3 --sheets 1 --drive route": r"predicted and driven differ by 0.00%",
+}
+"""what is printed by each, which is the name of a module and its arguments"""
+LONG = {
+    "signals --placements 1 --missions 1 --drives 1 --duration 30": r"false alarms: 0 in 1 clean",
+    "stairs --seeds 1 --towers west --storeys 1 --processes 1": r"west tower down +1 +1 +0 ",
+}
+
+
+@pytest.mark.parametrize(
+    "command", [*COMMANDS, *(pytest.param(each, marks=pytest.mark.long) for each in LONG)]
+)
+def test_finds_nothing_false(command, capfd):
+    name, *arguments = command.split()
+    assert not import_module(f"tests.campaigns.{name}").main(arguments)
+    assert re.search((COMMANDS | LONG)[command], capfd.readouterr().out)

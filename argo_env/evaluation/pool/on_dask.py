@@ -22,6 +22,9 @@ _SETTINGS = {
     "distributed.scheduler.allowed-failures": 0,
     "distributed.scheduler.worker-saturation": 1.0,
     "distributed.comm.timeouts.connect": "20s",
+    # On a busy machine a worker that has died takes longer than the 15 s of the default to be there
+    # again; then its nanny would be closed for good, and calls would wait for ever.
+    "distributed.deploy.lost-worker-timeout": "1h",
     "distributed.admin.log-format": "%(message)s",
 }
 

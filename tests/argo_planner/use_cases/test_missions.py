@@ -13,6 +13,7 @@ from argo_compiler.il import EventKind, Order
 from argo_env.faults.reading import decode_faults
 from argo_env.report.files import PAGE
 from argo_env.run.record import RunRecord
+from argo_env.run.rig import check_spec
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_planner.use_cases.checking import Format, check_source, write_diagnostics
@@ -25,7 +26,6 @@ from argo_planner.use_cases.routing import parse_requirements, require_limit, su
 from argo_planner.use_cases.running import (
     NO_MISSION,
     event_named,
-    require_possible,
     with_mission,
 )
 from argo_planner.use_cases.schemas import FileKind, schema
@@ -105,10 +105,10 @@ def test_a_run_with_its_report(imported, site):
     faults = decode_faults(b"faults:\n- {kind: gas_leak, at: 1, place: [3, 3, 0.5]}\n", "f")
     draft = RunSpec(mission=NO_MISSION, site=site.reference, drive="route", seed=3)
     with pytest.raises(Invalid, match="no drive `rocket`"):
-        require_possible(draft.model_copy(update={"drive": "rocket"}), site, None)
+        check_spec(draft.model_copy(update={"drive": "rocket"}), site.site)
     with pytest.raises(Invalid):  # without a world no gas can be found
-        require_possible(draft.model_copy(update={"faults": faults.faults}), site, faults)
-    require_possible(draft, site, None)
+        check_spec(draft.model_copy(update={"faults": faults.faults}), site.site, faults)
+    check_spec(draft, site.site)
     spec = with_mission(draft, imported)
     record = simulate(RunSpec.model_validate_json(spec.model_dump_json()), site)
     files = report_files(record, site.site, site.robot)

@@ -11,6 +11,7 @@ from argo_compiler.files.mission_file import mission_text
 from argo_compiler.hfsm import Hfsm, Occurred, Pause
 from argo_compiler.il import EventKind, Order
 from argo_env.faults.reading import decode_faults
+from argo_env.planning import open_site
 from argo_env.report.files import PAGE
 from argo_env.run.record import RunRecord
 from argo_env.run.rig import check_spec
@@ -29,7 +30,7 @@ from argo_planner.use_cases.running import (
     with_mission,
 )
 from argo_planner.use_cases.schemas import FileKind, schema
-from argo_planner.use_cases.sites import check_site, describe_site, list_sites, uploaded_site
+from argo_planner.use_cases.sites import check_site, describe_site, list_sites
 from tests.yard import measure, mission, waypoint
 
 DOCK = Pose(x=1.05, y=1.05, z=0.02)
@@ -126,19 +127,24 @@ def test_events_by_name():
         event_named("time_up")
 
 
-def test_sites(site):
+def test_sites(site, tmp_path):
+    def uploaded(content):
+        path = tmp_path / "mine.yaml"
+        path.write_bytes(content)
+        return open_site(str(path))
+
     assert {one.name for one in list_sites()} >= {"umad", "darmstadt"}
     report = check_site(site)
     assert report.errors == ()
     mine = describe_site(site, "mine")
-    again = uploaded_site(mine.encode(), "mine.yaml")
+    again = uploaded(mine.encode())
     assert again.name == "mine"
-    assert uploaded_site(mine.encode("utf-16"), "mine.yaml").site == again.site
+    assert uploaded(mine.encode("utf-16")).site == again.site
     assert again.site.checkpoints == site.site.checkpoints
     with pytest.raises(DiagnosticError, match=r"mine.yaml:1:1: error: titel"):
-        uploaded_site(b"titel: Mine\n", "mine.yaml")
+        uploaded(b"titel: Mine\n")
     with pytest.raises(Invalid, match=r"mine.yaml: is not UTF-8"):
-        uploaded_site(b"\xff", "mine.yaml")
+        uploaded(b"\xff")
     with pytest.raises(Conflict, match="would be called umad"):
         describe_site(site, "umad")
 

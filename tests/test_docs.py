@@ -9,8 +9,11 @@ import yaml
 from argo_env.evaluation.file import decode_evaluation
 from argo_env.faults.distribution import decode_distribution
 from argo_env.faults.reading import decode_faults
+from argo_env.planning import OpenedSite
+from argo_env.site import make_site
+from argo_env.site.site_file import parse_site_spec
 from argo_planner.use_cases.routing import parse_requirements
-from argo_planner.use_cases.sites import check_site, uploaded_site
+from argo_planner.use_cases.sites import check_site
 
 ROOT = Path(__file__).parents[1]
 
@@ -36,7 +39,7 @@ def test_snippets_run(page, monkeypatch):
 
 
 def is_a_site(text, page):
-    report = check_site(uploaded_site(text.encode(), page))
+    report = check_site(OpenedSite.of(make_site(parse_site_spec(text, page))))
     assert (report.errors, report.notes) == ((), ())
 
 

@@ -4,8 +4,11 @@ Every message names the thing, the place and the way out, in no front end's word
 its own, prints it and exits with status 2. Anything else that is raised is a defect of Argo.
 """
 
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import ClassVar
+
+from argo_compiler.base.listing import listed
 
 
 class Remedy(StrEnum):
@@ -28,6 +31,19 @@ class Remedy(StrEnum):
     REPLACE = "replace"
     REPLAY = "replay"
     SHOW_REST = "show-rest"
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What there is to choose by a remedy, and the words of a hint that say so."""
+
+    remedy: Remedy
+    what: str
+    """such as `area` or `the site`"""
+    values: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return f"choose {self.what} {listed(self.values, 'or')}"
 
 
 class ArgoError(Exception):

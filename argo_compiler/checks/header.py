@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from argo_compiler.base.catalog import Catalog
-from argo_compiler.base.errors import Remedy
+from argo_compiler.base.errors import Choice, Remedy
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Mission
 
@@ -35,12 +35,14 @@ def check_header(mission: Mission, catalog: Catalog | None) -> Iterator[Diagnost
     if catalog is None:
         return
     if mission.site and mission.site != catalog.site:
+        choice = Choice(Remedy.CHOOSE_SITE, "the site", (mission.site,))
         yield Diagnostic(
             code="il.other-site",
             severity=Severity.ERROR,
             message=f"the mission was planned for site `{mission.site}`, not for `{catalog.site}`",
-            hint=f"choose the site {mission.site}",
-            remedies=(Remedy.CHOOSE_SITE,),
+            hint=str(choice),
+            remedies=(choice.remedy,),
+            choice=choice,
             subject="site",
         )
         return

@@ -137,12 +137,6 @@ class InterruptRow:
     effects: tuple[Effect, ...] = ()
 
 
-ACTIVE = (Stage.BEGINNING, Stage.DRIVING, Stage.ARRIVED, Stage.HOLDING, Stage.LETTING_GO)
-"""The stages that have an active reaction."""
-
-TRANSIENT = (Stage.CHOOSING, Stage.BEGINNING, Stage.ARRIVED, Stage.LETTING_GO)
-"""Those that take no time."""
-
 _REACTING = (Stage.DRIVING, Stage.HOLDING)
 _LIVE = (Stage.GOING, Stage.STOPPED, *_REACTING)
 _STABLE = (*_LIVE, Stage.ENDING)

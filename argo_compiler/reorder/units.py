@@ -81,12 +81,6 @@ def stops_of(units: Sequence[Unit]) -> Iterator[TaskUnit]:
             yield from stops_of(unit.inside)
 
 
-def leaves_of(unit: Unit) -> Iterator[int]:
-    """All leaves of a unit."""
-    for stop in stops_of((unit,)):
-        yield from stop.leaves
-
-
 class _Finder:
     """Finds the units of one mission. Collects reasons."""
 

@@ -4,7 +4,8 @@ from argo_compiler.base.errors import NotFound
 from argo_env.closing import Closing
 from argo_env.drives.tracked.body import TrackedBody
 from argo_env.envs.guide import Guide
-from argo_env.faults.kinds import AnyFault, changed_site, settle
+from argo_env.faults.fault import Fault
+from argo_env.faults.kinds import KINDS, AnyFault, changed_site, settle
 from argo_env.faults.robot import DriveDysfunction
 from argo_env.navigation import Navigator
 from argo_env.pictures.camera import Camera
@@ -14,7 +15,7 @@ from argo_env.planning import open_site
 from argo_env.robot.pose import BodyPose
 from argo_env.world.world import World
 
-ON_THE_WAY = ("brick", "missing_plate", "blocked_stairs")
+ON_THE_WAY = tuple(k for k, fault in KINDS.items() if fault.changed is not Fault.changed)
 """kinds of faults that change the site"""
 DYSFUNCTION = "drive_dysfunction"
 _PICTURE = (640, 360)  # px

@@ -37,6 +37,7 @@ from argo_env.envs.rendering import Rendering, check_render_mode
 from argo_env.faults.kinds import AnyFault
 from argo_env.planning import open_site
 from argo_env.run.drives_and_sensors import DRIVES, ROUTE
+from argo_env.run.fitting_together import check_run
 from argo_env.run.record import RunRecord
 from argo_env.run.rig import check_spec
 from argo_env.run.spec import RunSpec
@@ -198,10 +199,10 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
             seed=drawn if self._options.seed is None else self._options.seed,
             faults=self._faults(rng),
         )
-        check_spec(spec, site)
+        run = check_run(spec, self._site)
         if self._run:
             self._run.close()
-        self._run = Inspection(self._site, spec, self._limit)
+        self._run = Inspection(run, self._limit)
         self._read = np.zeros(self._slots, np.bool_)
         self._abnormal = np.zeros(self._slots, np.bool_)
         self._failed = np.zeros(self._slots + self._docks, np.int64)

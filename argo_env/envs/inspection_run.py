@@ -16,12 +16,12 @@ from argo_env.drives.battery import ESTIMATE_ERROR, estimated_charge
 from argo_env.navigation import Navigator
 from argo_env.planning.opening import OpenedSite
 from argo_env.robot.pose import BodyPose, Places, place_of
+from argo_env.run.fitting_together import CheckedRun
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine, OpenMachine
 from argo_env.run.observer import Observer
 from argo_env.run.record import Anomaly, Contact, Mishap, Reading, RunRecord
 from argo_env.run.simulation import Simulation
-from argo_env.run.spec import RunSpec
 from argo_env.run.steering import StopRun
 from argo_env.site.shapes import Vector
 
@@ -47,16 +47,16 @@ class Inspection(Closing):
 
     def __init__(
         self,
-        site: OpenedSite,
-        spec: RunSpec,
+        run: CheckedRun,
         limit: float,
         observers: Sequence[Observer] = (),
     ) -> None:
-        """The spec's mission begins where the robot is, and has no other task. The run is over
+        """The run's mission begins where the robot is, and has no other task. The run is over
         after `limit` s."""
-        self._machine = OpenMachine(spec.mission)
+        self._machine = OpenMachine(run.spec.mission)
         self._told = _Told()
-        self._simulation = Simulation(self._machine, site, spec, observers=[self._told, *observers])
+        told = [self._told, *observers]
+        self._simulation = Simulation(self._machine, run.site, run, observers=told)
         self._drive = self._simulation.rig.drive
         self._limit = limit
         self._tasks: dict[str, int] = {}

@@ -14,6 +14,7 @@ from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
 from argo_env.evaluation.statistics.pairs import Difference, SuccessPairs, difference, power
 from argo_env.evaluation.statistics.sequences import ConfidenceSequence
+from argo_env.evaluation.statistics.world_means import world_means
 
 _Pairs = list[tuple[RunRow, RunRow]]
 
@@ -172,15 +173,9 @@ def _only(results: EvaluationResults) -> PlanName:
     return results.plan.plans[0]
 
 
-def _world_means(
-    value: Callable[[RunRow], float], pairs: _Pairs
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The mean of each plan's runs in each world, shape (worlds,) each."""
-    worlds: dict[int, list[tuple[float, float]]] = {}
-    for a, b in pairs:
-        worlds.setdefault(a.seed, []).append((value(a), value(b)))
-    means = np.array([np.mean(both, axis=0) for both in worlds.values()]).reshape(-1, 2)
-    return means[:, 0], means[:, 1]
+def _world_means(value: Callable[[RunRow], float], pairs: _Pairs) -> NDArray[np.float64]:
+    """Return the mean of each plan's runs in each world, shape (2, worlds)."""
+    return world_means((a.seed, (value(a), value(b))) for a, b in pairs).reshape(-1, 2).T
 
 
 def _successes(pairs: _Pairs) -> SuccessPairs:

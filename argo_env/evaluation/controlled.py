@@ -2,7 +2,6 @@
 
 import math
 import time
-from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,6 +23,7 @@ from argo_env.evaluation.statistics.control import (
     controlled_mean,
 )
 from argo_env.evaluation.statistics.strata import Estimate
+from argo_env.evaluation.statistics.world_means import weighted_world_means
 from argo_env.planning.opening import open_site
 from argo_env.robot.spec import load_robot
 from argo_env.run.drives_and_sensors import IDEAL, ROUTE
@@ -92,7 +92,7 @@ def run_controlled(
     cheap_pilot = make(_part(cheap, first))
     cost = _cost(folder, between - begun, clock() - between)
     results = make(plan)
-    pairs = by_world(expensive_pilot, "success").keys() & by_world(cheap_pilot, "success").keys()
+    pairs = _by_world(expensive_pilot, "success").keys() & _by_world(cheap_pilot, "success").keys()
     if len(pairs) < FEWEST_PAIRS:
         return results, ()
     controls = {name: _measured(name, expensive_pilot, cheap_pilot, cost) for name in _QUANTITIES}
@@ -148,7 +148,7 @@ def _cost(folder: Path, expensive: float, cheap: float) -> float:
 def _measured(
     name: str, expensive: EvaluationResults, cheap: EvaluationResults, cost: float
 ) -> ControlVariate:
-    a, b = by_world(expensive, name), by_world(cheap, name)
+    a, b = _by_world(expensive, name), _by_world(cheap, name)
     both = [seed for seed in a if seed in b]
     return ControlVariate.measured(
         np.array([a[seed] for seed in both]), np.array([b[seed] for seed in both]), cost
@@ -161,13 +161,13 @@ def _mean(
     results: EvaluationResults,
     cheap: EvaluationResults | None,
 ) -> ControlledMean:
-    worlds = by_world(results, name)
+    worlds = _by_world(results, name)
     alone = _estimate(np.array([*worlds.values()]))
     whole = sum(row.success for row in results.rows)
     rare = name == "success" and not _FEWEST <= whole <= len(results.rows) - _FEWEST
     if cheap is None or rare:
         return ControlledMean(name, control, alone, None, len(worlds), 0)
-    known = by_world(cheap, name)
+    known = _by_world(cheap, name)
     both = [seed for seed in worlds if seed in known]
     more = [value for seed, value in known.items() if seed not in worlds]
     helped = controlled_mean(
@@ -178,19 +178,12 @@ def _mean(
     return ControlledMean(name, control, alone, helped, len(both), len(more))
 
 
-def by_world(results: EvaluationResults, quantity: str) -> dict[int, float]:
-    """By seed, the weighted mean over the cases, for worlds in which all have run."""
+def _by_world(results: EvaluationResults, quantity: str) -> dict[int, float]:
+    """Return by seed the weighted mean over the cases, for worlds in which all have run."""
     weights = {case.faults: case.weight for case in results.plan.cases}
-    found: dict[int, dict[str, float]] = defaultdict(dict)
-    for row in results.rows:
-        if row.carried_out:
-            found[row.seed][row.faults] = _QUANTITIES[quantity](row)
-    whole = sum(weights.values())
-    return {
-        seed: sum(weights[name] * value for name, value in values.items()) / whole
-        for seed, values in found.items()
-        if len(values) == len(weights)
-    }
+    ran = (row for row in results.rows if row.carried_out)
+    values = ((row.seed, row.faults, _QUANTITIES[quantity](row)) for row in ran)
+    return weighted_world_means(values, weights)
 
 
 def _estimate(values: NDArray[np.float64]) -> Estimate:

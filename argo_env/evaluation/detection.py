@@ -1,7 +1,7 @@
 """Whether the robot found what was wrong, and after how long."""
 
 from argo_compiler.base.model import Model
-from argo_env.evaluation.fault_signs import can_be_found, may_be_of
+from argo_env.evaluation.fault_signs import may_be_of
 from argo_env.run.record import RunRecord
 from argo_env.site import Site
 
@@ -25,7 +25,7 @@ def detections(record: RunRecord, site: Site) -> tuple[FaultDetection, ...]:
     found = []
     happened = [f for f in record.faults if f.begins <= record.result.duration]
     for fault in sorted(happened, key=lambda one: one.begins):
-        if not can_be_found(fault):
+        if fault.sign is None:
             continue
         delay = None
         for number, anomaly in enumerate(record.anomalies):

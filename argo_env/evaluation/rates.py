@@ -1,7 +1,7 @@
 """Rates of plans, from rows: the right interval for the way in which the runs came."""
 
 import math
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -12,6 +12,7 @@ from argo_env.evaluation.row import RunOutcome, RunRow
 from argo_env.evaluation.statistics.rates import Rate, clopper_pearson, wilson
 from argo_env.evaluation.statistics.sequences import ConfidenceSequence
 from argo_env.evaluation.statistics.strata import Stratum, stratified_rate
+from argo_env.evaluation.statistics.world_means import weighted_world_means
 
 
 class IntervalMethod(StrEnum):
@@ -79,7 +80,7 @@ def rate_of(
         ]
         found, runs = stratified_rate(strata), len(_said(ran, holds))
         return PlanRate(found.value, found.low, found.high, runs, lost, IntervalMethod.STRATA)
-    means = world_means(ran, weights, holds)
+    means = means_of(ran, weights, holds)
     sequence = ConfidenceSequence()
     sequence.add(means.values())
     low, high = sequence.interval
@@ -109,20 +110,11 @@ def rate_of_runs(
     return Rate(count, runs, *sequence.interval), IntervalMethod.SEQUENCE
 
 
-def world_means(
+def means_of(
     rows: Sequence[RunRow], weights: dict[str, float], holds: Callable[[RunRow], bool | None]
 ) -> dict[int, float]:
-    """By seed, the weighted mean over the cases of a plan that count in it, for worlds in which all
-    have run and any counts."""
-    by_seed: dict[int, dict[str, bool | None]] = defaultdict(dict)
-    for row in rows:
-        by_seed[row.seed][row.faults] = holds(row)
-    means = {}
-    for seed, said in by_seed.items():
-        whole = sum(weights[name] for name, so in said.items() if so is not None)
-        if len(said) == len(weights) and whole:
-            means[seed] = min(1.0, sum(weights[name] for name, so in said.items() if so) / whole)
-    return means
+    """Return by seed the share of a plan's runs of which something holds."""
+    return weighted_world_means(((row.seed, row.faults, holds(row)) for row in rows), weights)
 
 
 def quick_rate(outcomes: Counter[RunOutcome]) -> PlanRate:
@@ -169,7 +161,7 @@ def judge_requirements(
         weights = {case.faults: case.weight for case in evaluation.cases if case.plan == plan}
         for requirement in required:
             sequence = ConfidenceSequence(level=1.0 - 0.05 / len(required))
-            sequence.add(world_means(own, weights, requirement.holds).values())
+            sequence.add(means_of(own, weights, requirement.holds).values())
             above = sequence.runs > 0 and sequence.is_above(requirement.share)
             below = sequence.runs > 0 and sequence.is_below(requirement.share)
             verdict = Decision.OPEN

@@ -14,6 +14,7 @@ from argo_compiler.files.reading import decode_text, read_bytes
 from argo_env.evaluation.row import RunRow
 from argo_env.evaluation.statistics.pairs import difference
 from argo_env.evaluation.statistics.strata import Estimate
+from argo_env.evaluation.statistics.world_means import world_means
 from argo_env.files import resources
 from argo_env.files.yaml_file import parse_yaml
 
@@ -109,12 +110,9 @@ def score_of(row: RunRow, rules: ScoringRules) -> RunScore:
 def mean_score(rows: Sequence[RunRow], rules: ScoringRules) -> Estimate:
     """The mean over runs that were carried out, with an interval of 95 % by the bootstrap over
     worlds, as the runs of one world depend on each other."""
-    worlds: dict[int, list[float]] = {}
-    for row in filter(lambda row: row.carried_out, rows):
-        worlds.setdefault(row.seed, []).append(score_of(row, rules).total)
-    if not worlds:
+    means = world_means((row.seed, score_of(row, rules).total) for row in rows if row.carried_out)
+    if not len(means):
         return Estimate(math.nan, math.nan, math.nan)
-    means = np.array([np.mean(scores) for scores in worlds.values()])
     found = difference(means, np.zeros(len(means)))
     return Estimate(found.value, found.low, found.high)
 

@@ -1,14 +1,15 @@
 """Faults at checkpoints: values out of their nominal range, and checkpoints that were moved."""
 
 import math
-from typing import TYPE_CHECKING, Literal, Self
+from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from argo_compiler.base.catalog import CheckpointKind
 from argo_compiler.base.errors import Invalid, NotFound
-from argo_env.faults.fault import TimedFault
+from argo_compiler.il import EventKind
+from argo_env.faults.fault import Sign, TimedFault
 from argo_env.seeding import draw
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.site.shapes import Vector
@@ -39,6 +40,7 @@ class CheckpointFault(TimedFault):
 class AbnormalValue(CheckpointFault):
     """A checkpoint shows a value outside its nominal range."""
 
+    sign: ClassVar[Sign] = Sign(EventKind.ABNORMAL_READING, "reading")
     kind: Literal["abnormal_value"] = "abnormal_value"
     value: float | None = None
     """in the checkpoint's unit"""
@@ -73,6 +75,7 @@ class AbnormalValue(CheckpointFault):
 class DisplacedCheckpoint(CheckpointFault):
     """A checkpoint is not where the plan of the site has it."""
 
+    sign: ClassVar[None] = None  # it is read all the same
     kind: Literal["displaced_checkpoint"] = "displaced_checkpoint"
     at: float | None = Field(default=0.0, ge=0)
     """s, when it is moved; as a rule before the run"""

@@ -1,12 +1,11 @@
 """Faults that come with a probability: a distribution from a file."""
 
 import math
-from pathlib import Path
 
 from pydantic import Field, model_validator
 
 from argo_compiler.base.model import Model
-from argo_compiler.files.reading import decode_text, read_bytes, require_size
+from argo_compiler.files.reading import decode_text, require_size
 from argo_env.faults.kinds import AnyFault
 from argo_env.faults.reading import MAX_BYTES
 from argo_env.files.yaml_file import parse_yaml
@@ -57,16 +56,11 @@ class FaultDistribution(Model):
         return None
 
 
-def read_distribution(path: Path) -> FaultDistribution:
-    """The distribution in a YAML file.
-
-    Raises ArgoError if the file can't be read, and DiagnosticError if it holds none.
-    """
-    return decode_distribution(read_bytes(path, "distribution of faults", MAX_BYTES), str(path))
-
-
 def decode_distribution(content: bytes, source_name: str) -> FaultDistribution:
-    """The distribution in YAML that messages call `source_name`. Raises as `read_distribution`."""
+    """Return the distribution in YAML, which messages call `source_name`.
+
+    Raises DiagnosticError if it holds none.
+    """
     require_size(content, source_name, "distribution of faults", MAX_BYTES)
     return parse_yaml(
         decode_text(content, source_name, "distribution of faults"),

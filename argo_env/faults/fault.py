@@ -1,20 +1,31 @@
 """What all faults have in common: when they are there, and how the seed draws what is left out."""
 
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from argo_compiler.base.model import Model
+from argo_compiler.il import EventKind
 from argo_env.seeding import draw
 from argo_env.site import Site
-from argo_env.site.shapes import Element
+from argo_env.site.shapes import Element, Vector
 
 if TYPE_CHECKING:  # the models of faults are read by much that runs no simulation
     from argo_env.faults.targets import FaultTargets
 
 LATEST = 120.0
 """s, up to which the seed draws the time of a fault that has none"""
+
+
+class Sign(NamedTuple):
+    """What a fault shows as."""
+
+    event: EventKind
+    source: str
+    """the name of the watch that finds it, or `reading`"""
+    outlasts: float = 1.0
+    """s after the fault's end in which it may still be found"""
 
 
 class Fault(Model):
@@ -24,6 +35,8 @@ class Fault(Model):
     seed: int | None = Field(default=None, ge=0)
     """draws what is left out; None: the run's seed"""
 
+    sign: ClassVar[Sign | None]
+    """as what it is found; None: nothing finds it"""
     needs_world: ClassVar[bool] = False
     """whether only a drive with a world has anything that shows it"""
     adds_up: ClassVar[bool] = False
@@ -54,6 +67,12 @@ class Fault(Model):
     def changed(self, site: Site) -> tuple[Element, ...]:
         """The site's elements as they are with this fault."""
         return site.elements
+
+    def is_at(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
+        """Return whether the settled fault may be what was found at a place of the site, or was
+        noticed from one; both are in m, and None where the finding tells none.
+        """
+        return True
 
     def begin(self, targets: "FaultTargets", now: float) -> None:
         """Takes effect at time `now` (s).

@@ -1,7 +1,7 @@
 """All kinds of faults, and what a file of faults may say."""
 
 from collections.abc import Sequence
-from typing import Annotated
+from typing import Annotated, get_args
 
 from pydantic import Field
 
@@ -22,28 +22,6 @@ from argo_env.faults.walkway import BlockedStairs, Brick, MissingPlate
 from argo_env.seeding import generator
 from argo_env.site import Site
 
-KINDS: dict[str, type[Fault]] = {
-    str(model.model_fields["kind"].default): model
-    for model in (
-        AbnormalValue,
-        DisplacedCheckpoint,
-        GasLeakFault,
-        HotSpotFault,
-        AbnormalPump,
-        PlatformAlarm,
-        Brick,
-        MissingPlate,
-        BlockedStairs,
-        LowBattery,
-        WornBattery,
-        ConnectionLoss,
-        EmergencyStop,
-        SensorDysfunction,
-        DriveDysfunction,
-    )
-}
-"""The kinds of faults by name."""
-
 AnyFault = Annotated[
     AbnormalValue
     | DisplacedCheckpoint
@@ -62,6 +40,12 @@ AnyFault = Annotated[
     | DriveDysfunction,
     Field(discriminator="kind"),
 ]
+"""any fault: this union is the list of the kinds"""
+
+KINDS: dict[str, type[Fault]] = {
+    str(model.model_fields["kind"].default): model for model in get_args(get_args(AnyFault)[0])
+}
+"""The kinds of faults by name."""
 
 
 class FaultFile(Model):

@@ -1,12 +1,14 @@
 """Faults of the process: gas that leaks, parts that run hot, pumps that run badly, the alarm."""
 
+import math
 from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
 
 from argo_compiler.base.errors import Invalid, NotFound
-from argo_env.faults.fault import TimedFault
+from argo_compiler.il import EventKind
+from argo_env.faults.fault import Sign, TimedFault
 from argo_env.seeding import draw
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
@@ -19,6 +21,8 @@ if TYPE_CHECKING:
 _BESIDE, _ABOVE, _BELOW = 5.0, 10.0, 1.0
 """m beside the ground, above the highest floor and below the ground, within which there may be
 something that leaks or glows"""
+_GAS_REACHES = 25.0  # m
+_SPOT_OFF = 2.5  # m that the place of a hot spot is wrong at most
 _BEHIND = 0.2  # m behind the face of a checkpoint, where the pipe or vessel is that carries it
 
 
@@ -42,6 +46,7 @@ class ProcessFault(TimedFault):
 class GasLeakFault(ProcessFault):
     """Natural gas escapes and hisses."""
 
+    sign: ClassVar[Sign] = Sign(EventKind.GAS_LEAK, "gas", outlasts=120.0)  # gas has to disperse
     kind: Literal["gas_leak"] = "gas_leak"
     place: Vector | None = None
     """m; drawn: at a pipe or vessel that carries a checkpoint"""
@@ -57,6 +62,9 @@ class GasLeakFault(ProcessFault):
             ._with(place=place if self.place is None else self.place, rate=self.rate or rate)
         )
 
+    def is_at(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
+        return _within(_GAS_REACHES, self.place, noticed_from)
+
     def source(self) -> Source:
         assert self.place is not None
         assert self.rate is not None
@@ -66,6 +74,7 @@ class GasLeakFault(ProcessFault):
 class HotSpotFault(ProcessFault):
     """A part of the equipment is hot."""
 
+    sign: ClassVar[Sign] = Sign(EventKind.HOT_SPOT, "heat")
     kind: Literal["hot_spot"] = "hot_spot"
     place: Vector | None = None
     """m; drawn: at a pipe or vessel that carries a checkpoint"""
@@ -87,6 +96,9 @@ class HotSpotFault(ProcessFault):
             )
         )
 
+    def is_at(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
+        return _within(_SPOT_OFF, self.place, place)
+
     def source(self) -> Source:
         assert self.place is not None
         assert self.temperature is not None
@@ -96,6 +108,7 @@ class HotSpotFault(ProcessFault):
 class AbnormalPump(ProcessFault):
     """A running pump sounds wrong."""
 
+    sign: ClassVar[Sign] = Sign(EventKind.ABNORMAL_SOUND, "pumps")
     kind: Literal["abnormal_pump"] = "abnormal_pump"
     pump: str | None = None
     """name of the pump"""
@@ -115,6 +128,15 @@ class AbnormalPump(ProcessFault):
             super().settled(site, rng)._with(pump=self.pump or pump, defect=self.defect or defect)
         )
 
+    def is_at(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
+        # It is heard at the pump that is nearest.
+        from argo_env.sensing.signals.microphone import pump_places  # loads all watches
+
+        if place is None:
+            return False
+        places = pump_places(site)
+        return min(places, key=lambda name: math.dist(places[name], place)) == self.pump
+
     def source(self) -> Source:
         assert self.pump is not None
         assert self.defect is not None
@@ -124,12 +146,17 @@ class AbnormalPump(ProcessFault):
 class PlatformAlarm(ProcessFault):
     """The general platform alarm (GPA) sounds."""
 
+    sign: ClassVar[Sign] = Sign(EventKind.PLATFORM_ALARM, "alarm")
     kind: Literal["platform_alarm"] = "platform_alarm"
     level: float = Field(default=85.0, ge=40, le=120)
     """dB"""
 
     def source(self) -> Source:
         return Alarm(self.level)
+
+
+def _within(reach: float, place: Vector | None, other: Vector | None) -> bool:
+    return place is not None and other is not None and math.dist(place, other) <= reach
 
 
 def _check_place(site: Site, place: Vector | None) -> None:

@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field
 
-from argo_env.faults.fault import Fault, TimedFault
+from argo_compiler.il import EventKind
+from argo_env.faults.fault import Fault, Sign, TimedFault
 from argo_env.seeding import draw
 from argo_env.site import Site
 from argo_env.site.spec import Rect
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 class LowBattery(Fault):
     """The robot sets off with little charge."""
 
+    sign: ClassVar[Sign] = Sign(EventKind.LOW_BATTERY, "battery")
     kind: Literal["low_battery"] = "low_battery"
     charge: float | None = Field(default=None, gt=0, le=1)
     """share of the capacity that is there at the start, unless there is less anyway"""
@@ -34,6 +36,7 @@ class LowBattery(Fault):
 class WornBattery(Fault):
     """The battery holds less than it did when it was new."""
 
+    sign: ClassVar[Sign] = Sign(EventKind.LOW_BATTERY, "battery")
     kind: Literal["worn_battery"] = "worn_battery"
     capacity: float | None = Field(default=None, gt=0, le=1)
     """share of the capacity that is left"""
@@ -50,6 +53,7 @@ class WornBattery(Fault):
 class ConnectionLoss(TimedFault):
     """There is no signal in a part of the site; without `rect` and `floor`, nowhere."""
 
+    sign: ClassVar[Sign] = Sign(EventKind.CONNECTION_LOST, "connection")
     adds_up: ClassVar[bool] = True
     kind: Literal["connection_loss"] = "connection_loss"
     rect: Rect | None = None
@@ -72,6 +76,7 @@ class ConnectionLoss(TimedFault):
 class EmergencyStop(TimedFault):
     """Someone presses the emergency stop, and releases it again if it ends."""
 
+    sign: ClassVar[Sign] = Sign(EventKind.EMERGENCY_STOP, "emergency stop")
     kind: Literal["emergency_stop"] = "emergency_stop"
 
     def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
@@ -84,6 +89,7 @@ class EmergencyStop(TimedFault):
 class SensorDysfunction(TimedFault):
     """The camera that reads checkpoints fails, or its pictures are noisy."""
 
+    sign: ClassVar[Sign] = Sign(EventKind.DYSFUNCTION, "camera")
     kind: Literal["sensor_dysfunction"] = "sensor_dysfunction"
     effect: Literal["fails", "noise"] | None = None
     """whether there are no readings at all, or readings with noise"""
@@ -107,6 +113,8 @@ class SensorDysfunction(TimedFault):
 class DriveDysfunction(TimedFault):
     """The drive makes only a part of its speed, or none. Of several the worst counts."""
 
+    # The way made is compared with the way planned over 10 s.
+    sign: ClassVar[Sign] = Sign(EventKind.DYSFUNCTION, "drive", outlasts=11.0)
     kind: Literal["drive_dysfunction"] = "drive_dysfunction"
     speed: float | None = Field(default=None, ge=0, lt=1)
     """share of the speed that is left; 0: it stops"""

@@ -13,10 +13,11 @@ import numpy as np
 from pydantic import Field
 
 from argo_compiler.base.errors import Invalid, NotFound
-from argo_env.faults.fault import Fault
+from argo_compiler.il import EventKind
+from argo_env.faults.fault import Fault, Sign
 from argo_env.seeding import draw
 from argo_env.site import Site
-from argo_env.site.shapes import Box, Element, Role, Solid
+from argo_env.site.shapes import Box, Element, Role, Solid, Vector, half_extents
 from argo_env.site.spec import FlightSpec, FloorSpec, Point, Rect, TowerSpec
 from argo_env.site.stairs import flight_run
 
@@ -25,6 +26,7 @@ BARRIER = (0.06, 1.0)  # m, thickness and height of what blocks stairs
 _BARRIER_DISTANCE = 0.25  # m from the nosing to the barrier
 _FROM_RIM = 0.35  # m that a drawn place is away from the rim of its walkway, where there is room
 _TOUCHING = 1e-6  # m
+_BESIDE = 0.5  # m beside an obstacle, or the edge of a hole, that may be taken for it
 _DRAWS = 100  # places that are drawn until one is free
 _ROOM = 0.65  # m about the middle of a docked robot that it needs to turn
 _STATION = 0.6  # m before the middle of a docked robot, where its station stands
@@ -35,6 +37,7 @@ _Length = Annotated[float, Field(gt=0, le=1.5)]  # m; what is larger does not ge
 class Brick(Fault):
     """Something solid lies on the walkway."""
 
+    sign: ClassVar[Sign] = Sign(EventKind.POSITIVE_OBSTACLE, "terrain")
     needs_world: ClassVar[bool] = True
     kind: Literal["brick"] = "brick"
     floor: int | None = Field(default=None, ge=1)
@@ -92,10 +95,14 @@ class Brick(Fault):
         box = Box((*self.place, z), self.size, (0.0, 0.0, math.radians(self.yaw)))
         return (*site.elements, Element(_new_name(site, "brick"), Role.STRUCTURE, (box,), "brick"))
 
+    def is_at(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
+        return _stands_at(self, place, site)
+
 
 class MissingPlate(Fault):
     """A plate of an upper floor's deck is missing: a hole."""
 
+    sign: ClassVar[Sign] = Sign(EventKind.NEGATIVE_OBSTACLE, "terrain")
     needs_world: ClassVar[bool] = True
     kind: Literal["missing_plate"] = "missing_plate"
     floor: int | None = Field(default=None, ge=1)
@@ -129,10 +136,18 @@ class MissingPlate(Fault):
             for e in site.elements
         )
 
+    def is_at(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
+        if place is None or self.rect is None:
+            return False
+        (x, y, z), (x0, y0, x1, y1) = place, self.rect
+        beside = x0 - _BESIDE <= x <= x1 + _BESIDE and y0 - _BESIDE <= y <= y1 + _BESIDE
+        return beside and site.floor_at(z) == self.floor
+
 
 class BlockedStairs(Fault):
     """Barriers stand across both ends of a stairway from one floor to the next."""
 
+    sign: ClassVar[Sign] = Sign(EventKind.POSITIVE_OBSTACLE, "terrain")
     needs_world: ClassVar[bool] = True
     kind: Literal["blocked_stairs"] = "blocked_stairs"
     tower: str | None = None
@@ -161,6 +176,23 @@ class BlockedStairs(Fault):
         barriers = _barriers(tower, site.floor(self.floor).z)
         name = _new_name(site, f"barrier of the {self.tower}")
         return (*site.elements, Element(name, Role.STRUCTURE, barriers, "brick"))
+
+    def is_at(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
+        return _stands_at(self, place, site)
+
+
+def _stands_at(fault: Fault, place: Vector | None, site: Site) -> bool:
+    """Return whether the place is inside the boxes about what the fault adds to the site, or just
+    beside one."""
+    if place is None:
+        return False
+    middle, planned = np.array(place), {element.name for element in site.elements}
+    return any(
+        bool(np.all(np.abs(middle - solid.center) <= half_extents(solid) + _BESIDE))
+        for element in fault.changed(site)
+        if element.name not in planned
+        for solid in element.solids
+    )
 
 
 def _barriers(tower: TowerSpec, base: float) -> tuple[Solid, ...]:

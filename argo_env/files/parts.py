@@ -1,26 +1,25 @@
 """Arrays that took long to find, kept on disk: plain numbers in files that are whole or not there.
 
-A file holds a line with the checksum of all that follows, a line of JSON that says what it is, and
-the arrays one after the other.
+A file is one of NumPy's, uncompressed, and ends with a comment: the checksum of what it belongs to
+and of all before.
 """
 
-import json
+import io
 import logging
-import math
 import os
 import zlib
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
 Arrays = dict[str, NDArray[Any]]
 
-_SIGNATURE = b"argo-part-1 "
-_ALIGNED = 64  # bytes
+_CHECKSUM = 8  # bytes
+_AT_ONCE = 1 << 18  # bytes
 _log = logging.getLogger(__name__)
 
 
@@ -49,15 +48,15 @@ class Parts:
         """The arrays of a part, which must not be written to; None if it is not there whole."""
         if self._folder is None:
             return None
-        path = self._folder / name
+        path = self._path(name)
         try:
-            content = path.read_bytes()
+            with path.open("rb", buffering=0) as file:
+                found = _decode(file, self._part(name))
         except FileNotFoundError:
             return None
         except OSError as error:
             _log.debug("%s: can't be read: %s", path, error)
             return None
-        found = _decode(content, self._key, name)
         if found is None:
             _log.warning("%s: is damaged or does not belong there, and is made anew", path)
         return found
@@ -73,11 +72,11 @@ class Parts:
             self._folder.mkdir(parents=True, exist_ok=True)
             with NamedTemporaryFile(dir=self._folder, prefix=".", delete=False) as file:
                 draft = file.name
-                for piece in _encode(arrays, self._key, name):
+                for piece in _encode(arrays, self._part(name)):
                     file.write(piece)
-            os.replace(draft, self._folder / name)
+            os.replace(draft, self._path(name))
         except OSError as error:  # read-only, full, taken away meanwhile
-            _log.debug("%s: can't be kept: %s", self._folder / name, error)
+            _log.debug("%s: can't be kept: %s", self._path(name), error)
             if draft is not None:
                 with suppress(OSError):
                     os.unlink(draft)
@@ -91,40 +90,42 @@ class Parts:
         """Writes a text as a part."""
         self.keep(name, {"text": np.frombuffer(text.encode(), dtype=np.uint8)})
 
+    def _path(self, name: str) -> Path:
+        assert self._folder is not None
+        return self._folder / f"{name}.npz"
+
+    def _part(self, name: str) -> str:
+        return f"{self._key} {name}"
+
 
 NOWHERE = Parts(None, "")
 """Keeps nothing."""
 
 
-def _encode(arrays: Mapping[str, NDArray[Any]], key: str, name: str) -> list[bytes | memoryview]:
+def _encode(arrays: Mapping[str, NDArray[Any]], part: str) -> tuple[memoryview, bytes]:
+    """Return the content of a file, and the checksum that ends it, as the comment of the zip."""
     plain = {label: np.ascontiguousarray(array) for label, array in arrays.items()}
-    said = {label: (array.dtype.str, array.shape) for label, array in plain.items()}
-    header = json.dumps({"key": key, "name": name, "arrays": said}).encode()
-    start = len(_SIGNATURE) + 9 + len(header) + 1
-    pieces: list[bytes | memoryview] = [header + b"\n"]
-    for array in plain.values():
-        gap = -start % _ALIGNED
-        pieces += [b"\0" * gap, memoryview(array.reshape(-1).view(np.uint8).data)]
-        start += gap + array.nbytes
-    check = 0
-    for piece in pieces:
-        check = zlib.crc32(piece, check)
-    return [_SIGNATURE + b"%08x\n" % check, *pieces]
+    sink = io.BytesIO()
+    np.savez(sink, allow_pickle=False, **plain)
+    content = sink.getbuffer()
+    content[-2:] = _CHECKSUM.to_bytes(2, "little")  # the length of the comment
+    return content, _said(zlib.crc32(content, zlib.crc32(part.encode())))
 
 
-def _decode(content: bytes, key: str, name: str) -> Arrays | None:
-    """The arrays in a file; None if anything is not as it was written."""
-    first = len(_SIGNATURE) + 9
-    if content[:first] != _SIGNATURE + b"%08x\n" % zlib.crc32(memoryview(content)[first:]):
+def _decode(file: BinaryIO, part: str) -> Arrays | None:
+    """Return the arrays in a file; None if anything is not as it was written for this part."""
+    check, left = zlib.crc32(part.encode()), os.fstat(file.fileno()).st_size - _CHECKSUM
+    while left > 0 and (piece := file.read(min(left, _AT_ONCE))):
+        check, left = zlib.crc32(piece, check), left - len(piece)
+    if file.read() != _said(check):
         return None
-    end = content.index(b"\n", first)
-    said = json.loads(content[first:end])
-    if (said["key"], said["name"]) != (key, name):
-        return None
-    arrays, start = {}, end + 1
-    for label, (dtype, shape) in said["arrays"].items():
-        start += -start % _ALIGNED
-        count = math.prod(shape)
-        array = np.frombuffer(content, np.dtype(dtype), count, start).reshape(shape)
-        arrays[label], start = array, start + array.nbytes
+    file.seek(0)
+    with np.load(file, allow_pickle=False) as found:
+        arrays = dict(found)
+    for array in arrays.values():
+        array.flags.writeable = False
     return arrays
+
+
+def _said(check: int) -> bytes:
+    return b"%0*x" % (_CHECKSUM, check)

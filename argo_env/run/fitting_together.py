@@ -1,10 +1,40 @@
 """Whether what a run is made of fits together: the machine, the site and the spec."""
 
+from dataclasses import dataclass
+
 from argo_compiler.base.errors import Conflict
 from argo_compiler.hfsm import Cause, lower
 from argo_env.planning.opening import OpenedSite, open_site
+from argo_env.robot.spec import load_robot
 from argo_env.run.machine import Machine
-from argo_env.run.spec import RunSpec
+from argo_env.run.rig import check_spec
+from argo_env.run.spec import RunSpec, checked
+from argo_env.run.steering import check_given
+
+
+@dataclass(frozen=True)
+class CheckedRun:
+    """A spec that a run on the site can have, as `check_run` has found: nobody checks it again."""
+
+    spec: RunSpec
+    site: OpenedSite
+
+
+def check_run(
+    spec: RunSpec, site: OpenedSite | None = None, *, settings: bool = True
+) -> CheckedRun:
+    """Return the run of a spec, checked, on the site that it names unless that is open already.
+
+    Without `settings` only what depends on the mission is checked: for one that became known after
+    `check_spec`. Raises ArgoError for a run that can't be.
+    """
+    spec = checked(spec)
+    site = site or open_site(spec.site, load_robot(spec.robot))
+    require_site(site, spec)
+    if settings:
+        check_spec(spec, site.site)
+    check_given(spec.events, spec.mission, site.site)
+    return CheckedRun(spec, site)
 
 
 def require_machine(machine: Machine, spec: RunSpec) -> None:

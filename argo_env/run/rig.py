@@ -12,6 +12,7 @@ from argo_env.drives.drive import Drive
 from argo_env.drives.powertrain import Powertrain
 from argo_env.drives.route import RouteDrive
 from argo_env.faults.kinds import changed_site, settle
+from argo_env.faults.reading import FaultText
 from argo_env.faults.schedule import Schedule
 from argo_env.faults.targets import FaultTargets
 from argo_env.navigation import Navigator
@@ -62,12 +63,12 @@ class Rig:
 
 
 def fit_out(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitStack) -> Rig:
-    """The rig of a run; `stack` closes it. With `gui` its world is shown in a window.
+    """Return the rig of a run whose spec was checked; `stack` closes it. With `gui` its world is
+    shown in a window.
 
-    Raises ArgoError as `check_spec` does, and if there can be no window.
+    Raises ArgoError if there can be no window.
     """
     site, robot, seed = navigator.site, navigator.robot, spec.seed
-    check_spec(spec, site)
     truth = true_values(site, seed, spec.values)
     faults = settle(spec.faults, site, seed)
     surroundings = Surroundings(site)
@@ -101,8 +102,13 @@ def fit_out(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitStack) ->
     return Rig(world, navigator, drive, sensor, watches, battery, schedule, instruments)
 
 
-def check_spec(spec: RunSpec, site: Site) -> None:
-    """Raises ArgoError for a spec that no run on the site can have."""
+def check_spec(spec: RunSpec, site: Site, said: FaultText | None = None) -> None:
+    """Raise ArgoError for a spec that no run on the site can have, whatever its mission is.
+
+    With the text that its faults were read from, errors of these have lines.
+    """
+    if said:
+        said.require_fit(site, spec.seed)
     if spec.drive not in DRIVES:
         raise Invalid(f"no drive `{spec.drive}`; there are: {', '.join(DRIVES)}")
     if spec.sensor not in SENSORS:
@@ -115,7 +121,8 @@ def check_spec(spec: RunSpec, site: Site) -> None:
     true_values(site, spec.seed, spec.values)
     for id in spec.conditions.values:
         site.checkpoint(id)
-    settle(spec.faults, site, spec.seed)
+    if not said:
+        settle(spec.faults, site, spec.seed)
     unseen = [f.kind for f in spec.faults if f.needs_world]
     if spec.drive == ROUTE and unseen:
         raise Invalid(

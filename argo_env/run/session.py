@@ -11,15 +11,13 @@ from argo_compiler.base.errors import Invalid
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.robot.spec import load_robot
 from argo_env.run.beginning import machine_of
-from argo_env.run.fitting_together import require_site
+from argo_env.run.fitting_together import CheckedRun, check_run
 from argo_env.run.journal import Header, Journal, create_journal
 from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
-from argo_env.run.rig import check_spec
 from argo_env.run.robot import RobotAction
 from argo_env.run.simulation import LoggedEvents, Simulation, never
-from argo_env.run.spec import RunSpec, checked
-from argo_env.run.steering import check_given
+from argo_env.run.spec import RunSpec
 
 _log = logging.getLogger(__name__)
 
@@ -34,7 +32,7 @@ def run(spec: RunSpec) -> RunRecord:
 
 
 def simulate(
-    spec: RunSpec,
+    spec: RunSpec | CheckedRun,
     site: OpenedSite | None = None,
     *,
     observers: Sequence[Observer] = (),
@@ -44,23 +42,21 @@ def simulate(
     pace: float | None = None,
     interrupted: Callable[[], bool] = never,
 ) -> RunRecord:
-    """Runs the mission of a spec to its end and returns the record. Equal specs give equal records.
+    """Run the mission of a spec to its end and return the record. Equal specs give equal records.
 
-    The `site` is the one that the spec names, if it is open already. With a `journal` the run can
-    be resumed after its process has died: a new file, or with `replace` one that is there already.
-    With `pace` a second of wall time shows at most that many seconds of simulated time. The
-    function `interrupted` is asked after each step whether the run is to stop there: the record is
-    as it stands then, and a journal can go on.
+    The `site` is the one that the spec names, if it is open already. A run that `check_run` has
+    checked has its own, and is not checked again. With a `journal` the run can be resumed after its
+    process has died: a new file, or with `replace` one that is there already. With `pace` a second
+    of wall time shows at most that many seconds of simulated time. The function `interrupted` is
+    asked after each step whether the run is to stop there: the record is as it stands then, and a
+    journal can go on.
 
     Raises:
         ArgoError: the mission makes no sense on this site, there is no such site, drive or sensor,
             the site is not the spec's, or the journal can't be written.
     """
-    spec = checked(spec)
-    site = site or open_site(spec.site, load_robot(spec.robot))
-    require_site(site, spec)
-    check_spec(spec, site.site)
-    check_given(spec.events, spec.mission, site.site)
+    known = spec if isinstance(spec, CheckedRun) else check_run(spec, site)
+    spec, site = known.spec, known.site
     machine = machine_of(spec.mission, spec.beginning)
     _log.info(
         "a run on %s: drive %s, sensor %s, seed %d", site.name, spec.drive, spec.sensor, spec.seed
@@ -71,7 +67,7 @@ def simulate(
             # First, so that nobody is told what is not on disk.
             book = create_journal(Path(journal), Header.of(site, spec), replace)
             told.insert(0, stack.enter_context(book))
-        simulation = Simulation(machine, site, spec, observers=told, gui=gui)
+        simulation = Simulation(machine, site, known, observers=told, gui=gui)
         return stack.enter_context(simulation).run(interrupted)
 
 
@@ -85,7 +81,7 @@ def resume(
     pace: float | None = None,
     interrupted: Callable[[], bool] = never,
 ) -> RunRecord:
-    """Goes on with the run of a journal and returns the record of the whole of it.
+    """Go on with the run of a journal and return the record of the whole of it.
 
     The robot goes on from where it was last known to be, and the action that ran begins anew. If
     the run had ended, its record is made again. Further `events` occur at their times (s), at once
@@ -100,6 +96,29 @@ def resume(
     spec = journal.header.spec
     site = site or open_site(spec.site, load_robot(spec.robot))
     journal.require_unchanged(site)
+    return go_on(
+        journal,
+        site,
+        observers=observers,
+        events=events,
+        gui=gui,
+        pace=pace,
+        interrupted=interrupted,
+    )
+
+
+def go_on(
+    journal: Journal,
+    site: OpenedSite,
+    *,
+    observers: Sequence[Observer] = (),
+    events: LoggedEvents = (),
+    gui: bool = False,
+    pace: float | None = None,
+    interrupted: Callable[[], bool] = never,
+) -> RunRecord:
+    """Resume the run of a journal that is known to go on with what it began with."""
+    spec = journal.header.spec
     machine = machine_of(spec.mission, spec.beginning)
     told = [journal, *_paced(pace), *observers]
     with Simulation(

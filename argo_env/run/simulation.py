@@ -20,12 +20,17 @@ from argo_env.run import ending
 from argo_env.run.beginning import matched, progress_now
 from argo_env.run.course import Course
 from argo_env.run.ending import exhausted, standstill
-from argo_env.run.fitting_together import require_begun, require_machine, require_site
+from argo_env.run.fitting_together import (
+    CheckedRun,
+    require_begun,
+    require_machine,
+    require_site,
+)
 from argo_env.run.log import Entry, LoggedEvent
 from argo_env.run.machine import Machine, OpenMachine
 from argo_env.run.observer import Observer, hears
 from argo_env.run.record import RunRecord
-from argo_env.run.rig import Rig, fit_out
+from argo_env.run.rig import Rig, check_spec, fit_out
 from argo_env.run.robot import AnyRobot, Sensed
 from argo_env.run.spec import RunSpec, checked
 from argo_env.run.steering import (
@@ -76,7 +81,7 @@ class Simulation(Closing):
         self,
         machine: Machine,
         site: OpenedSite,
-        spec: RunSpec,
+        spec: RunSpec | CheckedRun,
         *,
         past: Sequence[Entry] = (),
         events: LoggedEvents = (),
@@ -88,13 +93,15 @@ class Simulation(Closing):
         """The robot stands where the mission begins, or where the `past` entries of the same run
         have led it. Further `events` occur at their times (s), at once if these are over. A `rig`
         that is given stays its owner's; else one is fitted out. Instead of a simulated robot with a
-        rig another `robot` may carry the actions out.
+        rig another `robot` may carry the actions out. A run on the site that was checked already is
+        not checked again.
 
         Raises ArgoError if no such run can be on the site, the robot can't stand where it starts,
         or the past is not this run's: Conflict for a site or a machine that is not the spec's, or a
         machine that was used before.
         """
-        self._spec = spec = checked(spec)
+        known = isinstance(spec, CheckedRun)
+        self._spec = spec = spec.spec if isinstance(spec, CheckedRun) else checked(spec)
         self._observers = tuple(observers)
         self._hearing = any(
             observer.hears_samples and hears(observer, name)
@@ -109,9 +116,13 @@ class Simulation(Closing):
         self._ended = False
         self._record: RunRecord | None = None
         """that of the ended run, once it was asked for"""
-        require_site(site, spec)
+        if not known:
+            require_site(site, spec)
         require_machine(machine, spec)
-        check_given([*spec.events, *events], spec.mission, site.site)
+        if events or not known:
+            check_given([*(() if known else spec.events), *events], spec.mission, site.site)
+        if not known and rig is None and robot is None:
+            check_spec(spec, site.site)
         with ExitStack() as stack:
             self._vehicle: AnyRobot = robot or Vehicle(
                 rig or fit_out(spec, site.navigator, gui, stack)

@@ -14,7 +14,7 @@ from argo_env.files.folders import make_folder
 from argo_env.planning.opening import open_site
 from argo_env.recording.files import check_recording
 from argo_env.run.journal import open_journal
-from argo_env.run.session import resume
+from argo_env.run.session import go_on
 from argo_env.run.spec import logged
 from argo_planner.terminal.conclusion import Conclusion
 from argo_planner.terminal.events import KINDS, READING_FORM, parse_events
@@ -93,7 +93,7 @@ def resume_run(
                     book.header.spec.mission.max_duration,
                     recording,
                     Path(book.header.spec.source) if book.header.spec.source else None,
-                    lambda observers: resume(
+                    lambda observers: go_on(
                         book, site, observers=observers, events=events, interrupted=interruption
                     ),
                 )

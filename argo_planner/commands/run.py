@@ -14,10 +14,11 @@ from argo_compiler.files.reading import read_bytes
 from argo_env.faults.reading import MAX_BYTES, FaultText, decode_faults
 from argo_env.files.folders import make_folder
 from argo_env.planning.opening import open_site
-from argo_env.robot.spec import load_robot
 from argo_env.run.drives_and_sensors import DRIVES, SENSORS
+from argo_env.run.fitting_together import check_run
 from argo_env.run.journal import require_free
 from argo_env.run.record import RunRecord
+from argo_env.run.rig import check_spec
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec, logged
 from argo_planner.terminal.completion import among
@@ -42,7 +43,6 @@ from argo_planner.use_cases.reporting import REPORT_FILES
 from argo_planner.use_cases.running import (
     NO_MISSION,
     is_spec,
-    require_possible,
     spec_of,
     with_mission,
 )
@@ -187,12 +187,12 @@ def run(
     upload = read_upload(source)
     if is_spec(upload):
         _refuse_decided(context, source)
-        spec = spec_of(upload)
-        opened = open_site(spec.site, load_robot(spec.robot))
+        checked = check_run(spec_of(upload))
+        opened = checked.site
     else:
         opened = open_site(site)
         spec = spec.model_copy(update={"site": opened.reference})
-        require_possible(spec, opened, said)  # before it is long
+        check_spec(spec, opened.site, said)  # before it is long
         imported = import_shown(upload, opened, start_area, end_area)
         reordering = None
         if optimise:
@@ -200,6 +200,7 @@ def run(
 
             imported, reordering = optimise_shown(imported, opened)
         spec = with_mission(spec, imported, reordering)
+        checked = check_run(spec, opened, settings=False)
     if report:
         make_folder(report)  # now: what is refused before leaves none behind
     opened.prepare()
@@ -210,12 +211,11 @@ def run(
         )
         with conclusion.telling_the_way_on():
             record, recorded = carry_out_shown(
-                spec.mission.max_duration,
+                checked.spec.mission.max_duration,
                 recording,
                 source,
                 lambda observers: simulate(
-                    spec,
-                    opened,
+                    checked,
                     observers=observers,
                     journal=outputs.keeping,
                     replace=force,

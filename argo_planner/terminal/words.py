@@ -1,11 +1,11 @@
 """Messages of the libraries in the words of the command line: which option or command helps."""
 
-import re
 import shlex
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from argo_compiler.base.errors import ArgoError, Remedy
+from argo_compiler.base.listing import listed
 
 if TYPE_CHECKING:
     from argo_compiler.diagnostics import Diagnostic
@@ -29,8 +29,6 @@ _WORDS = {
     Remedy.REPLACE: "--force",
     Remedy.SHOW_REST: "argo replay without options",
 }
-
-_AREAS = re.compile(r"choose area (\d+(?:(?:, | or )\d+)*)")
 
 
 def said(error: ArgoError, prefix: str = "") -> str:
@@ -60,20 +58,17 @@ def order_said(text: str) -> str:
 
 def with_options(diagnostics: Iterable["Diagnostic"]) -> tuple["Diagnostic", ...]:
     """Diagnostics whose hints name the options that help."""
-    return tuple(
-        d.model_copy(update={"hint": _hint(d.hint or "", d.remedies)}) if d.remedies else d
-        for d in diagnostics
-    )
+    return tuple(d.model_copy(update={"hint": _hint(d)}) if d.remedies else d for d in diagnostics)
 
 
-def _hint(hint: str, remedies: tuple[Remedy, ...]) -> str:
-    for remedy in remedies:
-        if areas := _AREAS.search(hint):
-            chosen = re.sub(r"\d+", rf"{_WORDS[remedy]} \g<0>", areas[1])
-            return hint.replace(areas[0], f"choose with {chosen}")
-        if remedy is Remedy.CHOOSE_SITE:
-            return hint.replace("choose the site", "choose it with --site")
-    return f"{hint}{_ways(remedies)}".lstrip()
+def _hint(diagnostic: "Diagnostic") -> str:
+    hint, choice = diagnostic.hint or "", diagnostic.choice
+    if choice is None or not choice.values:
+        return f"{hint}{_ways(diagnostic.remedies)}".lstrip()
+    option = _WORDS[choice.remedy]
+    chosen = listed([f"{option} {value}" for value in choice.values], "or")
+    it = "it " if choice.remedy is Remedy.CHOOSE_SITE else ""
+    return hint.replace(str(choice), f"choose {it}with {chosen}")
 
 
 def _ways(remedies: tuple[Remedy, ...], about: str = "") -> str:

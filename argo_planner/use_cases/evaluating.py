@@ -143,10 +143,8 @@ def case_of(
     name: str, policy: str, spec: RunSpec, faults: FaultSet, opened: OpenedSite
 ) -> EvaluationCase:
     """A case of an evaluation with these faults. Raises ArgoError if no run can have them there."""
-    if faults.said is not None:
-        faults.said.require_fit(opened.site, spec.seed)
     spec = spec.model_copy(update={"faults": faults.faults})
-    check_spec(spec, opened.site)
+    check_spec(spec, opened.site, faults.said)
     return EvaluationCase(
         mission=name,
         policy=policy,

@@ -8,10 +8,7 @@ from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.hfsm import Cancel, Event, GiveBack, Occurred, Pause, Resume, TakeOver, lower
 from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import EventKind, Mission
-from argo_env.faults.reading import FaultText
-from argo_env.planning.opening import OpenedSite
 from argo_env.run.record import Reordering
-from argo_env.run.rig import check_spec
 from argo_env.run.spec import RunSpec, read_spec
 from argo_planner.use_cases.importing import ImportedMission, Upload
 
@@ -75,14 +72,6 @@ def spec_of(upload: Upload) -> RunSpec:
     spec = read_spec(upload.content, upload.name)
     lower(spec.mission, source_name=upload.name)
     return spec
-
-
-def require_possible(spec: RunSpec, site: OpenedSite, faults: FaultText | None) -> None:
-    """Raises ArgoError for what no run on the site can have, whatever its mission is. The `faults`
-    are those of the spec, as they were read."""
-    if faults:
-        faults.require_fit(site.site, spec.seed)
-    check_spec(spec, site.site)
 
 
 def with_mission(

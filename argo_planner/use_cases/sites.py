@@ -3,14 +3,12 @@
 from dataclasses import dataclass
 
 from argo_compiler.base.errors import Conflict
-from argo_compiler.files.reading import decode_text, require_size
 from argo_env.planning.flaws import Flaw, Standing, look_over
 from argo_env.planning.opening import OpenedSite
-from argo_env.site import load_site, make_site, site_names
+from argo_env.site import load_site, site_names
 from argo_env.site.family import PREFIX, is_family
 from argo_env.site.norms import breaches
-from argo_env.site.site_file import parse_site_spec, to_yaml
-from argo_env.site.spec import MAX_BYTES
+from argo_env.site.site_file import to_yaml
 
 
 @dataclass(frozen=True)
@@ -49,16 +47,6 @@ def list_sites() -> tuple[SiteSummary, ...]:
         for name in site_names()
         for spec in (load_site(name).spec,)
     )
-
-
-def uploaded_site(content: bytes, source_name: str) -> OpenedSite:
-    """The site that a YAML file describes, ready for work; messages call it `source_name`.
-
-    Raises ArgoError if it is no text, and DiagnosticError if it describes no site.
-    """
-    require_size(content, source_name, "site", MAX_BYTES)
-    text = decode_text(content, source_name, "site")
-    return OpenedSite.of(make_site(parse_site_spec(text, source_name)))
 
 
 def check_site(site: OpenedSite) -> SiteReport:

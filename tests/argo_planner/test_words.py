@@ -2,7 +2,7 @@
 
 import pytest
 
-from argo_compiler.base.errors import Conflict, Invalid, Remedy
+from argo_compiler.base.errors import Choice, Conflict, Invalid, Remedy
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_planner.terminal.words import order_said, said, with_options
 
@@ -20,20 +20,26 @@ def test_a_command_names_the_file_so_that_it_can_be_pasted():
 
 
 @pytest.mark.parametrize(
-    ("hint", "remedy", "said"),
+    ("hint", "remedy", "choice", "said"),
     [
-        ("choose area 1 or 2", Remedy.CHOOSE_START,
+        ("choose area 1 or 2", Remedy.CHOOSE_START, ("area", ("1", "2")),
          "choose with --start-area 1 or --start-area 2"),
-        ("name one, or choose area 1, 2 or 13", Remedy.CHOOSE_END,
+        ("name one, or choose area 1, 2 or 13", Remedy.CHOOSE_END, ("area", ("1", "2", "13")),
          "name one, or choose with --end-area 1, --end-area 2 or --end-area 13"),
-        ("choose none, or begin elsewhere", Remedy.CHOOSE_START,
+        ("choose none, or begin elsewhere", Remedy.CHOOSE_START, None,
          "choose none, or begin elsewhere (--start-area)"),
-        ("choose the site umad", Remedy.CHOOSE_SITE, "choose it with --site umad"),
+        ("choose the site umad", Remedy.CHOOSE_SITE, ("the site", ("umad",)),
+         "choose it with --site umad"),
     ],
 )  # fmt: skip
-def test_hints_name_the_options(hint, remedy, said):
+def test_hints_name_the_options(hint, remedy, choice, said):
     found = Diagnostic(
-        code="c", severity=Severity.ERROR, message="m", hint=hint, remedies=(remedy,)
+        code="c",
+        severity=Severity.ERROR,
+        message="m",
+        hint=hint,
+        remedies=(remedy,),
+        choice=choice and Choice(remedy, *choice),
     )
     (shown,) = with_options([found])
     assert shown.hint == said

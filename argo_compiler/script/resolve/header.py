@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from argo_compiler.base.errors import Remedy
+from argo_compiler.base.errors import Choice, Remedy
 from argo_compiler.base.listing import listed
 from argo_compiler.diagnostics import Span
 from argo_compiler.script.syntax.text.source import Diagnostics
@@ -76,13 +76,15 @@ def _choice(
     if cell is None:
         return AreaChoice(option, said=option is not None)
     offered, span = sorted(set(cell.areas)), cell.span
-    areas = listed((str(number) for number in offered), "or")
+    numbers = tuple(map(str, offered))
+    choice = Choice(_REMEDIES[which], "area", numbers)
     if option is not None and offered and option not in offered:
         message = f"the {which} in area {option} is not what the script offers"
-        diagnostics.error("area-not-offered", message, span, f"choose area {areas}", remedies)
+        diagnostics.error("area-not-offered", message, span, str(choice), remedies, choice)
     elif option is None and len(offered) > 1:
+        areas = listed(numbers, "or")
         message = f"the script leaves the {which} to the preparation: starting area {areas}"
-        diagnostics.error("area-choice", message, span, f"choose area {areas}", remedies)
+        diagnostics.error("area-choice", message, span, str(choice), remedies, choice)
     elif option is None and not offered:
         message = f"this names no starting area for the mission's {which}"
         diagnostics.error("no-area", message, span, "write, say, `starting area 1`", remedies)

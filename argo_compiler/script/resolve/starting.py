@@ -5,8 +5,7 @@ from dataclasses import replace
 from typing import NoReturn
 
 from argo_compiler.base.catalog import Area
-from argo_compiler.base.errors import Remedy
-from argo_compiler.base.listing import listed
+from argo_compiler.base.errors import Choice, Remedy
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Span
 from argo_compiler.script.resolve import making
@@ -90,10 +89,12 @@ class Starting:
             self.start_area = area.number
             self.start = making.start(area.dock, wanted.span)
         elif self.context.whole and not wanted.said:
-            known = listed((str(a.number) for a in self.lookup.catalog.areas), "or")
-            hint = f"write `Start in starting area 1`, or choose area {known}"
+            known = tuple(str(area.number) for area in self.lookup.catalog.areas)
+            choice = Choice(Remedy.CHOOSE_START, "area", known)
+            hint = f"write `Start in starting area 1`, or {choice}"
             message = "the script sets no starting point"
-            self.diagnostics.refuse("no-start", message, None, hint, (Remedy.CHOOSE_START,))
+            remedies = (choice.remedy,)
+            self.diagnostics.refuse("no-start", message, None, hint, remedies, choice)
 
     # ---- the end
 

@@ -4,7 +4,7 @@ from collections import Counter
 from dataclasses import dataclass
 
 from argo_env.evaluation.case import PlanName
-from argo_env.evaluation.rates import PlanRate, success, world_means
+from argo_env.evaluation.rates import PlanRate, means_of, success
 from argo_env.evaluation.report.words import meaning
 from argo_env.evaluation.requirement import QUANTITIES
 from argo_env.evaluation.results import EvaluationResults, GroupRate
@@ -76,4 +76,4 @@ def _worlds(results: EvaluationResults, plan: PlanName) -> int:
     weights = {case.faults: case.weight for case in results.plan.cases if case.plan == plan}
     if results.plan.strata or len(weights) == 1:
         return len({row.seed for row in ran})
-    return len(world_means(ran, weights, success))
+    return len(means_of(ran, weights, success))

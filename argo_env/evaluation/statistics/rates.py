@@ -63,27 +63,6 @@ def wilson(count: int, runs: int, level: float = LEVEL) -> Rate:
     return Rate(count, runs, low, high)
 
 
-def runs_for_width(width: float, share: float, level: float = LEVEL) -> int:
-    """How many runs it takes until the exact interval is no wider than `width`, if that share of
-    them succeeds."""
-    if not 0 < width < 1:
-        raise Invalid(f"an interval as wide as {width:g}: give a width between 0 and 1")
-    fewest, most = 1, 2
-    while _width(most, share, level) > width:
-        fewest, most = most, 2 * most
-    while fewest < most:
-        middle = (fewest + most) // 2
-        if _width(middle, share, level) > width:
-            fewest = middle + 1
-        else:
-            most = middle
-    return most
-
-
-def _width(runs: int, share: float, level: float) -> float:
-    return clopper_pearson(round(share * runs), runs, level).width
-
-
 def _check(count: int, runs: int, level: float) -> None:
     if not 0 <= count <= runs:
         raise Invalid(f"{count} of {runs} runs: give a number of them, 0 to {runs}")

@@ -55,8 +55,6 @@ class Fit:
     pose: FacePose
     match: float
     """0 to 1, the share of the face that looks as drawn, its dark and bright parts alike"""
-    contrast: float
-    """of full scale, between the white and the black of the face"""
 
 
 def sample(image: NDArray[np.float32], spots: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -85,7 +83,7 @@ def compare(photo: Photo, template: Template, pose: FacePose) -> Fit:
     values, weights = _look(photo, template, pose)
     face, gain, offset = _levels(values, template, weights)
     match = _match(values, template, weights, gain, offset) if face else 0.0
-    return Fit(pose, match, gain)
+    return Fit(pose, match)
 
 
 def refine(

@@ -25,7 +25,7 @@ from argo_compiler.hfsm import (
     Tick,
     lower,
 )
-from argo_compiler.hfsm.interrupts import ACTIVE, ROWS, TABLE, TRANSIENT, Given, Stage, Trigger
+from argo_compiler.hfsm.interrupts import ROWS, TABLE, Given, Stage, Trigger
 from argo_compiler.hfsm.progress import Waiting
 from argo_compiler.hfsm.standing import InterruptState, advance
 from argo_compiler.il import Afterwards, EventKind, Mission, Reaction, Response, Task
@@ -37,6 +37,10 @@ CLEAR = EventKind.ALL_CLEAR
 HERE = Pose(x=0, y=0, z=0)
 SUPERVISED = InterruptState(Stage.STOPPED, paused=True)
 
+ACTIVE = (Stage.BEGINNING, Stage.DRIVING, Stage.ARRIVED, Stage.HOLDING, Stage.LETTING_GO)
+"""The stages that have an active reaction."""
+TRANSIENT = (Stage.CHOOSING, Stage.BEGINNING, Stage.ARRIVED, Stage.LETTING_GO)
+"""Those that take no time."""
 STABLE = tuple(stage for stage in Stage if stage not in TRANSIENT)
 GIVEN_OF_EVENTS = {Given.ABORTS, Given.REACTS, Given.NEW, Given.HIGHER, Given.AWAITED}
 

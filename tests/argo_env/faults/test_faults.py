@@ -2,6 +2,8 @@
 
 import json
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,10 +11,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 from pydantic import ValidationError
+from pydantic_core import PydanticUndefined
 
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.il import EventKind
 from argo_compiler.schemas.generate import schema_of
+from argo_env.faults.fault import Fault
 from argo_env.faults.kinds import KINDS, FaultFile, changed_site, settle
 from argo_env.faults.reading import decode_faults, read_faults
 from argo_env.files import resources
@@ -158,6 +163,27 @@ class TestFiles:
         for seed in range(100):  # and none is drawn there
             (drawn,) = settle(faults_of({"kind": "brick"}), site, seed)
             assert math.dist(drawn.place, (dock.x, dock.y)) > 0.65
+
+
+def models(base: type[Fault]) -> set[type[Fault]]:
+    """Return the models of faults below a base that have a kind of their own."""
+    found = {base} if base.model_fields["kind"].default is not PydanticUndefined else set()
+    return found.union(*(models(below) for below in base.__subclasses__()))
+
+
+class TestKinds:
+    def test_every_model_of_a_fault_is_listed(self):
+        assert models(Fault) == set(KINDS.values())
+
+    @pytest.mark.parametrize("kind", KINDS)
+    def test_every_kind_says_what_finds_it(self, kind):
+        sign = KINDS[kind].sign
+        assert sign is None or isinstance(sign.event, EventKind)
+
+    def test_every_kind_has_a_row_in_the_manual(self):
+        manual = (Path(__file__).parents[3] / "docs" / "faults.md").read_text(encoding="utf-8")
+        rows = re.findall(r"^\| `(\w+)` \|", manual.partition("## The kinds")[2], re.MULTILINE)
+        assert rows == list(KINDS)
 
 
 class TestDrawing:

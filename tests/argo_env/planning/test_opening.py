@@ -182,7 +182,7 @@ def test_a_damaged_entry_is_made_anew(yard_file, folder, caplog):
 @pytest.mark.parametrize("kind", ["surface", "lattice", "portals", "site", "first-dock"])
 def test_one_part_may_be_gone(yard_file, folder, kind):
     anew = found(open_site(yard_file).navigator)
-    for path in folder.rglob(kind):
+    for path in folder.rglob(f"{kind}.npz"):
         path.unlink()
     assert found(open_anew(yard_file).navigator) == anew
 
@@ -206,7 +206,7 @@ def test_a_part_of_another_name_is_not_taken(tmp_path):
     parts = Parts(tmp_path, "key")
     parts.keep_text("one", "a text")
     assert parts.find_text("one") == "a text"
-    shutil.copy(tmp_path / "one", tmp_path / "two")
+    shutil.copy(tmp_path / "one.npz", tmp_path / "two.npz")
     assert parts.find_text("two") is None
     assert Parts(tmp_path, "another key").find_text("one") is None
 

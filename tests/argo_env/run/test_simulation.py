@@ -31,6 +31,7 @@ from argo_env.faults.checkpoints import AbnormalValue
 from argo_env.faults.plant import GasLeakFault
 from argo_env.faults.robot import ConnectionLoss, DriveDysfunction, LowBattery, SensorDysfunction
 from argo_env.faults.walkway import Brick
+from argo_env.run.fitting_together import check_run
 from argo_env.run.journal import Header, create_journal, open_journal
 from argo_env.run.machine import OpenMachine
 from argo_env.run.observer import Observer
@@ -101,7 +102,7 @@ class TestTheSameWhoeverSteps:
             mission=beginning(site, start), site="yard", drive=drive, seed=5, faults=FAULTS
         )
         given, whole = Entries(), Entries()
-        with Inspection(site, spec, 600.0, [given]) as inspection:
+        with Inspection(check_run(spec, site), 600.0, [given]) as inspection:
             deeds = [inspection.read(1)]
             if drive != "tracked":
                 deeds += [inspection.read(2), inspection.read(2), inspection.drive(start)]

@@ -11,8 +11,10 @@ from argo_compiler.files.mission_file import mission_text
 from argo_compiler.hfsm import Hfsm, Occurred, Pause
 from argo_compiler.il import EventKind, Order
 from argo_env.faults.reading import decode_faults
+from argo_env.planning import open_site
 from argo_env.report.files import PAGE
 from argo_env.run.record import RunRecord
+from argo_env.run.rig import check_spec
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_planner.use_cases.checking import Format, check_source, write_diagnostics
@@ -25,11 +27,10 @@ from argo_planner.use_cases.routing import parse_requirements, require_limit, su
 from argo_planner.use_cases.running import (
     NO_MISSION,
     event_named,
-    require_possible,
     with_mission,
 )
 from argo_planner.use_cases.schemas import FileKind, schema
-from argo_planner.use_cases.sites import check_site, describe_site, list_sites, uploaded_site
+from argo_planner.use_cases.sites import check_site, describe_site, list_sites
 from tests.yard import measure, mission, waypoint
 
 DOCK = Pose(x=1.05, y=1.05, z=0.02)
@@ -105,10 +106,10 @@ def test_a_run_with_its_report(imported, site):
     faults = decode_faults(b"faults:\n- {kind: gas_leak, at: 1, place: [3, 3, 0.5]}\n", "f")
     draft = RunSpec(mission=NO_MISSION, site=site.reference, drive="route", seed=3)
     with pytest.raises(Invalid, match="no drive `rocket`"):
-        require_possible(draft.model_copy(update={"drive": "rocket"}), site, None)
+        check_spec(draft.model_copy(update={"drive": "rocket"}), site.site)
     with pytest.raises(Invalid):  # without a world no gas can be found
-        require_possible(draft.model_copy(update={"faults": faults.faults}), site, faults)
-    require_possible(draft, site, None)
+        check_spec(draft.model_copy(update={"faults": faults.faults}), site.site, faults)
+    check_spec(draft, site.site)
     spec = with_mission(draft, imported)
     record = simulate(RunSpec.model_validate_json(spec.model_dump_json()), site)
     files = report_files(record, site.site, site.robot)
@@ -126,19 +127,24 @@ def test_events_by_name():
         event_named("time_up")
 
 
-def test_sites(site):
+def test_sites(site, tmp_path):
+    def uploaded(content):
+        path = tmp_path / "mine.yaml"
+        path.write_bytes(content)
+        return open_site(str(path))
+
     assert {one.name for one in list_sites()} >= {"umad", "darmstadt"}
     report = check_site(site)
     assert report.errors == ()
     mine = describe_site(site, "mine")
-    again = uploaded_site(mine.encode(), "mine.yaml")
+    again = uploaded(mine.encode())
     assert again.name == "mine"
-    assert uploaded_site(mine.encode("utf-16"), "mine.yaml").site == again.site
+    assert uploaded(mine.encode("utf-16")).site == again.site
     assert again.site.checkpoints == site.site.checkpoints
     with pytest.raises(DiagnosticError, match=r"mine.yaml:1:1: error: titel"):
-        uploaded_site(b"titel: Mine\n", "mine.yaml")
+        uploaded(b"titel: Mine\n")
     with pytest.raises(Invalid, match=r"mine.yaml: is not UTF-8"):
-        uploaded_site(b"\xff", "mine.yaml")
+        uploaded(b"\xff")
     with pytest.raises(Conflict, match="would be called umad"):
         describe_site(site, "umad")
 

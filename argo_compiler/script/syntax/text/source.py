@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NoReturn, TypeVar
 
-from argo_compiler.base.errors import Remedy
+from argo_compiler.base.errors import Choice, Remedy
 from argo_compiler.diagnostics import MAX_EXCERPT, Diagnostic, Severity, Span, span_at
 
 MAX_LINE = 2000
@@ -156,8 +156,9 @@ class Diagnostics:
         span: Span | None,
         hint: str | None = None,
         remedies: tuple[Remedy, ...] = (),
+        choice: Choice | None = None,
     ) -> None:
-        self._add(Severity.ERROR, code, message, span, hint, remedies)
+        self._add(Severity.ERROR, code, message, span, hint, remedies, choice)
 
     def refuse(
         self,
@@ -166,9 +167,10 @@ class Diagnostics:
         span: Span | None,
         hint: str | None = None,
         remedies: tuple[Remedy, ...] = (),
+        choice: Choice | None = None,
     ) -> NoReturn:
         """Adds an error, and gives up what it is about. Raises RefusedError."""
-        self.error(code, message, span, hint, remedies)
+        self.error(code, message, span, hint, remedies, choice)
         raise RefusedError
 
     def each(self, find: Callable[[_Item], _Found], items: Iterable[_Item]) -> list[_Found]:
@@ -185,10 +187,10 @@ class Diagnostics:
         return found
 
     def warning(self, code: str, message: str, span: Span | None, hint: str | None = None) -> None:
-        self._add(Severity.WARNING, code, message, span, hint, ())
+        self._add(Severity.WARNING, code, message, span, hint)
 
     def note(self, code: str, message: str, span: Span | None) -> None:
-        self._add(Severity.NOTE, code, message, span, None, ())
+        self._add(Severity.NOTE, code, message, span, None)
 
     def _add(
         self,
@@ -197,7 +199,8 @@ class Diagnostics:
         message: str,
         span: Span | None,
         hint: str | None,
-        remedies: tuple[Remedy, ...],
+        remedies: tuple[Remedy, ...] = (),
+        choice: Choice | None = None,
     ) -> None:
         if severity is Severity.ERROR:
             self.errors += 1
@@ -213,6 +216,7 @@ class Diagnostics:
                 excerpt=excerpt,
                 hint=hint,
                 remedies=remedies,
+                choice=choice,
             )
         )
 

@@ -50,6 +50,8 @@ export type RunState = Schemas["RunState"];
 export type RunAsked = Schemas["RunAsked"];
 export type RequestState = Schemas["RequestState"];
 export type Entry = Schemas["EntryTold"]["entry"];
+/** Any fault, without what only some kinds have. */
+export type FaultKind = Schemas["BeginFault"]["fault"]["kind"];
 export type RunQuestion =
   import("./schema").operations["ask_run"]["requestBody"]["content"]["application/json"];
 

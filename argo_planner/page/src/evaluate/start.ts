@@ -1,8 +1,7 @@
 /** Before an evaluation: in how many worlds, how they differ, and what is required. */
 
-import type { EvaluationAsked } from "../api/types";
+import type { EvaluationAsked, FaultKind } from "../api/types";
 import "../run/faults";
-import type { FaultKind } from "../run/faults";
 import { parts } from "../run/parts";
 import { broken, mission } from "../state/plan";
 import { mayPlan } from "../state/session";

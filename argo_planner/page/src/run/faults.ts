@@ -1,28 +1,14 @@
 /** What is to go wrong: kinds of faults, chosen one by one. */
 
+import type { FaultKind } from "../api/types";
 import { t } from "../texts";
+import { run } from "../texts/run";
 import { css, customElement, html, look, PageElement, property } from "../ui/element";
 import { icon } from "../ui/icons";
 import { parts } from "./parts";
 
-export const FAULTS = [
-  "abnormal_value",
-  "gas_leak",
-  "hot_spot",
-  "abnormal_pump",
-  "platform_alarm",
-  "brick",
-  "missing_plate",
-  "blocked_stairs",
-  "low_battery",
-  "worn_battery",
-  "connection_loss",
-  "emergency_stop",
-  "sensor_dysfunction",
-  "drive_dysfunction",
-  "displaced_checkpoint",
-] as const;
-export type FaultKind = (typeof FAULTS)[number];
+/** All kinds of faults, in the order of the texts. */
+export const FAULTS = Object.keys(run.en.fault) as readonly FaultKind[];
 
 /** Fires `chosen` with all that are chosen, as soon as they change. */
 @customElement("argo-faults")

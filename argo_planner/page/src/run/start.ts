@@ -1,6 +1,6 @@
 /** Before a run: how the mission is to be driven. */
 
-import type { RunAsked } from "../api/types";
+import type { FaultKind, RunAsked } from "../api/types";
 import { choiceOf, chosenCheckpoint } from "../model/checkpoint-choice";
 import { keep, kept, mayOperate } from "../state/session";
 import { broken, mission } from "../state/plan";
@@ -11,7 +11,6 @@ import { css, customElement, html, look, nothing, PageElement, state } from "../
 import { icon } from "../ui/icons";
 import { figure } from "../ui/figures";
 import "./faults";
-import type { FaultKind } from "./faults";
 import { parts, SPEEDS, speedName } from "./parts";
 
 const DRIVES = ["kinematic", "tracked", "route", "remote"] as const;

@@ -1,7 +1,7 @@
 /** What a person tells the run: something has happened, somebody has read a value, or something is to
  * go wrong in the simulation. */
 
-import type { EventKind } from "../api/types";
+import type { EventKind, FaultKind } from "../api/types";
 import { choiceOf, chosenCheckpoint } from "../model/checkpoint-choice";
 import { ask, type Question } from "../state/asking";
 import { run } from "../state/run";
@@ -10,7 +10,7 @@ import { world } from "../state/world";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
 import { parts } from "./parts";
-import { FAULTS, type FaultKind } from "./faults";
+import { FAULTS } from "./faults";
 
 const OWN: readonly string[] = ["time_up"]; // that occur by themselves only
 

@@ -1,8 +1,10 @@
+import type { FaultKind } from "../api/types";
 import type { ShownMode } from "../model/run-mode";
 import { both } from "./both";
 
 type Requests = Record<string, string>;
 type Modes = Record<ShownMode, string>;
+type Faults = Record<FaultKind, string>;
 
 const modes: { en: Modes; de: Modes } = {
   en: {
@@ -125,7 +127,7 @@ export const run = both(
       sensor_dysfunction: "sensor fails",
       drive_dysfunction: "drive fails",
       displaced_checkpoint: "displaced checkpoint",
-    },
+    } satisfies Faults,
     remove: (what: string) => `Remove ${what}`,
     time: "Time",
     ofLimit: (now: string, limit: string) => `${now} of ${limit}`,

@@ -1,0 +1,114 @@
+"""A run is checked once on every way that leads to it, and before anything is made."""
+
+import cProfile
+import json
+from collections import Counter
+from types import CodeType
+
+import pytest
+from typer.testing import CliRunner
+
+from argo_compiler.files.mission_file import mission_text
+from argo_env.envs.inspection import InspectEnv
+from argo_env.evaluation.carrying_out import WorkOrder, carry_out
+from argo_env.evaluation.evaluation import Evaluation
+from argo_env.planning.opening import open_site
+from argo_env.run.fitting_together import require_site
+from argo_env.run.journal import Header, Journal, create_journal, open_journal
+from argo_env.run.rig import check_spec
+from argo_env.run.session import resume, simulate
+from argo_env.run.spec import RunSpec
+from argo_env.run.steering import check_given
+from argo_planner.cli import app
+from tests.yard import SITE, measure, mission, simulation_of
+
+CHECKS = (require_site, check_spec, check_given)
+ONCE = {check.__name__: 1 for check in CHECKS}
+PLAN = mission(measure(2))
+
+
+def counted(work, *checks):
+    """Return how often the checks are made while the work is done, by whomever."""
+    profile = cProfile.Profile()
+    profile.runcall(work)
+    calls = Counter(
+        {e.code: e.callcount for e in profile.getstats() if isinstance(e.code, CodeType)}
+    )
+    return {check.__name__: calls[check.__code__] for check in checks or CHECKS}
+
+
+@pytest.fixture
+def folder(monkeypatch, tmp_path):
+    (tmp_path / "yard.yaml").write_text(json.dumps(SITE), encoding="utf-8")
+    (tmp_path / "plan.json").write_text(mission_text(PLAN), encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def argo(*words, status=0):
+    """Run the command in this process, which has to end with that status."""
+
+    def run():
+        answer = CliRunner().invoke(app, words)
+        assert answer.exit_code == status, answer.output
+
+    return run
+
+
+def test_a_run_of_a_mission_by_the_command(folder):
+    (folder / "f.yaml").write_text("faults:\n- {kind: low_battery}\n", encoding="utf-8")
+    words = ("--site", "yard.yaml", "--drive", "route", "--faults", "f.yaml", "--event", "1=pause")
+    run = argo("run", "plan.json", *words, "--event", "2=resume")
+    assert counted(run) == ONCE
+
+
+def test_a_run_of_a_spec_by_the_command(folder):
+    spec = RunSpec(mission=PLAN, site="yard.yaml", drive="route")
+    (folder / "spec.json").write_text(spec.model_dump_json(), encoding="utf-8")
+    assert counted(argo("run", "spec.json")) == ONCE
+
+
+def test_a_run_that_is_refused_leaves_no_folder(folder):
+    for words in (("--event", "1=reading:9=1"), ("--drive", "rocket")):
+        argo("run", "plan.json", "--site", "yard.yaml", *words, "--report", "out", status=1)()
+    spec = RunSpec(mission=PLAN, site="yard.yaml", drive="rocket")
+    (folder / "spec.json").write_text(spec.model_dump_json(), encoding="utf-8")
+    argo("run", "spec.json", "--report", "out", status=1)()
+    assert not (folder / "out").exists()
+
+
+def test_a_run_that_goes_on(folder):
+    site, spec = open_site("yard.yaml"), RunSpec(mission=PLAN, site="yard.yaml", drive="route")
+    create_journal(folder / "run.journal", Header.of(site, spec)).close()
+    once = (*CHECKS, Journal.require_going_on, Journal.require_unchanged)
+    run = argo("resume", "run.journal", "--event", "1=pause", "--event", "2=resume")
+    assert set(counted(run, *once).values()) == {1}
+
+    def again():
+        with open_journal(folder / "run.journal") as journal:
+            resume(journal, site)
+
+    assert counted(again) == ONCE
+    assert counted(again, Journal.require_unchanged) == {"require_unchanged": 1}
+
+
+@pytest.mark.usefixtures("folder")
+def test_a_run_from_python():
+    site, spec = open_site("yard.yaml"), RunSpec(mission=PLAN, site="yard.yaml", drive="route")
+    assert counted(lambda: simulate(spec, site)) == ONCE
+    assert counted(lambda: simulation_of(spec, site).close()) == ONCE
+
+
+@pytest.mark.usefixtures("folder")
+def test_a_run_of_an_evaluation():
+    site = open_site("yard.yaml")
+    plan = Evaluation(PLAN, site, seeds=range(2)).plan
+    order = WorkOrder("k", plan.cases[0], plan.run(0, 1).spec, {})
+    assert counted(lambda: carry_out(order, site)) == ONCE
+
+
+@pytest.mark.usefixtures("folder")
+def test_an_episode_of_the_environment():
+    env = InspectEnv(scenario="yard.yaml", drive="route")
+    assert counted(lambda: env.reset(seed=1)) == ONCE
+    env.close()

@@ -22,8 +22,8 @@ from rich.console import Console
 from rich.table import Table
 
 from argo_compiler.base.errors import ArgoError, Invalid
+from argo_compiler.base.stages import heard_by, stage
 from argo_env.files.folders import make_folder
-from argo_env.stages import heard_by, stage
 from baselines.comparison import Beaten, PolicyComparison, compare
 from baselines.episodes import play
 from baselines.families import TEST_SETS, find_set

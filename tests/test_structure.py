@@ -149,6 +149,7 @@ for dotted in sys.argv[1:]:
 """
 
 
+@pytest.mark.long
 def test_each_module_is_found_where_its_name_says():
     """By `import a.b.c as x`, whatever of the project has been imported before."""
     modules = sorted(module for module in trees() if not module.endswith(".__main__"))

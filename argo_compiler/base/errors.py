@@ -34,7 +34,7 @@ class Remedy(StrEnum):
 
 
 @dataclass(frozen=True)
-class Choice:
+class RemedyChoice:
     """What there is to choose by a remedy, and the words of a hint that say so."""
 
     remedy: Remedy

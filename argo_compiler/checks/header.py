@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from argo_compiler.base.catalog import Catalog
-from argo_compiler.base.errors import Choice, Remedy
+from argo_compiler.base.errors import Remedy, RemedyChoice
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Mission
 
@@ -35,7 +35,7 @@ def check_header(mission: Mission, catalog: Catalog | None) -> Iterator[Diagnost
     if catalog is None:
         return
     if mission.site and mission.site != catalog.site:
-        choice = Choice(Remedy.CHOOSE_SITE, "the site", (mission.site,))
+        choice = RemedyChoice(Remedy.CHOOSE_SITE, "the site", (mission.site,))
         yield Diagnostic(
             code="il.other-site",
             severity=Severity.ERROR,

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from pydantic import Field
 from pydantic.json_schema import SkipJsonSchema
 
-from argo_compiler.base.errors import Choice, Remedy
+from argo_compiler.base.errors import Remedy, RemedyChoice
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics.codes.code import Severity
 
@@ -51,7 +51,7 @@ class Diagnostic(Model):
     `tasks['MEASURE 4'].transitions[0]`; see `argo_compiler.diagnostics.subject`"""
     remedies: tuple[Remedy, ...] = Field(default=(), exclude=True)
     """how to take the way out, for front ends that add their own words"""
-    choice: SkipJsonSchema[Choice | None] = Field(default=None, exclude=True)
+    choice: SkipJsonSchema[RemedyChoice | None] = Field(default=None, exclude=True)
     """what the hint lets one choose by the remedy, where it says that"""
 
 

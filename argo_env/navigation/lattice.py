@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.base.stages import stage
 from argo_env.files.parts import Arrays
 from argo_env.navigation.graphs import Graph, graph_of, graph_of_moves, part_of, strong_parts
 from argo_env.navigation.raster import CELL
@@ -17,7 +18,6 @@ from argo_env.navigation.stencil import HEADINGS, Stencil, heading_angle, standi
 from argo_env.navigation.surface import Surface
 from argo_env.robot.calibration import MotionKind, drive_kind
 from argo_env.robot.spec import RobotSpec
-from argo_env.stages import stage
 
 MARGIN = 0.02  # m kept free around the footprint
 ROOM = 0.1  # m around the footprint where driving is preferred

@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.base.stages import each, stage
 from argo_env.files.parts import NOWHERE, Parts
 from argo_env.navigation.graphs import search
 from argo_env.navigation.inside import find_inside
@@ -19,7 +20,6 @@ from argo_env.navigation.portals import (
     tree_times,
 )
 from argo_env.navigation.regions import Partition, Region, walk
-from argo_env.stages import each, stage
 
 Goals = tuple[NDArray[np.int64], NDArray[np.float64]]
 """States to go to, and what arriving at each costs besides, in s."""

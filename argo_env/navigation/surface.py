@@ -11,10 +11,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.base.stages import stage
 from argo_env.files.parts import Arrays
 from argo_env.navigation.raster import CELL, Columns, Grid, rasterise
 from argo_env.site.shapes import Element
-from argo_env.stages import stage
 
 DIRECTIONS: tuple[tuple[int, int], ...] = (
     (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1),

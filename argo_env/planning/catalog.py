@@ -9,9 +9,9 @@ import numpy as np
 from argo_compiler.base.catalog import Area, Catalog, CheckpointInfo, Floor, Place
 from argo_compiler.base.errors import Unreachable
 from argo_compiler.base.model import Pose
+from argo_compiler.base.stages import each
 from argo_env.files.parts import Parts
 from argo_env.site import Site
-from argo_env.stages import each
 
 if TYPE_CHECKING:
     from argo_env.navigation import Navigator

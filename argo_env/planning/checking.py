@@ -1,9 +1,9 @@
 """Whether a site can be driven: what must hold of every site before missions run on it."""
 
 from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.stages import each
 from argo_env.navigation.navigator import Navigator
 from argo_env.planning.catalog import patrol
-from argo_env.stages import each
 
 
 def unserved_floors(navigator: Navigator) -> list[int]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import Conflict, Invalid
+from argo_compiler.base.stages import stage
 from argo_compiler.files.reading import read_text
 from argo_env.files import cache
 from argo_env.files.parts import NOWHERE, Parts
@@ -23,7 +24,6 @@ from argo_env.site import Site, make_site
 from argo_env.site.family import Family, is_family, parse_family
 from argo_env.site.site import site_file
 from argo_env.site.spec import MAX_BYTES, SiteSpec
-from argo_env.stages import stage
 
 if TYPE_CHECKING:
     from argo_env.navigation import Navigator

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 from argo_compiler.analysis import Leg, NoWay
 from argo_compiler.base.errors import Unreachable
 from argo_compiler.base.model import Pose
+from argo_compiler.base.stages import each
 from argo_compiler.il import Action, Mission, Task
 from argo_compiler.reorder.mission import MissionRoute, route_problem
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.travel_matrix import TravelMatrix
 from argo_env.navigation import Navigator
 from argo_env.planning.travel import SiteTravel
-from argo_env.stages import each
 
 MOST_PLANNED = 40
 """places between which every way is planned; among more of them only those to the nearest ones, and

@@ -8,12 +8,12 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
+from argo_compiler.base.stages import stage
 from argo_env.files.folders import make_folder
 from argo_env.formatting import clock
 from argo_env.pictures import check_film
 from argo_env.recording.reader import Recording, read_recording
 from argo_env.robot.spec import load_robot
-from argo_env.stages import stage
 from argo_planner.terminal.conclusion import Conclusion
 from argo_planner.terminal.files import check_outputs
 from argo_planner.terminal.kept import Kept, require_no_unfinished

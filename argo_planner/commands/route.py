@@ -9,6 +9,7 @@ from pydantic import ValidationError
 from rich.console import Console
 
 from argo_compiler.base.errors import Conflict, Invalid
+from argo_compiler.base.stages import stage
 from argo_compiler.files.mission_file import write_mission
 from argo_compiler.files.reading import read_bytes
 from argo_compiler.reorder.requirements import Requirements, What
@@ -16,7 +17,6 @@ from argo_compiler.route.robust_spread import CAUTIOUS, SIMULATED
 from argo_env.files.folders import make_folder
 from argo_env.files.yaml_messages import message_of
 from argo_env.planning.opening import OpenedSite, open_site
-from argo_env.stages import stage
 from argo_planner.terminal.certificate_lines import show_certificate
 from argo_planner.terminal.files import check_outputs, read_upload, require_mission_output
 from argo_planner.terminal.importing import import_shown

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from threading import Event, RLock, Thread
 from typing import TYPE_CHECKING
 
-from argo_env.stages import heard_by
+from argo_compiler.base.stages import heard_by
 from argo_planner.terminal.verbosity import is_quiet
 
 # Most commands are done before there is anything to show.

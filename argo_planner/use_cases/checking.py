@@ -5,6 +5,7 @@ from enum import StrEnum
 from argo_compiler.analysis import Travel, analyse
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.stages import stage
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import (
     Diagnostic,
@@ -21,7 +22,6 @@ from argo_compiler.files.reading import FileError
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.poses_to_read_from import unseen_from_poses
 from argo_env.planning.speeds_to_drive_at import too_fast
-from argo_env.stages import stage
 from argo_planner.use_cases.importing import SourceKind, Upload, kind_of, load, refuse_areas
 
 MOST_PLACES = 1_000

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import Invalid, Remedy
+from argo_compiler.base.stages import stage
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import (
     Diagnostic,
@@ -26,7 +27,6 @@ from argo_compiler.ros import Received, decode_bag, is_bag_content, read_bag
 from argo_compiler.script.syntax.text.source import Source as Script
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.speeds_to_drive_at import too_fast
-from argo_env.stages import stage
 
 _log = logging.getLogger(__name__)
 

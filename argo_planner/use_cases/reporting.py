@@ -3,13 +3,13 @@
 import tempfile
 from pathlib import Path
 
+from argo_compiler.base.stages import stage
 from argo_env.faults.kinds import changed_site
 from argo_env.pictures import write_overview
 from argo_env.report.files import PAGE, RECORD, write_report
 from argo_env.robot.spec import RobotSpec
 from argo_env.run.record import RunRecord
 from argo_env.site import Site
-from argo_env.stages import stage
 
 REPORT_FILES = (RECORD, "site.png", PAGE)
 """the page last: it shows the others"""

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 from argo_compiler.analysis import analyse
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, Remedy, located
+from argo_compiler.base.stages import stage
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.files.reading import decode_text, require_size
 from argo_compiler.il import Mission
@@ -27,7 +28,6 @@ from argo_env.planning.route_matrix import plan_mission
 from argo_env.planning.travel import SiteTravel
 from argo_env.run.record import Reordering
 from argo_env.seeding import generator
-from argo_env.stages import stage
 from argo_planner.use_cases.importing import ImportedMission
 
 TIME_LIMIT = 5.0

@@ -13,10 +13,10 @@ import torch
 from numpy.typing import NDArray
 from torch.nn import functional
 
+from argo_compiler.base.stages import stage
 from argo_env.envs.route_instance import DOCK
 from argo_env.envs.route_sources import RouteSource
 from argo_env.seeding import generator
-from argo_env.stages import stage
 from baselines.learned.network import RouteNetwork
 from baselines.learned.oracle import Floats, Oracle, Remainder
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid
+from argo_compiler.base.stages import heard_by
 from argo_env.files.folders import make_folder
-from argo_env.stages import heard_by
 from baselines.learned.extra import check_learned
 from baselines.stage_lines import StageLines
 

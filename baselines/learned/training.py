@@ -15,8 +15,8 @@ from stable_baselines3.common.logger import Logger, configure
 from stable_baselines3.common.utils import set_random_seed
 
 from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.stages import TellShare, stage
 from argo_env.seeding import generator
-from argo_env.stages import TellShare, stage
 from baselines.learned.imitation import lessons, loss
 from baselines.learned.network import RouteNetwork
 from baselines.learned.policy import RoutePolicy

@@ -6,9 +6,9 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from argo_compiler.base.stages import each
 from argo_env.envs.route_batch import RouteVectorEnv
 from argo_env.envs.route_instance import DOCK
-from argo_env.stages import each
 from baselines.learned.network import RouteNetwork
 from baselines.learned.sources import TrainingRoutes
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from argo_compiler.base.errors import Choice, Conflict, Invalid, Remedy
+from argo_compiler.base.errors import Conflict, Invalid, Remedy, RemedyChoice
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_planner.terminal.words import order_said, said, with_options
 
@@ -39,7 +39,7 @@ def test_hints_name_the_options(hint, remedy, choice, said):
         message="m",
         hint=hint,
         remedies=(remedy,),
-        choice=choice and Choice(remedy, *choice),
+        choice=choice and RemedyChoice(remedy, *choice),
     )
     (shown,) = with_options([found])
     assert shown.hint == said

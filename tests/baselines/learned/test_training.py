@@ -12,10 +12,10 @@ pytest.importorskip("sb3_contrib")
 from sb3_contrib.common.maskable.utils import get_action_masks  # noqa: E402
 
 from argo_compiler.base.errors import ArgoError  # noqa: E402
+from argo_compiler.base.stages import heard_by  # noqa: E402
 from argo_env.envs import route_episodes  # noqa: E402
 from argo_env.envs.route_instance import score_route  # noqa: E402
 from argo_env.envs.route_sources import TEST, RandomRoutes  # noqa: E402
-from argo_env.stages import heard_by  # noqa: E402
 from baselines.learned import curve  # noqa: E402
 from baselines.learned.agent import LearnedPolicy  # noqa: E402
 from baselines.learned.sources import TrainingRoutes  # noqa: E402

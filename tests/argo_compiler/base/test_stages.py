@@ -2,7 +2,7 @@
 
 import pytest
 
-from argo_env.stages import each, heard_by, stage
+from argo_compiler.base.stages import each, heard_by, stage
 
 
 def test_a_stage_within_another_is_said_with_it_and_then_the_other_goes_on():

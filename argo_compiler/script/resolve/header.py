@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from argo_compiler.base.errors import Choice, Remedy
+from argo_compiler.base.errors import Remedy, RemedyChoice
 from argo_compiler.base.listing import listed
 from argo_compiler.diagnostics import Span
 from argo_compiler.script.syntax.text.source import Diagnostics
@@ -77,7 +77,7 @@ def _choice(
         return AreaChoice(option, said=option is not None)
     offered, span = sorted(set(cell.areas)), cell.span
     numbers = tuple(map(str, offered))
-    choice = Choice(_REMEDIES[which], "area", numbers)
+    choice = RemedyChoice(_REMEDIES[which], "area", numbers)
     if option is not None and offered and option not in offered:
         message = f"the {which} in area {option} is not what the script offers"
         diagnostics.error("area-not-offered", message, span, str(choice), remedies, choice)

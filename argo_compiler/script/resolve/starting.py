@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import NoReturn
 
 from argo_compiler.base.catalog import Area
-from argo_compiler.base.errors import Choice, Remedy
+from argo_compiler.base.errors import Remedy, RemedyChoice
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Span
 from argo_compiler.script.resolve import making
@@ -90,7 +90,7 @@ class Starting:
             self.start = making.start(area.dock, wanted.span)
         elif self.context.whole and not wanted.said:
             known = tuple(str(area.number) for area in self.lookup.catalog.areas)
-            choice = Choice(Remedy.CHOOSE_START, "area", known)
+            choice = RemedyChoice(Remedy.CHOOSE_START, "area", known)
             hint = f"write `Start in starting area 1`, or {choice}"
             message = "the script sets no starting point"
             remedies = (choice.remedy,)

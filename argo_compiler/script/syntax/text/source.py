@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NoReturn, TypeVar
 
-from argo_compiler.base.errors import Choice, Remedy
+from argo_compiler.base.errors import Remedy, RemedyChoice
 from argo_compiler.diagnostics import MAX_EXCERPT, Diagnostic, Severity, Span, span_at
 
 MAX_LINE = 2000
@@ -156,7 +156,7 @@ class Diagnostics:
         span: Span | None,
         hint: str | None = None,
         remedies: tuple[Remedy, ...] = (),
-        choice: Choice | None = None,
+        choice: RemedyChoice | None = None,
     ) -> None:
         self._add(Severity.ERROR, code, message, span, hint, remedies, choice)
 
@@ -167,7 +167,7 @@ class Diagnostics:
         span: Span | None,
         hint: str | None = None,
         remedies: tuple[Remedy, ...] = (),
-        choice: Choice | None = None,
+        choice: RemedyChoice | None = None,
     ) -> NoReturn:
         """Adds an error, and gives up what it is about. Raises RefusedError."""
         self.error(code, message, span, hint, remedies, choice)
@@ -200,7 +200,7 @@ class Diagnostics:
         span: Span | None,
         hint: str | None,
         remedies: tuple[Remedy, ...] = (),
-        choice: Choice | None = None,
+        choice: RemedyChoice | None = None,
     ) -> None:
         if severity is Severity.ERROR:
             self.errors += 1

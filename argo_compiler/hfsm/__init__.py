@@ -76,10 +76,10 @@ if TYPE_CHECKING:
     from argo_compiler.hfsm.progress import (
         ByHand,
         Progress,
-        ReadingKind,
         ReadingProgress,
         TaskTally,
     )
+    from argo_compiler.hfsm.reading_kind import ReadingKind
     from argo_compiler.hfsm.trace import Cause, TraceEntry
 else:
     __getattr__, __dir__ = lazy_names(
@@ -115,7 +115,8 @@ else:
                 "StateTransition",
                 "TransitionKind",
             ],
-            "progress": ["ByHand", "Progress", "ReadingKind", "ReadingProgress", "TaskTally"],
+            "progress": ["ByHand", "Progress", "ReadingProgress", "TaskTally"],
+            "reading_kind": ["ReadingKind"],
             "trace": ["Cause", "TraceEntry"],
         },
     )

@@ -8,7 +8,8 @@ from typing import NamedTuple
 from argo_compiler.hfsm.conditions import CheckpointReading, all_words
 from argo_compiler.hfsm.events import Outcome
 from argo_compiler.hfsm.model import RETURN
-from argo_compiler.hfsm.progress import ByHand, ReadingKind
+from argo_compiler.hfsm.progress import ByHand
+from argo_compiler.hfsm.reading_kind import ReadingKind
 from argo_compiler.hfsm.rounds_and_clocks import Configuration
 from argo_compiler.hfsm.tables import CompiledTransition, LeafNode, Tables
 from argo_compiler.hfsm.trace import Cause, RawEntry

@@ -2,10 +2,13 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from argo_compiler.hfsm.conditions import words
 from argo_compiler.il import Condition, EventKind
+
+if TYPE_CHECKING:
+    from argo_compiler.hfsm.tables import CompiledTransition, LeafNode
 
 
 class Cause(StrEnum):
@@ -100,7 +103,7 @@ class TraceEntry:
 
 
 class RawEntry(NamedTuple):
-    """The fields of a `TraceEntry` as an executor keeps them: conditions are put in words later."""
+    """The fields of a `TraceEntry`, but that conditions are put in words later."""
 
     time: float
     source: str | None
@@ -116,7 +119,29 @@ class RawEntry(NamedTuple):
     detail: str = ""
 
 
-def entry(raw: RawEntry) -> TraceEntry:
+KeptStep = tuple[float, "LeafNode", "LeafNode | None", "CompiledTransition", str]
+"""What an executor keeps of most events: when a task ended well, the task, the next one, the
+transition between them, and the detail."""
+
+
+def raw_entry(kept: RawEntry | KeptStep) -> RawEntry:
+    """Return the entry that was kept."""
+    if isinstance(kept, RawEntry):
+        return kept
+    time, source, target, way, detail = kept
+    return RawEntry(
+        time,
+        source.name,
+        None if target is None else target.name,
+        way.cause,
+        way.conditions,
+        repeated=None if way.repeats is None else way.repeats.name,
+        detail=detail,
+    )
+
+
+def entry(kept: RawEntry | KeptStep) -> TraceEntry:
     """The entry that a person reads."""
+    raw = raw_entry(kept)
     fields = raw._asdict() | {"conditions": tuple(map(words, raw.conditions))}
     return TraceEntry(**fields)

@@ -16,7 +16,7 @@ PAGE := argo_planner/page
 NPM := npm --prefix $(PAGE)
 export PATH := $(PATH):$(CURDIR)/$(BIN)
 
-.PHONY: demo page test test-long lint format generated help clean
+.PHONY: demo page test test-long speed lint format generated help clean
 
 demo: .venv/demo.stamp ## run mission #1 and write its report
 	$(BIN)/argo run scenarios/umad/missions/mission_1.txt --site umad --seed 0 \
@@ -31,6 +31,10 @@ test: .venv/test.stamp page ## run the suite, but for what takes long; says whic
 
 test-long: .venv/test.stamp page ## run what takes long: the wheel, kills, what is as large as can be
 	$(PYTEST) -m long $(TWO_WORKERS) --durations 0 --durations-min 3
+
+speed: .venv/test.stamp ## how fast Argo is beside the values that are kept; names what has become slower
+	$(INSTALL) 'py_trees>=2.3,<3'
+	env -u PYTHONDONTWRITEBYTECODE $(BIN)/python -m benchmarks.speed
 
 lint: .venv/test.stamp $(PAGE)/node_modules/stamp ## style and types
 	$(BIN)/ruff check .

@@ -45,16 +45,20 @@ def service(folder: Path) -> Iterator[tuple[str, int]]:
         command, stderr=subprocess.PIPE, text=True, env=os.environ | {"ARGO_TOKEN": TOKEN}
     )
     assert process.stderr is not None
+    reader = threading.Thread(target=process.stderr.read, daemon=True)
     try:
         for line in process.stderr:
             if "http://" in line:
                 address = line.partition("http://")[2].strip().strip("/")
                 break
-        threading.Thread(target=process.stderr.read, daemon=True).start()
+        reader.start()
         yield address, process.pid
     finally:
         process.terminate()
         process.wait()
+        if reader.ident is not None:
+            reader.join()
+        process.stderr.close()
 
 
 def mission(size: int) -> dict[str, object]:

@@ -17,7 +17,7 @@ TYPES := $(PAGE)/src/api/schema.d.ts
 NPM := npm --prefix $(PAGE)
 export PATH := $(PATH):$(CURDIR)/$(BIN)
 
-.PHONY: demo page test test-all test-campaigns lint lint-python lint-page format generated help clean
+.PHONY: demo page test test-all test-campaigns speed lint lint-python lint-page format generated help clean
 
 demo: .venv/demo.stamp ## run mission #1 and write its report
 	$(BIN)/argo run scenarios/umad/missions/mission_1.txt --site umad --seed 0 \
@@ -36,6 +36,10 @@ test-all: .venv/test.stamp page ## run the whole suite, as CI does
 
 test-campaigns: .venv/test.stamp page ## run the whole suite with all random examples, kills and repetitions
 	ARGO_EXAMPLES=full $(PYTEST) $(TWO_WORKERS) --durations 30 --durations-min 3
+
+speed: .venv/test.stamp ## how fast Argo is beside the values that are kept; names what has become slower
+	$(INSTALL) 'py_trees>=2.3,<3'
+	env -u PYTHONDONTWRITEBYTECODE $(BIN)/python -m benchmarks.speed
 
 lint: lint-python lint-page ## check style and types
 

@@ -8,11 +8,11 @@ from typing import Annotated
 import typer
 
 from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.garbage_collector import collect_again
 from argo_compiler.base.version import __version__
 from argo_planner.lazy_group import LazyCommand, LazyGroup
 from argo_planner.terminal.output import guard_output
 from argo_planner.terminal.signals import ignore_signals, raise_interrupted
-from argo_planner.terminal.stage_display import stages_shown
 from argo_planner.terminal.verbosity import set_verbosity
 
 
@@ -161,6 +161,9 @@ def argo(
     ] = False,
 ) -> None:
     """Turns a written inspection mission into a checked plan and drives it through a site."""
+    from argo_planner.terminal.stage_display import stages_shown  # `argo --help` has no stages
+
+    collect_again()
     set_verbosity(verbose, quiet)
     context.with_resource(stages_shown())
 

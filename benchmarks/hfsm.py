@@ -23,7 +23,7 @@ import math
 import random
 import statistics
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib.util import find_spec
 from itertools import pairwise
 from typing import Any
@@ -364,17 +364,19 @@ for name in MISSING:
     del PEERS[name]
 
 
-def measure(count: int, repeats: int) -> dict[str, float]:
+def measure(
+    count: int, repeats: int, machines: Mapping[str, tuple[Callable[[], Run], bool]] = PEERS
+) -> dict[str, float]:
     """Events a second of each machine, the medians of so many repeats."""
     generator = random.Random(0)
     values = [generator.uniform(0.0, 10.0) for _ in range(count)]
     expected = argo()(values)
-    rates: dict[str, list[float]] = {name: [] for name in PEERS}
-    for name, (build, _) in PEERS.items():
+    rates: dict[str, list[float]] = {name: [] for name in machines}
+    for name, (build, _) in machines.items():
         if build()(values) != expected:
             raise SystemExit(f"{name} goes through other tasks")
     for _ in range(repeats):
-        for name, (build, _) in PEERS.items():
+        for name, (build, _) in machines.items():
             run = build()
             gc.collect()
             before = time.process_time()

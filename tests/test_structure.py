@@ -321,7 +321,7 @@ def test_what_goes_wrong_is_of_a_kind(package):
 
 
 SHIPPED = {
-    "argo_compiler.script.syntax.grammar.tables",
+    "argo_compiler.base.saved_tables",
     "argo_env.files.resources",
     "argo_env.planning.code",
 }

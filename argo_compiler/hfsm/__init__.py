@@ -43,6 +43,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
+    from argo_compiler.hfsm.cause import Cause
     from argo_compiler.hfsm.conditions import CheckpointReading, Measured
     from argo_compiler.hfsm.events import (
         ActionFailed,
@@ -76,11 +77,11 @@ if TYPE_CHECKING:
     from argo_compiler.hfsm.progress import (
         ByHand,
         Progress,
-        ReadingKind,
         ReadingProgress,
         TaskTally,
     )
-    from argo_compiler.hfsm.trace import Cause, TraceEntry
+    from argo_compiler.hfsm.reading_kind import ReadingKind
+    from argo_compiler.hfsm.trace import TraceEntry
 else:
     __getattr__, __dir__ = lazy_names(
         __name__,
@@ -115,7 +116,9 @@ else:
                 "TransitionKind",
             ],
             "outcome": ["Outcome"],
-            "progress": ["ByHand", "Progress", "ReadingKind", "ReadingProgress", "TaskTally"],
-            "trace": ["Cause", "TraceEntry"],
+            "progress": ["ByHand", "Progress", "ReadingProgress", "TaskTally"],
+            "reading_kind": ["ReadingKind"],
+            "cause": ["Cause"],
+            "trace": ["TraceEntry"],
         },
     )

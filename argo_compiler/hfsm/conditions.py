@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from argo_compiler.hfsm.progress import ReadingKind
+from argo_compiler.hfsm.reading_kind import ReadingKind
 from argo_compiler.il import Condition, ConditionType, WaitRule
 
 
@@ -46,8 +46,14 @@ def reading_test(condition: Condition) -> Test:
             return lambda reading, now: (
                 reading.abnormal and (max_age is None or not now - reading.time > max_age)
             )
-    compare = comparison(condition)
+    compare, limit = comparison(condition), condition.param1
     if max_age is None:
+        # What most conditions are has no second call.
+        if limit is not None and not condition.inclusive:
+            if condition.type is ConditionType.LESS:
+                return lambda reading, _: (value := reading.value) is not None and value < limit
+            if condition.type is ConditionType.GREATER:
+                return lambda reading, _: (value := reading.value) is not None and value > limit
         return lambda reading, _: (value := reading.value) is not None and compare(value)
     return lambda reading, now: (
         (value := reading.value) is not None and compare(value) and not now - reading.time > max_age

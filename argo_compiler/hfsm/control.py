@@ -3,13 +3,13 @@
 import math
 from collections.abc import Sequence
 
+from argo_compiler.hfsm.cause import Cause
 from argo_compiler.hfsm.course import MissionCourse
 from argo_compiler.hfsm.interrupts import Effect, Stage, Trigger
 from argo_compiler.hfsm.outcome import Outcome
 from argo_compiler.hfsm.progress import ByHand
 from argo_compiler.hfsm.standing import InterruptState, TakenRow, advance
 from argo_compiler.hfsm.tables import ReactionNode, Tables
-from argo_compiler.hfsm.trace import Cause
 from argo_compiler.il import EventKind
 
 _GOING = Stage.GOING  # looked at with each event, and an enumeration's member is found slowly
@@ -89,21 +89,24 @@ class Control:
         course = self.course
         place = course.place
         while course.outcome is None:
-            going = self.standing.stage is _GOING
-            if going and place.visit.leaf is None:
-                course.step()
-                self._advance(Trigger.DONE)
-            elif going and place.own_due <= course.now and course.end_wait():
-                continue
-            elif course.time_up_at <= course.now:
+            now = course.now
+            if self.standing.stage is _GOING:
+                if place.visit.leaf is None:
+                    course.step()
+                    self._advance(Trigger.DONE)
+                elif place.own_due <= now and course.end_wait():
+                    continue
+                elif course.time_up_at <= now:
+                    self.occur(EventKind.TIME_UP, "")
+                elif (
+                    place.due > now and place.own_due > now and not course.by_hand
+                ) or not course.step():
+                    break
+            elif course.time_up_at <= now:
                 self.occur(EventKind.TIME_UP, "")
-            elif self.hold_due <= course.now:
+            elif self.hold_due <= now:
                 self._advance(Trigger.LIMIT)
-            elif (
-                not going
-                or not (place.due <= course.now or place.own_due <= course.now or course.by_hand)
-                or not course.step()
-            ):
+            else:
                 break
         if course.outcome is not None and self.standing.outcome is None:
             self._advance(Trigger.ENDED)

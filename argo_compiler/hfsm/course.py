@@ -1,20 +1,23 @@
 """The mission part of a machine under way: its tasks and groups, their ends and their times."""
 
 import math
-from collections import deque
+from collections import defaultdict, deque
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from argo_compiler.hfsm.cause import Cause
 from argo_compiler.hfsm.conditions import CheckpointReading, all_words
-from argo_compiler.hfsm.model import RETURN
 from argo_compiler.hfsm.outcome import Outcome
-from argo_compiler.hfsm.progress import ByHand, ReadingKind
+from argo_compiler.hfsm.progress import ByHand
+from argo_compiler.hfsm.reading_kind import ReadingKind
 from argo_compiler.hfsm.rounds_and_clocks import Configuration
 from argo_compiler.hfsm.tables import CompiledTransition, LeafNode, Tables
-from argo_compiler.hfsm.trace import Cause, RawEntry
+from argo_compiler.hfsm.trace import KeptStep, RawEntry
 from argo_compiler.il import EventKind
 
 _VALUE = ReadingKind.VALUE
+_new = tuple.__new__
+"""makes a NamedTuple in half the time of its own"""
 _OVER = "its time window is over"
 
 
@@ -48,10 +51,10 @@ class MissionCourse:
         self.failed = False
         """whether a failure counts as one of the mission"""
         self.outcome: Outcome | None = None
-        self.tallies: dict[str, list[int]] = {}
+        self.tallies: defaultdict[str, list[int]] = defaultdict(lambda: [0, 0, 0])
         """by task, how many visits have ended: done, failed, by hand"""
         # What has been decides nothing, so it is only ever added to.
-        self.trace: list[RawEntry] = []
+        self.trace: list[RawEntry | KeptStep] = []
         self.ended: list[tuple[str, str | None, bool]] = []
 
     @property
@@ -131,7 +134,7 @@ class MissionCourse:
             self.time_up_at = math.inf
         elif place.due <= self.now:
             self._leave_group()
-        elif self.by_hand and leaf.id != RETURN and leaf.name in self.by_hand:
+        elif self.by_hand and not leaf.returns and leaf.name in self.by_hand:
             self._pass_over(leaf)
         elif place.own_due <= self.now:
             return self._own_time(leaf)
@@ -178,12 +181,13 @@ class MissionCourse:
 
     def measure(self, object_id: str, leaf: LeafNode, value: float | None, abnormal: bool) -> None:
         """The action of a task has ended well, with what it read at the checkpoint."""
-        kind = ReadingKind.UNREADABLE if value is None else _VALUE
-        self.place.readings[object_id] = CheckpointReading(
-            kind, self.now, value, abnormal and value is not None
-        )
-        if self.place.visit.leaf is not leaf:
-            self.place.reading_changed(self.now)
+        place, now = self.place, self.now
+        if value is None:
+            place.readings[object_id] = CheckpointReading(ReadingKind.UNREADABLE, now)
+        else:
+            place.readings[object_id] = _new(CheckpointReading, (_VALUE, now, value, abnormal))
+        if place.visit.leaf is not leaf:
+            place.reading_changed(now)
 
     def tell(self, object_id: str, value: float, abnormal: bool, at: float) -> None:
         """A value was read at a checkpoint at the time `at` (s)."""
@@ -197,7 +201,7 @@ class MissionCourse:
             visit.action_due = math.inf
             self.place.find_own_due()
             self.note(Cause.RETRY, failure=reason)
-        elif leaf.id == RETURN:
+        elif leaf.returns:
             self.end(Outcome.FAILED, Cause.FAILURE, failure=reason)
         else:
             self._fail_for_good(leaf, reason, leaf.failure, unreadable)
@@ -222,15 +226,19 @@ class MissionCourse:
 
     def leave(self, leaf: LeafNode, detail: str = "") -> None:
         """The mission goes on from a task that has ended."""
-        if leaf.id == RETURN:
+        if leaf.returns:
             self.end(Outcome.RETURNED, Cause.END)
             return
-        self._count(leaf)
-        self._take(leaf.ways, detail=detail)
+        # As `_count` and `_take`: most events come by here.
+        self.tallies[leaf.name][0] += 1
+        self.ended.append(leaf.done)
+        place, now = self.place, self.now
+        way = place.take(leaf.ways, now)
+        self.trace.append((now, leaf, place.visit.leaf, way, detail))
 
     def leave_late(self, leaf: LeafNode) -> None:
         """A task has been done that the mission had left before."""
-        if leaf.id != RETURN:
+        if not leaf.returns:
             self._count(leaf)
             self.note(Cause.LATE, detail=leaf.name)
 
@@ -265,12 +273,8 @@ class MissionCourse:
 
     def _count(self, leaf: LeafNode, failure: str | None = None, by_hand: bool = False) -> None:
         """A visit of a task has ended."""
-        name = leaf.name
-        tally = self.tallies.get(name)
-        if tally is None:
-            tally = self.tallies[name] = [0, 0, 0]
-        tally[2 if by_hand else 0 if failure is None else 1] += 1
-        self.ended.append((name, failure, by_hand))
+        self.tallies[leaf.name][2 if by_hand else 0 if failure is None else 1] += 1
+        self.ended.append((leaf.name, failure, by_hand))
 
     def _read(self, object_id: str, kind: ReadingKind) -> None:
         """A measurement gave no value."""
@@ -282,15 +286,14 @@ class MissionCourse:
         failure: str | None = None,
         timed_out: str | None = None,
         by_hand: ByHand | None = None,
-        detail: str = "",
     ) -> None:
-        place = self.place
+        place, now = self.place, self.now
         source = place.visit.leaf
-        way, repeated = place.take(ways, self.now)
-        target = place.visit.leaf
+        way = place.take(ways, now)
+        target, repeated = place.visit.leaf, way.repeats
         self.trace.append(
             RawEntry(
-                self.now,
+                now,
                 None if source is None else source.name,
                 None if target is None else target.name,
                 way.cause if timed_out is None else Cause.TIMEOUT,
@@ -301,7 +304,6 @@ class MissionCourse:
                 None,
                 by_hand is not None,
                 by_hand is not None and by_hand.skipped,
-                detail,
             )
         )
 

@@ -1,12 +1,13 @@
 """What goes into an executor and what comes out: events and commands."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from argo_compiler.hfsm.progress import ByHand
 from argo_compiler.il import EventKind, Task
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, init=False)
 class ActionSucceeded:
     """The running action has ended well. `value`: what a MEASURE read, if it is a number.
 
@@ -15,10 +16,24 @@ class ActionSucceeded:
     """
 
     task: str
-    value: float | None = None
-    abnormal: bool = False
+    value: float | None
+    abnormal: bool
     """whether the value lies outside the checkpoint's nominal range"""
-    id: int | None = None
+    id: int | None
+
+    def __init__(
+        self, task: str, value: float | None = None, abnormal: bool = False, id: int | None = None
+    ) -> None:
+        # Most events are of this kind; a frozen dataclass' own takes twice as long.
+        _set_task(self, task)
+        _set_value(self, value)
+        _set_abnormal(self, abnormal)
+        _set_id(self, id)
+
+
+_set_task, _set_value, _set_abnormal, _set_id = (
+    vars(ActionSucceeded)[name].__set__ for name in ("task", "value", "abnormal", "id")
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,8 +111,7 @@ ActionEnded = ActionSucceeded | ActionFailed | ActionStopped
 Event = ActionEnded | Tick | Occurred | ReadingGiven | Pause | Resume | TakeOver | GiveBack | Cancel
 
 
-@dataclass(frozen=True, slots=True)
-class StartAction:
+class StartAction(NamedTuple):
     """Carry out the task's action and report its end by an event."""
 
     task: Task

@@ -4,7 +4,9 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import NoReturn
 
+from argo_compiler.hfsm.cause import Cause
 from argo_compiler.hfsm.conditions import CheckpointReading, Measured
 from argo_compiler.hfsm.control import Control
 from argo_compiler.hfsm.events import (
@@ -37,11 +39,12 @@ from argo_compiler.hfsm.restoring import (
     tally_progress,
 )
 from argo_compiler.hfsm.tables import LeafNode, tables
-from argo_compiler.hfsm.trace import Cause, TraceEntry, entry
+from argo_compiler.hfsm.trace import TraceEntry, entry, raw_entry
 from argo_compiler.hfsm.views import View
 from argo_compiler.il import MAX_TIME_S, EventKind, Task
 
 _ENDS = (ActionSucceeded, ActionFailed, ActionStopped)
+_OTHER_ENDS = (ActionFailed, ActionStopped)
 _EVENTS = frozenset(
     [*_ENDS, Tick, Occurred, ReadingGiven, Pause, Resume, TakeOver, GiveBack, Cancel]
 )
@@ -91,8 +94,7 @@ class Executor:
         self._running: Task | None = None
         self._running_leaf: LeafNode | None = None
         """None: the drive of a reaction"""
-        self._running_visit = 0
-        self._running_attempt = _FIRST
+        self._running_turn = _NO_TURN
         self._last_id = 0
         """of the last command that started an action"""
         self._cancelling = False
@@ -164,7 +166,13 @@ class Executor:
             course = control.course
             if not course.now <= now <= MAX_TIME_S:
                 self._require_order(now)
-            self._require_sense(event)
+            kind = type(event)
+            if kind not in _EVENTS or not self._started:
+                self._refuse(event)
+            if isinstance(event, _ENDS):
+                self._require_end(event)
+            elif kind is not Tick:
+                self._require_report(event)
             place = course.place
             if (
                 now > place.due
@@ -175,9 +183,11 @@ class Executor:
                 # The next float below `now` stands for all times before it.
                 control.let_pass(math.nextafter(now, -math.inf))
             course.now = now
-            if isinstance(event, _ENDS):
+            if isinstance(event, ActionSucceeded):
+                self._succeed(event)
+            elif isinstance(event, _OTHER_ENDS):
                 self._end_action(event)
-            elif not isinstance(event, Tick):
+            elif kind is not Tick:
                 self._hear(event, now)
             control.settle()
             return self._command()
@@ -338,30 +348,29 @@ class Executor:
 
     def _command(self) -> tuple[Command, ...]:
         """Starts what is to run, once what is not has ended."""
-        leaf, task, visit, attempt = self._wanted()
-        if self._running is not None:
-            same = visit == self._running_visit and attempt == self._running_attempt
-            if self._cancelling or same:
+        leaf, task, turn = self._wanted()
+        running = self._running
+        if running is not None:
+            if self._cancelling or turn == self._running_turn:
                 return ()
             self._cancelling = True
-            return (CancelAction(self._running.name, self._reason(), self._last_id),)
+            return (CancelAction(running.name, self._reason(), self._last_id),)
         if task is None:
             return ()
         self._running = task
         self._running_leaf = leaf
-        self._running_visit = visit
-        self._running_attempt = attempt
+        self._running_turn = turn
         self._last_id += 1
         not_before = None
-        if leaf is not None and leaf.earliest:
-            not_before = self._control.course.place.began + leaf.earliest
-        if leaf is not None and leaf.time_limit is not None:
-            self._control.course.limit_action(leaf.time_limit, not_before)
-        return (StartAction(task, self._last_id, not_before),)
+        if leaf is not None:
+            if leaf.earliest:
+                not_before = self._control.course.place.began + leaf.earliest
+            if leaf.time_limit is not None:
+                self._control.course.limit_action(leaf.time_limit, not_before)
+        return (_new(StartAction, (task, self._last_id, not_before)),)
 
     def _wanted(self) -> "_Wanted":
-        """The leaf, the task and the visit of the action that is to run, and by what it is begun
-        anew: failures in this visit, and interruptions so far. No task, and visit 0: none."""
+        """The leaf and the task of the action that is to run, and its turn. No task: none."""
         control = self._control
         course, standing = control.course, control.standing
         if course.outcome is not None or standing.paused:
@@ -372,10 +381,10 @@ class Executor:
             leaf = visit.leaf
             if leaf is None or leaf.wait is not None or place.round_of is not None:
                 return _NOTHING
-            return leaf, leaf.task, visit.number, (visit.attempt, place.interruptions)
+            return leaf, leaf.task, (visit.number, visit.attempt, place.interruptions)
         active = control.active
         if control.driving and active is not None:
-            return None, active.task, control.drive_visit, _FIRST
+            return None, active.task, (control.drive_visit, 0, 0)
         return _NOTHING
 
     def _reason(self) -> str:
@@ -385,41 +394,52 @@ class Executor:
             return f"reaction to {self.reaction.replace('_', ' ')}"
         if self.paused:
             return "the mission is paused"
-        for one in reversed(self._control.course.trace):
+        for one in map(raw_entry, reversed(self._control.course.trace)):
             if one.timed_out is not None:
                 return f"the time of '{one.timed_out}' is up"
             if one.failure is not None:
                 return one.failure
         return "its turn is over"
 
-    def _end_action(self, event: ActionEnded) -> None:
+    def _succeed(self, event: ActionSucceeded) -> None:
+        """The running action has ended well."""
+        control, leaf = self._control, self._running_leaf
+        self._running = None
+        self._cancelling = False
+        if leaf is None:
+            if control.driving and control.drive_visit == self._running_turn[0]:
+                control.arrive()
+            return
+        course = control.course
+        if leaf.time_limit is not None:
+            course.unlimit_action()
+        if leaf.measures is not None:
+            course.measure(leaf.measures, leaf, event.value, event.abnormal)
+        if self._running_turn[0] == course.place.visit.number:
+            course.leave(leaf)
+        else:
+            course.leave_late(leaf)
+
+    def _end_action(self, event: ActionFailed | ActionStopped) -> None:
+        """The running action has failed or was stopped."""
         control, leaf = self._control, self._running_leaf
         course = control.course
         failed = isinstance(event, ActionFailed) and not self._cancelling
         if failed:
             # A failure may be the work of the cancellation, so then it counts as a stop.
-            _, _, visit, attempt = self._wanted()
-            failed = visit == self._running_visit and attempt == self._running_attempt
+            _, _, turn = self._wanted()
+            failed = turn == self._running_turn
         self._running = None
         self._cancelling = False
         if leaf is None:
-            if not control.driving or control.drive_visit != self._running_visit:
+            if not control.driving or control.drive_visit != self._running_turn[0]:
                 return
-            if isinstance(event, ActionSucceeded):
-                control.arrive()
-            elif isinstance(event, ActionFailed) and failed:
+            if isinstance(event, ActionFailed) and failed:
                 control.fail_drive(event.reason)
             return
         if leaf.time_limit is not None:
             course.unlimit_action()
-        if isinstance(event, ActionSucceeded):
-            if leaf.measures is not None:
-                course.measure(leaf.measures, leaf, event.value, event.abnormal)
-            if self._running_visit == course.place.visit.number:
-                course.leave(leaf)
-            else:
-                course.leave_late(leaf)
-        elif isinstance(event, ActionFailed) and failed:
+        if isinstance(event, ActionFailed) and failed:
             course.fail(leaf, event.reason, event.unreadable)
 
     def _require_order(self, now: float) -> None:
@@ -427,16 +447,10 @@ class Executor:
             before = self._control.course.now
             raise ValueError(f"time runs backwards: {now:g} s comes after {before:g} s")
 
-    def _require_sense(self, event: Event) -> None:
+    def _refuse(self, event: Event) -> NoReturn:
         if not self._started:
             raise ValueError(_NOT_STARTED)
-        kind = type(event)
-        if kind not in _EVENTS:
-            raise ValueError(f"{event!r} is no event: give an instance of one")
-        if isinstance(event, _ENDS):
-            self._require_end(event)
-        elif kind is not Tick:
-            self._require_report(event)
+        raise ValueError(f"{event!r} is no event: give an instance of one")
 
     def _require_report(self, event: Event) -> None:
         if isinstance(event, Occurred):
@@ -473,9 +487,14 @@ class Executor:
 
 _BUSY = "another call of the executor is under way: one thread at a time, and none from inside"
 _NOT_STARTED = "the executor has not been started: call start first"
-_FIRST = (0, 0)
-_NOTHING = (None, None, 0, _FIRST)
-_Wanted = tuple[LeafNode | None, Task | None, int, tuple[int, int]]
+_Turn = tuple[int, int, int]
+"""The number of a visit, and by what its action is begun anew: failures in this visit, and
+interruptions so far."""
+_NO_TURN = (0, 0, 0)
+_NOTHING = (None, None, _NO_TURN)
+_Wanted = tuple[LeafNode | None, Task | None, _Turn]
+_new = tuple.__new__
+"""makes a NamedTuple in half the time of its own"""
 
 
 def _ended_visit(kept: tuple[str, str | None, bool]) -> EndedVisit:

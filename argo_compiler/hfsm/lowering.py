@@ -6,6 +6,8 @@ end from the innermost group outward (G5 to G7), and each transition knows which
 (G2 to G4).
 """
 
+from typing import TYPE_CHECKING
+
 from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, Severity
@@ -24,8 +26,6 @@ from argo_compiler.hfsm.model import (
     reaction_id,
     task_id,
 )
-from argo_compiler.hfsm.progress import Progress
-from argo_compiler.hfsm.remaining import remaining
 from argo_compiler.il import (
     Action,
     Group,
@@ -41,8 +41,13 @@ from argo_compiler.il.grouping import GroupNesting
 from argo_compiler.il.reserved import RETURN_TASK, reaction_task_name
 from argo_compiler.il.ways import beginning, default_target
 
+if TYPE_CHECKING:
+    from argo_compiler.hfsm.progress import Progress
 
-def lower(mission: Mission, progress: Progress | None = None, source_name: str = "mission") -> Hfsm:
+
+def lower(
+    mission: Mission, progress: "Progress | None" = None, source_name: str = "mission"
+) -> Hfsm:
     """The machine of a mission, in time linear in the number of tasks.
 
     With `progress`, that of the remaining mission: only what can still be reached from there.
@@ -56,7 +61,11 @@ def lower(mission: Mission, progress: Progress | None = None, source_name: str =
         raise DiagnosticError(source_name, diagnostics)
     with collector_held():
         machine = _Lowering(mission).machine()
-        return machine if progress is None else remaining(machine, progress)
+        if progress is None:
+            return machine
+        from argo_compiler.hfsm.remaining import remaining  # a check needs none of it
+
+        return remaining(machine, progress)
 
 
 _END = StateTransition(kind=TransitionKind.DEFAULT, target=DONE, domain=MISSION)

@@ -6,6 +6,7 @@ from pydantic import Field
 
 from argo_compiler.base.model import Model
 from argo_compiler.hfsm.outcome import Outcome
+from argo_compiler.hfsm.reading_kind import ReadingKind
 from argo_compiler.il import EventKind
 
 
@@ -17,14 +18,6 @@ class GroupProgress(Model):
     elapsed: float = Field(ge=0)
     counts_interruptions: bool = False
     """whether time away is added to its clock"""
-
-
-class ReadingKind(StrEnum):
-    """What came of the last measurement at a checkpoint (C3)."""
-
-    VALUE = "value"
-    UNREADABLE = "unreadable"
-    FAILED = "failed"
 
 
 class ReadingProgress(Model):

@@ -7,6 +7,8 @@ from argo_compiler.hfsm.conditions import CheckpointReading
 from argo_compiler.hfsm.tables import CompiledTransition, GroupNode, Guard, LeafNode, Tables
 from argo_compiler.hfsm.visits import TaskVisit
 
+_NEVER = math.inf
+
 
 @dataclass(slots=True, eq=False)
 class Frame:
@@ -83,15 +85,13 @@ class Configuration:
         """The clock that a group goes by (s)."""
         return self._at(now, group) + self._ahead(group)
 
-    def take(
-        self, ways: tuple[CompiledTransition, ...], now: float
-    ) -> tuple[CompiledTransition, GroupNode | None]:
-        """Goes the first way that can be taken; returns it and the group that is repeated."""
+    def take(self, ways: tuple[CompiledTransition, ...], now: float) -> CompiledTransition:
+        """Goes the first way that can be taken, and returns it."""
         if self.round_of is not None:
             self.begin_round(now)
         while True:
             for way in ways:
-                if self._possible(way, now):
+                if way.free or self._possible(way, now):
                     break
             if way.completes is None:
                 break
@@ -102,7 +102,7 @@ class Configuration:
         self._enter(way.target, way.keep, way.domain, now)
         if repeated is not None and repeated.every:
             self._await_round(self.frames[repeated.depth], now)
-        return way, repeated
+        return way
 
     def enter(self, leaf: LeafNode | None, now: float) -> None:
         """Begins the mission."""
@@ -208,8 +208,8 @@ class Configuration:
         self, leaf: LeafNode | None, keep: int, domain: GroupNode | None, now: float
     ) -> None:
         """Leaves all below `domain`, which is the last of `keep` groups, and enters the leaf."""
-        self.visits += 1
-        self.visit = TaskVisit(leaf, self.visits, now, now)
+        self.visits = number = self.visits + 1
+        self.visit = TaskVisit(leaf, number, now, now)
         frames = self.frames
         changed = len(frames) > keep
         if changed:
@@ -224,7 +224,7 @@ class Configuration:
             frames.extend(reversed(entered))
         if changed and self._has_hard_groups:
             self._find_due(now)
-        self.own_due = math.inf
+        self.own_due = _NEVER
         if leaf is not None and leaf.timed:
             self.find_own_due()
 

@@ -3,9 +3,11 @@
 from dataclasses import dataclass, field
 
 from argo_compiler.base.garbage_collector import collector_held
+from argo_compiler.hfsm.cause import Cause
 from argo_compiler.hfsm.conditions import Test, reading_test
 from argo_compiler.hfsm.model import (
     MISSION,
+    RETURN,
     Composite,
     Hfsm,
     Leaf,
@@ -13,7 +15,6 @@ from argo_compiler.hfsm.model import (
     StateTransition,
     TransitionKind,
 )
-from argo_compiler.hfsm.trace import Cause
 from argo_compiler.il import Action, Condition, EventKind, Stop, Task, WaitRule
 
 _CAUSES = {
@@ -49,6 +50,8 @@ class CompiledTransition:
     """the innermost of them"""
     completes: "GroupNode | None"
     repeats: "GroupNode | None"
+    free: bool
+    """whether it can be taken whatever was measured, in whatever round"""
 
 
 @dataclass(slots=True, eq=False)
@@ -103,6 +106,10 @@ class LeafNode:
     time_limit: float | None
     timed: bool
     """whether its own times bring something about while the machine stands at it"""
+    done: tuple[str, None, bool]
+    """what is kept of a visit that has ended well"""
+    returns: bool
+    """whether it is the way back to the dock"""
     ways: tuple[CompiledTransition, ...] = ()
     failure: CompiledTransition | None = None
     missed: CompiledTransition | None = None
@@ -160,6 +167,7 @@ def _tables(hfsm: Hfsm) -> Tables:
             domain=domain,
             completes=None if transition.completes is None else groups[transition.completes],
             repeats=domain if transition.kind is TransitionKind.REPEAT else None,
+            free=transition.kind is not TransitionKind.REPEAT and not transition.conditions,
         )
 
     for leaf in hfsm.leaves:
@@ -217,6 +225,8 @@ def _leaf(leaf: Leaf, groups: dict[str, GroupNode]) -> LeafNode:
         latest=latest,
         time_limit=task.time_limit,
         timed=wait is not None or latest is not None,
+        done=(task.name, None, False),
+        returns=leaf.id == RETURN,
     )
 
 

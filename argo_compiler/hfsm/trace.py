@@ -1,48 +1,12 @@
 """The trace: what a machine did, when and why."""
 
 from dataclasses import dataclass
-from enum import StrEnum
 from typing import NamedTuple
 
+from argo_compiler.hfsm.cause import Cause
 from argo_compiler.hfsm.conditions import words
+from argo_compiler.hfsm.tables import CompiledTransition, LeafNode
 from argo_compiler.il import Condition, EventKind
-
-
-class Cause(StrEnum):
-    """Why there is an entry in the trace."""
-
-    START = "start"
-    RESTORE = "restored"
-    CONDITION = "condition"
-    REPEAT = "repeat"
-    DEFAULT = "default"
-    TIMEOUT = "time out"
-    RETRY = "retry"
-    """an action that failed is started anew"""
-    FAILURE = "failure"
-    """an action failed for good, and it does not go on as after another end"""
-    MISSED = "window missed"
-    """a task's hard window is over, and what follows then"""
-    ROUND = "round begins"
-    """a round that was not due before"""
-    READING = "reading given"
-    """somebody else told a value"""
-    LATE = "late"
-    """an action that was being cancelled succeeded after all, when its task had been left"""
-    REPORT = "report"
-    """an event has occurred"""
-    REACTION = "reaction"
-    """the reaction to an event begins"""
-    HOLD = "hold"
-    """a reaction stands still and waits"""
-    LIMIT = "limit of the hold"
-    """it stands still no longer"""
-    MISSION = "mission goes on"
-    PAUSE = "pause"
-    RESUME = "resume"
-    CANCEL = "cancel"
-    END = "end"
-    """a reaction ends the mission"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +64,7 @@ class TraceEntry:
 
 
 class RawEntry(NamedTuple):
-    """The fields of a `TraceEntry` as an executor keeps them: conditions are put in words later."""
+    """The fields of a `TraceEntry`, but that conditions are put in words later."""
 
     time: float
     source: str | None
@@ -116,7 +80,29 @@ class RawEntry(NamedTuple):
     detail: str = ""
 
 
-def entry(raw: RawEntry) -> TraceEntry:
+KeptStep = tuple[float, LeafNode, LeafNode | None, CompiledTransition, str]
+"""What an executor keeps of most events: when a task ended well, the task, the next one, the
+transition between them, and the detail."""
+
+
+def raw_entry(kept: RawEntry | KeptStep) -> RawEntry:
+    """Return the entry that was kept."""
+    if isinstance(kept, RawEntry):
+        return kept
+    time, source, target, way, detail = kept
+    return RawEntry(
+        time,
+        source.name,
+        None if target is None else target.name,
+        way.cause,
+        way.conditions,
+        repeated=None if way.repeats is None else way.repeats.name,
+        detail=detail,
+    )
+
+
+def entry(kept: RawEntry | KeptStep) -> TraceEntry:
     """The entry that a person reads."""
+    raw = raw_entry(kept)
     fields = raw._asdict() | {"conditions": tuple(map(words, raw.conditions))}
     return TraceEntry(**fields)

@@ -14,7 +14,8 @@ RETURN_TO_HOME = "return_to_home"
 class Part(BaseModel):
     """isar takes no notice of fields that it does not know; here they are kept, to warn of them."""
 
-    model_config = ConfigDict(frozen=True, extra="allow", allow_inf_nan=False)
+    # Looked for in each mission that is read, and mostly not there.
+    model_config = ConfigDict(frozen=True, extra="allow", allow_inf_nan=False, defer_build=True)
 
 
 class Position(Part):

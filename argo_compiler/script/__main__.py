@@ -1,7 +1,7 @@
 """Writes what is made from the grammar: `python -m argo_compiler.script [PAGE]`.
 
-That is the parser's tables and, between the marks of the page `docs/script.md` if it is named, all
-that can be said.
+That is the parser's tables, the lexicons and, between the marks of the page `docs/script.md` if it
+is named, all that can be said.
 """
 
 import sys
@@ -11,9 +11,11 @@ from pathlib import Path
 from argo_compiler.script.reference import BEGIN, END, as_markdown
 from argo_compiler.script.syntax.grammar.tables import save_tables
 from argo_compiler.script.syntax.words.loading import LANGUAGES
+from argo_compiler.script.syntax.words.tables import save_lexicons
 
 if __name__ == "__main__":
     save_tables(Path(str(files("argo_compiler.script.syntax.grammar"))))
+    save_lexicons(Path(str(files("argo_compiler.script.syntax.words"))))
     for argument in sys.argv[1:]:
         page = Path(argument)
         text = page.read_text(encoding="utf-8")

@@ -5,8 +5,6 @@ import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from rich.console import Console
-
 from argo_compiler.base.errors import Conflict, Invalid, Remedy, Unavailable
 from argo_compiler.files.mission_file import read_mission_bytes
 from argo_compiler.files.reading import read_bytes
@@ -112,6 +110,8 @@ def write_content(path: Path, content: str | bytes | Mapping[str, bytes]) -> Non
 def say_written(path: Path, text: str) -> None:
     """Says in a line what was written, but where that was shown itself."""
     if path != STANDARD_OUTPUT:
+        from rich.console import Console  # slow to import, and most commands show their result
+
         Console(highlight=False).print(f"{path}: {text}", soft_wrap=True, markup=False)
 
 

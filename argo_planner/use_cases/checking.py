@@ -66,7 +66,7 @@ def check_source(
             found += analyse(loaded.mission, catalog, travel).diagnostics
         if site is not None:
             found += tuple(unseen_from_poses(loaded.mission, site))
-            found += tuple(too_fast(loaded.mission, site.navigator.robot))
+            found += tuple(too_fast(loaded.mission, site.robot))
     return by_place((*loaded.diagnostics, *loaded.placed(found)))
 
 

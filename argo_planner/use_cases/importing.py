@@ -10,6 +10,7 @@ from pathlib import Path
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import Invalid, Remedy
+from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.base.stages import stage
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import (
@@ -154,7 +155,8 @@ def _refuse_runs(upload: Upload) -> None:
 def _load_script(
     content: bytes, name: str, catalog: Catalog, start_area: int | None, end_area: int | None
 ) -> Loaded:
-    from argo_compiler.script import decode_script, import_script  # missions need no grammars
+    with collector_held():  # missions need no grammars
+        from argo_compiler.script import decode_script, import_script
 
     text = decode_script(content, name)
     resolved = import_script(
@@ -173,7 +175,7 @@ def import_mission(
     """
     loaded = load(upload, site.catalog, start_area, end_area)
     found = check(loaded.mission, site.catalog)
-    found += tuple(too_fast(loaded.mission, site.navigator.robot))
+    found += tuple(too_fast(loaded.mission, site.robot))
     found = by_place((*loaded.diagnostics, *loaded.placed(found)))
     if has_errors(found):
         raise DiagnosticError(upload.name, found)

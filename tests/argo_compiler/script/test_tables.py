@@ -9,10 +9,28 @@ from lark import Lark
 
 from argo_compiler.script.syntax.grammar import tables
 from argo_compiler.script.syntax.grammar.parser import Grammar, StumbleError
+from argo_compiler.script.syntax.words import tables as lexicon_tables
 from argo_compiler.script.syntax.words.language import Language
 from argo_compiler.script.syntax.words.lexer import words
 
 DOCS = Path(__file__).parents[3] / "docs" / "script.md"
+
+
+def test_saved_tables_are_up_to_date(monkeypatch: pytest.MonkeyPatch) -> None:
+    def not_current() -> None:
+        pytest.fail("the tables are not up to date: run `make generated`")
+
+    monkeypatch.setattr(tables, "make_parser", not_current)
+    monkeypatch.setattr(lexicon_tables, "make_lexicons", not_current)
+    tables.load_parser()
+    lexicon_tables.load_lexicons()
+
+
+def test_saved_lexicons_are_as_new_ones() -> None:
+    for saved, new in zip(
+        lexicon_tables.load_lexicons(), lexicon_tables.make_lexicons(), strict=True
+    ):
+        assert vars(saved) == vars(new)
 
 
 @pytest.mark.long
@@ -65,7 +83,7 @@ def outcome(grammar: Grammar, types: tuple[str, ...]) -> object:
 
 def test_tables_of_another_lark_are_not_used(monkeypatch: pytest.MonkeyPatch) -> None:
     made = []
-    monkeypatch.setattr(tables, "version", lambda package: f"another {package}")
+    monkeypatch.setattr(tables.lark, "__version__", "another")
     monkeypatch.setattr(tables, "make_parser", lambda: made.append(True))
     tables.load_parser()
     assert made == [True]

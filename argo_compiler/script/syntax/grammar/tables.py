@@ -1,27 +1,31 @@
 """The parser's tables, saved beside the grammar: to make them takes a second or two.
 
-`make generated` writes them. Tables of another grammar, or of another version of Lark, are not
-used: then the parser makes its own, and only the start takes longer.
+Tables of another grammar, or of another version of Lark, are not used: then the parser makes its
+own.
 """
 
 import io
 import pickle
 import re
-import zlib
-from hashlib import sha256
-from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+import lark
 from lark import Lark
+from lark.grammar import Rule
+from lark.parsers.lalr_analysis import Reduce, Shift
 
 from argo_compiler.base.garbage_collector import collector_held
+from argo_compiler.base.saved_tables import (
+    are_saved,
+    find_tables,
+    key_of,
+    write_tables,
+)
 
 STARTS = ["sentence", "location"]
 _NAME = "sentence"
-_KEY = 32
-"""bytes at the beginning of the tables, by which it is told what they are of"""
 
 _Row = dict[int, tuple[int, Any]]
 """of the tables: what the parser does at each terminal"""
@@ -46,20 +50,43 @@ def make_parser() -> Lark:
 @collector_held()
 def load_parser() -> Lark:
     """As `make_parser`, with the saved tables if they are of this grammar and this Lark."""
-    saved = files(__package__).joinpath(f"{_NAME}.tables")
-    data = saved.read_bytes() if saved.is_file() else b""
-    if data[:_KEY] != _key():
+    tables = find_tables(__package__, f"{_NAME}.tables", _key())
+    if tables is None:
         return make_parser()
-    tables = pickle.loads(zlib.decompress(data[_KEY:]))
     rows = tables["data"]["parser"]["parser"]
-    rows["states"] = {state: _unpacked(row) for state, row in rows["states"].items()}
-    return Lark.load(tables)
+    packed, rows["states"] = rows["states"], {}
+    parser = Lark.load(tables)
+    numbers = [said["@"] for said in tables["data"]["rules"]]
+    rules = dict(zip(numbers, parser.rules, strict=True))
+    parser.parser.parser._parse_table.states = _Rows(packed, rows["tokens"], rules)
+    return parser
+
+
+class _Rows(dict[int, dict[str, tuple[Any, Any]]]):
+    """The rows of the tables as Lark's parser looks at them. A script comes to few of them, so each
+    is unpacked when the parser first comes to it."""
+
+    def __init__(
+        self, packed: dict[int, _PackedRow], terminals: dict[int, str], rules: dict[int, Rule]
+    ) -> None:
+        super().__init__()
+        self._packed = packed
+        self._terminals = terminals
+        self._rules = rules
+
+    def __missing__(self, state: int) -> dict[str, tuple[Any, Any]]:
+        row: dict[str, tuple[Any, Any]] = {}
+        for (reduces, said), terminals in self._packed[state]:
+            action = (Reduce, self._rules[said["@"]]) if reduces else (Shift, said)
+            row.update(dict.fromkeys([self._terminals[number] for number in terminals], action))
+        self[state] = row
+        return row
 
 
 def save_tables(folder: Path) -> None:
     """Writes the tables that `load_parser` reads, unless they are there."""
     path, key = folder / f"{_NAME}.tables", _key()
-    if path.exists() and path.read_bytes()[:_KEY] == key:
+    if are_saved(path, key):
         return
     buffer = io.BytesIO()
     make_parser().save(buffer)
@@ -67,8 +94,7 @@ def save_tables(folder: Path) -> None:
     rows = tables["data"]["parser"]["parser"]
     known: dict[tuple[int, ...], tuple[int, ...]] = {}
     rows["states"] = {state: _packed(row, known) for state, row in rows["states"].items()}
-    packed = zlib.compress(pickle.dumps(tables), 9)
-    path.write_bytes(key + packed)
+    write_tables(path, key, tables)
 
 
 def terminals(text: str) -> list[str]:
@@ -85,12 +111,6 @@ def _packed(row: _Row, known: dict[tuple[int, ...], tuple[int, ...]]) -> _Packed
     return [(row[key[0]], known.setdefault(key, key)) for key in keys]
 
 
-def _unpacked(row: _PackedRow) -> _Row:
-    return {terminal: action for action, terminals in row for terminal in terminals}
-
-
 def _key() -> bytes:
-    found = sha256(f"{version('lark')} {__name__} {STARTS}".encode())
-    for part in (f"{_NAME}.lark", "tables.py"):
-        found.update(files(__package__).joinpath(part).read_bytes())
-    return found.digest()
+    names = (f"{_NAME}.lark", "tables.py")
+    return key_of(__package__, names, lark.__version__, *STARTS)

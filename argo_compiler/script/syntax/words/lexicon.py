@@ -23,6 +23,9 @@ class PhraseStart:
     parted: dict[tuple[str, ...], Entry] = field(default_factory=dict)
     """by what ends it behind other words: `kehre … zurück`"""
 
+    def __reduce__(self) -> tuple[Any, ...]:  # half the time of what Python does by itself
+        return PhraseStart, (self.entry, self.next, self.parted)
+
 
 _FIGURE = re.compile(r"(?<!\w)[0-9]+(?:\.[0-9]+)?(?!\w)")
 

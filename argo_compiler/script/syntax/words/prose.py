@@ -127,7 +127,44 @@ def either(text: str) -> str:
     return "|".join(re.escape(phrase).replace(r"\ ", r"\s+") for phrase in longest_first)
 
 
+class Beginnings:
+    """Phrases with which a text may begin, in any case. A pattern of hundreds of phrases takes long
+    to make, so there is one for each first word, made when a text begins with it."""
+
+    def __init__(self, phrases: str) -> None:
+        self._said: dict[str, list[str]] = {}
+        for phrase in expand(phrases):
+            self._said.setdefault(_first_letters(phrase), []).append(phrase)
+        self._made: dict[str, re.Pattern[str]] = {}
+
+    def match(self, text: str, at: int = 0) -> re.Match[str] | None:
+        """Return the longest phrase that begins at a place of the text, and that does not end
+        within a word; None if there is none."""
+        first = _first_letters(text, at)
+        behind = at + len(first)
+        if not text[behind : behind + 1].isascii():  # may be one of a phrase's letters, in capitals
+            said = [phrase for phrases in self._said.values() for phrase in phrases]
+            return _beginning(said).match(text, at)
+        if first not in self._said:
+            return None
+        if first not in self._made:
+            self._made[first] = _beginning(self._said[first])
+        return self._made[first].match(text, at)
+
+
 @cache
-def begins(phrases: str) -> re.Pattern[str]:
+def begins(phrases: str) -> Beginnings:
     """What begins with one of the phrases."""
-    return re.compile(rf"(?:{either(phrases)})(?![\w-])", re.IGNORECASE)
+    return Beginnings(phrases)
+
+
+_FIRST_LETTERS = re.compile("[A-Za-z]*")
+
+
+def _first_letters(text: str, at: int = 0) -> str:
+    found = _FIRST_LETTERS.match(text, at)
+    return found.group().lower() if found else ""
+
+
+def _beginning(phrases: list[str]) -> re.Pattern[str]:
+    return re.compile(rf"(?:{either('|'.join(phrases))})(?![\w-])", re.IGNORECASE)

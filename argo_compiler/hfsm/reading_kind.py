@@ -1,0 +1,11 @@
+"""What can come of a measurement."""
+
+from enum import StrEnum
+
+
+class ReadingKind(StrEnum):
+    """What came of the last measurement at a checkpoint (C3)."""
+
+    VALUE = "value"
+    UNREADABLE = "unreadable"
+    FAILED = "failed"

@@ -148,7 +148,7 @@ def proving() -> Work:
     from argo_compiler.route.suggestion import suggest_route
     from benchmarks.route_parts import generated
 
-    problems = list(generated(("plain", "windows", "prizes", "precedence"), 2, 12, 0))
+    problems = list(generated(("plain", "windows", "optional", "order"), 2, 12, 0))
 
     def work() -> None:
         for problem in problems:

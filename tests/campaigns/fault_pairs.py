@@ -19,6 +19,7 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import cache, partial
 from itertools import product
+from multiprocessing import get_context
 from typing import Any
 
 import numpy as np
@@ -235,7 +236,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     given = parser.parse_args(arguments)
     numbers = range(given.first, given.first + given.runs)
     findings = uncaused = successes = given_up = 0
-    with ProcessPoolExecutor(given.processes) as pool:
+    with ProcessPoolExecutor(given.processes, mp_context=get_context("spawn")) as pool:
         for verdict in pool.map(partial(examine, drive=given.drive), numbers):
             findings += verdict.findings
             successes += verdict.success

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
+from multiprocessing import get_context
 
 import numpy as np
 
@@ -135,7 +136,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     chosen = parser.parse_args(arguments)
     work = partial(findings, timed=chosen.rounds, solvers=tuple(chosen.solver))
     kinds, methods, begun = Counter[str](), Counter[str](), time.monotonic()
-    with ProcessPoolExecutor(chosen.processes) as pool:
+    with ProcessPoolExecutor(chosen.processes, mp_context=get_context("spawn")) as pool:
         for found, counts in pool.map(work, chunks(chosen.first, chosen.count)):
             methods += counts
             kinds.update(one.what for one in found)

@@ -17,6 +17,7 @@ from concurrent.futures import ProcessPoolExecutor
 from contextlib import nullcontext
 from dataclasses import asdict, dataclass
 from functools import cache, partial
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -197,7 +198,8 @@ def run_trial(seed: int, number: int) -> Trial:
 
 def run_trials(seed: int, count: int, jobs: int) -> Iterator[Trial]:
     """All trials, in order, as they come out."""
-    with ProcessPoolExecutor(jobs) as pool:
+    # Not forked: OpenCV's threads may hold locks that a forked process would wait for.
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
         yield from pool.map(partial(run_trial, seed), range(count))
 
 

@@ -15,6 +15,7 @@ import pytest
 from argo_compiler.base.errors import NotFound
 from argo_env.evaluation.store import read_rows
 from tests.conftest import examples
+from tests.e2e.conftest import answer_signals
 
 MISSION = "scenarios/umad/missions/mission_1.txt"
 AREAS = ("--start-area", "1", "--end-area", "2")
@@ -283,6 +284,7 @@ def started(file: Path, out: Path, stderr: int = subprocess.DEVNULL) -> "subproc
         stdout=subprocess.DEVNULL,
         stderr=stderr,
         start_new_session=True,
+        preexec_fn=answer_signals,
     )
 
 
@@ -350,7 +352,7 @@ def test_killed_workers_change_nothing_of_the_rows(long_file, undisturbed, tmp_p
     while process.poll() is None and killed < KILLS:
         # Some rows between two kills, so that it ever comes to an end.
         if count(out) >= wanted and (workers := processes_of(process.pid)):
-            wanted = count(out) + chosen.randint(1, max(1, 2 * (len(undisturbed) // KILLS) - 3))
+            wanted = count(out) + chosen.randint(1, max(1, len(undisturbed) // KILLS - 3))
             with suppress(ProcessLookupError):  # it has ended by itself meanwhile
                 os.kill(chosen.choice(workers), signal.SIGKILL)
                 killed += 1

@@ -21,6 +21,7 @@ from argo_compiler.il import Mission
 from argo_planner.service.core.commands import Revision
 from tests.argo_planner.service.test_plan import Follower, mission
 from tests.conftest import examples
+from tests.e2e.conftest import answer_signals
 
 TOKEN = "token-of-the-test-of-kills"
 HEADERS = {"authorization": f"Bearer {TOKEN}"}
@@ -43,6 +44,7 @@ class Serving:
             text=True,
             env=os.environ | {"ARGO_TOKEN": TOKEN},
             start_new_session=True,  # a group of its own, as in a terminal
+            preexec_fn=answer_signals,
         )
         assert self.process.stderr is not None
         said = ""

@@ -16,7 +16,7 @@ from tests.argo_compiler.route.random_problems import random_problem
 from tests.argo_compiler.route.second_reading import best_worth
 from tests.conftest import examples
 
-PROBLEMS = examples(120)
+PROBLEMS = examples(480)
 
 
 def _relaxed(

@@ -242,7 +242,7 @@ def test_what_a_reaction_has_no_use_for_is_refused_by_name(catalog: Catalog) -> 
 def test_any_mission_is_kept_or_refused_by_name(tangled: bool, catalog: Catalog) -> None:
     kept = 0
 
-    @settings(max_examples=examples(60), deadline=None)
+    @settings(max_examples=examples(240), deadline=None)
     @given(tangled_missions() if tangled else sound_missions(catalog, most=5))
     def write(drawn: Mission) -> None:
         nonlocal kept

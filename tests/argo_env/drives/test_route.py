@@ -168,7 +168,7 @@ def test_lines_of_sight_are_those_of_the_world(umad, robot, simulation):
     low, high = (0.0, 0.0, 0.1), (15.0, 10.0, 12.0)
     names = {e.name for e in umad.elements}
     same = seen = 0
-    for _ in range(examples(150)):
+    for _ in range(examples(600)):
         origin = rng.uniform(low, high)
         target = origin + rng.uniform(-2.0, 2.0, 3)
         found = paper.obstacle_between(tuple(origin.tolist()), tuple(target.tolist()))
@@ -177,5 +177,5 @@ def test_lines_of_sight_are_those_of_the_world(umad, robot, simulation):
         hit = simulation.obstacle_between(tuple(origin.tolist()), tuple(target.tolist()))
         # A ray that begins inside of something, or meets a checkpoint, is another matter.
         same += found == hit or hit not in names
-    assert 20 < seen < examples(150) - 20
-    assert same >= 0.97 * examples(150)
+    assert 20 < seen < examples(600) - 20
+    assert same >= 0.97 * examples(600)

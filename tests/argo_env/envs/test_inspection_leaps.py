@@ -8,6 +8,7 @@ from argo_env.envs.inspection_run import Inspection, beginning
 from argo_env.faults.reading import decode_faults
 from argo_env.planning.opening import open_site
 from argo_env.run.conditions import RunConditions
+from argo_env.run.fitting_together import check_run
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
 from tests.conftest import examples
@@ -37,7 +38,7 @@ def told_of(seed: int) -> list[object]:
         conditions=RunConditions(charge=chosen.choice([None, 0.97, 0.995, 0.3])),
     )
     told: list[object] = []
-    with Inspection(SITE, spec, chosen.choice([150.0, 400.0, 1500.0])) as run:
+    with Inspection(check_run(spec, SITE), chosen.choice([150.0, 400.0, 1500.0])) as run:
         while not (run.time_up or run.dead or len(told) > 20):
             match chosen.randrange(3):
                 case 0:

@@ -15,6 +15,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from itertools import repeat
+from multiprocessing import get_context
 from pathlib import Path
 
 from tests.campaigns.fuzz import bound, fuzz, fuzz_sentences
@@ -37,7 +38,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     total: Counter[str] = Counter()
     failed = 0
     started = time.monotonic()
-    with ProcessPoolExecutor(options.jobs, initializer=bound) as pool:
+    with ProcessPoolExecutor(
+        options.jobs, mp_context=get_context("spawn"), initializer=bound
+    ) as pool:
         batches = list(_batches(options.runs))
         for outcomes, failures in pool.map(work, batches, repeat(options.seed)):
             total += outcomes

@@ -1,1 +1,1 @@
-"""What the rest of the compiler builds on: data, errors, and small functions of no domain."""
+"""Foundations of the compiler: base classes of data, errors, and small functions of no domain."""

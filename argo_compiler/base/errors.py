@@ -35,7 +35,7 @@ class Remedy(StrEnum):
 
 @dataclass(frozen=True)
 class RemedyChoice:
-    """What there is to choose by a remedy, and the words of a hint that say so."""
+    """The values that a remedy offers to choose from; as text, the words of a hint."""
 
     remedy: Remedy
     what: str

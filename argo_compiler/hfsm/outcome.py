@@ -1,4 +1,4 @@
-"""How missions end."""
+"""The outcomes of a mission."""
 
 from enum import StrEnum
 

@@ -1,4 +1,4 @@
-"""What can come of a measurement."""
+"""The kinds of result of a measurement."""
 
 from enum import StrEnum
 

@@ -81,8 +81,8 @@ class RawEntry(NamedTuple):
 
 
 KeptStep = tuple[float, LeafNode, LeafNode | None, CompiledTransition, str]
-"""What an executor keeps of most events: when a task ended well, the task, the next one, the
-transition between them, and the detail."""
+"""An entry as the executor stores it for most events: when a task ended well, the task, the next
+one, the transition between them, and the detail."""
 
 
 def raw_entry(kept: RawEntry | KeptStep) -> RawEntry:

@@ -1,4 +1,4 @@
-"""What is suggested for a route problem: an order, and how good it is known to be."""
+"""The result of a search for a route: an order, and how good it is known to be."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -26,7 +26,7 @@ _EXCEPTIONS = (TaskState.FAILED, TaskState.UNREADABLE, TaskState.STALE)
 
 
 class OrderPlanner(Protocol):
-    """What a case's orders are planned by, as any others are."""
+    """Planner of orders, as those that handle a case need it."""
 
     manners: Manners
 

@@ -12,7 +12,7 @@ from argo_compiler.base.garbage_collector import collect_again
 from argo_compiler.base.version import __version__
 from argo_planner.lazy_group import LazyCommand, LazyGroup
 from argo_planner.terminal.output import guard_output
-from argo_planner.terminal.signals import ignore_signals, raise_interrupted
+from argo_planner.terminal.signals import SignalWatch, ignore_signals, raise_interrupted
 from argo_planner.terminal.verbosity import set_verbosity
 
 
@@ -181,15 +181,17 @@ def main() -> None:
 
 
 def _carry_out() -> int:
-    """Carries out what the command line asks for; the exit status."""
-    raised = raise_interrupted()
+    """Carry out what the command line asks for. Return the exit status."""
+    raised = SignalWatch()
     try:
         try:
+            raise_interrupted(raised)
             app(prog_name="argo")
         finally:
             ignore_signals()
             sys.stdout.flush()
     except BaseException as error:
+        ignore_signals()  # the first one may have come before they were ignored
         told = isinstance(error, SystemExit) and error.code not in {None, 0}
         if raised.came is not None and not told:  # whatever has been made of it
             print("argo: interrupted", file=sys.stderr)

@@ -53,10 +53,12 @@ def ignore_signals() -> None:
         signal.signal(number, signal.SIG_IGN)
 
 
-def raise_interrupted() -> SignalWatch:
-    """From now on a signal raises Interrupted, wherever the program is. What is returned says later
-    whether that has happened, as what a library makes of it may be another exception."""
-    raised = SignalWatch()
+def raise_interrupted(raised: SignalWatch) -> None:
+    """Let a signal raise Interrupted from now on, wherever the program is, and note it in `raised`.
+
+    The first one may come before this has returned. A library may make another exception of it, so
+    whoever catches one asks `raised`.
+    """
 
     def interrupt(number: int, _: FrameType | None) -> None:
         raised.came = Interrupted(number)
@@ -71,9 +73,8 @@ def raise_interrupted() -> SignalWatch:
             signal.signal(signal.SIGALRM, lambda _, frame: interrupt(number, frame))
             signal.setitimer(signal.ITIMER_REAL, _AGAIN)
 
-    _answer(interrupt)
     sys.unraisablehook = unraisable
-    return raised
+    _answer(interrupt)
 
 
 @contextmanager

@@ -1,6 +1,7 @@
 """Ctrl-C, SIGTERM and readers that go away: at whatever moment, nothing is lost and no traceback is
 shown."""
 
+import json
 import os
 import random
 import re
@@ -77,6 +78,21 @@ def test_while_modules_are_imported(missions: Path, number, module: str) -> None
     assert process.returncode == STATUS[number]
     assert own in ([], ["argo: interrupted\n"])
     assert not output
+
+
+def test_at_each_line_that_answers_signals() -> None:
+    """Once signals are ignored, the command has done what it was to do."""
+    lines = subprocess.run(
+        [sys.executable, "-m", "tests.e2e.signal_at_each_line", str(int(signal.SIGTERM))],
+        capture_output=True,
+        check=True,
+        text=True,
+    ).stdout.splitlines()
+    ends = [tuple(json.loads(line)) for line in lines]
+    interrupted = (143, "argo: interrupted\n")
+    assert ends.count(interrupted) > 50
+    assert ends == sorted(ends, key=lambda end: end != interrupted)
+    assert set(ends) == {interrupted, (0, "")}
 
 
 def test_a_signal_that_is_ignored_from_outside_stays_so(missions: Path) -> None:

@@ -4,12 +4,12 @@ import math
 from collections.abc import Sequence
 
 from argo_compiler.hfsm.cause import Cause
-from argo_compiler.hfsm.course import MissionCourse
 from argo_compiler.hfsm.interrupts import Effect, Stage, Trigger
 from argo_compiler.hfsm.outcome import Outcome
 from argo_compiler.hfsm.progress import ByHand
 from argo_compiler.hfsm.standing import InterruptState, TakenRow, advance
 from argo_compiler.hfsm.tables import ReactionNode, Tables
+from argo_compiler.hfsm.tasks_and_groups import MissionCourse
 from argo_compiler.il import EventKind
 
 _GOING = Stage.GOING  # looked at with each event, and an enumeration's member is found slowly

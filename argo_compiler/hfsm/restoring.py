@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from argo_compiler.base.errors import Conflict
 from argo_compiler.hfsm.conditions import CheckpointReading
+from argo_compiler.hfsm.configuration import Configuration, Frame
 from argo_compiler.hfsm.interrupts import Stage
 from argo_compiler.hfsm.model import RETURN, task_id
 from argo_compiler.hfsm.progress import (
@@ -15,7 +16,6 @@ from argo_compiler.hfsm.progress import (
     TaskTally,
     Waiting,
 )
-from argo_compiler.hfsm.rounds_and_clocks import Configuration, Frame
 from argo_compiler.hfsm.standing import InterruptState, Pending
 from argo_compiler.hfsm.tables import GroupNode, LeafNode, Tables
 from argo_compiler.hfsm.visits import TaskVisit

@@ -1,4 +1,8 @@
-"""The battery: what the robot draws, what is left, and the voltage that tells."""
+"""The battery: what the robot draws, what is left, and the voltage that tells.
+
+How many watts the robot draws on the level, on stairs and for its sensors is in the robot's own
+file (`power` in `urdf/robot/tracker.yaml`).
+"""
 
 import math
 from bisect import bisect_left

@@ -1,19 +1,17 @@
 """The drive with what can stop it: an emergency stop, a dysfunction."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_env.drives.blocked_way import PATIENCE, first_still, has_moved
 from argo_env.drives.drive import Drive, DriveStatus, Incident
 from argo_env.drives.timed_drive import TimedDrive, from_here
 from argo_env.navigation.path import Path
 from argo_env.robot.pose import BodyPose, Place, Places, place_of
 
-STALLED = 30.0  # s without any motion after which a way is given up
-_MOVED = 1e-3  # m or rad that count as a motion
 _SLOWEST = 0.02  # share of the speed below which a robot may be taken for a stalled one
 
 
@@ -116,7 +114,7 @@ class Powertrain:
             return _NO_STEPS
         made = self._drives_steps(most, drive.steps_left)
         places = drive.places_ahead(int(made[-1]) if len(made) else 0)
-        made = made[: np.searchsorted(made, _first_still(_place(self._before), places))]
+        made = made[: np.searchsorted(made, first_still(_place(self._before), places))]
         if not self._makes_every_step:
             places = np.concatenate([here, places])[made]
         return StepsAhead(places[: len(made)], made)
@@ -169,32 +167,16 @@ class Powertrain:
     def _stalled(self) -> DriveStatus:
         """MOVING, or FAILED if the robot should have moved for long and has not."""
         here, before = self._drive.pose, self._before
-        moved = before is None or _has_moved(_place(before), _place(here))
+        moved = before is None or has_moved(_place(before), _place(here))
         if moved:
             self._before, self._still = here, 0.0
         elif self.way is not None:
             self._still += self.time_step
-            if self._still >= STALLED:
-                self._failure = f"the robot has not moved for {STALLED:.0f} s"
+            if self._still >= PATIENCE:
+                self._failure = f"the robot has not moved for {PATIENCE:.0f} s"
                 return DriveStatus.FAILED
         return DriveStatus.MOVING
 
 
 def _place(pose: BodyPose) -> Place:
     return pose.x, pose.y, pose.z, pose.yaw, pose.pitch
-
-
-def _first_still(before: Place, places: Places) -> int:
-    """The number, from 1, of the first of the places to which the robot has not moved from the one
-    before; one more than there are if there is none."""
-    all_places = np.concatenate([[before], places])
-    change = np.abs(np.diff(all_places, axis=0))
-    surely = (change[:, :4] > _MOVED).any(axis=1)
-    for k in np.flatnonzero(~surely).tolist():
-        if not _has_moved(place_of(all_places, k), place_of(all_places, k + 1)):
-            return k + 1
-    return len(all_places)
-
-
-def _has_moved(before: Place, after: Place) -> bool:
-    return math.dist(before[:3], after[:3]) > _MOVED or abs(after[3] - before[3]) > _MOVED

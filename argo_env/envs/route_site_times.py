@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from argo_compiler.base.errors import Unreachable
 from argo_env.envs.route_instance import Stair
 from argo_env.navigation import Navigator
-from argo_env.navigation.blockage import Blockage
+from argo_env.navigation.closed_areas import Blockage
 from argo_env.planning import open_site
 from argo_env.site.stairs import flight_run
 

@@ -1,39 +1,18 @@
 """Requirements: what a rate must be, such as `success >= 0.98`."""
 
 import re
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from pydantic import Field, model_validator
 
 from argo_compiler.base.errors import Invalid
 from argo_compiler.base.model import Model
+from argo_env.evaluation.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from argo_env.evaluation.row import RunRow
 
 _FORM = re.compile(r"\s*([a-z_ ]+?)\s*(>=|<=)\s*([0-9.]+)\s*(%?)\s*")
-
-
-def _all_found(row: "RunRow") -> bool | None:
-    if not row.detections:
-        return None
-    return all(one.delay is not None for one in row.detections)
-
-
-QUANTITIES: dict[str, Callable[["RunRow"], bool | None]] = {
-    "success": lambda row: row.success,
-    "contact": lambda row: row.contacts > 0,
-    "mishap": lambda row: row.mishaps > 0,
-    "late": lambda row: row.limit is not None and (row.duration or 0.0) > row.limit,
-    "detected": _all_found,
-    "false alarm": lambda row: row.false_alarms > 0,
-}
-"""What can be required, by name: of a run that was carried out, whether it is so; None where that
-makes no sense, as that all was found where nothing was wrong: such a run does not count."""
-
-GOOD = frozenset({"success", "detected"})
-"""what one wants; the others one wants not"""
 
 
 class RateRequirement(Model):

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.plan import EvaluationPlan
+from argo_env.evaluation.quantities import QUANTITIES
 from argo_env.evaluation.rates import (
     IntervalMethod,
     PlanRate,
@@ -17,7 +18,6 @@ from argo_env.evaluation.rates import (
     rate_of,
     rate_of_runs,
 )
-from argo_env.evaluation.requirement import QUANTITIES
 from argo_env.evaluation.row import RunOutcome, RunRow
 from argo_env.evaluation.statistics.rates import Rate
 

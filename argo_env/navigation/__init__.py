@@ -7,11 +7,11 @@ from argo_compiler.base.lazy_names import lazy_names
 __all__ = ["Blockage", "Motion", "Navigator", "Path"]
 
 if TYPE_CHECKING:
-    from argo_env.navigation.blockage import Blockage
+    from argo_env.navigation.closed_areas import Blockage
     from argo_env.navigation.navigator import Navigator
     from argo_env.navigation.path import Motion, Path
 else:
     __getattr__, __dir__ = lazy_names(
         __name__,
-        {"blockage": ["Blockage"], "navigator": ["Navigator"], "path": ["Motion", "Path"]},
+        {"closed_areas": ["Blockage"], "navigator": ["Navigator"], "path": ["Motion", "Path"]},
     )

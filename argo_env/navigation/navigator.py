@@ -13,7 +13,7 @@ from argo_compiler.base.errors import Invalid, Unreachable
 from argo_compiler.base.model import Pose
 from argo_env.files.parts import NOWHERE, Parts
 from argo_env.navigation.arrivals import times_to
-from argo_env.navigation.blockage import Blockage, close, closed_cells, turns_over
+from argo_env.navigation.closed_areas import Blockage, close, closed_cells, turns_over
 from argo_env.navigation.lattice import (
     DRIVING_LEVEL,
     LEVEL,

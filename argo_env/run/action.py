@@ -9,7 +9,7 @@ from argo_compiler.hfsm import ActionFailed, ActionStopped, ActionSucceeded, Sta
 from argo_compiler.il import Action, Task
 from argo_env.drives.drive import DriveStatus
 from argo_env.navigation import Navigator, Path
-from argo_env.navigation.blockage import leads_through
+from argo_env.navigation.closed_areas import leads_through
 from argo_env.navigation.retreat import way_back
 from argo_env.robot.pose import BodyPose
 from argo_env.run.record import DIGITS, Reading, TaskRun

@@ -4,9 +4,9 @@ from collections import Counter
 from dataclasses import dataclass
 
 from argo_env.evaluation.case import PlanName
+from argo_env.evaluation.quantities import QUANTITIES
 from argo_env.evaluation.rates import PlanRate, means_of, success
 from argo_env.evaluation.report.words import meaning
-from argo_env.evaluation.requirement import QUANTITIES
 from argo_env.evaluation.results import EvaluationResults, GroupRate
 from argo_env.evaluation.row import RunOutcome
 

@@ -8,7 +8,7 @@ import scipy
 from numpy.typing import NDArray
 
 from argo_compiler.il import EventKind
-from argo_env.navigation.blockage import LAYER, Blockage
+from argo_env.navigation.closed_areas import LAYER, Blockage
 from argo_env.navigation.path import wrap
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.signals.frames import point

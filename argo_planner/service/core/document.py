@@ -10,8 +10,8 @@ from argo_compiler.base.errors import Conflict, NotFound
 from argo_compiler.base.model import Model
 from argo_compiler.il import Mission
 from argo_planner.service.core.commands import Revision
-from argo_planner.service.core.limits import require_name
 from argo_planner.service.core.plan import MissionPlan
+from argo_planner.service.core.plan_limits import require_name
 
 MOST_VERSIONS = 100
 """of a plan"""

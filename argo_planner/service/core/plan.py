@@ -21,7 +21,7 @@ from argo_planner.service.core.commands import (
     Revision,
     UndoEdit,
 )
-from argo_planner.service.core.limits import require_fitting
+from argo_planner.service.core.plan_limits import require_fitting
 from argo_planner.service.core.refusals import (
     ChangedSince,
     CommandIdTaken,

@@ -14,8 +14,8 @@ from argo_compiler.il import Mission
 from argo_env.closing import Closing
 from argo_env.files.checked_lines import sync_folder
 from argo_planner.service.core.document import PlanDocument
-from argo_planner.service.core.limits import require_name
 from argo_planner.service.core.plan import MissionPlan
+from argo_planner.service.core.plan_limits import require_name
 from argo_planner.service.storage.outline import PlanSummary, read_outline
 from argo_planner.service.storage.plan_file import PlanFile, create_plan_file, open_plan_file
 

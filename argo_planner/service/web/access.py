@@ -10,7 +10,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from argo_compiler.base.errors import ArgoError, Invalid, Unavailable
-from argo_planner.service.core.limits import require_name
+from argo_planner.service.core.plan_limits import require_name
 
 SHORTEST_TOKEN = 16
 """characters"""

@@ -7,6 +7,8 @@ from typing import Any, ClassVar
 
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
+from argo_planner.service.web.upload_limits import MOST_OF_A_MESSAGE
+
 MOST_CONNECTIONS = 2_000
 FIRST_REQUEST_WITHIN = 10.0
 """s"""
@@ -79,7 +81,7 @@ def server_options() -> dict[str, Any]:
     return {
         "http": LimitedProtocol,
         "ws": "websockets-sansio",
-        "ws_max_size": 1_000_000,
+        "ws_max_size": MOST_OF_A_MESSAGE,
         "ws_per_message_deflate": False,
         "h11_max_incomplete_event_size": 65_536,
         "timeout_keep_alive": 30,

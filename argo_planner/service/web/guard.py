@@ -13,12 +13,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from argo_compiler.base.errors import ArgoError
 from argo_planner.service.web.access import AccessToken, TokenBook, TokenMissing, visitor
 from argo_planner.service.web.problems import Problem, TooLarge, answer, plain, problem_of
+from argo_planner.service.web.upload_limits import most_bytes
 
-MOST_BYTES = 2_000_000
-"""of a request's body"""
-MOST_UPLOADED = 50_000_000
-"""of a mission that is imported"""
-UPLOADS = ("/api/imports",)
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
 
 _POLICY = (
@@ -155,15 +151,17 @@ def _too_large(scope: Scope, headers: Headers) -> Problem | None:
     said = headers.get("content-length")
     if scope["type"] != "http" or said is None:
         return None
-    return problem_of(_too_much(scope)) if len(said) > 12 or int(said) > _most(scope) else None
-
-
-def _most(scope: Scope) -> int:
-    return MOST_UPLOADED if scope["path"] in UPLOADS else MOST_BYTES
+    return (
+        problem_of(_too_much(scope))
+        if len(said) > 12 or int(said) > most_bytes(scope["path"])
+        else None
+    )
 
 
 def _too_much(scope: Scope) -> TooLarge:
-    return TooLarge(f"more than {_most(scope) // 1_000_000} MB were sent: that is not taken")
+    return TooLarge(
+        f"more than {most_bytes(scope['path']) // 1_000_000} MB were sent: that is not taken"
+    )
 
 
 class _Arriving:
@@ -180,7 +178,7 @@ class _Arriving:
     async def receive(self) -> Message:
         message = await self._receive()
         self._arrived += len(message.get("body", b""))
-        if self._arrived > _most(self._scope):
+        if self._arrived > most_bytes(self._scope["path"]):
             self.too_large = not self._begun
             raise _too_much(self._scope)
         return message

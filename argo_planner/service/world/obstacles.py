@@ -14,12 +14,12 @@ from pydantic import Field, field_validator
 from argo_compiler.base.errors import Invalid
 from argo_compiler.base.model import Model, Pose
 from argo_env.navigation import Blockage, Navigator
-from argo_env.navigation.blockage import LAYER
+from argo_env.navigation.closed_areas import LAYER
 from argo_env.navigation.raster import CELL
 from argo_env.planning.opening import OpenedSite
 from argo_env.site.shapes import Box, Element, Role
 from argo_env.site.spec import Rect
-from argo_planner.service.core.limits import require_name
+from argo_planner.service.core.plan_limits import require_name
 from argo_planner.service.world.bounds import require_on_site
 
 T = TypeVar("T")

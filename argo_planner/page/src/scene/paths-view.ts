@@ -16,9 +16,9 @@ import {
 
 import type { PreviewedMission } from "../api/types";
 import { taskKey } from "../model/outline";
+import { markedColour, timeColour } from "../model/path-colours";
 import { arrows, ribbon, ribbonPaths, type RibbonPath, type Triangles } from "../model/ribbons";
 import { floorOf } from "../model/standing";
-import { timeColour } from "../model/time-colour";
 import { selection } from "../state/plan";
 import { comparedPreview, hoveredLeg, preview } from "../state/preview";
 import { panel, shownFloor } from "../state/view";
@@ -73,7 +73,7 @@ export class PathsView {
         this.draw(this.compared, paths.filter((one) => !one.dashed), WIDTH, () => other, ABOVE + 0.03);
       }),
       effect(() => {
-        const mark = new Color(colours.value.dark ? "#ffffff" : "#0b1016");
+        const mark = new Color(markedColour(colours.value.dark));
         this.clear(this.marked);
         const paths = this.paths.value.paths.filter((one) => this.meant.value.has(one.way));
         this.draw(this.marked, paths, WIDE, () => mark, ABOVE - 0.02);

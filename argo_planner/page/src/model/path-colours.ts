@@ -1,4 +1,4 @@
-/** The colour of a moment of the mission, from its start to its end. */
+/** The colours of paths: by the time at which they are driven, and where one stands out. */
 
 type Colour = readonly [number, number, number];
 
@@ -17,4 +17,9 @@ export function timeColour(share: number): Colour {
   const [from, to] = [RAMP[first] as Colour, RAMP[first + 1] as Colour];
   const mixed = (i: 0 | 1 | 2) => Math.round(from[i] + (to[i] - from[i]) * (at - first));
   return [mixed(0), mixed(1), mixed(2)];
+}
+
+/** The colour of a path that stands out, on the page in its dark or light theme. */
+export function markedColour(dark: boolean): string {
+  return dark ? "#ffffff" : "#0b1016";
 }

@@ -1,0 +1,25 @@
+"""What evaluations count of each run, such as successes; a new quantity is listed here."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from argo_env.evaluation.row import RunRow
+
+
+def _all_found(row: "RunRow") -> bool | None:
+    if not row.detections:
+        return None
+    return all(one.delay is not None for one in row.detections)
+
+
+QUANTITIES: dict[str, Callable[["RunRow"], bool | None]] = {
+    "success": lambda row: row.success,
+    "contact": lambda row: row.contacts > 0,
+    "mishap": lambda row: row.mishaps > 0,
+    "late": lambda row: row.limit is not None and (row.duration or 0.0) > row.limit,
+    "detected": _all_found,
+    "false alarm": lambda row: row.false_alarms > 0,
+}
+"""What can be required, by name: of a run that was carried out, whether it is so; None where that
+makes no sense, as that all was found where nothing was wrong: such a run does not count."""

@@ -1,0 +1,16 @@
+"""How many bytes a request may bring: what is uploaded, and anything else."""
+
+from argo_compiler.files.mission_file import MAX_BYTES
+
+MOST_UPLOADED = MAX_BYTES
+"""of a mission that is imported; the readers of files have limits of their own as well"""
+MOST_OF_A_BODY = 2_000_000
+"""of any other request's body"""
+MOST_OF_A_MESSAGE = 1_000_000
+"""of a message by WebSocket"""
+_UPLOADS = ("/api/imports",)
+
+
+def most_bytes(path: str) -> int:
+    """Return how many bytes the body of a request for `path` may have."""
+    return MOST_UPLOADED if path in _UPLOADS else MOST_OF_A_BODY

@@ -2,7 +2,8 @@
 
     git worktree add ../before COMMIT
     python -m benchmarks.same_results ../before                      # all groups
-    python -m benchmarks.same_results ../before plans kinematic      # or only some of them
+    python -m benchmarks.same_results ../before plans kinematic      # or only some of them,
+    python -m benchmarks.same_results ../before --only protocol_2    # or of these names
     python -m benchmarks.same_results --write digests.txt            # the digests of this checkout,
     python -m benchmarks.same_results digests.txt                    # to compare with later
 
@@ -179,15 +180,19 @@ def journal_cases() -> Iterator[Case]:
             yield f"{name}, {drive}", (run, ("CUT", "report/run.journal"), again)
 
 
-def command_results(group: str) -> Iterator[tuple[str, bytes]]:
-    """Yield the name of each case of commands, and all that it printed and wrote."""
-    cases = {"plans": plan_cases, "routes": route_cases, "journals": journal_cases}[group]()
+def command_results(group: str, only: str) -> Iterator[tuple[str, bytes]]:
+    """Yield the name of each case of commands that has `only` in it, and all that it printed and
+    wrote."""
+    all_cases = {"plans": plan_cases, "routes": route_cases, "journals": journal_cases}[group]()
+    cases = [case for case in all_cases if only in case[0]]
+    if not cases:
+        return
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name).resolve()
         shutil.copytree(UMAD / "missions", folder / "inputs" / "missions")
         shutil.copytree(UMAD / "faults", folder / "inputs" / "faults")
         shutil.copytree(ROOT / "tests/argo_compiler/script/people", folder / "inputs" / "people")
-        _load_commands(folder)
+        _load_commands()
         for case, commands in cases:
             place = folder / "case"
             shutil.copytree(folder / "inputs", place)
@@ -201,22 +206,22 @@ def command_results(group: str) -> Iterator[tuple[str, bytes]]:
             yield f"{group}: {case}, exit statuses {statuses}", content
 
 
-def _load_commands(folder: Path) -> None:
-    """Import what commands import, so that the processes forked for them need no time to load."""
-    listing = folder / "modules"
-    command = ("run", "inputs/missions/protocol_3.txt", "--report", "first")
-    if _carry_out(command, folder, listing):
-        raise SystemExit((folder / "printed").read_text())
-    for module in listing.read_text().split():
-        importlib.import_module(module)
-    shutil.rmtree(folder / "first")
+def _load_commands() -> None:
+    """Import the commands, so that the processes forked for them need little time to load. On a
+    busy machine any stage may take so long that it is shown: none is."""
+    from argo_planner.cli import ArgoCommands
+    from argo_planner.terminal import stage_display
+
+    stage_display.AFTER = float("inf")
+
+    for command in ArgoCommands.lazy_commands:
+        importlib.import_module(command.module)
 
 
-def _carry_out(command: Sequence[str], folder: Path, modules: Path | None = None) -> int:
+def _carry_out(command: Sequence[str], folder: Path) -> int:
     """Run a command of `argo` in a forked process, with what it prints in the file `printed`.
 
-    `CUT FILE` cuts a file of lines off after the first half. Returns the exit status; `modules`
-    names a file for the names of Argo's modules that the command has imported.
+    `CUT FILE` cuts a file of lines off after the first half. Returns the exit status.
     """
     if command[0] == "CUT":
         lines = (folder / command[1]).read_bytes().splitlines(keepends=True)
@@ -242,9 +247,6 @@ def _carry_out(command: Sequence[str], folder: Path, modules: Path | None = None
             status = 0
         except SystemExit as end:
             status = end.code if isinstance(end.code, int) else 0 if end.code is None else 1
-        if modules:
-            names = [name for name in sys.modules if name.startswith("argo_")]
-            modules.write_text("\n".join(names))
         sys.stdout.flush()
         sys.stderr.flush()
     finally:
@@ -259,26 +261,28 @@ def _timeless(path: Path, folder: Path) -> bytes:
     return content
 
 
-def digests(groups: list[str]) -> None:
-    """Print a line for each result: its digest, and its name."""
+def digests(only: str, groups: Sequence[str]) -> None:
+    """Print a line for each result that has `only` in its name: its digest, and its name."""
     for group in groups:
         results = (
-            command_results(group)
+            command_results(group, only)
             if group in COMMANDS
             else episodes()
             if group == "drive"
             else records(group)
         )
         for name, content in results:
+            if only not in name:
+                continue
             print(hashlib.sha256(content).hexdigest()[:16], name, flush=True)
             if folder := os.environ.get("SAME_RESULTS_KEEP"):
                 (Path(folder) / re.sub(r"\W+", "_", name)).write_bytes(content)
 
 
-def computed(root: Path, groups: list[str], cache: str) -> list[str]:
+def computed(root: Path, only: str, groups: Sequence[str], cache: str) -> list[str]:
     """Return the lines of the digests with the code of a checkout, and show them as they come."""
     environment = os.environ | {"PYTHONPATH": str(root), "ARGO_CACHE_DIR": cache}
-    command = (sys.executable, __file__, "--digests", *groups)
+    command = (sys.executable, __file__, "--digests", only, *groups)
     lines = []
     with subprocess.Popen(
         command, cwd=root, env=environment, stdout=subprocess.PIPE, text=True
@@ -292,7 +296,7 @@ def computed(root: Path, groups: list[str], cache: str) -> list[str]:
     return lines
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Name the results that differ."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -300,9 +304,12 @@ def main() -> None:
     parser.add_argument("before", type=Path, help="checkout, or file of digests, to compare with")
     parser.add_argument("groups", nargs="*", metavar="group", help=", ".join(GROUPS))
     parser.add_argument(
+        "--only", default="", metavar="TEXT", help="only the results with this text in their names"
+    )
+    parser.add_argument(
         "--write", action="store_true", help="write this checkout's digests to the file instead"
     )
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     groups = options.groups or list(GROUPS)
     if unknown := set(groups) - set(GROUPS):
         parser.error(f"there is no {sorted(unknown)[0]}; there are: {', '.join(GROUPS)}")
@@ -311,14 +318,18 @@ def main() -> None:
         parser.error(f"{before} is neither a checkout nor a file of digests")
     with tempfile.TemporaryDirectory() as old_cache, tempfile.TemporaryDirectory() as new_cache:
         if options.write:
-            before.write_text("\n".join(computed(ROOT, groups, new_cache)) + "\n")
+            before.write_text("\n".join(computed(ROOT, options.only, groups, new_cache)) + "\n")
             return
         if before.is_dir():
-            old = computed(before, groups, old_cache)
+            old = computed(before, options.only, groups, old_cache)
         else:
             kept = before.read_text().splitlines()
-            old = [line for line in kept if line[17:].split(":", 1)[0] in groups]
-        new = computed(ROOT, groups, new_cache)
+            old = [
+                line
+                for line in kept
+                if line[17:].split(":", 1)[0] in groups and options.only in line[17:]
+            ]
+        new = computed(ROOT, options.only, groups, new_cache)
     different = [f"before {a}\n today {b}" for a, b in zip_longest(old, new) if a != b]
     print("\n".join(different) or "all are the same")
     raise SystemExit(bool(different))
@@ -326,6 +337,6 @@ def main() -> None:
 
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--digests"]:
-        digests(sys.argv[2:])
+        digests(sys.argv[2], sys.argv[3:])
     else:
         main()

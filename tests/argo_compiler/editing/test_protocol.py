@@ -92,6 +92,14 @@ def elsewhere(mission):
     return {t.name for t in mission.tasks if default(t) != after[t.name]}
 
 
+def out_of_endless(mission):
+    """Return where the tasks lead that end an endless round: a script says it of each of them."""
+    endless = (
+        g for g in mission.groups if not (g.max_repeat_count or g.max_repeat_duration or g.until)
+    )
+    return {g.end: default(mission.task(g.end)) for g in endless}
+
+
 class Editor:
     """Makes the same edits by functions and in words. Mutable."""
 
@@ -112,6 +120,8 @@ class Editor:
             return
         line, mission = proposed
         # A way that a script gives in words stays, even where it now leads to what follows.
+        if out_of_endless(mission).items() - out_of_endless(self.mission).items():
+            return
         if elsewhere(mission) & {t.name for t in mission.tasks} != self.said & {
             t.name for t in mission.tasks
         }:

@@ -7,10 +7,16 @@ from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.base.listing import listed
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action
-from argo_compiler.script.resolve import making
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.manners import Manners
-from argo_compiler.script.resolve.program import Choice, Do, Leave, ProgramNode, ProgramRound
+from argo_compiler.script.resolve.program import (
+    Choice,
+    Do,
+    Leave,
+    ProgramNode,
+    ProgramRound,
+    measurement,
+)
 from argo_compiler.script.syntax.text.source import RefusedError
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.nouns import Nouns
@@ -45,7 +51,7 @@ class Edits:
     def _add(self, edit: orders.Add) -> None:
         checkpoints = self.context.nouns.all(edit.what)
         anchors = self._found(edit.anchor)
-        tasks = [making.measurement(c.id, edit.span) for c in checkpoints]
+        tasks = [measurement(c, edit.span) for c in checkpoints]
         self.manners.name(edit, tasks)
         nodes = self.manners.apply(edit, tasks)
         self._put(nodes, anchors, edit.side)
@@ -97,7 +103,7 @@ class Edits:
             hint = "delete what is there, and add the other behind it"
             self.diagnostics.refuse("bound-task", message, edit.span, hint)
         self.context.forget(do)
-        new = making.measurement(checkpoint.id, edit.span)
+        new = measurement(checkpoint, edit.span)
         do.base, do.object_id, do.source = new.base, new.object_id, new.source
         self.context.note(do)
         self.context.step.append(do)

@@ -5,15 +5,11 @@ from dataclasses import replace
 
 from argo_compiler.il import OnFailure
 from argo_compiler.script.resolve.accepting import require_used, said
-from argo_compiler.script.resolve.beside import measured_beside, require_once
 from argo_compiler.script.resolve.cases import Cases
 from argo_compiler.script.resolve.context import Context
-from argo_compiler.script.resolve.counting import counted
-from argo_compiler.script.resolve.demanding import demanded_of
 from argo_compiler.script.resolve.edits import Edits
 from argo_compiler.script.resolve.manners import Manners
 from argo_compiler.script.resolve.ordering import Ordering
-from argo_compiler.script.resolve.patrolling import patrol_rounds
 from argo_compiler.script.resolve.program import (
     Ahead,
     Do,
@@ -22,12 +18,9 @@ from argo_compiler.script.resolve.program import (
     ProgramNode,
     in_branch,
 )
-from argo_compiler.script.resolve.reaching import is_back, require_reached
 from argo_compiler.script.resolve.repeating import Repeating
-from argo_compiler.script.resolve.sparing import check_spared
 from argo_compiler.script.resolve.starting import Starting
 from argo_compiler.script.resolve.tasks import TaskMaker
-from argo_compiler.script.resolve.waiting import staying
 from argo_compiler.script.syntax.text.source import RefusedError
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.manner import Manner
@@ -53,7 +46,7 @@ class Planner:
         self.ordering = ordering
         self.edits = Edits(context, self.manners)
         self.making = TaskMaker(context, starting, self.manners)
-        self.cases = Cases(context, self)
+        self.cases = Cases(context, self.manners, self.carry_out)
         self.done = False
 
     def sentence(self, sentence: Sentence, block: ProgramBlock) -> None:
@@ -112,7 +105,7 @@ class Planner:
 
     def _order(self, order: ScriptOrder, block: ProgramBlock) -> None:
         context = self.context
-        order = staying(counted(order, context), block, context)
+        order = self._staying(context.counted(order), block)
         if self.done:
             hint = "move `Done!` to the end"
             self.diagnostics.refuse("after-done", "this comes after `Done!`", order.span, hint)
@@ -134,7 +127,7 @@ class Planner:
             case orders.VisitOrder():
                 self.making.visit(order)
             case orders.Beside():
-                for measure in measured_beside(order, context):
+                for measure in self.making.measured_beside(order):
                     self.order(measure, block)
             case orders.WaitOrder(where=where) if where is not None:
                 self._wait_at(order, where, block)
@@ -149,14 +142,52 @@ class Planner:
                 self.repeating.fill_known()
                 self.edits.carry_out(order)
             case orders.Patrol():
-                is_back(order, block, self.context)
-                require_reached(order.span, block, context)
-                rounds, stops = patrol_rounds(order, context, self.manners)
+                self._is_back(order, block)
+                context.require_reached(order.span, block)
+                rounds, stops = self.making.patrol_rounds(order)
                 self._put(order, self.manners.around(order, rounds), stops, block)
             case orders.Plain(word=word) if word is not PlainWord.MEET:
                 self._plain(order, block)
             case _:
                 self._planned(order, block)
+
+    def _staying(self, order: ScriptOrder, block: ProgramBlock) -> ScriptOrder:
+        """Take `stay there` for the end of the mission, unless another order comes behind it; then
+        it has to say how long."""
+        context = self.context
+        if context.stays is not None and not isinstance(order, orders.Plain):
+            hint = "write `stay there for 90 s`, or move it to the end if the mission ends with it"
+            context.diagnostics.error("wait", "this does not say how long", context.stays, hint)
+            context.stays = None
+            context.fail()
+        if not isinstance(order, orders.WaitOrder) or not order.stays or in_branch(block):
+            return order
+        if order.manner is not None or order.where is not None:
+            return order
+        context.stays = order.span
+        return orders.Plain(span=order.span, word=PlainWord.END)
+
+    def _is_back(self, order: ScriptOrder, block: ProgramBlock) -> bool:
+        """Whether the robot is in its docking station, and is only told to go there again. Raises
+        RefusedError if it is told anything else."""
+        context = self.context
+        docked = context.docked
+        if docked is None or not docked.listed or block is not context.program:
+            return False
+        if docked.ways or isinstance(order, orders.Plain):
+            return False
+        if isinstance(order, orders.Home):
+            if order.dock.area is None:
+                return True
+            context.program.remove(docked)  # `go home and dock in area 2`
+            return False
+        if isinstance(order, orders.WaitOrder) and order.manner and order.manner.duration:
+            context.docked = None  # `stay there for 5 minutes`: it goes on behind that
+            return False
+        line = docked.source.line if docked.source else 0
+        message = f"the robot is back in its docking station since line {line}"
+        hint = "move the return to the end, or say how it goes on: `then go to step 3`"
+        context.diagnostics.refuse("after-docking", message, order.span, hint)
 
     def _wait_at(
         self, order: orders.WaitOrder, where: Location | FloorName, block: ProgramBlock
@@ -178,15 +209,15 @@ class Planner:
 
     def _planned(self, order: ScriptOrder, block: ProgramBlock) -> None:
         """Puts the tasks of an order into a block, with what is said of them."""
-        if isinstance(order, orders.Measure) and (demanded := demanded_of(order, self.context)):
+        if isinstance(order, orders.Measure) and (demanded := self.making.demanded_of(order)):
             self.manners.furnish(order, demanded)
             return
         tasks = self.making.tasks(order)
         if isinstance(order, orders.Start) and not order.here:
             self.manners.name(order, tasks)
             self.manners.furnish(order, tasks)
-        elif not is_back(order, block, self.context):
-            require_reached(order.span, block, self.context)
+        elif not self._is_back(order, block):
+            self.context.require_reached(order.span, block)
             self.manners.name(order, tasks)
             self._put(order, self.manners.apply(order, tasks), tasks, block)
             if tasks[-1].docks and block is self.context.program:
@@ -229,7 +260,7 @@ class Planner:
                 self.diagnostics.refuse("stray-clause", message, order.span, hint)
 
     def _leave(self, leave: Leave, block: ProgramBlock) -> None:
-        require_reached(leave.span, block, self.context)
+        self.context.require_reached(leave.span, block)
         self.context.put([leave], block, block.last)
         self.context.step.append(leave)
         self.context.choice = None
@@ -237,8 +268,32 @@ class Planner:
     def finish(self) -> None:
         """Looks whether all that was begun has been said to its end."""
         self.making.leave_unvisited()
-        require_once(self.context)
-        check_spared(self.context)
+        self._require_once()
+        self._check_spared()
+
+    def _require_once(self) -> None:
+        """Asks about what is measured beside another one, and elsewhere as well."""
+        context = self.context
+        for key, span in context.once.items():
+            if len(context.measured.get(key, {})) > 1:
+                message = f"checkpoint #{key} is measured elsewhere as well: it can be meant to be "
+                message += "measured here, too, or only there"
+                hint = "name it in one of the two only, or write `check it again`"
+                context.diagnostics.error("ambiguous-edit", message, span, hint)
+
+    def _check_spared(self) -> None:
+        """Looks whether it is in the plan; what is not, is said."""
+        context = self.context
+        for key, span in context.spared.items():
+            tasks = context.measured.get(key)
+            if tasks:
+                lines = sorted({s.line for do in tasks.values() if (s := do.source)})
+                asks = f"line {lines[0]} asks for checkpoint #{key}" if lines else "it is asked for"
+                hint = "leave one of the two out, or write `except` in the line that asks for it"
+                context.diagnostics.error("spared", asks, span, hint)
+            else:
+                message = f"checkpoint #{key} is not in the plan anyway, so that this has no effect"
+                context.diagnostics.note("no-effect", message, span)
 
 
 def _several(orders_: Sequence[ScriptOrder]) -> bool:

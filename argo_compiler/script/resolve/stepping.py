@@ -7,7 +7,7 @@ from dataclasses import replace
 from argo_compiler.il import Order
 from argo_compiler.script.resolve.accepting import require_used, said
 from argo_compiler.script.resolve.context import Context
-from argo_compiler.script.resolve.limiting import make_round
+from argo_compiler.script.resolve.manners import make_round
 from argo_compiler.script.resolve.planning import Planner
 from argo_compiler.script.resolve.program import Do, ProgramBlock, all_nodes
 from argo_compiler.script.syntax.text.source import MOST_KEPT, RefusedError
@@ -97,7 +97,7 @@ class Stepping:
             self.planner.ordering.say(manner.order, tasks, order.span)
         if manner.by_importance:
             of_each = Manner(by_importance=True)
-            self.planner.manners.furnishing.furnish(of_each, order.span, tasks)
+            self.planner.manners.furnish_each(of_each, order.span, tasks)
 
     def _without_limit(self, sentence: Sentence) -> Sentence:
         """The sentence without how long the mission may take: `at most 25 minutes in total`."""

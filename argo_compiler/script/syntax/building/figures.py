@@ -6,7 +6,7 @@ from math import inf, isinf, isnan
 from argo_compiler.il import MAX_TIME_S
 from argo_compiler.script.syntax.building.part import Make, RulePart
 from argo_compiler.script.syntax.tree.conditions import Amount
-from argo_compiler.script.syntax.words.lengths import Length
+from argo_compiler.script.syntax.words.amounts import Length
 from argo_compiler.script.syntax.words.numbers import Figure
 from argo_compiler.script.syntax.words.word import Word
 

@@ -7,13 +7,11 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
+from argo_compiler.script.syntax.words.amounts import read_clock, read_glued
 from argo_compiler.script.syntax.words.joints import joined
-from argo_compiler.script.syntax.words.lengths import read_clock, read_glued
 from argo_compiler.script.syntax.words.lexicon import Lexicon, folded
-from argo_compiler.script.syntax.words.merging import merged
-from argo_compiler.script.syntax.words.negation import negated
+from argo_compiler.script.syntax.words.merging import merged, negated
 from argo_compiler.script.syntax.words.numbers import Figure, compose, read_figure, split_number
-from argo_compiler.script.syntax.words.phrases import longest
 from argo_compiler.script.syntax.words.unknown import UnknownError, UnknownFigure, unknown_text
 from argo_compiler.script.syntax.words.word import Word
 from argo_compiler.script.syntax.words.word_order import arranged
@@ -128,7 +126,7 @@ def _looked_up(text: str, lexicon: Lexicon, unsaid: frozenset[str] = _UNSAID) ->
         if i in apart:
             i += 1
             continue
-        phrase = longest(said, i, lexicon)
+        phrase = lexicon.longest(said, i)
         if phrase is None and pieces[i].lastgroup == "STRING":
             inner = [] if _is_name(found) else _unwrapped(pieces[i], text, lexicon)
             if inner and not (i + 1 < len(pieces) and pieces[i + 1].group() == ":"):
@@ -162,7 +160,7 @@ def _looked_up(text: str, lexicon: Lexicon, unsaid: frozenset[str] = _UNSAID) ->
 def _numbered(piece: re.Match[str], lexicon: Lexicon) -> list[Word]:
     """The words of `LLG2` and `checkpoint4`, kinds and numbers; none of a name such as `R25`."""
     parts = _GLUED_NUMBER.fullmatch(piece.group())
-    phrase = None if parts is None else longest([folded(parts[1])], 0, lexicon)
+    phrase = None if parts is None else lexicon.longest([folded(parts[1])], 0)
     if parts is None or phrase is None or phrase.entry[0] != "KIND":
         return []
     middle = piece.start() + len(parts[1])

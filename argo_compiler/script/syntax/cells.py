@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
-from argo_compiler.script.syntax.labels import FieldLabels
+from argo_compiler.script.syntax.fields import ScriptFields
 from argo_compiler.script.syntax.text.source import ScriptText, join
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.loading import everywhere
@@ -34,15 +34,15 @@ class _Cell:
 class Cells:
     """Puts the lines of a cell into one."""
 
-    def __init__(self, labels: FieldLabels, understanding: Understanding) -> None:
-        self.labels = labels
+    def __init__(self, fields: ScriptFields, understanding: Understanding) -> None:
+        self.fields = fields
         self.understanding = understanding
-        self.label = labels.prose.label
+        self.label = fields.prose.label
 
     def joined(self, lines: Sequence[ScriptText]) -> list[ScriptText]:
         """The lines, those of a cell in the line of its label, their own lines empty."""
         found = list(lines)
-        cells = [i for i, line in enumerate(lines) if self.labels.is_cell(line.strip())]
+        cells = [i for i, line in enumerate(lines) if self.fields.is_cell(line.strip())]
         above: _Cell | None = None
         waiting: list[int] = []
         first, last = (max(0, cells[0] - 4), cells[-1] + 4) if cells else (0, 0)
@@ -51,7 +51,7 @@ class Cells:
             if not text.content:
                 continue
             text = self._whole_label(found, i) or text
-            below = self._cell(i, text) if self.labels.is_cell(text) else None
+            below = self._cell(i, text) if self.fields.is_cell(text) else None
             if below is None and self._is_loose(found, i, above):
                 waiting.append(i)
                 continue
@@ -90,7 +90,7 @@ class Cells:
         if word is None or behind is None or self.label.match(second.content):
             return None
         label = join([first[: word.end()], second[: behind.end()]])
-        if not self.labels.is_cell(label):
+        if not self.fields.is_cell(label):
             return None
         return label, first[word.end() :].strip(), second[behind.end() :].strip()
 
@@ -98,7 +98,7 @@ class Cells:
         """Whether a line may belong to a cell: it has neither label nor mark, and makes no sense by
         itself."""
         line, text = lines[i], lines[i].strip()
-        if _marked().match(line.content) or self.labels.is_field(text):
+        if _marked().match(line.content) or self.fields.is_field(text):
             return False
         if line.content[0] == "\t" and self._before_cell(lines, i):
             return True
@@ -116,7 +116,7 @@ class Cells:
             text = lines[k].strip()
             if not text.content or _marked().match(text.content):
                 return False
-            if self.labels.is_cell(text) or self._halves(lines, k) is not None:
+            if self.fields.is_cell(text) or self._halves(lines, k) is not None:
                 return True
         return False
 

@@ -4,17 +4,25 @@ For a text whose figures are others the sentence is read once more with numbers 
 Where that succeeds, nothing but the figures themselves can differ in what such texts say.
 """
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from functools import lru_cache
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from functools import cache, lru_cache
+from typing import Any
 
-from argo_compiler.diagnostics import Span
-from argo_compiler.script.syntax.moving import Move, mover
+from argo_compiler.diagnostics import Span, span_at
 from argo_compiler.script.syntax.sentence_reading import Said
-from argo_compiler.script.syntax.shapes import Shape, figure_places, with_other_figures
 from argo_compiler.script.syntax.text.source import ScriptText
+from argo_compiler.script.syntax.tree.manner import Joints, Manner
+from argo_compiler.script.syntax.tree.node import Node
 from argo_compiler.script.syntax.words.lexicon import Lexicon
-from argo_compiler.script.syntax.words.unknown import UnknownFigure, unknown_figure
+from argo_compiler.script.syntax.words.unknown import (
+    Fill,
+    Unknown,
+    UnknownFigure,
+    UnknownText,
+    unknown_figure,
+)
 
 _MOST = 8192
 """texts that are kept, and shapes; then all are forgotten"""
@@ -22,6 +30,109 @@ _MOST = 8192
 ReadAgain = Callable[[ScriptText, Mapping[int, UnknownFigure]], list[Said] | None]
 """reads a text, in which the figures at these places of the source are not known; None if what it
 says hangs on them"""
+_PLAIN = re.compile(
+    r"(?<![\w.,'’:/½¼¾-])([2-9]|[1-9][0-9]{1,5}|[1-9][0-9]{0,4}\.[0-9]{1,2}"
+    r"|0\.(?=[0-9]?[1-9])[0-9]{1,2})(?![\w½¼¾]|[.,'’:/-]\w)"
+)
+"""a number that can be read in one way only; 0 and 1 are often more than numbers"""
+_HIDDEN = str.maketrans("0123456789", "\ue000" * 10)
+_OTHERS = str.maketrans("0123456789", "4356789242")
+"""by digit, another one, neither 0 nor 1"""
+_Move = Callable[[int, int, Sequence[str]], Any]
+"""the part so many lines and columns further on, with these figures for those that are unknown"""
+_Fill = Callable[[object, object], None]
+
+
+# ---- the shape of a text
+
+
+@dataclass(frozen=True, slots=True)
+class _Shape:
+    """A text without its plain numbers, and these numbers."""
+
+    key: str
+    """equal for all texts of the shape"""
+    figures: tuple[str, ...]
+
+    @classmethod
+    def of(cls, content: str) -> "_Shape":
+        parts = _PLAIN.split(content)
+        figures = tuple(parts[1::2])
+        # The first zero of `0.5` is part of the shape: such a number is less than one.
+        parts[1::2] = [_changed(figure, _HIDDEN) for figure in figures]
+        return cls("".join(parts), figures)
+
+
+def _figure_places(content: str) -> list[int]:
+    """Where the plain numbers of a text begin."""
+    return [found.start() for found in _PLAIN.finditer(content)]
+
+
+def _with_other_figures(content: str) -> str:
+    """A text of the same shape in which every digit of the plain numbers is another one."""
+    return _PLAIN.sub(lambda found: _changed(found[0], _OTHERS), content)
+
+
+def _changed(figure: str, digits: dict[int, str] | dict[int, int]) -> str:
+    return f"0{figure[1:].translate(digits)}" if figure[0] == "0" else figure.translate(digits)
+
+
+# ---- a node of a text that stands at another place, or says the same of other figures
+
+
+def _mover(part: object) -> _Move | None:
+    """What makes the same part for another place; None if it says nothing of its place, nor of
+    a figure that is not known."""
+    if type(part) in (Unknown, UnknownText):
+        fill: Fill = part.fill  # type: ignore[attr-defined]
+        return lambda _lines, _columns, figures: fill(figures)
+    match part:
+        case Span(line=line, column=column, length=length):
+            return lambda lines, columns, _: span_at(line + lines, column + columns, length)
+        case tuple():
+            moves = [_mover(one) for one in part]
+            if not any(moves):
+                return None
+            pairs = list(zip(part, moves, strict=True))
+            return lambda lines, columns, figures: tuple(
+                [one if move is None else move(lines, columns, figures) for one, move in pairs]
+            )
+        case Node() | Manner() | Joints():
+            return _mover_of_node(part)
+    return None
+
+
+def _mover_of_node(part: Node | Manner | Joints) -> _Move:
+    type_: Any = type(part)
+    same: list[tuple[_Fill, object]] = []
+    moving: list[tuple[_Fill, _Move]] = []
+    for name, fill in _slots(type_):
+        value = getattr(part, name)
+        move = _mover(value)
+        if move is None:
+            same.append((fill, value))
+        else:
+            moving.append((fill, move))
+
+    def moved(lines: int, columns: int, figures: Sequence[str]) -> object:
+        new = object.__new__(type_)
+        for fill, value in same:
+            fill(new, value)
+        for fill, move in moving:
+            fill(new, move(lines, columns, figures))
+        return new
+
+    return moved
+
+
+@cache
+def _slots(type_: type[Any]) -> list[tuple[str, _Fill]]:
+    """The fields of a node, and how each is filled: through its slot, which is several times as
+    fast as making a node."""
+    return [(field.name, getattr(type_, field.name).__set__) for field in fields(type_)]
+
+
+# ---- what texts say
 
 
 @dataclass(slots=True)
@@ -30,12 +141,12 @@ class _Text:
 
     said: list[Said]
     span: Span
-    moves: list[Move] = field(default_factory=list)
+    moves: list[_Move] = field(default_factory=list)
     """how it is said at another place; made when the text is met again, for most never are"""
 
     def at(self, here: Span, figures: tuple[str, ...]) -> list[Said]:
         """What it says at another place and with other figures."""
-        self.moves = self.moves or [move for move in map(mover, self.said) if move is not None]
+        self.moves = self.moves or [move for move in map(_mover, self.said) if move is not None]
         lines, columns = here.line - self.span.line, here.column - self.span.column
         return [move(lines, columns, figures) for move in self.moves]
 
@@ -62,7 +173,7 @@ class Repeats:
             self._shapes.clear()
             self._met.clear()
         self._known[text.content] = _Text(said, text.span())
-        shape = Shape.of(text.content)
+        shape = _Shape.of(text.content)
         if not shape.figures or shape.key in self._shapes or self._in_phrases(shape.figures):
             return
         if shape.key in self._met:
@@ -76,7 +187,7 @@ class Repeats:
         known = self._known.get(text.content)
         if known is not None:
             return known.at(text.span(), ())
-        shape = Shape.of(text.content)
+        shape = _Shape.of(text.content)
         known = self._shapes.get(shape.key)
         if known is None or self._in_phrases(shape.figures):
             return None
@@ -88,15 +199,15 @@ class Repeats:
         return bool(said) and not said.isdisjoint(figures)
 
 
-def _of_shape(text: ScriptText, shape: Shape, said: list[Said], read: ReadAgain) -> _Text | None:
+def _of_shape(text: ScriptText, shape: _Shape, said: list[Said], read: ReadAgain) -> _Text | None:
     """What all texts of a shape say; None if that hangs on their figures, or on their digits."""
     unknown = {
         text.offsets[start]: unknown_figure(figure, place)
         for place, (start, figure) in enumerate(
-            zip(figure_places(text.content), shape.figures, strict=True)
+            zip(_figure_places(text.content), shape.figures, strict=True)
         )
     }
-    other = ScriptText(with_other_figures(text.content), text.offsets, text.source)
+    other = ScriptText(_with_other_figures(text.content), text.offsets, text.source)
     found = read(other, unknown)
     if found is None:
         return None

@@ -5,23 +5,79 @@ the sentence that says the same: `3. checkpoint #2 (liquid level gauge 1) with p
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from enum import Enum, auto
 
 from argo_compiler.base.listing import listed
-from argo_compiler.script.syntax.asking import Asking, ask_of_remark
-from argo_compiler.script.syntax.priorities import Priorities, PriorityScale, scale_of
+from argo_compiler.script.syntax.asides import Asides, ask_of_remark
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, Source, quotes
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.lexicon import expand
+from argo_compiler.script.syntax.words.prose import Prose
 
 _RULE = re.compile(r"[\s|:=+-]*-[\s|:=+-]*")
-_FIRST_NUMBER = re.compile(r"[0-9]{1,6}")
+_NUMBER = re.compile(r"[0-9]{1,6}")
 _MOST_COLUMNS = 12
 _MOST_ROWS = 10_000
 """of all tables of a script"""
 _CUTS = ("|", "\t", ";", "  ", ",")
 _PATTERNS = {cut: re.compile(r"\s{2,}" if cut == "  " else re.escape(cut)) for cut in _CUTS}
+_SCALED = re.compile(
+    r"(?P<heading>[^(\[:,;-]+?)[\s(\[:,;-]+(?P<number>[0-9]+)(?P<said>[^0-9]+)(?:[0-9].*)?"
+)
+
+
+class _Scale(Enum):
+    """Which of the numbers is the most important."""
+
+    OPEN = auto()
+    """nothing says so"""
+    SMALLEST = auto()
+    GREATEST = auto()
+
+
+def _scale_of(heading: str, prose: Prose) -> _Scale | None:
+    """What a heading such as `Priority (1 = highest)` says; None: it is no such heading."""
+    found = _SCALED.fullmatch(heading.strip())
+    if found is None or prose.column(found["heading"]) != "priority":
+        return None
+    highest = prose.is_highest(found["said"])
+    if highest is None:
+        return None
+    return _Scale.SMALLEST if highest is (int(found["number"]) <= 1) else _Scale.GREATEST
+
+
+class _Priorities:
+    """Tells what the cells of a column are worth. Mutable: a script may have several tables."""
+
+    def __init__(self, prose: Prose, diagnostics: Diagnostics) -> None:
+        self.prose = prose
+        self.diagnostics = diagnostics
+        self.scale = _Scale.OPEN
+        self.asked = False
+        self.greatest = 0
+
+    def begin(self, scale: _Scale, cells: Sequence[str]) -> None:
+        """Begins a table with all its cells of this column."""
+        self.scale, self.asked = scale, False
+        self.greatest = max((int(c) for c in cells if _NUMBER.fullmatch(c)), default=0)
+
+    def worth(self, cell: ScriptText) -> str:
+        """The priority of a cell as the sentences count them, of which the greatest is the most
+        important; nothing for what is no priority. Without a scale numbers are asked about."""
+        if _NUMBER.fullmatch(cell.content) is None:
+            return self.prose.rank(cell.content) or ""
+        number = int(cell.content)
+        if self.scale is _Scale.OPEN and not self.asked:
+            self.asked = True
+            message = (
+                f"`{cell.content}` can be counted from the most important one, or from the least"
+            )
+            hint = "write over the column `Priority (1 = highest)` or `Priority (1 = lowest)`, or "
+            hint += "`high`, `medium` and `low` in it"
+            self.diagnostics.error("ambiguous-priority", message, cell.span(), hint)
+        return str(self.greatest + 1 - number if self.scale is _Scale.SMALLEST else number)
 
 
 @dataclass(frozen=True)
@@ -30,7 +86,7 @@ class _Heading:
 
     holds: str
     start: int
-    scale: PriorityScale = PriorityScale.OPEN
+    scale: _Scale = _Scale.OPEN
 
 
 def tables(
@@ -90,9 +146,9 @@ class _Rows:
     def __init__(self, understanding: Understanding, diagnostics: Diagnostics) -> None:
         self.understanding = understanding
         self.prose = understanding.language.prose
-        self.asking = Asking(understanding)
+        self.asides = Asides(understanding)
         self.diagnostics = diagnostics
-        self.priorities = Priorities(self.prose, diagnostics)
+        self.priorities = _Priorities(self.prose, diagnostics)
 
     def headings(self, text: ScriptText, cut: str) -> list[_Heading] | None:
         """The columns, if a line has the headings of a table."""
@@ -100,7 +156,7 @@ class _Rows:
         if cut != "|" and first and self.prose.column(first) is None:
             return None
         cells = list(_cells(text, cut))
-        scales = {at: scale_of(cell.content, self.prose) for at, cell in cells}
+        scales = {at: _scale_of(cell.content, self.prose) for at, cell in cells}
         known = [
             ("priority" if scales[at] else self.prose.column(cell.content), at, cell)
             for at, cell in cells
@@ -120,8 +176,7 @@ class _Rows:
             return None
         by_start = {at: holds or "nothing" for holds, at, _ in known}
         return [
-            _Heading(by_start.get(at, "nothing"), at, scales[at] or PriorityScale.OPEN)
-            for at, _ in cells
+            _Heading(by_start.get(at, "nothing"), at, scales[at] or _Scale.OPEN) for at, _ in cells
         ]
 
     def begin(self, headings: list[_Heading], cut: str, rows: Iterator[ScriptText]) -> None:
@@ -142,7 +197,7 @@ class _Rows:
             self._done(cells["done"])
         number = cells.get("number")
         mark: list[str | ScriptText] = ["- "]
-        if number is not None and _FIRST_NUMBER.fullmatch(number.content.strip(" .)#")):
+        if number is not None and _NUMBER.fullmatch(number.content.strip(" .)#")):
             mark = [number.content.strip(" .)#"), ". "]
         elif number is not None:
             self._note(number)
@@ -176,10 +231,10 @@ class _Rows:
         self.diagnostics.error("ambiguous-cell", message, cell.span(), hint)
 
     def _asks(self, remark: ScriptText) -> bool:
-        return self.asking.asks(remark) or self.asking.bids(remark)
+        return self.asides.asks(remark) or self.asides.bids(remark)
 
     def _note(self, aside: ScriptText) -> None:
-        if self.asking.corrects(aside) or self.asking.bids(aside):
+        if self.asides.corrects(aside) or self.asides.bids(aside):
             ask_of_remark(aside, self.diagnostics)
             return
         message = f"`{aside.content}` is taken for a remark and has no effect"

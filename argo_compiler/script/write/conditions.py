@@ -24,7 +24,7 @@ _STATES = {
     ConditionType.FAILED: "has failed",
     ConditionType.ABNORMAL: "is abnormal",
 }
-_EVENTS = {
+EVENTS = {
     EventKind.GAS_LEAK: "a gas leak is detected",
     EventKind.HOT_SPOT: "a hot spot is detected",
     EventKind.ABNORMAL_SOUND: "an abnormal sound is heard",
@@ -56,11 +56,6 @@ _AFTERWARDS = {
     Afterwards.WAIT: "and wait for the operator",
 }
 _DRIVES = (Response.RETURN, Response.SAFE_AREA)
-
-
-def event(kind: EventKind) -> str:
-    """`a gas leak is detected`"""
-    return _EVENTS[kind]
 
 
 def conditions(held: Sequence[Condition]) -> str:
@@ -139,7 +134,7 @@ def reaction_said(reaction: Reaction, places: Places) -> str:
 def _occurs(reaction: Reaction) -> str:
     level = reaction.battery_below
     if level is None:
-        return event(reaction.event)
+        return EVENTS[reaction.event]
     percent = next((p for p in (level * 100, round(level * 100, 9)) if p / 100 == level), None)
     if percent is None or reaction.event is not EventKind.LOW_BATTERY:
         raise UnwritableError("this level of the battery is no number of percent: `battery_below`")
@@ -150,7 +145,7 @@ def _holding(reaction: Reaction) -> str:
     """What it waits for, for how long, and what it does then."""
     said = []
     if reaction.until is not None:
-        said.append(f"until {event(reaction.until)}")
+        said.append(f"until {EVENTS[reaction.until]}")
     if reaction.hold_limit is not None:
         said.append(f"for at most {duration(reaction.hold_limit)}")
     if reaction.hold_limit is not None or reaction.on_limit is not Afterwards.WAIT:

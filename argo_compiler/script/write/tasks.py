@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from argo_compiler.il import Action, JointState, OnFailure, Task, TimeWindow, WaitRule
-from argo_compiler.script.write.conditions import checkpoint, conditions, event
+from argo_compiler.script.write.conditions import EVENTS, checkpoint, conditions
 from argo_compiler.script.write.text import (
     Places,
     UnwritableError,
@@ -47,7 +47,7 @@ def _wait(rule: WaitRule) -> str:
         if rule.event is not None or rule.conditions or rule.limit is not None:
             raise UnwritableError("a wait for a time has nothing else: `event`, `limit`")
         return f"wait {duration(rule.duration)}" if rule.duration else "go on here"
-    until = [] if rule.event is None else [event(rule.event)]
+    until = [] if rule.event is None else [EVENTS[rule.event]]
     until += [conditions(rule.conditions)] if rule.conditions else []
     if not until:
         raise UnwritableError("it does not say what it waits for: `wait`")

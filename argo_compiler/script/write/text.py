@@ -46,17 +46,14 @@ def _escaped(character: str) -> str:
         plain = character.isprintable() and character not in _MARKS
     else:
         # Of letters, the ligatures and those that change their length in lower case.
-        plain = character.isalpha() and len(character.lower()) == 1 and not _is_ligature(character)
+        ligature = "\ufb00" <= character <= "\ufb4f"
+        plain = character.isalpha() and len(character.lower()) == 1 and not ligature
     if plain:
         return character
     if character in '"\\':
         return "\\" + character
     units = character.encode("utf-16-be")
     return "".join(f"\\u{units[i : i + 2].hex()}" for i in range(0, len(units), 2))
-
-
-def _is_ligature(character: str) -> bool:
-    return "\ufb00" <= character <= "\ufb4f"
 
 
 def number(value: float) -> str:

@@ -132,7 +132,24 @@ def _speeds(lowered: Lowered, names: Sequence[str], diagnostics: Diagnostics) ->
             message = "no way leads on from here, so there is none that could have this speed"
             hint = "write `at 0.3 m/s` for the way to a task"
             diagnostics.warning("speed-unused", message, item.do.source, hint)
-        _leave_at(i, speeds, list(sources[i]), items, leaving, names, diagnostics)
+        if item.do.action is Action.WAIT:
+            continue
+        others = [j for j in sources[i] if leaving[j] is None]
+        for j in sources[i]:
+            value = leaving[j]
+            if value is None:
+                continue
+            said, speeds[i] = speeds[i], value
+            if said is not None and said != value:
+                message = f"two speeds for one way: {value:g} and {said:g} m/s"
+                hint = "leave one of them out"
+                diagnostics.error("two-speeds", message, items[j].do.source, hint)
+            if others and item.do.velocity is None:
+                elsewhere = ", ".join(f"'{names[o]}'" for o in others[:3])
+                message = f"{value:g} m/s will be the speed of all ways to '{names[i]}', "
+                message += f"also from {elsewhere}"
+                hint = f"plan a waypoint before '{names[i]}' if these are not to be that fast"
+                diagnostics.warning("speed-shared", message, items[j].do.source, hint)
     return speeds
 
 
@@ -151,37 +168,6 @@ def _passed_on(items: Sequence[Item], sources: Sequence[dict[int, None]]) -> lis
                 leaving[i] = leaving[j]
                 work.append(i)
     return leaving
-
-
-def _leave_at(
-    i: int,
-    speeds: list[float | None],
-    froms: Sequence[int],
-    items: Sequence[Item],
-    leaving: Sequence[float | None],
-    names: Sequence[str],
-    diagnostics: Diagnostics,
-) -> None:
-    """Gives a task the speed at which those before it are left."""
-    if items[i].do.action is Action.WAIT:
-        return
-    others = [j for j in froms if leaving[j] is None]
-    for j in froms:
-        value = leaving[j]
-        if value is None:
-            continue
-        said, speeds[i] = speeds[i], value
-        if said is not None and said != value:
-            message = f"two speeds for one way: {value:g} and {said:g} m/s"
-            diagnostics.error("two-speeds", message, items[j].do.source, "leave one of them out")
-        if others and items[i].do.velocity is None:
-            elsewhere = ", ".join(f"'{names[o]}'" for o in others[:3])
-            message = (
-                f"{value:g} m/s will be the speed of all ways to '{names[i]}', "
-                f"also from {elsewhere}"
-            )
-            hint = f"plan a waypoint before '{names[i]}' if these are not to be that fast"
-            diagnostics.warning("speed-shared", message, items[j].do.source, hint)
 
 
 def _name_tasks(items: Sequence[Item], diagnostics: Diagnostics) -> list[str]:

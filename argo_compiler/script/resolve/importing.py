@@ -12,11 +12,9 @@ from argo_compiler.script.resolve.assembly import assemble
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.resolve.lowering import lower_program
-from argo_compiler.script.resolve.ordering import Ordering
 from argo_compiler.script.resolve.planning import Planner
 from argo_compiler.script.resolve.program import Do, ProgramNode, all_nodes, depth
-from argo_compiler.script.resolve.starting import Starting, header_values
-from argo_compiler.script.resolve.stepping import Stepping
+from argo_compiler.script.resolve.starting import Starting, area_choices
 from argo_compiler.script.syntax.parsing import parse
 from argo_compiler.script.syntax.text.source import Diagnostics, RefusedError, Source
 from argo_compiler.script.syntax.tree.places import Steps
@@ -68,17 +66,15 @@ def _mission(
     start_area: int | None,
     end_area: int | None,
 ) -> Mission:
-    header = header_values(script.header, diagnostics, start_area, end_area)
-    lookup = Lookup(catalog, diagnostics, header.start.area, header.end.area)
+    start, end = area_choices(script.header, diagnostics, start_area, end_area)
+    lookup = Lookup(catalog, diagnostics, start.area, end.area)
     context = Context(lookup, diagnostics)
     if diagnostics.errors:
         context.fail()
-    starting = Starting(context, header)
-    starting.begin()
-    ordering = Ordering(context, script.header)
-    planner = Planner(context, starting, ordering)
-    stepping = Stepping(context, planner, script.header)
-    stepping.all(script.steps)
+    starting = Starting(context, script.header, start, end)
+    planner = Planner(context, starting, script.header)
+    ordering = planner.ordering
+    planner.steps(script.steps)
     planner.finish()
     with suppress(RefusedError):
         starting.finish()

@@ -239,7 +239,9 @@ class _Lowering:
         """Decides at the task before it, or at a place of its own if others come here as well."""
         item = before
         if item is None or not self._comes_only_from(item, entry, choice):
-            item = Item(_meeting(choice))
+            last = choice.before
+            base = f"after '{last.title}'" if isinstance(last, ProgramRound) else "MEET"
+            item = Item(Do(base, Action.WAIT, choice.span, wait=MEETING))
             self._place(item, entry)
         then, otherwise = Point(), Point()
         taken, left = (otherwise, then) if choice.negated else (then, otherwise)
@@ -269,7 +271,8 @@ class _Lowering:
         closes = _closes(round_.body)
         self._block(round_.body, entry, behind if closes else end)
         if not closes or len(self.items) == first:
-            self._place(Item(_end(round_), next=behind), end)
+            do = Do(f"end of '{round_.title}'", Action.WAIT, round_.span, wait=MEETING)
+            self._place(Item(do, next=behind), end)
         self.ranges.insert(index, Range(round_, first, len(self.items) - 1))
 
 
@@ -290,13 +293,3 @@ def _closes(body: ProgramBlock) -> bool:
         left = all(block is None or _leaves(block) for block in (last.failure, last.missed))
         return left and not open_
     return isinstance(last, ProgramRound)
-
-
-def _meeting(choice: Choice) -> Do:
-    before = choice.before
-    base = f"after '{before.title}'" if isinstance(before, ProgramRound) else "MEET"
-    return Do(base, Action.WAIT, choice.span, wait=MEETING)
-
-
-def _end(round_: ProgramRound) -> Do:
-    return Do(f"end of '{round_.title}'", Action.WAIT, round_.span, wait=MEETING)

@@ -160,7 +160,11 @@ class Manners:
                 self._set(do, name, value, span)
             self._window(do, manner, span)
             if manner.object_id is not None:
-                self._about(do, manner.object_id, span)
+                if do.action is Action.MEASURE:
+                    message = "a measurement is about its checkpoint"
+                    hint = "leave `about object` out"
+                    self.diagnostics.error("stray-clause", message, span, hint)
+                do.object_id = manner.object_id
         if tasks:
             self._set(tasks[-1], "leaving", manner.leaving, span)
 
@@ -209,12 +213,6 @@ class Manners:
             latest=before.latest if latest is None else latest,
             hard=before.hard and not manner.soft_window,
         )
-
-    def _about(self, do: Do, object_id: str, span: Span) -> None:
-        if do.action is Action.MEASURE:
-            message = "a measurement is about its checkpoint"
-            self.diagnostics.error("stray-clause", message, span, "leave `about object` out")
-        do.object_id = object_id
 
     # ---- what is said of tasks that are planned already
 

@@ -19,7 +19,7 @@ from argo_compiler.script.resolve.program import (
     inner_blocks,
 )
 from argo_compiler.script.syntax.text.source import RefusedError
-from argo_compiler.script.syntax.tree.facts import ReadBefore, StepsOrdered
+from argo_compiler.script.syntax.tree.orders import ReadBefore, StepsOrdered
 from argo_compiler.script.syntax.tree.places import Steps
 from argo_compiler.script.syntax.tree.script import ScriptHeader
 
@@ -39,7 +39,7 @@ class Ordering:
     asked: list[tuple[Span, _Checkpoints, _Checkpoints]] = field(default_factory=list)
     steps: list[StepsOrdered] = field(default_factory=list)
     left_out: list[Span] = field(default_factory=list)
-    """where it is said that what does not fit is left out"""
+    """where it is said that what does not fit is left out: then each task may be"""
     pairs: list[tuple[Span, Do | str, Do | str]] = field(default_factory=list)
     """what has to come before what, names if it was left out; known when all is planned"""
 
@@ -47,10 +47,6 @@ class Ordering:
         """The order of these is said; of nothing: of all."""
         said = self.free if order is Order.ANY else self.precise
         said.append((span, list(nodes)))
-
-    def leave_out(self, span: Span) -> None:
-        """Each task may be left out where not all can be done."""
-        self.left_out.append(span)
 
     def precedence(self, fact: ReadBefore) -> None:
         """Takes down that checkpoints come before others."""

@@ -1,14 +1,16 @@
-"""Carries out the orders of a script: each adds to the program, or changes it."""
+"""Carries out the steps of a script, and those within them: each order adds to the program, or
+changes it."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 
-from argo_compiler.il import OnFailure
+from argo_compiler.il import OnFailure, Order
 from argo_compiler.script.resolve.accepting import require_used, said
 from argo_compiler.script.resolve.cases import Cases
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.edits import Edits
-from argo_compiler.script.resolve.manners import Manners
+from argo_compiler.script.resolve.manners import Manners, make_round
 from argo_compiler.script.resolve.ordering import Ordering
 from argo_compiler.script.resolve.program import (
     Ahead,
@@ -16,16 +18,24 @@ from argo_compiler.script.resolve.program import (
     Leave,
     ProgramBlock,
     ProgramNode,
+    all_nodes,
     in_branch,
 )
 from argo_compiler.script.resolve.repeating import Repeating
 from argo_compiler.script.resolve.starting import Starting
 from argo_compiler.script.resolve.tasks import TaskMaker
-from argo_compiler.script.syntax.text.source import RefusedError
+from argo_compiler.script.syntax.text.source import MOST_KEPT, RefusedError
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.manner import Manner
-from argo_compiler.script.syntax.tree.orders import PlainWord, ScriptOrder, Sentence
-from argo_compiler.script.syntax.tree.places import FloorName, Location
+from argo_compiler.script.syntax.tree.node import Node
+from argo_compiler.script.syntax.tree.orders import Fact, PlainWord, ScriptOrder, Sentence
+from argo_compiler.script.syntax.tree.places import (
+    AreaLocation,
+    DockLocation,
+    FloorName,
+    Location,
+)
+from argo_compiler.script.syntax.tree.script import ScriptHeader, ScriptStep, Unread
 
 _WHOLE_PLAN = (
     *(orders.Repeat, orders.Add, orders.Delete, orders.Move, orders.Replace, orders.Start),
@@ -35,21 +45,177 @@ _PLANNED = (orders.Measure, orders.Go, orders.Home, orders.Start)
 
 
 class Planner:
-    """Plans sentences, into the program or into a block of it."""
+    """Plans steps and their sentences, into the program or into a block of it."""
 
-    def __init__(self, context: Context, starting: Starting, ordering: Ordering) -> None:
+    def __init__(self, context: Context, starting: Starting, header: ScriptHeader) -> None:
         self.context = context
+        self.header = header
         self.diagnostics = context.diagnostics
         self.starting = starting
         self.manners = Manners(context)
         self.repeating = Repeating(context)
-        self.ordering = ordering
+        self.ordering = Ordering(context, header)
         self.edits = Edits(context, self.manners)
         self.making = TaskMaker(context, starting, self.manners)
         self.cases = Cases(context, self.manners, self.carry_out)
         self.done = False
 
-    def sentence(self, sentence: Sentence, block: ProgramBlock) -> None:
+    def steps(self, steps: Sequence[ScriptStep]) -> None:
+        """Plans all steps of a script."""
+        self._check_numbers(steps)
+        numbered = any(step.number is not None for step in steps)
+        for i, step in enumerate(steps, start=1):
+            if self.diagnostics.errors > MOST_KEPT:
+                return  # further errors would not be kept
+            number = step.number if numbered else i
+            self.context.begin_step(number)
+            self._step(step, self.context.program, number)
+
+    def _check_numbers(self, steps: Sequence[ScriptStep]) -> None:
+        """Warns where the steps' numbers are not one after the other: a line may have been lost."""
+        expected = 1
+        for step in steps:
+            if step.number is None:
+                continue
+            if step.number != expected:
+                message = f"step {step.number} stands where step {expected} would be"
+                hint = "is a line missing, or in the wrong place?"
+                self.diagnostics.warning("step-number", message, step.span, hint)
+            expected = step.number + 1
+
+    def _step(self, step: ScriptStep, block: ProgramBlock, number: int | None = None) -> None:
+        sentences = list(step.sentences)
+        following = self._taken(sentences) if step.steps else None
+        for i, sentence in enumerate(sentences, start=1):
+            ends = i == len(sentences) and not step.steps
+            self.context.number = number if ends else None
+            errors = self.diagnostics.errors
+            if isinstance(sentence, Sentence):
+                self._sentence(self._without_limit(sentence), block)
+                for fact in sentence.facts:
+                    self._fact(fact)
+            elif not isinstance(sentence, Unread):
+                self._fact(sentence)
+            if isinstance(sentence, Unread) or self.diagnostics.errors > errors:
+                self.context.fail()
+        if following is None or following.manner is None:
+            for one in step.steps:
+                self._step(one, block)
+            return
+        with suppress(RefusedError):
+            self._follow(following, following.manner, step.steps, block)
+
+    def _follow(
+        self,
+        order: ScriptOrder,
+        manner: Manner,
+        steps: Sequence[ScriptStep],
+        block: ProgramBlock,
+    ) -> None:
+        """Plans the steps within one that says how they are done."""
+        require_used(order, self.diagnostics)
+        known: set[int] = set()
+        if said(manner) <= {"order", "by_importance"}:
+            known = {id(node) for node in all_nodes(block)}
+        else:
+            round_ = make_round(order, "Repeat", self.context, order.name)
+            self.context.put([round_], block, block.last)
+            self.context.step.append(round_)
+            block = round_.body
+        for one in steps:
+            self._step(one, block)
+        tasks = [n for n in all_nodes(block) if isinstance(n, Do) and id(n) not in known]
+        if manner.order is not None:
+            self.ordering.say(manner.order, tasks, order.span)
+        if manner.by_importance:
+            of_each = Manner(by_importance=True)
+            self.manners.furnish_each(of_each, order.span, tasks)
+
+    def _without_limit(self, sentence: Sentence) -> Sentence:
+        """The sentence without how long the mission may take: `at most 25 minutes in total`."""
+        if all(order.manner is None for order in sentence.orders):
+            return sentence
+        kept: list[ScriptOrder] = []
+        for order in sentence.orders:
+            manner = order.manner
+            limit = None if manner is None else manner.mission_time or self._limit(order, manner)
+            if manner is None or limit is None:
+                kept.append(order)
+                continue
+            self._max_duration(limit, order)
+            own = None if manner.mission_time is None else manner.time_limit
+            rest = replace(manner, mission_time=None, time_limit=own)
+            if said(rest):
+                kept.append(replace(order, manner=rest))
+            elif not isinstance(order, orders.Amend):
+                kept.append(replace(order, manner=None))
+        return replace(sentence, orders=tuple(kept))
+
+    def _limit(self, order: ScriptOrder, manner: Manner) -> float | None:
+        """A limit of time that can only be the mission's: of its start, or before all else."""
+        first = isinstance(order, orders.Amend) and self.context.program.first is None
+        alone = first and said(manner) == {"time_limit"}
+        return manner.time_limit if alone or isinstance(order, orders.Start) else None
+
+    def _taken(self, sentences: list[Sentence | Fact | Unread]) -> ScriptOrder | None:
+        """`Do the following twice:`, taken out of the sentences over inner steps."""
+        last = sentences[-1] if sentences else None
+        if not isinstance(last, Sentence) or last.cases or not last.orders:
+            return None
+        *before, order = last.orders
+        if isinstance(order, orders.Amend) and not before:
+            order = orders.Follow(span=order.span, name=order.name, manner=order.manner)
+        if not isinstance(order, orders.Follow):
+            return None
+        found: ScriptOrder = order
+        while before and isinstance(before[-1], orders.Amend):
+            found = self.manners.with_prefix(found, before.pop())
+        sentences[-1:] = [replace(last, orders=tuple(before))] if before else []
+        return found
+
+    def _fact(self, fact: Fact) -> None:
+        match fact:
+            case orders.MaxDuration():
+                self._max_duration(fact.seconds, fact)
+            case orders.BackWithin():
+                self._max_duration(fact.seconds, fact)
+                self._back(fact)
+            case orders.RoundsDriven():
+                manner = Manner(times=fact.count)
+                order = orders.Repeat(span=fact.span, steps=fact.steps, manner=manner)
+                self.order(order, self.context.program)
+            case orders.ReadBefore():
+                with suppress(RefusedError):
+                    self.ordering.precedence(fact)
+            case orders.StepsOrdered():
+                self.ordering.steps.append(fact)
+            case orders.LeaveOut():
+                self.ordering.left_out.append(fact.span)
+            case orders.OrderFree():
+                self.ordering.say(Order.ANY, (), fact.span)
+
+    def _back(self, fact: orders.BackWithin) -> None:
+        dock = fact.where
+        if isinstance(dock, AreaLocation):
+            dock = DockLocation(span=fact.span, area=dock)
+        if not isinstance(dock, DockLocation):
+            message = "a mission ends in a docking station by a certain time, not at a place"
+            hint = "name the starting area: `it has to be back in starting area 1`"
+            self.diagnostics.error("fact", message, fact.span, hint)
+            return
+        self.order(orders.Home(span=fact.span, dock=dock), self.context.program)
+
+    def _max_duration(self, seconds: float, fact: Node) -> None:
+        said = self.header.max_duration
+        if said is not None and said[0] != seconds:
+            message = f"line {said[1].span.line} says another maximum duration"
+            hint = "leave one of the two out"
+            self.diagnostics.error("repeated-field", message, fact.span, hint)
+        self.header.max_duration = (seconds, fact)
+
+    # ---- sentences and orders
+
+    def _sentence(self, sentence: Sentence, block: ProgramBlock) -> None:
         """Carries a sentence out."""
         self.carry_out(sentence.orders, block)
         for case in sentence.cases:
@@ -73,7 +239,9 @@ class Planner:
             elif floors is not None and floors.floors and isinstance(order, orders.Measure):
                 # `on the second floor, check the valve, then read the gauge`
                 order = self.manners.with_prefix(order, replace(order, name=None, manner=floors))
-            if isinstance(order, orders.Retry) and _several(orders_[:i]):
+            before = orders_[max(i - 2, 0) : i]
+            several = len(before) == 2 and all(isinstance(one, orders.Measure) for one in before)
+            if isinstance(order, orders.Retry) and several:
                 message = "this can be meant for the last of these only, or for each of them"
                 hint = "write `check checkpoints 1 and 4, retry twice` for each, or two sentences"
                 self.diagnostics.error("ambiguous-manner", message, order.span, hint)
@@ -87,10 +255,8 @@ class Planner:
                 self.manners.on_failure(OnFailure.ABORT)
             case orders.Plain(word=PlainWord.END) | orders.Home():
                 message = "this can be meant for the case that it still fails, or for any case"
-                hint = (
-                    "write `if it still fails, ...` for the first, and a sentence of its own for "
-                )
-                hint += "the second"
+                hint = "write `if it still fails, ...` for the first, and a sentence of its own "
+                hint += "for the second"
                 self.diagnostics.error("ambiguous-case", message, order.span, hint)
             case _:
                 return False
@@ -294,8 +460,3 @@ class Planner:
             else:
                 message = f"checkpoint #{key} is not in the plan anyway, so that this has no effect"
                 context.diagnostics.note("no-effect", message, span)
-
-
-def _several(orders_: Sequence[ScriptOrder]) -> bool:
-    """Whether the last two orders both measure: what is said next may be said of both."""
-    return len(orders_) > 1 and all(isinstance(order, orders.Measure) for order in orders_[-2:])

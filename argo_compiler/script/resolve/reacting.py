@@ -69,7 +69,10 @@ class Reactions:
     def add(self, case: Case) -> None:
         """Adds the reaction that a case with events as its condition asks for."""
         assert case.condition is not None
-        triggers = self._triggers(case.condition)
+        if any(len(tests) > 1 for tests in case.condition.alternatives):
+            message = "a reaction follows one event, not several at the same time"
+            self.diagnostics.refuse("reaction", message, case.condition.span, "join them by `or`")
+        triggers = [self._trigger(test) for (test,) in case.condition.alternatives]
         answer = self._answer(case)
         response = answer.response
         if response is None and answer.until is not None:
@@ -102,12 +105,6 @@ class Reactions:
                     source=case.span,
                 )
             )
-
-    def _triggers(self, condition: SaidCondition) -> list[_Trigger]:
-        if any(len(tests) > 1 for tests in condition.alternatives):
-            message = "a reaction follows one event, not several at the same time"
-            self.diagnostics.refuse("reaction", message, condition.span, "join them by `or`")
-        return [self._trigger(test) for (test,) in condition.alternatives]
 
     def _trigger(self, test: Asked) -> _Trigger:
         if isinstance(test, BatteryDrops):

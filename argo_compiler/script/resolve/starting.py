@@ -1,7 +1,7 @@
 """Where a mission starts and ends, as its header and its orders say."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NoReturn
 
 from argo_compiler.base.catalog import Area
@@ -14,7 +14,7 @@ from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.program import Do, HomeAhead, dock
 from argo_compiler.script.syntax.text.source import Diagnostics
 from argo_compiler.script.syntax.tree import orders
-from argo_compiler.script.syntax.tree.places import Coordinates, DockLocation
+from argo_compiler.script.syntax.tree.places import DockLocation
 from argo_compiler.script.syntax.tree.script import AreaChosen, Areas, ScriptHeader
 
 _REMEDIES = {"start": Remedy.CHOOSE_START, "end": Remedy.CHOOSE_END}
@@ -32,37 +32,19 @@ class AreaChoice:
     """that it is this one, or none, was said at all"""
 
 
-@dataclass(frozen=True)
-class HeaderValues:
-    """The areas of start and end, and the dock if the header gives it."""
-
-    start: AreaChoice
-    end: AreaChoice
-    dock_said: bool
-    dock: Coordinates | None
-
-
-def header_values(
+def area_choices(
     header: ScriptHeader, diagnostics: Diagnostics, start_area: int | None, end_area: int | None
-) -> HeaderValues:
-    """The choices; the options must be among what it offers."""
-    if header.areas_open is not None:
-        if start_area is None:
-            _left_open("start", header.areas_open.span, diagnostics)
-        if end_area is None:
-            _left_open("end", header.areas_open.span, diagnostics)
-    return HeaderValues(
-        start=_choice("start", header.start_area, header.initial_position, start_area, diagnostics),
-        end=_choice("end", header.end_area, header.end_of_mission, end_area, diagnostics),
-        dock_said=header.dock_said,
-        dock=header.dock,
-    )
-
-
-def _left_open(which: str, span: Span, diagnostics: Diagnostics) -> None:
-    message = f"the script leaves the {which} to the preparation"
-    hint = "choose a starting area for it"
-    diagnostics.error("area-choice", message, span, hint, (_REMEDIES[which],))
+) -> tuple[AreaChoice, AreaChoice]:
+    """Return the choices for the start and the end; the options must be among what the header
+    offers."""
+    for which, option in (("start", start_area), ("end", end_area)):
+        if header.areas_open is not None and option is None:
+            message = f"the script leaves the {which} to the preparation"
+            hint, span = "choose a starting area for it", header.areas_open.span
+            diagnostics.error("area-choice", message, span, hint, _REMEDIES[which])
+    start = _choice("start", header.start_area, header.initial_position, start_area, diagnostics)
+    end = _choice("end", header.end_area, header.end_of_mission, end_area, diagnostics)
+    return start, end
 
 
 def _choice(
@@ -74,7 +56,6 @@ def _choice(
 ) -> AreaChoice:
     """The area of the mission's start or end: that of the option or of the header line, else the
     only one that the cell offers."""
-    remedies = (_REMEDIES[which],)
     if header is not None:
         if option is not None and option != header.area:
             message = f"--{which}-area {option} contradicts the script"
@@ -88,14 +69,15 @@ def _choice(
     choice = RemedyChoice(_REMEDIES[which], "area", numbers)
     if option is not None and offered and option not in offered:
         message = f"the {which} in area {option} is not what the script offers"
-        diagnostics.error("area-not-offered", message, span, str(choice), remedies, choice)
+        diagnostics.error("area-not-offered", message, span, str(choice), choice)
     elif option is None and len(offered) > 1:
         areas = listed(numbers, "or")
         message = f"the script leaves the {which} to the preparation: starting area {areas}"
-        diagnostics.error("area-choice", message, span, str(choice), remedies, choice)
+        diagnostics.error("area-choice", message, span, str(choice), choice)
     elif option is None and not offered:
         message = f"this names no starting area for the mission's {which}"
-        diagnostics.error("no-area", message, span, "write, say, `starting area 1`", remedies)
+        hint = "write, say, `starting area 1`"
+        diagnostics.error("no-area", message, span, hint, choice.remedy)
     chosen = option if option in offered or not offered else None
     area = chosen if chosen is not None else next(iter(offered), None)
     return AreaChoice(area, span, said=True)
@@ -104,14 +86,20 @@ def _choice(
 class Starting:
     """The start, the end and the dock of a mission, as far as they are known."""
 
-    def __init__(self, context: Context, header: HeaderValues) -> None:
+    def __init__(
+        self, context: Context, header: ScriptHeader, wanted: AreaChoice, end: AreaChoice
+    ) -> None:
         self.context = context
         self.diagnostics = context.diagnostics
         self.lookup = context.lookup
         self.header = header
+        self.wanted = wanted
+        """where it is to start"""
+        self.end = end
         self.start: Do | None = None
         self.start_at: Span | None = None
-        self.start_area: int | None = None
+        self.start_area = None if wanted.as_planned else wanted.area
+        """known before the orders are, if the header says it"""
         self.end_area: int | None = None
         self.dock: Pose | None = None
         self.assumed: Area | None = None
@@ -129,7 +117,7 @@ class Starting:
         pose, area = None, None
         if order.where is not None:
             pose, area = self.context.lookup.locate(order.where, "start")
-        wanted = self.header.start
+        wanted = self.wanted
         other = area is None or area.number != wanted.area
         if wanted.area is not None and not wanted.as_planned and other:
             self._conflict(order.span)
@@ -141,34 +129,28 @@ class Starting:
 
     def _end_in(self, area: Area | None, span: Span) -> None:
         """Lets the mission end where it starts."""
-        end = self.header.end
+        end = self.end
         if area is None or (end.area is not None and end.area != area.number):
             message = "the mission can't end here"
             if area is not None:
                 message = f"the mission is to end in starting area {end.area}, not {area.number}"
             hint = "say in another sentence where it ends"
             self.diagnostics.refuse("area-conflict", message, span, hint)
-        self.header = replace(self.header, end=AreaChoice(area.number, span, said=True))
+        self.end = AreaChoice(area.number, span, said=True)
 
     def _conflict(self, span: Span) -> NoReturn:
-        wanted = self.header.start
+        wanted = self.wanted
         message = f"the starting area {wanted.area} contradicts the script's starting point"
         hint = "choose none, or take the starting point out of the script"
-        remedies: tuple[Remedy, ...] = (Remedy.CHOOSE_START,)
+        remedy: Remedy | None = Remedy.CHOOSE_START
         if wanted.span is not None:
-            remedies = ()
+            remedy = None
             message = f"line {wanted.span.line} says that it starts in area {wanted.area}"
             hint = "leave one of the two out, or add `as planned` to the header line"
-        self.diagnostics.refuse("area-conflict", message, span, hint, remedies)
-
-    def begin(self) -> None:
-        """Where the mission starts if only the header says it; known before the orders are."""
-        wanted = self.header.start
-        if wanted.area is not None and not wanted.as_planned:
-            self.start_area = wanted.area
+        self.diagnostics.refuse("area-conflict", message, span, hint, remedy)
 
     def _start_unsaid(self) -> None:
-        wanted = self.header.start
+        wanted = self.wanted
         if wanted.area is not None and not wanted.as_planned:
             area = self.lookup.area(wanted.area, wanted.span)
             self.start_area = area.number
@@ -178,15 +160,14 @@ class Starting:
             choice = RemedyChoice(Remedy.CHOOSE_START, "area", known)
             hint = f"write `Start in starting area 1`, or {choice}"
             message = "the script sets no starting point"
-            remedies = (choice.remedy,)
-            self.diagnostics.refuse("no-start", message, None, hint, remedies, choice)
+            self.diagnostics.refuse("no-start", message, None, hint, choice)
 
     # ---- the end
 
     def docking_area(self, said: DockLocation) -> Area:
         """The area into whose dock the mission drives at its end: the one that is named, else that
         of the header's end, else that of the start, else the nearest to it, with a warning."""
-        option = None if self.header.end.as_planned else self.header.end.area
+        option = None if self.end.as_planned else self.end.area
         number = self.start_area if option is None else option
         if said.area is not None:
             number = said.area.area
@@ -210,10 +191,8 @@ class Starting:
         if self.assumed is None:
             self.assumed = area
             where = "nearest to where it starts" if at is not None else "first of the site"
-            message = (
-                f"this does not say which docking station; that of starting area {area.number} "
-            )
-            message += f"is taken, the {where}"
+            message = "this does not say which docking station; that of starting area "
+            message += f"{area.number} is taken, the {where}"
             hint = f"write `the docking station in starting area {area.number}`"
             self.diagnostics.warning("dock-assumed", message, span, hint)
         return area
@@ -228,9 +207,9 @@ class Starting:
             self._start_unsaid()
         if self.start is not None and not self.start.listed:
             context.put([self.start], context.program, None)
-        if self.header.start.as_planned:
-            self.start_area = self.header.start.area
-        end = self.header.end
+        if self.wanted.as_planned:
+            self.start_area = self.wanted.area
+        end = self.end
         if end.as_planned:
             self.end_area = end.area
         elif end.area is not None and (context.docked is None or not context.docked.listed):

@@ -12,11 +12,10 @@ from itertools import islice, pairwise
 from argo_compiler.script.syntax.grammar.parser import StumbleError
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, join, quotes
 from argo_compiler.script.syntax.understanding import Understanding
-from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.lexicon import Lexicon, expand
-from argo_compiler.script.syntax.words.loading import everywhere
+from argo_compiler.script.syntax.words.loading import pattern
 from argo_compiler.script.syntax.words.prose import Prose, begins, either
-from argo_compiler.script.syntax.words.word import Word
+from argo_compiler.script.syntax.words.word import VERBS, Word
 
 _MANNERS = frozenset(
     [
@@ -347,12 +346,10 @@ def ask_of_remark(remark: ScriptText, diagnostics: Diagnostics) -> None:
 
 def _limits(text: ScriptText, *names: str) -> bool:
     """Whether a text has words of these names, or is one that says when something is done."""
-    words = "|".join(map(everywhere, names))
+    said = "|".join(f"<{name}>" for name in names)
     whole = text.content.strip(" :.!?()*_")
-    return bool(
-        re.search(rf"\b(?:{words})\b", text.content, re.IGNORECASE)
-        or re.fullmatch(everywhere("in_some_case"), whole, re.IGNORECASE)
-    )
+    in_text = pattern(rf"\b(?:{said})\b").search(text.content)
+    return in_text is not None or pattern("<in_some_case>").fullmatch(whole) is not None
 
 
 def _said(text: ScriptText, word: Word) -> str:

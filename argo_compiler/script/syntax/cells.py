@@ -9,15 +9,16 @@ down to the label do not end the sentence, and the text beside the label does no
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 
 from argo_compiler.script.syntax.fields import ScriptFields
 from argo_compiler.script.syntax.text.source import ScriptText, join
 from argo_compiler.script.syntax.understanding import Understanding
-from argo_compiler.script.syntax.words.loading import everywhere
+from argo_compiler.script.syntax.words.loading import pattern
 
 _WORD = re.compile(r"[\w'-]+(?!\s*:)\b")
 _WORD_COLON = re.compile(r"[\w'-]+\s*:")
+_MARKED = r"\s*(?:[-*+•#]\s|(?:<step>\s+)?[0-9]{1,6}\s*[.):])"
+"""the mark of a line that is a step"""
 _SENTENCE_ENDS = (".", "!", "?", ":")
 
 
@@ -98,7 +99,7 @@ class Cells:
         """Whether a line may belong to a cell: it has neither label nor mark, and makes no sense by
         itself."""
         line, text = lines[i], lines[i].strip()
-        if _marked().match(line.content) or self.fields.is_field(text):
+        if pattern(_MARKED).match(line.content) or self.fields.is_field(text):
             return False
         if line.content[0] == "\t" and self._before_cell(lines, i):
             return True
@@ -114,7 +115,7 @@ class Cells:
         """Whether the next line that has a label, a few lines on, is a cell's."""
         for k in range(i + 1, min(i + 1 + most, len(lines))):
             text = lines[k].strip()
-            if not text.content or _marked().match(text.content):
+            if not text.content or pattern(_MARKED).match(text.content):
                 return False
             if self.fields.is_cell(text) or self._halves(lines, k) is not None:
                 return True
@@ -146,10 +147,3 @@ def _first_of_below(lines: Sequence[ScriptText], below: _Cell | None) -> int:
         return len(lines)
     openings = [i for i, line in enumerate(lines) if line.content[0].isupper()]
     return openings[-1] if openings else len(lines)
-
-
-@cache
-def _marked() -> re.Pattern[str]:
-    """The mark of a line that is a step."""
-    step = rf"(?:(?:{everywhere('step')})\s+)?[0-9]{{1,6}}\s*[.):]"
-    return re.compile(rf"\s*(?:[-*+•#]\s|{step})", re.IGNORECASE)

@@ -11,8 +11,7 @@ from typing import Any
 
 from argo_compiler.base.listing import listed
 from argo_compiler.il import Mode, Order
-from argo_compiler.script.syntax.building.figures import seconds
-from argo_compiler.script.syntax.building.part import RulePart
+from argo_compiler.script.syntax.building.part import RulePart, seconds
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.text.spelling import candidates, nearest
 from argo_compiler.script.syntax.tree import orders
@@ -20,25 +19,15 @@ from argo_compiler.script.syntax.tree.orders import Sentence
 from argo_compiler.script.syntax.tree.places import Coordinates, Steps
 from argo_compiler.script.syntax.tree.script import AreaChosen, Areas, ScriptHeader, Text
 from argo_compiler.script.syntax.understanding import Understanding
-from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.lexer import unquoted
 from argo_compiler.script.syntax.words.lexicon import expand
 from argo_compiler.script.syntax.words.prose import begins
-from argo_compiler.script.syntax.words.word import Word
+from argo_compiler.script.syntax.words.word import VERBS, Word
 
 _ANY_LABEL = re.compile(r"[^\W\d_][\w'/-]*\.?(?:\s+[\w'/-]+){0,6}\s*:(?=\s|$)")
-_CELLS = frozenset(
-    [
-        "initial_position",
-        "end_of_mission",
-        "anomaly_specification",
-        "real_time_reporting",
-        "after_mission_report",
-    ]
-)
-_PROSE_FIELDS = frozenset(
-    ["designation", "anomaly_specification", "real_time_reporting", "after_mission_report", "site"]
-)
+_REPORTS = frozenset(["anomaly_specification", "real_time_reporting", "after_mission_report"])
+_CELLS = _REPORTS | {"initial_position", "end_of_mission"}
+_PROSE_FIELDS = _REPORTS | {"designation", "site"}
 _SAME = {"start_area": "initial_position", "end_area": "end_of_mission"}
 """fields that say the same"""
 _STOP = re.compile(r"[.!](?=\s|$)")
@@ -269,7 +258,7 @@ class ScriptFields:
         lengths = [w for w in found if w.type in ("DURATION", "MOST_TIME")]
         others = [w for w in found if w not in lengths and w.type != "TOTAL"]
         if len(lengths) != 1 or others:
-            at = _of(value, others[0]) if lengths and others else value
+            at = value[others[0].start : others[0].end] if lengths and others else value
             message = f"`{value.content}` is no duration"
             hint = "write, say, `20 min`, `1 h 30 min` or `none`"
             self.diagnostics.error("duration", message, at.span(), hint)
@@ -289,8 +278,11 @@ class ScriptFields:
             if self._is_new(name, (), value):
                 self.header.end_area = chosen
             return
-        where = self.understanding.location(value) if not self._names_areas(value) else None
-        if where is None or isinstance(where, tuple) or self._names_dock(value):
+        found = self.understanding.words(value)
+        areas_named = next(self._numbers_of_areas(found), None) is not None
+        where = None if areas_named else self.understanding.location(value)
+        dock_named = any(word.type == "DOCK" for word in found)
+        if where is None or isinstance(where, tuple) or dock_named:
             areas = self._areas(value)
             self._set(name, areas, value, areas and areas.areas)
             return
@@ -340,12 +332,6 @@ class ScriptFields:
 
     # ---- starting areas: `docked in "Starting area" 1 or 2, chosen by the staff`
 
-    def _names_areas(self, value: ScriptText) -> bool:
-        return bool(list(self._numbers_of_areas(self.understanding.words(value))))
-
-    def _names_dock(self, value: ScriptText) -> bool:
-        return any(word.type == "DOCK" for word in self.understanding.words(value))
-
     def _areas(self, value: ScriptText) -> Areas | None:
         """The areas that a field offers; more than one leaves the choice open."""
         errors = self.diagnostics.errors
@@ -373,7 +359,7 @@ class ScriptFields:
         if self.diagnostics.errors > errors:
             return None
         at = value[found[0][0].start : found[0][0].end] if found else value
-        return Areas(span=at.span(), text=value.content, areas=tuple(areas))
+        return Areas(span=at.span(), areas=tuple(areas))
 
     def _may_ask(self, aside: ScriptText) -> bool:
         """Whether words behind an area may change what it means."""
@@ -398,10 +384,11 @@ class ScriptFields:
         """The numbers of areas, with what of the text each covers."""
         inside = False
         start = 0
+        only_numbers = all(w.type == "NUMBER" or w.type.startswith(_BRIDGES) for w in found)
         for i, word in enumerate(found):
             if word.type == "AREA":
                 inside, start = True, word.start
-            elif word.type == "NUMBER" and (inside or len(found) == 1 or _only_numbers(found)):
+            elif word.type == "NUMBER" and (inside or only_numbers):
                 yield word, (start if inside else word.start, word.end)
                 inside, start = True, word.end
             elif not word.type.startswith(_BRIDGES) or i + 1 == len(found):
@@ -461,13 +448,5 @@ class ScriptFields:
         return True
 
 
-def _of(text: ScriptText, word: Word) -> ScriptText:
-    return text[word.start : word.end]
-
-
 def _plain(value: ScriptText) -> str:
     return " ".join(value.content.lower().strip(" .!").split())
-
-
-def _only_numbers(found: list[Word]) -> bool:
-    return all(word.type == "NUMBER" or word.type.startswith(_BRIDGES) for word in found)

@@ -15,7 +15,7 @@ from argo_compiler.script.syntax.lines import LineMark, ScriptLine, sentence_bou
 from argo_compiler.script.syntax.text.source import ScriptText, join
 from argo_compiler.script.syntax.tree.places import FloorName
 from argo_compiler.script.syntax.understanding import Understanding
-from argo_compiler.script.syntax.words.joints import VERBS
+from argo_compiler.script.syntax.words.word import VERBS
 
 
 @dataclass(slots=True)

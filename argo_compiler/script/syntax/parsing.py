@@ -9,12 +9,11 @@ from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.cells import Cells
-from argo_compiler.script.syntax.doubts import ask_of_dots
+from argo_compiler.script.syntax.doubts import PlacingCheck, ask_of_dots
 from argo_compiler.script.syntax.fields import ScriptFields
 from argo_compiler.script.syntax.layout import LineItem, LineSense, items_of
 from argo_compiler.script.syntax.lines import LineMark, lines_of, sentences
 from argo_compiler.script.syntax.lists import Lists, on_floors
-from argo_compiler.script.syntax.placing import PlacingCheck
 from argo_compiler.script.syntax.repeats import Repeats, repeats
 from argo_compiler.script.syntax.rows import tables
 from argo_compiler.script.syntax.sentence_reading import Said, SentenceReader
@@ -154,7 +153,12 @@ class _Parser:
     def _step(self, item: LineItem) -> ScriptStep | None:
         known = self.repeats.said(item.text) if self._is_plain(item) else None
         said = on_floors(self._said(item) if known is None else known, item.floors)
-        return self._of(item, said, list(self._steps(item.items)))
+        inner = tuple(self._steps(item.items))
+        if not said and not inner and item.line.number is None:
+            return None
+        return ScriptStep(
+            span=item.text.span(), number=item.line.number, sentences=tuple(said), steps=inner
+        )
 
     def _said(self, item: LineItem) -> list[Said]:
         """What an item says; kept, if it says so wherever it stands."""
@@ -210,16 +214,6 @@ class _Parser:
         """Whether what an item says follows from its text alone."""
         over = item.line.heading or item.text.content.endswith(":")
         return self.reader.ordered and not self.closed and not over
-
-    def _of(self, item: LineItem, said: list[Said], inner: list[ScriptStep]) -> ScriptStep | None:
-        if not said and not inner and item.line.number is None:
-            return None
-        return ScriptStep(
-            span=item.text.span(),
-            number=item.line.number,
-            sentences=tuple(said),
-            steps=tuple(inner),
-        )
 
     def _without_letter(self, item: LineItem) -> ScriptText:
         """The text of an item without what makes a letter of it."""

@@ -46,31 +46,13 @@ _Fill = Callable[[object, object], None]
 # ---- the shape of a text
 
 
-@dataclass(frozen=True, slots=True)
-class _Shape:
-    """A text without its plain numbers, and these numbers."""
-
-    key: str
-    """equal for all texts of the shape"""
-    figures: tuple[str, ...]
-
-    @classmethod
-    def of(cls, content: str) -> "_Shape":
-        parts = _PLAIN.split(content)
-        figures = tuple(parts[1::2])
-        # The first zero of `0.5` is part of the shape: such a number is less than one.
-        parts[1::2] = [_changed(figure, _HIDDEN) for figure in figures]
-        return cls("".join(parts), figures)
-
-
-def _figure_places(content: str) -> list[int]:
-    """Where the plain numbers of a text begin."""
-    return [found.start() for found in _PLAIN.finditer(content)]
-
-
-def _with_other_figures(content: str) -> str:
-    """A text of the same shape in which every digit of the plain numbers is another one."""
-    return _PLAIN.sub(lambda found: _changed(found[0], _OTHERS), content)
+def _shape(content: str) -> tuple[str, tuple[str, ...]]:
+    """Return a text without its plain numbers, as all texts of its shape are, and the numbers."""
+    parts = _PLAIN.split(content)
+    figures = tuple(parts[1::2])
+    # The first zero of `0.5` is part of the shape: such a number is less than one.
+    parts[1::2] = [_changed(figure, _HIDDEN) for figure in figures]
+    return "".join(parts), figures
 
 
 def _changed(figure: str, digits: dict[int, str] | dict[int, int]) -> str:
@@ -173,12 +155,12 @@ class Repeats:
             self._shapes.clear()
             self._met.clear()
         self._known[text.content] = _Text(said, text.span())
-        shape = _Shape.of(text.content)
-        if not shape.figures or shape.key in self._shapes or self._in_phrases(shape.figures):
+        shape, figures = _shape(text.content)
+        if not figures or shape in self._shapes or self._in_phrases(figures):
             return
-        if shape.key in self._met:
-            self._shapes[shape.key] = _of_shape(text, shape, said, read)
-        self._met.add(shape.key)
+        if shape in self._met:
+            self._shapes[shape] = _of_shape(text, figures, said, read)
+        self._met.add(shape)
 
     def said(self, text: ScriptText) -> list[Said] | None:
         """What a text says; None if it is not known."""
@@ -187,32 +169,31 @@ class Repeats:
         known = self._known.get(text.content)
         if known is not None:
             return known.at(text.span(), ())
-        shape = _Shape.of(text.content)
-        known = self._shapes.get(shape.key)
-        if known is None or self._in_phrases(shape.figures):
+        shape, figures = _shape(text.content)
+        known = self._shapes.get(shape)
+        if known is None or self._in_phrases(figures):
             return None
-        return known.at(text.span(), shape.figures)
+        return known.at(text.span(), figures)
 
     def _in_phrases(self, figures: tuple[str, ...]) -> bool:
         """Whether one of the figures is in a phrase of the language, such as a place's name."""
-        said = self.lexicon.figures
-        return bool(said) and not said.isdisjoint(figures)
+        return not self.lexicon.figures.isdisjoint(figures)
 
 
-def _of_shape(text: ScriptText, shape: _Shape, said: list[Said], read: ReadAgain) -> _Text | None:
+def _of_shape(
+    text: ScriptText, figures: tuple[str, ...], said: list[Said], read: ReadAgain
+) -> _Text | None:
     """What all texts of a shape say; None if that hangs on their figures, or on their digits."""
     unknown = {
-        text.offsets[start]: unknown_figure(figure, place)
-        for place, (start, figure) in enumerate(
-            zip(_figure_places(text.content), shape.figures, strict=True)
-        )
+        text.offsets[found.start()]: unknown_figure(found[0], place)
+        for place, found in enumerate(_PLAIN.finditer(text.content))
     }
-    other = ScriptText(_with_other_figures(text.content), text.offsets, text.source)
-    found = read(other, unknown)
+    others = _PLAIN.sub(lambda found: _changed(found[0], _OTHERS), text.content)
+    found = read(ScriptText(others, text.offsets, text.source), unknown)
     if found is None:
         return None
     kept = _Text(found, text.span())
-    return kept if kept.at(text.span(), shape.figures) == said else None
+    return kept if kept.at(text.span(), figures) == said else None
 
 
 repeats = lru_cache(maxsize=8)(Repeats)

@@ -3,18 +3,16 @@
 from dataclasses import dataclass, field, replace
 
 from argo_compiler.script.syntax.asides import Asides, ask_of_remark
-from argo_compiler.script.syntax.doubts import ask_of_words
+from argo_compiler.script.syntax.doubts import ask_of_words, placed_in
 from argo_compiler.script.syntax.fields import ScriptFields
 from argo_compiler.script.syntax.grammar.parser import StumbleError
 from argo_compiler.script.syntax.layout import LineItem
 from argo_compiler.script.syntax.lines import LineMark
-from argo_compiler.script.syntax.placing import placed_in
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
-from argo_compiler.script.syntax.tree.facts import Fact
-from argo_compiler.script.syntax.tree.orders import Amend, Follow, Sentence, Start
+from argo_compiler.script.syntax.tree.orders import Amend, Fact, Follow, Sentence, Start
 from argo_compiler.script.syntax.tree.script import Text, Unread
 from argo_compiler.script.syntax.understanding import Reading, Understanding
-from argo_compiler.script.syntax.words.joints import VERBS
+from argo_compiler.script.syntax.words.word import VERBS
 
 Said = Sentence | Fact | Unread
 MAX_SENTENCE = 10_000
@@ -111,7 +109,10 @@ class SentenceReader:
             if cut is not None:
                 text, asides = cut
                 for aside in asides:
-                    self._aside(aside)
+                    if self.asides.corrects(aside) and not self.asides.is_reason(aside):
+                        ask_of_remark(aside, self.diagnostics)
+                    else:
+                        self.note(aside, "a remark")
                 reading = self.understanding.read(text)
         if isinstance(reading, StumbleError):
             return self._not_understood(text, item, reading)
@@ -130,13 +131,6 @@ class SentenceReader:
             self.diagnostics.error("stray-clause", message, text.span(), hint)
             return [Unread(span=text.span())]
         return [node]
-
-    def _aside(self, aside: ScriptText) -> None:
-        """Says that a part of a sentence has no effect, or asks about it."""
-        if self.asides.corrects(aside) and not self.asides.is_reason(aside):
-            ask_of_remark(aside, self.diagnostics)
-        else:
-            self.note(aside, "a remark")
 
     def _announced(self, text: ScriptText, node: Said) -> list[Said]:
         """What a line over steps of their own says besides `do the following:`."""
@@ -241,7 +235,12 @@ class SentenceReader:
         if first:
             self._entitle(title.head, asked=not self.asides.is_title(title.head))
         elif self.asides.sets_aside(title.head):
-            _ask_of_heading(title.head, self.diagnostics)
+            message = (
+                f"`{title.head.content}` may say that what stands below it is not to be done, "
+            )
+            message += "or not always"
+            hint = "leave out what is not to be done, and the heading; or write another heading"
+            self.diagnostics.error("ambiguous-title", message, title.head.span(), hint)
         else:
             self.note(title.head, "a heading")
         if title.fields is not None:
@@ -273,14 +272,6 @@ def _is_amend(node: Said) -> bool:
     if not isinstance(node, Sentence) or node.cases or not node.orders:
         return False
     return all(isinstance(order, Amend) for order in node.orders)
-
-
-def _ask_of_heading(heading: ScriptText, diagnostics: Diagnostics) -> None:
-    message = (
-        f"`{heading.content}` may say that what stands below it is not to be done, or not always"
-    )
-    hint = "leave out what is not to be done, and the heading; or write another heading"
-    diagnostics.error("ambiguous-title", message, heading.span(), hint)
 
 
 def _ask_of_stray(text: ScriptText, listed: str, diagnostics: Diagnostics) -> None:

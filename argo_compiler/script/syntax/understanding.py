@@ -11,17 +11,15 @@ from argo_compiler.script.syntax.building.sentences import build
 from argo_compiler.script.syntax.grammar.parser import Branch, StumbleError, sentence_grammar
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, quotes
 from argo_compiler.script.syntax.text.spelling import candidates
-from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.nouns import Kind
-from argo_compiler.script.syntax.tree.orders import Sentence
+from argo_compiler.script.syntax.tree.orders import Fact, Sentence
 from argo_compiler.script.syntax.tree.places import FloorName, Location
-from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.language import Language
 from argo_compiler.script.syntax.words.lexer import words, words_of
 from argo_compiler.script.syntax.words.lexicon import Entry, Lexicon, folded
 from argo_compiler.script.syntax.words.prose import either
 from argo_compiler.script.syntax.words.unknown import UnknownFigure
-from argo_compiler.script.syntax.words.word import Word
+from argo_compiler.script.syntax.words.word import VERBS, Word
 
 Reading = tuple[Branch, list[Word]]
 _AREA = ("AREA", "NUMBER")
@@ -74,11 +72,11 @@ class Understanding:
     def types(self, text: ScriptText) -> tuple[str, ...]:
         return tuple(word.type for word in self.words(text))
 
-    def read(self, text: ScriptText) -> Reading | StumbleError:
-        """The tree of a sentence, or where the grammar can't go on."""
+    def read(self, text: ScriptText, start: str = "sentence") -> Reading | StumbleError:
+        """The tree of a sentence, or of what `start` names, or where the grammar can't go on."""
         found = self.words(text)
         try:
-            return self.grammar.tree(tuple(word.type for word in found)), found
+            return self.grammar.tree(tuple(word.type for word in found), start), found
         except StumbleError as stumble:
             return stumble
 
@@ -91,12 +89,11 @@ class Understanding:
             return False
         if text.content.endswith(",") or tuple(w.type for w in found) == _AREA:
             return False
-        try:
-            tree = self.grammar.tree(tuple(word.type for word in found))
-        except StumbleError:
+        reading = self.read(text)
+        if isinstance(reading, StumbleError):
             return False
         last = found[-1]
-        return not (last.type == "KIND" and not last.value[2]) and not _is_amend(tree)
+        return not (last.type == "KIND" and not last.value[2]) and not _is_amend(reading[0])
 
     def unfinished(self, text: ScriptText) -> ScriptText | None:
         """The joint with which a text ends, if it does."""
@@ -111,12 +108,10 @@ class Understanding:
 
     def location(self, text: ScriptText) -> Location | tuple[FloorName, ...] | None:
         """The place that a text names, if it names one and says nothing else."""
-        found = self.words(text)
-        try:
-            tree = self.grammar.tree(tuple(word.type for word in found), "location")
-        except StumbleError:
+        reading = self.read(text, "location")
+        if isinstance(reading, StumbleError):
             return None
-        where: Location | tuple[FloorName, ...] = build(tree, found, text, self.diagnostics)
+        where: Location | tuple[FloorName, ...] = build(*reading, text, self.diagnostics)
         return where
 
     # ---- slips
@@ -140,7 +135,9 @@ class Understanding:
             for (word, _), meant_word in zip(reversed(slips), reversed(chosen), strict=True):
                 fixed = fixed.replace(word.start, word.end, meant_word)
             reading = self.read(fixed)
-            if not isinstance(reading, StumbleError) and _all_known(reading[1]):
+            if isinstance(reading, StumbleError):
+                continue
+            if all(word.type != "WORD" for word in reading[1]):
                 # `guages` are `gauges` or `gages`, which are the same
                 said = tuple((word.type, str(word.value)) for word in reading[1])
                 found.setdefault(said, (fixed, chosen))
@@ -272,10 +269,6 @@ def _identified(lexicon: Lexicon) -> re.Pattern[str]:
         for phrase in said
     ]
     return re.compile(rf"(?<!\w)(?:{either('|'.join(kinds))})\s+$", re.IGNORECASE)
-
-
-def _all_known(found: list[Word]) -> bool:
-    return all(word.type != "WORD" for word in found)
 
 
 def _is_amend(tree: Branch) -> bool:

@@ -5,31 +5,36 @@ from typing import Any
 
 from argo_compiler.script.syntax.building import (
     conditions,
-    figures,
     manners,
     nouns,
     orders,
+    part,
     places,
 )
-from argo_compiler.script.syntax.building.figures import seconds, whole
-from argo_compiler.script.syntax.building.part import Make, RulePart, T
+from argo_compiler.script.syntax.building.part import Make, RulePart, T, seconds, whole
 from argo_compiler.script.syntax.grammar.parser import Branch
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
-from argo_compiler.script.syntax.tree import facts
 from argo_compiler.script.syntax.tree.conditions import SaidCondition
-from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.nouns import Labelled, Nouns, Pronoun
 from argo_compiler.script.syntax.tree.orders import (
     Amend,
+    BackWithin,
     Case,
+    Fact,
     Follow,
+    LeaveOut,
+    MaxDuration,
     Measure,
+    OrderFree,
+    ReadBefore,
     Repeat,
     Rest,
+    RoundsDriven,
     ScriptOrder,
     Sentence,
     Side,
+    StepsOrdered,
 )
 from argo_compiler.script.syntax.tree.places import Steps
 from argo_compiler.script.syntax.words.word import Word
@@ -169,9 +174,9 @@ def _duration(part: RulePart) -> float:
     return seconds(part, part.the_word("DURATION", "MOST_TIME"))
 
 
-def _back_within(part: RulePart) -> facts.Fact:
+def _back_within(part: RulePart) -> Fact:
     where = next(c for c in part.children if not isinstance(c, Word))
-    return facts.BackWithin(span=part.span, where=where, seconds=_duration(part))
+    return BackWithin(span=part.span, where=where, seconds=_duration(part))
 
 
 def _in_order(part: RulePart, type_: type[T]) -> dict[str, T]:
@@ -182,13 +187,8 @@ def _in_order(part: RulePart, type_: type[T]) -> dict[str, T]:
     return {"first": first, "second": second}
 
 
-def _rounds_driven(part: RulePart) -> facts.Fact:
-    count = whole(part, part.the_word("TIMES").value)
-    return facts.RoundsDriven(span=part.span, steps=part.the(Steps), count=count)
-
-
 _RULES: dict[str, Make] = {
-    **figures.RULES,
+    **part.RULES,
     **nouns.RULES,
     **places.RULES,
     **conditions.RULES,
@@ -197,13 +197,15 @@ _RULES: dict[str, Make] = {
     "case": _case,
     "otherwise": _case,
     "sentence": _sentence,
-    "max_duration": lambda part: facts.MaxDuration(span=part.span, seconds=_duration(part)),
+    "max_duration": lambda part: MaxDuration(span=part.span, seconds=_duration(part)),
     "back_within": _back_within,
-    "precedence": lambda part: facts.ReadBefore(span=part.span, **_in_order(part, Nouns)),
-    "steps_ordered": lambda part: facts.StepsOrdered(span=part.span, **_in_order(part, Steps)),
-    "rounds_driven": _rounds_driven,
-    "order_free": lambda part: facts.OrderFree(span=part.span),
-    "leave_out": lambda part: facts.LeaveOut(span=part.span),
+    "precedence": lambda part: ReadBefore(span=part.span, **_in_order(part, Nouns)),
+    "steps_ordered": lambda part: StepsOrdered(span=part.span, **_in_order(part, Steps)),
+    "rounds_driven": lambda part: RoundsDriven(
+        span=part.span, steps=part.the(Steps), count=whole(part, part.the_word("TIMES").value)
+    ),
+    "order_free": lambda part: OrderFree(span=part.span),
+    "leave_out": lambda part: LeaveOut(span=part.span),
 }
 
 

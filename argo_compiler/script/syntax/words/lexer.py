@@ -5,6 +5,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
+from types import MappingProxyType
 from typing import Any
 
 from argo_compiler.script.syntax.words.amounts import read_clock, read_glued
@@ -47,12 +48,7 @@ _UNSAID = frozenset(["FILLER", "IDLE"]) | _PLACED
 def words(text: str, lexicon: Lexicon) -> list[Word]:
     """The words of `text`, with the joints between them told apart by what they join; in another
     language where far more of them are known in that one."""
-    found = _in(text, lexicon)
-    unknown = _unknown(found)
-    if lexicon.other is None or not unknown:
-        return found
-    other = _in(text, lexicon.other)
-    return other if 2 * _unknown(other) < unknown else found
+    return words_of(text, lexicon)
 
 
 def _with_unknown(word: Word, text: str, left: dict[int, UnknownFigure]) -> Word:
@@ -72,19 +68,20 @@ def _unknown(words: list[Word]) -> int:
     return sum(word.type == "WORD" for word in words)
 
 
-def words_of(text: str, lexicon: Lexicon, unknown: Mapping[int, UnknownFigure]) -> list[Word]:
+def words_of(
+    text: str, lexicon: Lexicon, unknown: Mapping[int, UnknownFigure] = MappingProxyType({})
+) -> list[Word]:
     """As `words`; the figures that begin at these places are not known. Raises UnknownError if one
     of them is no number by itself."""
     found = _in(text, lexicon, unknown)
-    if lexicon.other is None or not _unknown(found):
+    strange = _unknown(found)
+    if lexicon.other is None or not strange:
         return found
     other = _in(text, lexicon.other, unknown)
-    return other if 2 * _unknown(other) < _unknown(found) else found
+    return other if 2 * _unknown(other) < strange else found
 
 
-def _in(
-    text: str, lexicon: Lexicon, unknown: Mapping[int, UnknownFigure] | None = None
-) -> list[Word]:
+def _in(text: str, lexicon: Lexicon, unknown: Mapping[int, UnknownFigure]) -> list[Word]:
     found = _looked_up(text, lexicon)
     if unknown:
         left = dict(unknown)

@@ -7,7 +7,7 @@ from functools import lru_cache
 from itertools import product
 from typing import Any
 
-from argo_compiler.script.syntax.words.joints import VERBS
+from argo_compiler.script.syntax.words.word import VERBS
 
 Entry = tuple[str, Any]
 """a terminal and its value"""

@@ -114,6 +114,13 @@ def everywhere(name: str) -> str:
     return either("|".join(words for words in said if words))
 
 
+@cache
+def pattern(text: str) -> re.Pattern[str]:
+    """Return the pattern, in any case, in whose text `<name>` is what `everywhere` has for it."""
+    whole = re.sub(r"<(\w+)>", lambda name: f"(?:{everywhere(name[1])})", text)
+    return re.compile(whole, re.IGNORECASE)
+
+
 def shown_words(language: str) -> dict[str, dict[str, str]]:
     """The phrases as the file has them, by group and by what they stand for; of a pattern its
     first form."""

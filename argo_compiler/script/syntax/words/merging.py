@@ -4,9 +4,8 @@ word of two senses means, and what a negation belongs to."""
 from dataclasses import replace
 
 from argo_compiler.script.syntax.words.amounts import Length, counted, hours_and, limited, total
-from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.numbers import Figure, compose
-from argo_compiler.script.syntax.words.word import Word
+from argo_compiler.script.syntax.words.word import VERBS, Word
 
 _BEYOND = {"OR_MORE": "GREATER", "OR_LESS": "LESS"}
 _RELATIONS = frozenset(["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "EXACTLY"])
@@ -207,14 +206,10 @@ def _numbers(words: list[Word]) -> list[Word]:
 
 def _one_of_them(number: Word, found: list[Word], after: list[Word]) -> Word:
     """`If one is abnormal` asks about one of them, and not about checkpoint 1."""
-    asked = found and (found[-1].type in _ASKING or _begins_question(found))
+    last = found[-1].type if found else ""
+    asked = last in _ASKING or (last == "IS" and _begins(found))  # `Ist eins auffällig, ...`
     one = asked and after and after[0].type in _SAID and number.value.value == 1
     return replace(number, type="THEM", value="either") if one else number
-
-
-def _begins_question(found: list[Word]) -> bool:
-    """`Ist eins auffällig, ...`"""
-    return found[-1].type == "IS" and _begins(found)
 
 
 def _joined_bounds(words: list[Word]) -> list[Word]:

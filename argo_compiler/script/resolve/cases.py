@@ -192,11 +192,9 @@ class Cases:
             self._otherwise_of_what(case)
 
     def _otherwise_of_what(self, case: Case) -> NoReturn:
-        if not self.context.whole:
-            raise RefusedError  # the condition may be what was not understood
         message = "`Otherwise` of what? No condition stands before it"
         hint = "write it behind the condition whose other case it is"
-        self.diagnostics.refuse("otherwise", message, case.span, hint)
+        self.context.refuse_missing("otherwise", message, case.span, hint)
 
     def _rest(self, case: Case, block: ProgramBlock) -> None:
         """The way that a task leads on if none of its conditions holds, wherever that is said."""

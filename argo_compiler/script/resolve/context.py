@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
-from typing import Any
+from typing import Any, NoReturn
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.diagnostics import Span
@@ -22,7 +22,7 @@ from argo_compiler.script.resolve.program import (
     own_names,
 )
 from argo_compiler.script.resolve.reacting import Reactions
-from argo_compiler.script.syntax.text.source import Diagnostics
+from argo_compiler.script.syntax.text.source import Diagnostics, RefusedError
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.orders import ScriptOrder
 from argo_compiler.script.syntax.tree.places import Steps
@@ -108,6 +108,12 @@ class Context:
     def whole(self) -> bool:
         """Whether all that was asked for so far is planned: what is not found is not there."""
         return self.memory.known
+
+    def refuse_missing(self, code: str, message: str, span: Span, hint: str) -> NoReturn:
+        """Refuse what misses something; without a word if that may be what was not understood."""
+        if not self.whole:
+            raise RefusedError
+        self.diagnostics.refuse(code, message, span, hint)
 
     def measurements(self, checkpoint: CheckpointInfo) -> list[Do]:
         """The tasks in the program that measure a checkpoint."""

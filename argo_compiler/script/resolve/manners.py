@@ -15,7 +15,7 @@ from argo_compiler.script.resolve.program import (
     ProgramNode,
     ProgramRound,
 )
-from argo_compiler.script.syntax.text.source import Diagnostics, RefusedError
+from argo_compiler.script.syntax.text.source import Diagnostics
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.conditions import SaidCondition
 from argo_compiler.script.syntax.tree.manner import Joints, Manner
@@ -220,11 +220,9 @@ class Manners:
         """Applies a sentence or clause of manner to the tasks before it."""
         recent = self.context.recent
         if not recent:
-            if not self.context.whole:
-                raise RefusedError
             message = "there is no task before this that it could belong to"
             hint = "write it behind the task that it is said of"
-            self.diagnostics.refuse("no-task", message, order.span, hint)
+            self.context.refuse_missing("no-task", message, order.span, hint)
         if isinstance(order, orders.Retry):
             self._retry(order, recent)
         else:

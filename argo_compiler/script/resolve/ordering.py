@@ -50,9 +50,8 @@ class Ordering:
 
     def precedence(self, fact: ReadBefore) -> None:
         """Takes down that checkpoints come before others."""
-        first, second = self.context.diagnostics.each(
-            self.context.nouns.all, (fact.first, fact.second)
-        )
+        context = self.context
+        first, second = context.diagnostics.each(context.nouns.all, (fact.first, fact.second))
         self.asked.append((fact.span, tuple(first), tuple(second)))
 
     def finish(self, program: ProgramBlock) -> Order:
@@ -131,10 +130,8 @@ class Ordering:
             message = f"{name} is measured more than once, so it is not clear what comes first"
             hint = "leave this out, or write the order in which they are measured"
             context.diagnostics.refuse("ambiguous-edit", message, span, hint)
-        if not context.whole:
-            raise RefusedError
         hint = f"ask for it: `Check the {name}`"
-        context.diagnostics.refuse("not-planned", f"{name} is not in the plan", span, hint)
+        context.refuse_missing("not-planned", f"{name} is not in the plan", span, hint)
 
     def named(self, names: Mapping[int, str]) -> tuple[tuple[str, str], ...]:
         """The pairs by the names of their tasks."""

@@ -144,9 +144,8 @@ def _tells_order(words: list[Word], i: int) -> bool:
     """Whether an ordinal says only what comes when, and not which floor or gauge is meant:
     `first check ...`, `checkpoint 13 first, then ...`."""
     next_ = words[i + 1 : i + 3]
-    if words[i].value == 1 and any(word.type in VERBS for word in next_[: 1 + _is_it(next_)]):
-        return True
-    if words[i].value == 1 and _begins_name(next_):
+    ordered = next_[1:] if next_[:1] and next_[0].type == "IT" else next_[:1]
+    if words[i].value == 1 and (any(w.type in VERBS for w in ordered) or _begins_name(next_)):
         return True
     after = next((w for w in words[i + 1 :] if w.type not in _BETWEEN_FLOORS), None)
     listed = i + 1 < len(words) and words[i + 1].type in ("JOINT", "ORDINAL")
@@ -181,10 +180,6 @@ def _names_two(words: list[Word]) -> bool:
 def _are_joined_by_or(words: list[Word]) -> bool:
     joints = (str(word.value) for word in words if word.type == "JOINT")
     return "or" in next((said for said in joints if "or" in said or "and" in said), "")
-
-
-def _is_it(words: list[Word]) -> bool:
-    return words[:1] != [] and words[0].type == "IT"
 
 
 def _numbers(words: list[Word]) -> list[Word]:

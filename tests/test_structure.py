@@ -169,16 +169,6 @@ def test_the_checkers_of_witnesses_share_no_code_with_the_analysis():
         assert others <= forms | checkers, module
 
 
-def test_no_two_public_classes_have_one_name():
-    homes = defaultdict(list)
-    for module, tree in trees().items():
-        if module.split(".")[0] in {"argo_compiler", "argo_env"}:
-            for node in tree.body:
-                if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
-                    homes[node.name].append(module)
-    assert not {name: found for name, found in homes.items() if len(found) > 1}
-
-
 def imported_into(module):
     """The names that a module has from other modules of the project."""
     return {
@@ -224,17 +214,6 @@ def test_each_public_class_has_a_name_of_its_own():
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 homes.setdefault(node.name, []).append(module)
     assert not {name: modules for name, modules in homes.items() if len(modules) > 1}
-
-
-def test_no_class_of_the_script_language_is_long():
-    long = {
-        f"{module}.{node.name}": node.end_lineno - node.lineno + 1
-        for module, tree in trees().items()
-        if module.startswith("argo_compiler.script.")
-        for node in ast.walk(tree)
-        if isinstance(node, ast.ClassDef) and node.end_lineno - node.lineno >= 200
-    }
-    assert not long
 
 
 def is_script(module):

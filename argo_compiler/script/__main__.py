@@ -10,8 +10,7 @@ from pathlib import Path
 
 from argo_compiler.script.reference import BEGIN, END, as_markdown
 from argo_compiler.script.syntax.grammar.tables import save_tables
-from argo_compiler.script.syntax.words.loading import LANGUAGES
-from argo_compiler.script.syntax.words.tables import save_lexicons
+from argo_compiler.script.syntax.words.loading import LANGUAGES, save_lexicons
 
 if __name__ == "__main__":
     save_tables(Path(str(files("argo_compiler.script.syntax.grammar"))))

@@ -14,18 +14,8 @@ from argo_compiler.script.syntax.tree.orders import PlainWord, ScriptOrder
 
 ROUND = frozenset(
     {
-        *(
-            "times",
-            "more",
-            "at_most",
-            "every",
-            "pause",
-            "duration",
-            "until",
-            "endless",
-            "in_circles",
-        ),
-        *("finishing", "count_interruptions"),
+        *("times", "more", "at_most", "every", "pause", "duration", "until", "endless"),
+        *("in_circles", "finishing", "count_interruptions"),
     }
 )
 """what makes a round of an order, or is said of one"""

@@ -1,10 +1,11 @@
 """From laid-out tasks to those of a mission: names, transitions, speeds, groups."""
 
+from collections import Counter
 from collections.abc import Sequence
 
 from argo_compiler.il import Action, Group, OnFailure, Stop, Task, TimeWindow, Transition
-from argo_compiler.script.resolve.naming import name_groups, name_tasks
-from argo_compiler.script.resolve.points import Item, Lowered, Point
+from argo_compiler.script.resolve.lowering import Item, Lowered, Point, Range
+from argo_compiler.script.resolve.program import own_names
 from argo_compiler.script.syntax.text.source import Diagnostics
 
 
@@ -13,9 +14,9 @@ def assemble(
 ) -> tuple[tuple[Task, ...], tuple[Group, ...], dict[int, str]]:
     """The tasks, the groups, and the tasks' names by the identity of what they were made from."""
     items = lowered.items
-    names = name_tasks(items, diagnostics)
+    names = _name_tasks(items, diagnostics)
     by_item = {id(item): name for item, name in zip(items, names, strict=True)}
-    groups = name_groups(lowered.ranges)
+    groups = _name_groups(lowered.ranges)
     shown = [""] * len(items)
     for r in lowered.ranges:  # the inner ones come later
         shown[r.first : r.last + 1] = [groups[id(r.round)]] * (r.last + 1 - r.first)
@@ -131,7 +132,24 @@ def _speeds(lowered: Lowered, names: Sequence[str], diagnostics: Diagnostics) ->
             message = "no way leads on from here, so there is none that could have this speed"
             hint = "write `at 0.3 m/s` for the way to a task"
             diagnostics.warning("speed-unused", message, item.do.source, hint)
-        _leave_at(i, speeds, list(sources[i]), items, leaving, names, diagnostics)
+        if item.do.action is Action.WAIT:
+            continue
+        others = [j for j in sources[i] if leaving[j] is None]
+        for j in sources[i]:
+            value = leaving[j]
+            if value is None:
+                continue
+            said, speeds[i] = speeds[i], value
+            if said is not None and said != value:
+                message = f"two speeds for one way: {value:g} and {said:g} m/s"
+                hint = "leave one of them out"
+                diagnostics.error("two-speeds", message, items[j].do.source, hint)
+            if others and item.do.velocity is None:
+                elsewhere = ", ".join(f"'{names[o]}'" for o in others[:3])
+                message = f"{value:g} m/s will be the speed of all ways to '{names[i]}', "
+                message += f"also from {elsewhere}"
+                hint = f"plan a waypoint before '{names[i]}' if these are not to be that fast"
+                diagnostics.warning("speed-shared", message, items[j].do.source, hint)
     return speeds
 
 
@@ -152,32 +170,43 @@ def _passed_on(items: Sequence[Item], sources: Sequence[dict[int, None]]) -> lis
     return leaving
 
 
-def _leave_at(
-    i: int,
-    speeds: list[float | None],
-    froms: Sequence[int],
-    items: Sequence[Item],
-    leaving: Sequence[float | None],
-    names: Sequence[str],
-    diagnostics: Diagnostics,
-) -> None:
-    """Gives a task the speed at which those before it are left."""
-    if items[i].do.action is Action.WAIT:
-        return
-    others = [j for j in froms if leaving[j] is None]
-    for j in froms:
-        value = leaving[j]
-        if value is None:
+def _name_tasks(items: Sequence[Item], diagnostics: Diagnostics) -> list[str]:
+    """A name for each task. Waypoints are numbered through; of others the second is
+    `MEASURE 4 (2)`."""
+    own: set[str] = set()
+    for item in items:
+        name = item.do.name
+        if name is None:
             continue
-        said, speeds[i] = speeds[i], value
-        if said is not None and said != value:
-            message = f"two speeds for one way: {value:g} and {said:g} m/s"
-            diagnostics.error("two-speeds", message, items[j].do.source, "leave one of them out")
-        if others and items[i].do.velocity is None:
-            elsewhere = ", ".join(f"'{names[o]}'" for o in others[:3])
-            message = (
-                f"{value:g} m/s will be the speed of all ways to '{names[i]}', "
-                f"also from {elsewhere}"
-            )
-            hint = f"plan a waypoint before '{names[i]}' if these are not to be that fast"
-            diagnostics.warning("speed-shared", message, items[j].do.source, hint)
+        if name in own:
+            message = f"more than one task is named `{name}`"
+            hint = "give each task a name of its own"
+            diagnostics.error("repeated-name", message, item.do.source, hint)
+        own.add(name)
+    return own_names([item.do for item in items])
+
+
+def _name_groups(ranges: Sequence[Range]) -> dict[int, str]:
+    """The name of each round, by the round's identity: `Alpha/Beta` lies in `Alpha`."""
+    own = {r.round.name for r in ranges if r.round.name is not None}
+    used: Counter[str] = Counter()
+    bases: dict[int, str] = {}
+    for r in sorted(ranges, key=lambda r: r.round.order):
+        base = r.round.name
+        while base is None:
+            used[r.round.base] += 1
+            count = used[r.round.base]
+            found = r.round.base if count == 1 else f"{r.round.base} ({count})"
+            base = None if found in own else found
+        bases[id(r.round)] = base
+    names: dict[int, str] = {}
+    around: list[Range] = []
+    for r in ranges:
+        while around and around[-1].last < r.first:
+            around.pop()
+        base = bases[id(r.round)]
+        parent = names[id(around[-1].round)] if around else None
+        inside = parent is None or base.startswith(f"{parent}/")
+        names[id(r.round)] = base if inside else f"{parent}/{base}"
+        around.append(r)
+    return names

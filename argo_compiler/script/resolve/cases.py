@@ -1,38 +1,74 @@
 """What is done if something is so: after a value, after a failure, after an event."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import combinations, pairwise
 from typing import NoReturn
 
 from argo_compiler.base.catalog import CheckpointInfo
-from argo_compiler.script.resolve.branching import CaseBranches
+from argo_compiler.base.listing import listed
+from argo_compiler.il import Action, OnFailure
+from argo_compiler.il.bounds import exclude
+from argo_compiler.script.resolve.accepting import require_used
 from argo_compiler.script.resolve.context import Context
-from argo_compiler.script.resolve.counting import skipping
-from argo_compiler.script.resolve.excluding import put_together
-from argo_compiler.script.resolve.failing import Failures, OrderPlanner, is_failure
+from argo_compiler.script.resolve.manners import Manners
 from argo_compiler.script.resolve.program import (
     Ahead,
     Choice,
     Do,
+    HomeAhead,
     Leave,
     ProgramBlock,
     ProgramNode,
+    Target,
     Way,
     in_branch,
+    leads_away,
 )
-from argo_compiler.script.resolve.reaching import require_reached
 from argo_compiler.script.syntax.text.source import RefusedError
-from argo_compiler.script.syntax.tree.conditions import SaidCondition, Test, TooLate
-from argo_compiler.script.syntax.tree.orders import Case, Rest
+from argo_compiler.script.syntax.tree import orders
+from argo_compiler.script.syntax.tree.conditions import (
+    InState,
+    SaidCondition,
+    TaskState,
+    Test,
+    TooLate,
+)
+from argo_compiler.script.syntax.tree.nouns import Pronoun
+from argo_compiler.script.syntax.tree.orders import Case, PlainWord, Rest, ScriptOrder
+from argo_compiler.script.syntax.tree.places import DockLocation
+
+_ENDINGS = {
+    PlainWord.ABORT: Ahead.END,
+    PlainWord.END: Ahead.END,
+    PlainWord.GO_ON: Ahead.GO_ON,
+}
+_POLICIES = {
+    PlainWord.ABORT: OnFailure.ABORT,
+    PlainWord.END: OnFailure.ABORT,
+    PlainWord.GO_ON: OnFailure.CONTINUE,
+}
+_EXCEPTIONS = (TaskState.FAILED, TaskState.UNREADABLE, TaskState.STALE)
+"""states that can't be asked for turned round"""
 
 
 class Cases:
-    """Plans cases behind what they are looked at after."""
+    """Plans cases behind what they are looked at after, and what is done in each. Raises
+    RefusedError where that is not clear."""
 
-    def __init__(self, context: Context, planner: OrderPlanner) -> None:
+    def __init__(
+        self,
+        context: Context,
+        manners: Manners,
+        carry_out: Callable[[Sequence[ScriptOrder], ProgramBlock], None],
+    ) -> None:
         self.context = context
         self.diagnostics = context.diagnostics
-        self.branches = CaseBranches(context, planner.carry_out)
-        self.failures = Failures(context, planner, self.branches)
+        self.manners = manners
+        self.carry_out = carry_out
+        """plans orders as any others are planned"""
+        self.told: list[Do] = []
+        """the tasks of which it is said what is done if they fail"""
         self.asked: tuple[CheckpointInfo, ...] = ()
         """what `it` means in a condition, and where that does not hold"""
 
@@ -53,7 +89,7 @@ class Cases:
 
     def _add(self, case: Case, block: ProgramBlock) -> None:
         condition = case.condition
-        case = replace(case, orders=tuple(skipping(o, self.context) for o in case.orders))
+        case = replace(case, orders=tuple(self.context.skipping(o) for o in case.orders))
         if condition is None:
             chosen = case.rest is Rest.ALL_OTHERS and isinstance(self.context.choice, Choice)
             if case.rest is Rest.OTHERWISE or chosen:
@@ -61,7 +97,7 @@ class Cases:
             else:
                 self._rest(case, block)
             return
-        condition = self.failures.turned(condition)
+        condition = self._turned(condition)
         asked = [test for tests in condition.alternatives for test in tests]
         values = any(isinstance(test, Test) for test in asked)
         late = any(isinstance(test, TooLate) for test in asked)
@@ -72,14 +108,14 @@ class Cases:
             message = "`unless` is said of values, not of events or of what comes too late"
             hint = "say what is to be done if it is so"
             self.diagnostics.refuse("condition", message, condition.span, hint)
-        if late or not values or is_failure(condition):
+        if late or not values or _is_failure(condition):
             self.context.choice = None
         if late:
-            self.failures.too_late(case, condition)
+            self._too_late(case, condition)
         elif not values:
             self.context.reactions.add(case)
-        elif is_failure(condition):
-            self.failures.failure(case, block)
+        elif _is_failure(condition):
+            self._failure(case, block)
             self.context.choice = self.context.recent[-1]
         else:
             self._values(case, condition, self._other_case(case, block) if case.chained else block)
@@ -106,12 +142,12 @@ class Cases:
             self.diagnostics.refuse("condition", message, condition.span, hint)
         do = block.last
         if isinstance(do, Leave):
-            require_reached(case.span, block, self.context)
+            self.context.require_reached(case.span, block)
         if isinstance(do, Do) and any(way.otherwise for way in do.ways):
             message = "this is never looked at: `otherwise` before it leads elsewhere"
             hint = "write this condition before the `otherwise`"
             self.diagnostics.refuse("second-route", message, case.span, hint)
-        target = None if condition.negated else self.branches.target(case.orders)
+        target = None if condition.negated else self._target(case.orders)
         plain = isinstance(do, Do) and do.failure is None and do.missed is None
         if target is not None and isinstance(do, Do) and plain:
             way = Way(alternatives, target, case.span)
@@ -122,7 +158,7 @@ class Cases:
         self.context.put([choice], block, do)
         if not in_branch(block):
             self.context.step.append(choice)
-        self.branches.plan(case.orders, choice.then)
+        self._plan(case.orders, choice.then)
         self.context.choice = choice
 
     def _bound(self, node: ProgramNode | None) -> bool:
@@ -139,32 +175,30 @@ class Cases:
                 message = "there are two `otherwise` for one condition"
                 self.diagnostics.refuse("second-route", message, case.span, "leave one out")
             # It is what is done if none of several conditions holds, where that is clear.
-            if not put_together(before):
+            if not _put_together(before):
                 message = "`otherwise` can be meant for the last of these conditions, or for all"
                 hint = "write `otherwise, if ...`, or say each condition in a step of its own"
                 self.diagnostics.refuse("ambiguous-otherwise", message, case.span, hint)
-            self.branches.plan(case.orders, before.otherwise)
+            self._plan(case.orders, before.otherwise)
         elif isinstance(before, Way) and isinstance(do, Do):
-            target = self.branches.target(case.orders)
+            target = self._target(case.orders)
             if target is not None:
                 do.ways.append(Way((), target, case.span, otherwise=True))
                 return
             choice = self._to_choice(do, before, case, block)
-            self.branches.plan(case.orders, choice.otherwise)
+            self._plan(case.orders, choice.otherwise)
             self.context.choice = choice
-        elif not isinstance(before, Do) or not self.failures.otherwise(before, case, block):
+        elif not isinstance(before, Do) or not self._unless_failed(before, case, block):
             self._otherwise_of_what(case)
 
     def _otherwise_of_what(self, case: Case) -> NoReturn:
-        if not self.context.whole:
-            raise RefusedError  # the condition may be what was not understood
         message = "`Otherwise` of what? No condition stands before it"
         hint = "write it behind the condition whose other case it is"
-        self.diagnostics.refuse("otherwise", message, case.span, hint)
+        self.context.refuse_missing("otherwise", message, case.span, hint)
 
     def _rest(self, case: Case, block: ProgramBlock) -> None:
         """The way that a task leads on if none of its conditions holds, wherever that is said."""
-        do, target = block.last, self.branches.target(case.orders)
+        do, target = block.last, self._target(case.orders)
         if not isinstance(do, Do) or target is None:
             message = f"`{case.rest}` is said of a task, and leads to another one"
             hint = f"write it behind the task: `{case.rest}, go to step 5`"
@@ -180,3 +214,200 @@ class Cases:
         self.context.step.append(choice)
         self.context.put([Leave(way.target, way.span)], choice.then, None)
         return choice
+
+    # ---- what is done in a case
+
+    def _plan(self, said: Sequence[ScriptOrder], branch: ProgramBlock) -> None:
+        """Plans the orders of one case."""
+        context = self.context
+        before, ending = self._ending(list(said))
+        memory = context.memory.last
+        docked, recent, step = context.docked, context.recent, context.step
+        context.docked, context.step = None, []
+        self.carry_out(before, branch)
+        if ending is not None:
+            context.put([ending], branch, branch.last)
+        if leads_away(branch.last):
+            context.memory.last = memory
+        context.docked, context.recent, context.step = docked, recent, step
+
+    def _ending(self, said: list[ScriptOrder]) -> tuple[list[ScriptOrder], Leave | None]:
+        """The orders of a case, and how it ends."""
+        ending = None
+        if said and isinstance(last := said[-1], orders.Plain) and last.word in _ENDINGS:
+            require_used(last, self.context.diagnostics)
+            ending = Leave(_ENDINGS[last.word], last.span)
+            said.pop()
+        if ending is not None and ending.target is Ahead.GO_ON:
+            return said, ending
+        if said and isinstance(home := said[-1], orders.Home):
+            if home.manner is not None or home.name is not None:
+                return said, Leave(Ahead.END, home.span)
+            said.pop()
+            ending = Leave(self._home_ahead(home), home.span)
+        return said, ending
+
+    def _target(self, said: Sequence[ScriptOrder]) -> Target | None:
+        """Where a case leads whose only order is to go elsewhere."""
+        if len(said) != 1 or said[0].manner is not None or said[0].name is not None:
+            return None
+        match said[0]:
+            case orders.Jump(step=step):
+                return step
+            case orders.Home() as home:
+                return self._home_ahead(home)
+            case orders.Plain(word=word):
+                return _ENDINGS.get(word)
+        return None
+
+    def _home_ahead(self, order: orders.Home) -> HomeAhead:
+        """The way home with which the mission ends where a condition leads to it."""
+        named = order.dock.area
+        area = None if named is None else self.context.lookup.area(named.area, order.dock.span)
+        return HomeAhead(None if area is None else area.dock, order.dock.span)
+
+    # ---- failures
+
+    def _failure(self, case: Case, block: ProgramBlock) -> None:
+        """What is done if the last task fails."""
+        recent = self.context.recent
+        if not recent:
+            message = "there is no task before this that could fail"
+            hint = "write it behind the task that it is said of"
+            self.diagnostics.refuse("no-task", message, case.span, hint)
+        self._require_told(recent, case)
+        self._require_each(recent, case)
+        for order in case.orders:
+            if isinstance(order, orders.Retry):
+                self.carry_out([replace(order, again=False)], block)
+        rest = [order for order in case.orders if not isinstance(order, orders.Retry)]
+        if not rest:
+            return
+        if any(do.failure or any(do is one for one in self.told) for do in recent):
+            message = "what is done if it fails is said already"
+            self.diagnostics.refuse("second-route", message, case.span, "leave one of the two out")
+        self.told += recent
+        if (policy := _policy(rest)) is not None:
+            self.manners.on_failure(policy)
+            return
+        if len(recent) > 1:
+            message = "several tasks are meant here, and each would need orders of its own"
+            hint = "write one sentence for each of them"
+            self.diagnostics.refuse("failure", message, case.span, hint)
+        do = recent[-1]
+        do.failure = ProgramBlock(do)
+        self._plan(rest, do.failure)
+
+    def _require_told(self, recent: Sequence[Do], case: Case) -> None:
+        """Asks which task is meant, where one was to be measured in one case only."""
+        numbers = {do.object_id for do in recent}
+        last = self.context.memory.last
+        others = [c for c in last if str(c.id) not in numbers]
+        if not others or len(others) == len(last):
+            return
+        names = listed((f"{c.name} (#{c.id})" for c in last[:6]), "or")
+        message = f"this can be said of {names}"
+        hint = "say it behind the task that it is said of: `check checkpoint 4; if it fails, ...`"
+        self.diagnostics.refuse("ambiguous-pronoun", message, case.span, hint)
+
+    def _require_each(self, recent: Sequence[Do], case: Case) -> None:
+        """Asks about `if both fail`, as each task has a failure path of its own."""
+        assert case.condition is not None
+        nouns = [
+            noun
+            for tests in case.condition.alternatives
+            for test in tests
+            if isinstance(test, Test) and test.subject is not None
+            for noun in test.subject.nouns
+        ]
+        all_ = any(isinstance(noun, Pronoun) and noun.every and not noun.either for noun in nouns)
+        one = any(isinstance(noun, Pronoun) and noun.either for noun in nouns)
+        if all_ or (one and len(recent) == 1):
+            message = "this can be asked of each of them, or of all together"
+            hint = "write `if one of them fails, ...` behind a list, or a sentence for each"
+            self.diagnostics.refuse("failure", message, case.span, hint)
+
+    def _unless_failed(self, do: Do, case: Case, block: ProgramBlock) -> bool:
+        """Plans what is done if a task does not fail; False if a failure leads on to the same."""
+        left = do.failure is not None and leads_away(do.failure.last)
+        if block.last is not do or not (left or do.on_failure is not OnFailure.CONTINUE):
+            return False
+        self.carry_out(case.orders, block)
+        return True
+
+    def _turned(self, condition: SaidCondition) -> SaidCondition:
+        """`If it does not fail` as `unless it fails`."""
+        match condition.alternatives:
+            case ((Test(predicate=InState(state=state)) as test,),) if state in _EXCEPTIONS:
+                pass
+            case _:
+                return condition
+        negated = condition.negated is not test.negated
+        asked = replace(test, negated=False)
+        found = replace(condition, alternatives=((asked,),), negated=negated)
+        measured = {do.action for do in self.context.recent} <= {Action.MEASURE}
+        if negated and not measured and state is TaskState.FAILED and _is_of_it(test):
+            message = "`it` can be what is done last, or what is measured last"
+            hint = "name the checkpoint: `if checkpoint #1 has not failed, ...`"
+            self.diagnostics.refuse("ambiguous-pronoun", message, test.span, hint)
+        return found if test.negated else condition
+
+    def _too_late(self, case: Case, condition: SaidCondition) -> None:
+        """What is done if the window of the last task is missed."""
+        recent = self.context.recent
+        alone = len(condition.alternatives) == len(condition.alternatives[0]) == 1
+        if not alone or len(recent) != 1 or recent[0].window is None:
+            message = "this has to follow one task that is to be done by a certain time"
+            hint = "write `Check checkpoint #1 not later than 10 minutes after the start. If it is "
+            hint += "too late, go to step 5.`"
+            self.diagnostics.refuse("too-late", message, case.span, hint)
+        (do,) = recent
+        if do.missed is not None:
+            message = "what is done if it is too late is said already"
+            self.diagnostics.refuse("second-route", message, case.span, "leave one of the two out")
+        do.missed = ProgramBlock(do)
+        self._plan(case.orders, do.missed)
+
+
+def _policy(said: Sequence[ScriptOrder]) -> OnFailure | None:
+    """What a mission does by itself in a failure, if that is all that is ordered."""
+    match said:
+        case [orders.Plain(word=word, manner=None, name=None)]:
+            return _POLICIES.get(word)
+        case [orders.Home(dock=DockLocation(area=None), manner=None, name=None)]:
+            return OnFailure.RETURN
+    return None
+
+
+def _is_failure(condition: SaidCondition) -> bool:
+    """Whether it asks only whether the last task has failed."""
+    match condition.alternatives:
+        case ((Test(predicate=InState(state=TaskState.FAILED), negated=False) as test,),):
+            return _is_of_it(test) and not condition.negated
+    return False
+
+
+def _is_of_it(test: Test) -> bool:
+    return test.subject is None or all(isinstance(n, Pronoun) for n in test.subject.nouns)
+
+
+def _put_together(last: Choice) -> bool:
+    """Puts the conditions that belong together so that the other case of the last one is what is
+    done if none of them holds; False if it may be meant for the last of them only."""
+    chain = [last]
+    while isinstance(before := chain[-1].before, Choice) and chain[-1].bound:
+        chain.append(before)
+    chain.reverse()
+    if isinstance(last.then.last, Choice):
+        return False  # `if ..., check #2 unless ...; otherwise ...`
+    several = [c for c in chain if c is last or not isinstance(c.then.last, Leave)]
+    if len(several) == 1:
+        return True
+    clear = all(exclude(a.alternatives, b.alternatives) for a, b in combinations(several, 2))
+    if not clear or any(c.negated or c.otherwise.first is not None for c in chain):
+        return False
+    for outer, inner in pairwise(chain):
+        assert inner.block is not None
+        inner.block.remove(inner)
+        outer.otherwise.append(inner)
+    return True

@@ -6,10 +6,10 @@ from itertools import product
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.il import Condition, ConditionType
 from argo_compiler.il.bounds import contradict, cover_all
-from argo_compiler.script.resolve import units
 from argo_compiler.script.resolve.lookup import told
 from argo_compiler.script.resolve.nouns import NounResolver
 from argo_compiler.script.resolve.program import Alternatives
+from argo_compiler.script.resolve.units import converted
 from argo_compiler.script.syntax.text.source import Diagnostics
 from argo_compiler.script.syntax.tree.conditions import (
     Amount,
@@ -193,9 +193,7 @@ class ConditionResolver:
 
 def _in_unit_of(checkpoint: CheckpointInfo, amount: Amount) -> float | None:
     """The amount in the checkpoint's unit; None if it has a unit that does not fit."""
-    if not amount.unit:
-        return amount.value
-    return units.converted(amount.value, amount.unit, checkpoint.unit)
+    return converted(amount.value, amount.unit or checkpoint.unit, checkpoint.unit)
 
 
 def _fits(test: Test, checkpoint: CheckpointInfo) -> bool:

@@ -1,13 +1,14 @@
 """What all parts of the planning share: the program, and what the script has said so far."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
+from functools import cache
+from typing import Any, NoReturn
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action
 from argo_compiler.script.resolve.conditions import ConditionResolver
-from argo_compiler.script.resolve.locating import Locator
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.resolve.nouns import Memory, NounResolver
 from argo_compiler.script.resolve.program import (
@@ -17,10 +18,13 @@ from argo_compiler.script.resolve.program import (
     ProgramNode,
     Way,
     all_nodes,
+    leads_away,
     own_names,
 )
 from argo_compiler.script.resolve.reacting import Reactions
-from argo_compiler.script.syntax.text.source import Diagnostics
+from argo_compiler.script.syntax.text.source import Diagnostics, RefusedError
+from argo_compiler.script.syntax.tree import orders
+from argo_compiler.script.syntax.tree.orders import ScriptOrder
 from argo_compiler.script.syntax.tree.places import Steps
 
 
@@ -30,11 +34,7 @@ class Context:
 
     lookup: Lookup
     diagnostics: Diagnostics
-    locator: Locator
-    memory: Memory
-    nouns: NounResolver
-    conditions: ConditionResolver
-    reactions: Reactions
+    memory: Memory = field(default_factory=Memory)
     program: ProgramBlock = field(default_factory=ProgramBlock)
     steps: dict[int, list[ProgramNode] | None] = field(default_factory=dict)
     """the nodes that each step planned; None for a number that more than one step has"""
@@ -64,14 +64,10 @@ class Context:
     rounds: int = 0
     """how many rounds have been asked for"""
 
-    @classmethod
-    def of(cls, lookup: Lookup, diagnostics: Diagnostics, locator: Locator) -> "Context":
-        """An empty program."""
-        memory = Memory()
-        nouns = NounResolver(lookup, diagnostics, memory)
-        conditions = ConditionResolver(nouns, diagnostics)
-        reactions = Reactions(locator, diagnostics)
-        return cls(lookup, diagnostics, locator, memory, nouns, conditions, reactions)
+    def __post_init__(self) -> None:
+        self.nouns = NounResolver(self.lookup, self.diagnostics, self.memory)
+        self.conditions = ConditionResolver(self.nouns, self.diagnostics)
+        self.reactions = Reactions(self.lookup, self.diagnostics)
 
     def begin_step(self, number: int | None) -> None:
         """What is planned from now on belongs to this step; without a number, to the one before."""
@@ -112,6 +108,12 @@ class Context:
     def whole(self) -> bool:
         """Whether all that was asked for so far is planned: what is not found is not there."""
         return self.memory.known
+
+    def refuse_missing(self, code: str, message: str, span: Span, hint: str) -> NoReturn:
+        """Refuse what misses something; without a word if that may be what was not understood."""
+        if not self.whole:
+            raise RefusedError
+        self.diagnostics.refuse(code, message, span, hint)
 
     def measurements(self, checkpoint: CheckpointInfo) -> list[Do]:
         """The tasks in the program that measure a checkpoint."""
@@ -157,6 +159,47 @@ class Context:
             self.diagnostics.refuse("ambiguous-step", message, span, hint)
         return [node for node in nodes if node.listed]
 
+    def require_reached(self, span: Span, block: ProgramBlock) -> None:
+        """Raise RefusedError unless the mission comes to the end of a block, or a step begins."""
+        last, step = block.last, self.step
+        begins = block is self.program and (not step or last is not step[-1])
+        if leads_away(last) and not begins:
+            message = "the mission never comes here: what stands before this leads elsewhere"
+            hint = "write it before the words that lead elsewhere, or as a step of its own"
+            self.diagnostics.refuse("second-route", message, span, hint)
+
+    # ---- steps that are counted from the one that is being planned: `the next step`
+
+    def counted(self, order: ScriptOrder) -> ScriptOrder:
+        """The order with the numbers of the steps that it means."""
+        kind: Any = type(order)
+        for name in _fields(kind):
+            steps = getattr(order, name)
+            if type(steps) is Steps and steps.ahead:
+                given: dict[str, Any] = {name: self._numbered(steps)}
+                return replace(order, **given)
+        return order
+
+    def skipping(self, order: ScriptOrder) -> ScriptOrder:
+        """`Skip the next step`, in one case only: it goes on behind it."""
+        if not isinstance(order, orders.Delete) or not isinstance(order.what, Steps):
+            return order
+        steps = self._numbered(order.what) if order.what.ahead else order.what
+        following = (self.number or 0) + 1
+        several = steps.points == (*range(following, following + len(steps.points)),)
+        neighbours = steps.points[0] == following and (steps.through or several)
+        if not order.what.ahead and not (neighbours and self.number):
+            return order
+        return orders.Jump(span=order.span, step=replace(steps, behind=True))
+
+    def _numbered(self, steps: Steps) -> Steps:
+        if self.number is None:
+            message = "it is not clear which one the next step is"
+            hint = "number the steps, and name it: `step 4`"
+            self.diagnostics.refuse("step-range", message, steps.span, hint)
+        points = tuple(self.number + n for n in steps.points if isinstance(n, int))
+        return replace(steps, points=points, ahead=False)
+
 
 def _bound_to(do: Do) -> Iterator[ProgramNode]:
     """The conditions that are looked at after a task, in its own step."""
@@ -166,13 +209,6 @@ def _bound_to(do: Do) -> Iterator[ProgramNode]:
         node = node.after
 
 
-def topmost(nodes: Iterable[ProgramNode], block: ProgramBlock) -> list[ProgramNode]:
-    """The nodes of `block` that hold these, each once, in the block's order of first mention."""
-    found: dict[int, ProgramNode] = {}
-    for node in nodes:
-        at: ProgramNode | None = node
-        while at is not None and at.block is not block:
-            at = at.block.owner if at.block is not None else None
-        if at is not None:
-            found.setdefault(id(at), at)
-    return list(found.values())
+@cache
+def _fields(type_: type[Any]) -> tuple[str, ...]:
+    return tuple(field.name for field in fields(type_))

@@ -1,17 +1,21 @@
 """Changes of the plan: what is added, taken out, moved or replaced."""
 
 from collections.abc import Sequence
-from typing import NoReturn
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.base.listing import listed
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action
-from argo_compiler.script.resolve import making
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.manners import Manners
-from argo_compiler.script.resolve.program import Choice, Do, Leave, ProgramNode, ProgramRound
-from argo_compiler.script.syntax.text.source import RefusedError
+from argo_compiler.script.resolve.program import (
+    Choice,
+    Do,
+    Leave,
+    ProgramNode,
+    ProgramRound,
+    measurement,
+)
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.nouns import Nouns
 from argo_compiler.script.syntax.tree.orders import Side
@@ -45,7 +49,7 @@ class Edits:
     def _add(self, edit: orders.Add) -> None:
         checkpoints = self.context.nouns.all(edit.what)
         anchors = self._found(edit.anchor)
-        tasks = [making.measurement(c.id, edit.span) for c in checkpoints]
+        tasks = [measurement(c, edit.span) for c in checkpoints]
         self.manners.name(edit, tasks)
         nodes = self.manners.apply(edit, tasks)
         self._put(nodes, anchors, edit.side)
@@ -97,7 +101,7 @@ class Edits:
             hint = "delete what is there, and add the other behind it"
             self.diagnostics.refuse("bound-task", message, edit.span, hint)
         self.context.forget(do)
-        new = making.measurement(checkpoint.id, edit.span)
+        new = measurement(checkpoint, edit.span)
         do.base, do.object_id, do.source = new.base, new.object_id, new.source
         self.context.note(do)
         self.context.step.append(do)
@@ -108,9 +112,7 @@ class Edits:
         """The planned tasks that are meant."""
         if isinstance(thing, Steps):
             return self._of_steps(thing)
-        return [
-            self._measured(checkpoint, thing.span) for checkpoint in self.context.nouns.all(thing)
-        ]
+        return [self._measured(c, thing.span) for c in self.context.nouns.all(thing)]
 
     def _measured(self, checkpoint: CheckpointInfo, span: Span) -> Do:
         """The only measurement of a checkpoint."""
@@ -124,11 +126,9 @@ class Edits:
             message = f"{name} is measured more than once at this point: lines {where}"
             hint = "say which of them is meant by its step: `step 3`"
             self.diagnostics.refuse("ambiguous-edit", message, span, hint)
-        self._not_planned(
-            f"{name} is not in the plan at this point",
-            span,
-            f"ask for it before this line: `Check the {name}`",
-        )
+        message = f"{name} is not in the plan at this point"
+        hint = f"ask for it before this line: `Check the {name}`"
+        self.context.refuse_missing("not-planned", message, span, hint)
 
     def _of_steps(self, steps: Steps) -> list[ProgramNode]:
         planned = [self.context.steps.get(p) for p in steps.points if isinstance(p, int)]
@@ -138,13 +138,8 @@ class Edits:
         if not nodes:
             message = "no task of this step is in the plan at this point"
             hint = "name a step above this line that measures or drives"
-            self._not_planned(message, steps.span, hint)
+            self.context.refuse_missing("not-planned", message, steps.span, hint)
         return nodes
-
-    def _not_planned(self, message: str, span: Span, hint: str) -> NoReturn:
-        if not self.context.whole:
-            raise RefusedError  # it may be what was not understood
-        self.diagnostics.refuse("not-planned", message, span, hint)
 
 
 def _outside(node: ProgramNode, side: Side) -> ProgramNode:

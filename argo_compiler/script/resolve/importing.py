@@ -10,21 +10,15 @@ from argo_compiler.diagnostics import Diagnostic, DiagnosticError
 from argo_compiler.il import Mission, Mode
 from argo_compiler.script.resolve.assembly import assemble
 from argo_compiler.script.resolve.context import Context
-from argo_compiler.script.resolve.header import header_values
-from argo_compiler.script.resolve.locating import Locator
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.resolve.lowering import lower_program
-from argo_compiler.script.resolve.ordering import Ordering
-from argo_compiler.script.resolve.pausing import put_pauses
 from argo_compiler.script.resolve.planning import Planner
 from argo_compiler.script.resolve.program import Do, ProgramNode, all_nodes, depth
-from argo_compiler.script.resolve.starting import Starting
-from argo_compiler.script.resolve.stepping import Stepping
-from argo_compiler.script.resolve.waiting import warn_of_long_waits
+from argo_compiler.script.resolve.starting import Starting, area_choices
 from argo_compiler.script.syntax.parsing import parse
 from argo_compiler.script.syntax.text.source import Diagnostics, RefusedError, Source
 from argo_compiler.script.syntax.tree.places import Steps
-from argo_compiler.script.syntax.tree.script import Script
+from argo_compiler.script.syntax.tree.script import Script, ScriptHeader
 
 _DEEPEST = 100
 
@@ -44,7 +38,7 @@ def resolve_script(
     source = Source(script.source_text, script.source_name)
     diagnostics = Diagnostics(source, list(script.diagnostics))
     try:
-        mission = _mission(script, Lookup(catalog, diagnostics), diagnostics, start_area, end_area)
+        mission = _mission(script, catalog, diagnostics, start_area, end_area)
     except RefusedError:
         raise DiagnosticError(script.source_name, diagnostics.by_place()) from None
     return Resolved(mission=mission, diagnostics=diagnostics.by_place())
@@ -67,28 +61,25 @@ def import_script(
 
 def _mission(
     script: Script,
-    lookup: Lookup,
+    catalog: Catalog,
     diagnostics: Diagnostics,
     start_area: int | None,
     end_area: int | None,
 ) -> Mission:
-    header = header_values(script.header, diagnostics, start_area, end_area)
-    locator = Locator(lookup, diagnostics, header.start.area, header.end.area)
-    context = Context.of(lookup, diagnostics, locator)
+    start, end = area_choices(script.header, diagnostics, start_area, end_area)
+    lookup = Lookup(catalog, diagnostics, start.area, end.area)
+    context = Context(lookup, diagnostics)
     if diagnostics.errors:
         context.fail()
-    starting = Starting(context, header)
-    starting.begin()
-    ordering = Ordering(context, script.header)
-    planner = Planner(context, starting, ordering)
-    stepping = Stepping(context, planner, script.header)
-    stepping.all(script.steps)
+    starting = Starting(context, script.header, start, end)
+    planner = Planner(context, starting, script.header)
+    ordering = planner.ordering
+    planner.steps(script.steps)
     planner.finish()
     with suppress(RefusedError):
         starting.finish()
     planner.repeating.finish()
-    put_pauses(context)
-    warn_of_long_waits(context, script.header)
+    _warn_of_long_waits(context, script.header)
     order = ordering.finish(context.program)
     _require_no_error(diagnostics)
 
@@ -129,7 +120,7 @@ def _mission(
         diagnostics.note("no-effect", message, said.title.span)
     mission = Mission(
         designation=text.text if text else "",
-        site=_site(script, lookup, diagnostics),
+        site=_site(script, catalog, diagnostics),
         mode=said.mode or Mode.AUTONOMOUS,
         max_duration=said.max_duration[0] if said.max_duration else None,
         start_area=starting.start_area,
@@ -163,6 +154,20 @@ def _warn_of_time(mission: Mission, diagnostics: Diagnostics) -> None:
         diagnostics.warning("no-time-limit", message, optional.source, hint)
 
 
+def _warn_of_long_waits(context: Context, header: ScriptHeader) -> None:
+    """Warns of each wait that lasts at least as long as the whole mission may take."""
+    if header.max_duration is None:
+        return
+    most_s = header.max_duration[0]
+    for do in all_nodes(context.program):
+        if not isinstance(do, Do) or do.wait is None or (do.wait.duration or 0) < most_s:
+            continue
+        message = f"this wait takes {do.wait.duration:g} s, and the whole mission may take "
+        message += f"{most_s:g} s"
+        hint = "wait for a shorter time, or give the mission more"
+        context.diagnostics.warning("long-wait", message, do.source, hint)
+
+
 def _require_no_error(diagnostics: Diagnostics) -> None:
     if diagnostics.errors:
         raise RefusedError
@@ -183,9 +188,9 @@ def _current(said: Steps | None, context: Context, names: dict[int, str]) -> str
     return names[id(tasks[0])] if tasks else None
 
 
-def _site(script: Script, lookup: Lookup, diagnostics: Diagnostics) -> str:
+def _site(script: Script, catalog: Catalog, diagnostics: Diagnostics) -> str:
     """The site that the script says it is for, else that of the catalogue."""
-    site, said = lookup.catalog.site, script.header.site
+    site, said = catalog.site, script.header.site
     if said is None:
         return site
     if said.text.lower() != site.lower():

@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Collection, Iterable
+from typing import Literal
 
 from rapidfuzz.distance import OSA
 
@@ -12,7 +13,15 @@ from argo_compiler.diagnostics import Span
 from argo_compiler.script.syntax.text.source import Diagnostics
 from argo_compiler.script.syntax.text.spelling import nearest
 from argo_compiler.script.syntax.tree.nouns import Kind, Quantity
-from argo_compiler.script.syntax.tree.places import FloorName, NamedFloor, PlaceLocation
+from argo_compiler.script.syntax.tree.places import (
+    AreaLocation,
+    Coordinates,
+    DockLocation,
+    FloorName,
+    Location,
+    NamedFloor,
+    PlaceLocation,
+)
 from argo_compiler.script.syntax.words.language import place_key
 
 _QUANTITIES = {
@@ -27,11 +36,20 @@ _SAME_PLACE = 0.85
 
 
 class Lookup:
-    """The catalogue of one site by number and name. What it does not find is an error."""
+    """The catalogue of one site by number and name, and which docking stations the mission starts
+    and ends at, if that is said. What it does not find is an error."""
 
-    def __init__(self, catalog: Catalog, diagnostics: Diagnostics) -> None:
+    def __init__(
+        self,
+        catalog: Catalog,
+        diagnostics: Diagnostics,
+        start_area: int | None,
+        end_area: int | None,
+    ) -> None:
         self.catalog = catalog
         self.diagnostics = diagnostics
+        self.start_area = start_area
+        self.end_area = end_area
         self.by_number = {c.id: c for c in catalog.checkpoints}
         self._by_identifier: dict[str, list[CheckpointInfo]] = defaultdict(list)
         for checkpoint in catalog.checkpoints:
@@ -152,6 +170,53 @@ class Lookup:
 
     def _place_key(self, name: str) -> str:
         return place_key(name, self._unsaid)
+
+    # ---- where locations lie
+
+    def locate(
+        self, location: Location, which: Literal["start", "end"]
+    ) -> tuple[Pose, Area | None]:
+        """The pose of the location, and its starting area if it lies in one."""
+        match location:
+            case Coordinates():
+                return self.point(location), None
+            case PlaceLocation():
+                return self.place(location), None
+            case AreaLocation():
+                area = self.area(location.area, location.span)
+            case DockLocation():
+                area = self._docking_area(location, which)
+        return area.dock, area
+
+    def point(self, point: Coordinates) -> Pose:
+        """The pose of a point in the site's frame; its height must be said."""
+        z = point.z
+        if point.floor is not None:
+            floor = self.floor(point.floor)
+            if z is not None and z != floor.z:
+                message = f"floor {floor.number} lies at z = {floor.z:g} m, not at {z:g} m"
+                hint = "leave the height or the floor out"
+                self.diagnostics.refuse("height", message, point.span, hint)
+            z = floor.z
+        if z is None:
+            hint = "write a third number or a floor: `(12.5, 3, 2.5)`, `(12.5, 3) on floor 2`"
+            self.diagnostics.refuse("height", "these coordinates have no height", point.span, hint)
+        return Pose(x=point.x, y=point.y, z=z, yaw=point.yaw)
+
+    def _docking_area(self, dock: DockLocation, which: Literal["start", "end"]) -> Area:
+        option = self.start_area if which == "start" else self.end_area
+        named = dock.area.area if dock.area else option
+        flag = f"--{which}-area"
+        if named is None:
+            known = listed((f"{flag} {area.number}" for area in self.catalog.areas), "or")
+            message = "this does not say which docking station"
+            hint = f"add `in starting area 1`, or give {known}"
+            self.diagnostics.refuse("area-choice", message, dock.span, hint)
+        if which == "end" and option is not None and option != named:
+            message = f"the mission is to end in starting area {option}, not {named}"
+            hint = f"leave {flag} (or `End area:`) out, or take the area out of this line"
+            self.diagnostics.refuse("area-conflict", message, dock.span, hint)
+        return self.area(named, dock.span)
 
 
 def told(checkpoint: CheckpointInfo) -> str:

@@ -6,9 +6,9 @@ duration is put: before a condition that more than one way comes to, and at the 
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass, field
 
-from argo_compiler.il import Action, WaitRule
-from argo_compiler.script.resolve.points import Item, Lowered, Point, Range
+from argo_compiler.il import Action, Condition, WaitRule
 from argo_compiler.script.resolve.program import (
     Ahead,
     Choice,
@@ -25,9 +25,64 @@ from argo_compiler.script.syntax.tree.places import Steps
 
 MEETING = WaitRule(duration=0)
 
-
 Find = Callable[[Steps], ProgramNode | None]
 """the first node of a step; None if there is none, with an error"""
+
+
+@dataclass(eq=False, slots=True)
+class Point:
+    """Where a way leads to; neither set: the mission ends."""
+
+    item: "Item | None" = None
+    same: "Point | None" = None
+    """it is this one"""
+
+    def circles(self) -> bool:
+        """Whether it leads to itself, and to no task."""
+        point, seen = self, set()
+        while point.same is not None and id(point) not in seen:
+            seen.add(id(point))
+            point = point.same
+        return point.same is not None
+
+    def reached(self) -> "Item | None":
+        """The task that is come to here."""
+        point = self
+        while point.same is not None:
+            point = point.same
+        return point.item
+
+
+@dataclass(eq=False, slots=True)
+class Item:
+    """A task with its ways on."""
+
+    do: Do
+    ways: list[tuple[tuple[Condition, ...], Point]] = field(default_factory=list)
+    """in order; one without conditions is taken if no other is"""
+    next: Point | None = None
+    """where it leads if no way is taken"""
+    failure: Point | None = None
+    missed: Point | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """A round, and the places of its first and last task."""
+
+    round: ProgramRound
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True)
+class Lowered:
+    """The tasks in order with their ways, and the rounds over them, the outer ones first."""
+
+    items: list[Item]
+    ranges: list[Range]
+    circling: list[Leave]
+    """those that only lead to themselves"""
 
 
 def lower_program(block: ProgramBlock, find: Find, home: Callable[[HomeAhead], Do]) -> Lowered:
@@ -184,7 +239,9 @@ class _Lowering:
         """Decides at the task before it, or at a place of its own if others come here as well."""
         item = before
         if item is None or not self._comes_only_from(item, entry, choice):
-            item = Item(_meeting(choice))
+            last = choice.before
+            base = f"after '{last.title}'" if isinstance(last, ProgramRound) else "MEET"
+            item = Item(Do(base, Action.WAIT, choice.span, wait=MEETING))
             self._place(item, entry)
         then, otherwise = Point(), Point()
         taken, left = (otherwise, then) if choice.negated else (then, otherwise)
@@ -214,7 +271,8 @@ class _Lowering:
         closes = _closes(round_.body)
         self._block(round_.body, entry, behind if closes else end)
         if not closes or len(self.items) == first:
-            self._place(Item(_end(round_), next=behind), end)
+            do = Do(f"end of '{round_.title}'", Action.WAIT, round_.span, wait=MEETING)
+            self._place(Item(do, next=behind), end)
         self.ranges.insert(index, Range(round_, first, len(self.items) - 1))
 
 
@@ -235,13 +293,3 @@ def _closes(body: ProgramBlock) -> bool:
         left = all(block is None or _leaves(block) for block in (last.failure, last.missed))
         return left and not open_
     return isinstance(last, ProgramRound)
-
-
-def _meeting(choice: Choice) -> Do:
-    before = choice.before
-    base = f"after '{before.title}'" if isinstance(before, ProgramRound) else "MEET"
-    return Do(base, Action.WAIT, choice.span, wait=MEETING)
-
-
-def _end(round_: ProgramRound) -> Do:
-    return Do(f"end of '{round_.title}'", Action.WAIT, round_.span, wait=MEETING)

@@ -4,19 +4,30 @@ from collections.abc import Sequence
 from dataclasses import fields, replace
 
 from argo_compiler.diagnostics import Span
-from argo_compiler.il import OnFailure, WaitRule
-from argo_compiler.script.resolve import making
+from argo_compiler.il import Action, Condition, JointState, OnFailure, TimeWindow, WaitRule
 from argo_compiler.script.resolve.accepting import ROUND, said
 from argo_compiler.script.resolve.context import Context
-from argo_compiler.script.resolve.furnishing import Furnishing
-from argo_compiler.script.resolve.limiting import make_round, timed
-from argo_compiler.script.resolve.program import Alternatives, Choice, Do, ProgramNode
-from argo_compiler.script.syntax.text.source import RefusedError
+from argo_compiler.script.resolve.program import (
+    Alternatives,
+    Choice,
+    Do,
+    Limits,
+    ProgramNode,
+    ProgramRound,
+)
+from argo_compiler.script.syntax.text.source import Diagnostics
 from argo_compiler.script.syntax.tree import orders
-from argo_compiler.script.syntax.tree.manner import Manner
+from argo_compiler.script.syntax.tree.conditions import SaidCondition
+from argo_compiler.script.syntax.tree.manner import Joints, Manner
 from argo_compiler.script.syntax.tree.orders import ScriptOrder
 
 _NOTHING = Manner()
+_FRESH = Do("", Action.MEASURE)
+"""what a task has of which nothing is said"""
+_MOST_PRIORITY = 1_000_000
+_SHOWN = 8
+"""priorities that a note names"""
+_MOST_ROUNDS = 1_000_000_000
 
 
 class Manners:
@@ -25,7 +36,6 @@ class Manners:
     def __init__(self, context: Context) -> None:
         self.context = context
         self.diagnostics = context.diagnostics
-        self.furnishing = Furnishing(context.locator, context.diagnostics)
 
     def name(self, order: ScriptOrder, tasks: Sequence[Do]) -> None:
         """Gives the task of an order the name that the script gives it."""
@@ -88,7 +98,8 @@ class Manners:
             hint += "minutes after the start`; `maximum duration: 20 minutes` ends the mission"
             self.diagnostics.refuse("ambiguous-duration", message, order.span, hint)
         if manner.delay is not None:
-            nodes = [making.wait(WaitRule(duration=manner.delay), order.span), *nodes]
+            rule = WaitRule(duration=manner.delay)
+            nodes = [Do("WAIT", Action.WAIT, order.span, wait=rule), *nodes]
         if manner.condition is None:
             return list(nodes)
         memory = self.context.memory
@@ -117,7 +128,91 @@ class Manners:
     def furnish(self, order: ScriptOrder, tasks: Sequence[Do]) -> None:
         """Applies to each of the tasks what is said of each."""
         if order.manner is not None:
-            self.furnishing.furnish(order.manner, order.span, tasks)
+            self.furnish_each(order.manner, order.span, tasks)
+
+    def furnish_each(self, manner: Manner, span: Span, tasks: Sequence[Do]) -> None:
+        """Applies it to each of the tasks; what is said twice and differs is an error."""
+        if manner.priority is not None and not 1 <= manner.priority <= _MOST_PRIORITY:
+            message = f"{manner.priority} is no priority of a task"
+            hint = f"write a number from 1 to {_MOST_PRIORITY}"
+            self.diagnostics.refuse("number", message, span, hint)
+        if manner.priority == 1:
+            message = "priority 1 can be meant as the highest, or as the lowest as it is without it"
+            hint = "write `with high priority`, or a greater number for what is more important"
+            self.diagnostics.error("ambiguous-priority", message, span, hint)
+        if manner.rank is not None and manner.priority not in (None, manner.rank):
+            message = "the priority is said twice"
+            self.diagnostics.error("repeated-limit", message, span, "leave one of them out")
+        if manner.by_importance:
+            self._by_importance(manner, span, tasks)
+        given = {
+            "velocity": manner.speed,
+            "time_limit": manner.time_limit,
+            "reading_limit": manner.reading_limit,
+            "optional": manner.optional or None,
+            "priority": manner.rank if manner.priority is None else manner.priority,
+            "joints": _joint_state(manner.joints),
+            "shown_in": manner.shown_in,
+            "pose": None if manner.pose is None else self.context.lookup.point(manner.pose),
+        }
+        for do in tasks:
+            for name, value in given.items():
+                self._set(do, name, value, span)
+            self._window(do, manner, span)
+            if manner.object_id is not None:
+                if do.action is Action.MEASURE:
+                    message = "a measurement is about its checkpoint"
+                    hint = "leave `about object` out"
+                    self.diagnostics.error("stray-clause", message, span, hint)
+                do.object_id = manner.object_id
+        if tasks:
+            self._set(tasks[-1], "leaving", manner.leaving, span)
+
+    def _by_importance(self, manner: Manner, span: Span, tasks: Sequence[Do]) -> None:
+        """Gives the first of the tasks the highest priority, and the last one 1."""
+        if len(tasks) < 2 or manner.priority is not None or manner.rank is not None:
+            message = "this is said of several tasks, of which each is less important than the last"
+            hint = "write `Check checkpoints 3, 7 and 12, the most important first`"
+            self.diagnostics.refuse("stray-clause", message, span, hint)
+        names = ", ".join(f"`{do.base}` {len(tasks) - i}" for i, do in enumerate(tasks[:_SHOWN]))
+        more = ", and so on" if len(tasks) > _SHOWN else ""
+        self.diagnostics.note("priority-taken", f"taken as these priorities: {names}{more}", span)
+        for i, do in enumerate(tasks):
+            self._set(do, "priority", len(tasks) - i, span)
+
+    def _set(self, do: Do, name: str, value: object, span: Span) -> None:
+        if value is None:
+            return
+        if getattr(do, name) not in (getattr(_FRESH, name), value):
+            self._twice(do, name, span)
+        setattr(do, name, value)
+
+    def _twice(self, do: Do, name: str, span: Span) -> None:
+        what = name.replace("_", " ")
+        message = f"`{do.base}` has another {what} already"
+        self.diagnostics.error("repeated-limit", message, span, "leave one of the two out")
+
+    def _window(self, do: Do, manner: Manner, span: Span) -> None:
+        if manner.earliest is None and manner.latest is None:
+            if manner.soft_window and do.window is None:
+                message = "this does not say by when, or whether the task may be left out"
+                hint = "write `preferably not later than 10 minutes after the start`, or `if there "
+                hint += "is time`"
+                self.diagnostics.error("ambiguous-manner", message, span, hint)
+            elif manner.soft_window and do.window is not None:
+                do.window = do.window.model_copy(update={"hard": False})
+            return
+        before = do.window if do.window is not None else TimeWindow()
+        earliest, latest = manner.earliest, manner.latest
+        if earliest is not None and before.earliest not in (0.0, earliest):
+            self._twice(do, "earliest", span)
+        if latest is not None and before.latest not in (None, latest):
+            self._twice(do, "latest", span)
+        do.window = TimeWindow(
+            earliest=before.earliest if earliest is None else earliest,
+            latest=before.latest if latest is None else latest,
+            hard=before.hard and not manner.soft_window,
+        )
 
     # ---- what is said of tasks that are planned already
 
@@ -125,11 +220,9 @@ class Manners:
         """Applies a sentence or clause of manner to the tasks before it."""
         recent = self.context.recent
         if not recent:
-            if not self.context.whole:
-                raise RefusedError
             message = "there is no task before this that it could belong to"
             hint = "write it behind the task that it is said of"
-            self.diagnostics.refuse("no-task", message, order.span, hint)
+            self.context.refuse_missing("no-task", message, order.span, hint)
         if isinstance(order, orders.Retry):
             self._retry(order, recent)
         else:
@@ -165,3 +258,96 @@ def _is_round(order: ScriptOrder) -> bool:
         return False
     found = said(order.manner) & ROUND
     return bool(found) and not (found <= {"times", "more"} and order.manner.times == 1)
+
+
+def _joint_state(joints: Joints | None) -> JointState | None:
+    if joints is None:
+        return None
+    return JointState(
+        names=joints.names,
+        positions=joints.positions,
+        velocities=joints.velocities,
+        efforts=joints.efforts,
+    )
+
+
+# ---- what ends a round's repetitions
+
+
+def make_round(
+    order: ScriptOrder, base: str, context: Context, name: str | None = None
+) -> ProgramRound:
+    """An empty round with the limits that are said of an order. Raises RefusedError if nothing
+    ends it, or if that is not clear."""
+    limits = _limits(timed(order, context.diagnostics), context)
+    context.rounds += 1
+    return ProgramRound(base.replace("/", "-"), limits, order.span, context.rounds, name)
+
+
+def timed(order: ScriptOrder, diagnostics: Diagnostics) -> ScriptOrder:
+    """The order of a round with the limit of time that is said of all its rounds as how long they
+    last. Raises RefusedError if it is not clear whether each or all are meant."""
+    manner = order.manner
+    if manner is None or manner.time_limit is None:
+        return order
+    single = isinstance(order, orders.Measure | orders.Add | orders.Go | orders.Home)
+    keeps = isinstance(order, orders.Measure) and order.keep
+    if single and manner.duration is not None:
+        return order
+    others = manner.times is not None or manner.at_most is not None or manner.until is not None
+    if single and not keeps and (others or manner.every is None):
+        message = "this limit can be read as that of each attempt, or of all together"
+        hint = "write `for 10 minutes` if it is how long all rounds last at most, or the limit of "
+        hint += "each in a sentence of its own"
+        diagnostics.refuse("ambiguous-duration", message, order.span, hint)
+    if manner.duration is not None:
+        message = "how long is said twice"
+        diagnostics.refuse("repeated-limit", message, order.span, "leave one of them out")
+    return replace(order, manner=replace(manner, duration=manner.time_limit, time_limit=None))
+
+
+def _limits(order: ScriptOrder, context: Context) -> Limits:
+    manner = order.manner or Manner()
+    refuse, span = context.diagnostics.refuse, order.span
+    what = "patrol" if isinstance(order, orders.Patrol) else "repetition"
+    if manner.times == 0 or manner.at_most == 0:
+        refuse("rounds", f"a {what} of no rounds", span, "write how often, say, `three times`")
+    if manner.times is not None and manner.at_most is not None:
+        refuse("repeated-limit", "how often is said twice", span, "leave one of them out")
+    ended = manner.until is not None or manner.duration is not None or manner.every is not None
+    if manner.at_most is not None and not ended and not manner.endless:
+        message = "this can be exactly so often, or less often if something holds that is not said"
+        hint = "write `three times`, or what ends it: `until it is above 5, at most three times`"
+        refuse("ambiguous-repeat", message, span, hint)
+    count = manner.times or manner.at_most or 0
+    if manner.more and isinstance(order, orders.Repeat):
+        count += 1  # what is repeated has been done once
+    if count > _MOST_ROUNDS:
+        refuse("number", "this is too large a number", span, f"at most {_MOST_ROUNDS}")
+    until = () if manner.until is None else _until(manner.until, order, context)
+    limited = count or manner.duration or until
+    if manner.endless and limited:
+        message = f"this {what} is said to end, and not to"
+        refuse("repeated-limit", message, span, "leave one of them out")
+    if not limited and not manner.endless:
+        message = f"this {what} would never end"
+        hint = "say how long or how often: `for 10 minutes`, `three times`, `endlessly`"
+        refuse("endless-patrol" if what == "patrol" else "endless-repeat", message, span, hint)
+    return Limits(
+        count=count,
+        duration=manner.duration or 0.0,
+        every=manner.every or 0.0,
+        pause=manner.pause or 0.0,
+        until=until,
+        soft=bool(manner.finishing),
+        count_interruptions=manner.count_interruptions,
+    )
+
+
+def _until(said: SaidCondition, order: ScriptOrder, context: Context) -> tuple[Condition, ...]:
+    found = context.conditions.alternatives(said)
+    if len(found) > 1:
+        message = "a round ends by conditions that all hold, not by one of several"
+        hint = "join them by `and`, or leave the round by `if ..., go to step 7`"
+        context.diagnostics.refuse("condition", message, order.span, hint)
+    return found[0]

@@ -19,7 +19,7 @@ from argo_compiler.script.resolve.program import (
     inner_blocks,
 )
 from argo_compiler.script.syntax.text.source import RefusedError
-from argo_compiler.script.syntax.tree.facts import ReadBefore, StepsOrdered
+from argo_compiler.script.syntax.tree.orders import ReadBefore, StepsOrdered
 from argo_compiler.script.syntax.tree.places import Steps
 from argo_compiler.script.syntax.tree.script import ScriptHeader
 
@@ -39,7 +39,7 @@ class Ordering:
     asked: list[tuple[Span, _Checkpoints, _Checkpoints]] = field(default_factory=list)
     steps: list[StepsOrdered] = field(default_factory=list)
     left_out: list[Span] = field(default_factory=list)
-    """where it is said that what does not fit is left out"""
+    """where it is said that what does not fit is left out: then each task may be"""
     pairs: list[tuple[Span, Do | str, Do | str]] = field(default_factory=list)
     """what has to come before what, names if it was left out; known when all is planned"""
 
@@ -48,15 +48,10 @@ class Ordering:
         said = self.free if order is Order.ANY else self.precise
         said.append((span, list(nodes)))
 
-    def leave_out(self, span: Span) -> None:
-        """Each task may be left out where not all can be done."""
-        self.left_out.append(span)
-
     def precedence(self, fact: ReadBefore) -> None:
         """Takes down that checkpoints come before others."""
-        first, second = self.context.diagnostics.each(
-            self.context.nouns.all, (fact.first, fact.second)
-        )
+        context = self.context
+        first, second = context.diagnostics.each(context.nouns.all, (fact.first, fact.second))
         self.asked.append((fact.span, tuple(first), tuple(second)))
 
     def finish(self, program: ProgramBlock) -> Order:
@@ -135,10 +130,8 @@ class Ordering:
             message = f"{name} is measured more than once, so it is not clear what comes first"
             hint = "leave this out, or write the order in which they are measured"
             context.diagnostics.refuse("ambiguous-edit", message, span, hint)
-        if not context.whole:
-            raise RefusedError
         hint = f"ask for it: `Check the {name}`"
-        context.diagnostics.refuse("not-planned", f"{name} is not in the plan", span, hint)
+        context.refuse_missing("not-planned", f"{name} is not in the plan", span, hint)
 
     def named(self, names: Mapping[int, str]) -> tuple[tuple[str, str], ...]:
         """The pairs by the names of their tasks."""

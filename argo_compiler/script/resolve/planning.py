@@ -1,38 +1,41 @@
-"""Carries out the orders of a script: each adds to the program, or changes it."""
+"""Carries out the steps of a script, and those within them: each order adds to the program, or
+changes it."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 
-from argo_compiler.il import OnFailure
+from argo_compiler.il import OnFailure, Order
 from argo_compiler.script.resolve.accepting import require_used, said
-from argo_compiler.script.resolve.beside import measured_beside, require_once
 from argo_compiler.script.resolve.cases import Cases
 from argo_compiler.script.resolve.context import Context
-from argo_compiler.script.resolve.counting import counted
-from argo_compiler.script.resolve.demanding import demanded_of
 from argo_compiler.script.resolve.edits import Edits
-from argo_compiler.script.resolve.manners import Manners
+from argo_compiler.script.resolve.manners import Manners, make_round
 from argo_compiler.script.resolve.ordering import Ordering
-from argo_compiler.script.resolve.patrolling import patrol_rounds
 from argo_compiler.script.resolve.program import (
     Ahead,
     Do,
     Leave,
     ProgramBlock,
     ProgramNode,
+    all_nodes,
     in_branch,
 )
-from argo_compiler.script.resolve.reaching import is_back, require_reached
 from argo_compiler.script.resolve.repeating import Repeating
-from argo_compiler.script.resolve.sparing import check_spared
 from argo_compiler.script.resolve.starting import Starting
 from argo_compiler.script.resolve.tasks import TaskMaker
-from argo_compiler.script.resolve.waiting import staying
-from argo_compiler.script.syntax.text.source import RefusedError
+from argo_compiler.script.syntax.text.source import MOST_KEPT, RefusedError
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.manner import Manner
-from argo_compiler.script.syntax.tree.orders import PlainWord, ScriptOrder, Sentence
-from argo_compiler.script.syntax.tree.places import FloorName, Location
+from argo_compiler.script.syntax.tree.node import Node
+from argo_compiler.script.syntax.tree.orders import Fact, PlainWord, ScriptOrder, Sentence
+from argo_compiler.script.syntax.tree.places import (
+    AreaLocation,
+    DockLocation,
+    FloorName,
+    Location,
+)
+from argo_compiler.script.syntax.tree.script import ScriptHeader, ScriptStep, Unread
 
 _WHOLE_PLAN = (
     *(orders.Repeat, orders.Add, orders.Delete, orders.Move, orders.Replace, orders.Start),
@@ -42,21 +45,177 @@ _PLANNED = (orders.Measure, orders.Go, orders.Home, orders.Start)
 
 
 class Planner:
-    """Plans sentences, into the program or into a block of it."""
+    """Plans steps and their sentences, into the program or into a block of it."""
 
-    def __init__(self, context: Context, starting: Starting, ordering: Ordering) -> None:
+    def __init__(self, context: Context, starting: Starting, header: ScriptHeader) -> None:
         self.context = context
+        self.header = header
         self.diagnostics = context.diagnostics
         self.starting = starting
         self.manners = Manners(context)
         self.repeating = Repeating(context)
-        self.ordering = ordering
+        self.ordering = Ordering(context, header)
         self.edits = Edits(context, self.manners)
         self.making = TaskMaker(context, starting, self.manners)
-        self.cases = Cases(context, self)
+        self.cases = Cases(context, self.manners, self.carry_out)
         self.done = False
 
-    def sentence(self, sentence: Sentence, block: ProgramBlock) -> None:
+    def steps(self, steps: Sequence[ScriptStep]) -> None:
+        """Plans all steps of a script."""
+        self._check_numbers(steps)
+        numbered = any(step.number is not None for step in steps)
+        for i, step in enumerate(steps, start=1):
+            if self.diagnostics.errors > MOST_KEPT:
+                return  # further errors would not be kept
+            number = step.number if numbered else i
+            self.context.begin_step(number)
+            self._step(step, self.context.program, number)
+
+    def _check_numbers(self, steps: Sequence[ScriptStep]) -> None:
+        """Warns where the steps' numbers are not one after the other: a line may have been lost."""
+        expected = 1
+        for step in steps:
+            if step.number is None:
+                continue
+            if step.number != expected:
+                message = f"step {step.number} stands where step {expected} would be"
+                hint = "is a line missing, or in the wrong place?"
+                self.diagnostics.warning("step-number", message, step.span, hint)
+            expected = step.number + 1
+
+    def _step(self, step: ScriptStep, block: ProgramBlock, number: int | None = None) -> None:
+        sentences = list(step.sentences)
+        following = self._taken(sentences) if step.steps else None
+        for i, sentence in enumerate(sentences, start=1):
+            ends = i == len(sentences) and not step.steps
+            self.context.number = number if ends else None
+            errors = self.diagnostics.errors
+            if isinstance(sentence, Sentence):
+                self._sentence(self._without_limit(sentence), block)
+                for fact in sentence.facts:
+                    self._fact(fact)
+            elif not isinstance(sentence, Unread):
+                self._fact(sentence)
+            if isinstance(sentence, Unread) or self.diagnostics.errors > errors:
+                self.context.fail()
+        if following is None or following.manner is None:
+            for one in step.steps:
+                self._step(one, block)
+            return
+        with suppress(RefusedError):
+            self._follow(following, following.manner, step.steps, block)
+
+    def _follow(
+        self,
+        order: ScriptOrder,
+        manner: Manner,
+        steps: Sequence[ScriptStep],
+        block: ProgramBlock,
+    ) -> None:
+        """Plans the steps within one that says how they are done."""
+        require_used(order, self.diagnostics)
+        known: set[int] = set()
+        if said(manner) <= {"order", "by_importance"}:
+            known = {id(node) for node in all_nodes(block)}
+        else:
+            round_ = make_round(order, "Repeat", self.context, order.name)
+            self.context.put([round_], block, block.last)
+            self.context.step.append(round_)
+            block = round_.body
+        for one in steps:
+            self._step(one, block)
+        tasks = [n for n in all_nodes(block) if isinstance(n, Do) and id(n) not in known]
+        if manner.order is not None:
+            self.ordering.say(manner.order, tasks, order.span)
+        if manner.by_importance:
+            of_each = Manner(by_importance=True)
+            self.manners.furnish_each(of_each, order.span, tasks)
+
+    def _without_limit(self, sentence: Sentence) -> Sentence:
+        """The sentence without how long the mission may take: `at most 25 minutes in total`."""
+        if all(order.manner is None for order in sentence.orders):
+            return sentence
+        kept: list[ScriptOrder] = []
+        for order in sentence.orders:
+            manner = order.manner
+            limit = None if manner is None else manner.mission_time or self._limit(order, manner)
+            if manner is None or limit is None:
+                kept.append(order)
+                continue
+            self._max_duration(limit, order)
+            own = None if manner.mission_time is None else manner.time_limit
+            rest = replace(manner, mission_time=None, time_limit=own)
+            if said(rest):
+                kept.append(replace(order, manner=rest))
+            elif not isinstance(order, orders.Amend):
+                kept.append(replace(order, manner=None))
+        return replace(sentence, orders=tuple(kept))
+
+    def _limit(self, order: ScriptOrder, manner: Manner) -> float | None:
+        """A limit of time that can only be the mission's: of its start, or before all else."""
+        first = isinstance(order, orders.Amend) and self.context.program.first is None
+        alone = first and said(manner) == {"time_limit"}
+        return manner.time_limit if alone or isinstance(order, orders.Start) else None
+
+    def _taken(self, sentences: list[Sentence | Fact | Unread]) -> ScriptOrder | None:
+        """`Do the following twice:`, taken out of the sentences over inner steps."""
+        last = sentences[-1] if sentences else None
+        if not isinstance(last, Sentence) or last.cases or not last.orders:
+            return None
+        *before, order = last.orders
+        if isinstance(order, orders.Amend) and not before:
+            order = orders.Follow(span=order.span, name=order.name, manner=order.manner)
+        if not isinstance(order, orders.Follow):
+            return None
+        found: ScriptOrder = order
+        while before and isinstance(before[-1], orders.Amend):
+            found = self.manners.with_prefix(found, before.pop())
+        sentences[-1:] = [replace(last, orders=tuple(before))] if before else []
+        return found
+
+    def _fact(self, fact: Fact) -> None:
+        match fact:
+            case orders.MaxDuration():
+                self._max_duration(fact.seconds, fact)
+            case orders.BackWithin():
+                self._max_duration(fact.seconds, fact)
+                self._back(fact)
+            case orders.RoundsDriven():
+                manner = Manner(times=fact.count)
+                order = orders.Repeat(span=fact.span, steps=fact.steps, manner=manner)
+                self.order(order, self.context.program)
+            case orders.ReadBefore():
+                with suppress(RefusedError):
+                    self.ordering.precedence(fact)
+            case orders.StepsOrdered():
+                self.ordering.steps.append(fact)
+            case orders.LeaveOut():
+                self.ordering.left_out.append(fact.span)
+            case orders.OrderFree():
+                self.ordering.say(Order.ANY, (), fact.span)
+
+    def _back(self, fact: orders.BackWithin) -> None:
+        dock = fact.where
+        if isinstance(dock, AreaLocation):
+            dock = DockLocation(span=fact.span, area=dock)
+        if not isinstance(dock, DockLocation):
+            message = "a mission ends in a docking station by a certain time, not at a place"
+            hint = "name the starting area: `it has to be back in starting area 1`"
+            self.diagnostics.error("fact", message, fact.span, hint)
+            return
+        self.order(orders.Home(span=fact.span, dock=dock), self.context.program)
+
+    def _max_duration(self, seconds: float, fact: Node) -> None:
+        said = self.header.max_duration
+        if said is not None and said[0] != seconds:
+            message = f"line {said[1].span.line} says another maximum duration"
+            hint = "leave one of the two out"
+            self.diagnostics.error("repeated-field", message, fact.span, hint)
+        self.header.max_duration = (seconds, fact)
+
+    # ---- sentences and orders
+
+    def _sentence(self, sentence: Sentence, block: ProgramBlock) -> None:
         """Carries a sentence out."""
         self.carry_out(sentence.orders, block)
         for case in sentence.cases:
@@ -80,7 +239,9 @@ class Planner:
             elif floors is not None and floors.floors and isinstance(order, orders.Measure):
                 # `on the second floor, check the valve, then read the gauge`
                 order = self.manners.with_prefix(order, replace(order, name=None, manner=floors))
-            if isinstance(order, orders.Retry) and _several(orders_[:i]):
+            before = orders_[max(i - 2, 0) : i]
+            several = len(before) == 2 and all(isinstance(one, orders.Measure) for one in before)
+            if isinstance(order, orders.Retry) and several:
                 message = "this can be meant for the last of these only, or for each of them"
                 hint = "write `check checkpoints 1 and 4, retry twice` for each, or two sentences"
                 self.diagnostics.error("ambiguous-manner", message, order.span, hint)
@@ -94,10 +255,8 @@ class Planner:
                 self.manners.on_failure(OnFailure.ABORT)
             case orders.Plain(word=PlainWord.END) | orders.Home():
                 message = "this can be meant for the case that it still fails, or for any case"
-                hint = (
-                    "write `if it still fails, ...` for the first, and a sentence of its own for "
-                )
-                hint += "the second"
+                hint = "write `if it still fails, ...` for the first, and a sentence of its own "
+                hint += "for the second"
                 self.diagnostics.error("ambiguous-case", message, order.span, hint)
             case _:
                 return False
@@ -112,7 +271,7 @@ class Planner:
 
     def _order(self, order: ScriptOrder, block: ProgramBlock) -> None:
         context = self.context
-        order = staying(counted(order, context), block, context)
+        order = self._staying(context.counted(order), block)
         if self.done:
             hint = "move `Done!` to the end"
             self.diagnostics.refuse("after-done", "this comes after `Done!`", order.span, hint)
@@ -134,7 +293,7 @@ class Planner:
             case orders.VisitOrder():
                 self.making.visit(order)
             case orders.Beside():
-                for measure in measured_beside(order, context):
+                for measure in self.making.measured_beside(order):
                     self.order(measure, block)
             case orders.WaitOrder(where=where) if where is not None:
                 self._wait_at(order, where, block)
@@ -149,14 +308,52 @@ class Planner:
                 self.repeating.fill_known()
                 self.edits.carry_out(order)
             case orders.Patrol():
-                is_back(order, block, self.context)
-                require_reached(order.span, block, context)
-                rounds, stops = patrol_rounds(order, context, self.manners)
+                self._is_back(order, block)
+                context.require_reached(order.span, block)
+                rounds, stops = self.making.patrol_rounds(order)
                 self._put(order, self.manners.around(order, rounds), stops, block)
             case orders.Plain(word=word) if word is not PlainWord.MEET:
                 self._plain(order, block)
             case _:
                 self._planned(order, block)
+
+    def _staying(self, order: ScriptOrder, block: ProgramBlock) -> ScriptOrder:
+        """Take `stay there` for the end of the mission, unless another order comes behind it; then
+        it has to say how long."""
+        context = self.context
+        if context.stays is not None and not isinstance(order, orders.Plain):
+            hint = "write `stay there for 90 s`, or move it to the end if the mission ends with it"
+            context.diagnostics.error("wait", "this does not say how long", context.stays, hint)
+            context.stays = None
+            context.fail()
+        if not isinstance(order, orders.WaitOrder) or not order.stays or in_branch(block):
+            return order
+        if order.manner is not None or order.where is not None:
+            return order
+        context.stays = order.span
+        return orders.Plain(span=order.span, word=PlainWord.END)
+
+    def _is_back(self, order: ScriptOrder, block: ProgramBlock) -> bool:
+        """Whether the robot is in its docking station, and is only told to go there again. Raises
+        RefusedError if it is told anything else."""
+        context = self.context
+        docked = context.docked
+        if docked is None or not docked.listed or block is not context.program:
+            return False
+        if docked.ways or isinstance(order, orders.Plain):
+            return False
+        if isinstance(order, orders.Home):
+            if order.dock.area is None:
+                return True
+            context.program.remove(docked)  # `go home and dock in area 2`
+            return False
+        if isinstance(order, orders.WaitOrder) and order.manner and order.manner.duration:
+            context.docked = None  # `stay there for 5 minutes`: it goes on behind that
+            return False
+        line = docked.source.line if docked.source else 0
+        message = f"the robot is back in its docking station since line {line}"
+        hint = "move the return to the end, or say how it goes on: `then go to step 3`"
+        context.diagnostics.refuse("after-docking", message, order.span, hint)
 
     def _wait_at(
         self, order: orders.WaitOrder, where: Location | FloorName, block: ProgramBlock
@@ -178,15 +375,15 @@ class Planner:
 
     def _planned(self, order: ScriptOrder, block: ProgramBlock) -> None:
         """Puts the tasks of an order into a block, with what is said of them."""
-        if isinstance(order, orders.Measure) and (demanded := demanded_of(order, self.context)):
+        if isinstance(order, orders.Measure) and (demanded := self.making.demanded_of(order)):
             self.manners.furnish(order, demanded)
             return
         tasks = self.making.tasks(order)
         if isinstance(order, orders.Start) and not order.here:
             self.manners.name(order, tasks)
             self.manners.furnish(order, tasks)
-        elif not is_back(order, block, self.context):
-            require_reached(order.span, block, self.context)
+        elif not self._is_back(order, block):
+            self.context.require_reached(order.span, block)
             self.manners.name(order, tasks)
             self._put(order, self.manners.apply(order, tasks), tasks, block)
             if tasks[-1].docks and block is self.context.program:
@@ -229,7 +426,7 @@ class Planner:
                 self.diagnostics.refuse("stray-clause", message, order.span, hint)
 
     def _leave(self, leave: Leave, block: ProgramBlock) -> None:
-        require_reached(leave.span, block, self.context)
+        self.context.require_reached(leave.span, block)
         self.context.put([leave], block, block.last)
         self.context.step.append(leave)
         self.context.choice = None
@@ -237,10 +434,29 @@ class Planner:
     def finish(self) -> None:
         """Looks whether all that was begun has been said to its end."""
         self.making.leave_unvisited()
-        require_once(self.context)
-        check_spared(self.context)
+        self._require_once()
+        self._check_spared()
 
+    def _require_once(self) -> None:
+        """Asks about what is measured beside another one, and elsewhere as well."""
+        context = self.context
+        for key, span in context.once.items():
+            if len(context.measured.get(key, {})) > 1:
+                message = f"checkpoint #{key} is measured elsewhere as well: it can be meant to be "
+                message += "measured here, too, or only there"
+                hint = "name it in one of the two only, or write `check it again`"
+                context.diagnostics.error("ambiguous-edit", message, span, hint)
 
-def _several(orders_: Sequence[ScriptOrder]) -> bool:
-    """Whether the last two orders both measure: what is said next may be said of both."""
-    return len(orders_) > 1 and all(isinstance(order, orders.Measure) for order in orders_[-2:])
+    def _check_spared(self) -> None:
+        """Looks whether it is in the plan; what is not, is said."""
+        context = self.context
+        for key, span in context.spared.items():
+            tasks = context.measured.get(key)
+            if tasks:
+                lines = sorted({s.line for do in tasks.values() if (s := do.source)})
+                asks = f"line {lines[0]} asks for checkpoint #{key}" if lines else "it is asked for"
+                hint = "leave one of the two out, or write `except` in the line that asks for it"
+                context.diagnostics.error("spared", asks, span, hint)
+            else:
+                message = f"checkpoint #{key} is not in the plan anyway, so that this has no effect"
+                context.diagnostics.note("no-effect", message, span)

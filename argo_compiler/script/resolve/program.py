@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Span
 from argo_compiler.editing.linked import Linked, LinkedList
@@ -263,3 +264,14 @@ def own_names(tasks: Sequence[Do]) -> list[str]:
                 return found
 
     return [numbered(do.base) if do.name is None else do.name for do in tasks]
+
+
+def dock(pose: Pose, source: Span | None) -> Do:
+    """The way into the docking station."""
+    return Do("DOCK", Action.WAYPOINT, source, pose, docks=True)
+
+
+def measurement(checkpoint: CheckpointInfo, source: Span) -> Do:
+    """One measurement."""
+    number = str(checkpoint.id)
+    return Do(f"MEASURE {number}", Action.MEASURE, source, object_id=number)

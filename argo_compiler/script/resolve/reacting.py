@@ -1,12 +1,16 @@
-"""From `if a gas leak is detected, ...` to a reaction of the mission."""
+"""From `if a gas leak is detected, ...` to a reaction of the mission: what it does is put together
+from the orders for it."""
 
-from typing import NamedTuple
+from dataclasses import dataclass, replace
+from typing import NamedTuple, NoReturn
 
+from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Afterwards, EventKind, Reaction, Response
-from argo_compiler.script.resolve.answering import Answering
-from argo_compiler.script.resolve.locating import Locator
+from argo_compiler.script.resolve.accepting import said, words_of
+from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.syntax.text.source import Diagnostics
+from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.conditions import (
     Asked,
     BatteryDrops,
@@ -14,7 +18,37 @@ from argo_compiler.script.syntax.tree.conditions import (
     Relation,
     SaidCondition,
 )
-from argo_compiler.script.syntax.tree.orders import Case
+from argo_compiler.script.syntax.tree.manner import Manner
+from argo_compiler.script.syntax.tree.orders import Case, PlainWord, ScriptOrder
+from argo_compiler.script.syntax.tree.places import FloorName
+
+_USED = frozenset({"priority", "until", "duration", "time_limit", "on_limit"})
+
+
+@dataclass(frozen=True, slots=True)
+class _Answer:
+    """What is done in an event, as far as its orders have been gone through. None: not said."""
+
+    response: Response | None = None
+    reported: bool = False
+    ended: bool = False
+    """by words that may be followed by the way home: `break off and ...`"""
+    pose: Pose | None = None
+    area: int | None = None
+    until: EventKind | None = None
+    afterwards: Afterwards | None = None
+    hold_limit: float | None = None
+    on_limit: Afterwards | None = None
+    priority: int | None = None
+
+    @property
+    def drives(self) -> bool:
+        return self.response in (Response.RETURN, Response.SAFE_AREA)
+
+    @property
+    def pausing(self) -> "_Answer":
+        """The answer with a pause if nothing else is done."""
+        return replace(self, response=self.response or Response.PAUSE)
 
 
 class _Trigger(NamedTuple):
@@ -26,8 +60,8 @@ class _Trigger(NamedTuple):
 class Reactions:
     """The reactions that a script asks for, at most one for each event."""
 
-    def __init__(self, locator: Locator, diagnostics: Diagnostics) -> None:
-        self.answering = Answering(locator, diagnostics)
+    def __init__(self, lookup: Lookup, diagnostics: Diagnostics) -> None:
+        self.lookup = lookup
         self.diagnostics = diagnostics
         self.found: list[Reaction] = []
         self.lines: dict[EventKind, Span] = {}
@@ -35,8 +69,11 @@ class Reactions:
     def add(self, case: Case) -> None:
         """Adds the reaction that a case with events as its condition asks for."""
         assert case.condition is not None
-        triggers = self._triggers(case.condition)
-        answer = self.answering.answer(case)
+        if any(len(tests) > 1 for tests in case.condition.alternatives):
+            message = "a reaction follows one event, not several at the same time"
+            self.diagnostics.refuse("reaction", message, case.condition.span, "join them by `or`")
+        triggers = [self._trigger(test) for (test,) in case.condition.alternatives]
+        answer = self._answer(case)
         response = answer.response
         if response is None and answer.until is not None:
             response = Response.PAUSE
@@ -69,12 +106,6 @@ class Reactions:
                 )
             )
 
-    def _triggers(self, condition: SaidCondition) -> list[_Trigger]:
-        if any(len(tests) > 1 for tests in condition.alternatives):
-            message = "a reaction follows one event, not several at the same time"
-            self.diagnostics.refuse("reaction", message, condition.span, "join them by `or`")
-        return [self._trigger(test) for (test,) in condition.alternatives]
-
     def _trigger(self, test: Asked) -> _Trigger:
         if isinstance(test, BatteryDrops):
             return _Trigger(EventKind.LOW_BATTERY, test.span, self._level(test))
@@ -102,3 +133,133 @@ class Reactions:
         else:
             return amount.value / 100.0
         self.diagnostics.refuse("battery", message, battery.span, hint)
+
+    # ---- what is done
+
+    def _answer(self, case: Case) -> _Answer:
+        """What is done in a case with events as its condition."""
+        answer = _Answer()
+        for order in case.orders:
+            answer = self._with(order, self._furnished(order, answer))
+        return self._held(answer, case.span)
+
+    def _with(self, order: ScriptOrder, answer: _Answer) -> _Answer:
+        """The answer with one order more."""
+        match order:
+            case orders.Amend():
+                return answer
+            case orders.Plain(word=PlainWord.REPORT):
+                return replace(answer, reported=True)
+            case orders.Plain(word=PlainWord.PAUSE):
+                return answer.pausing
+            case orders.Plain(word=PlainWord.RECHARGE):
+                return self._until(EventKind.BATTERY_CHARGED, answer, order.span).pausing
+            case orders.Plain(word=PlainWord.GO_ON):
+                return self._afterwards(order, answer, Afterwards.RESUME)
+            case orders.Plain(word=PlainWord.ABORT | PlainWord.END) if not answer.drives:
+                aborted = self._responds(answer, Response.ABORT, order)
+                return replace(aborted, ended=True)
+            case orders.Plain(word=PlainWord.END):
+                return self._afterwards(order, answer, Afterwards.END)
+            case orders.WaitOrder(where=where):
+                if where is not None:
+                    answer = self._goes(orders.Go(span=order.span, where=where), answer)
+                return self._waits(order, answer)
+            case orders.Home():
+                return self._home(order, answer)
+            case orders.Go():
+                return self._goes(order, answer)
+        hint = "it can report, pause, return, drive to a place, recharge, wait, resume or abort"
+        self.diagnostics.refuse("reaction", "a reaction can't do this", order.span, hint)
+
+    def _furnished(self, order: ScriptOrder, answer: _Answer) -> _Answer:
+        """What is said of how long it holds, for what, and how urgent it is."""
+        manner = order.manner or Manner()
+        own = {orders.Home: {"pose"}, orders.WaitOrder: {"person"}}.get(type(order), set())
+        left = sorted(said(manner) - _USED - own)
+        if left or order.name is not None:
+            message = f"of a reaction this can't be said: {words_of(left) if left else 'a name'}"
+            hint = "leave it out; how urgent it is, is said by a number: `with priority 90`"
+            self.diagnostics.refuse("stray-clause", message, order.span, hint)
+        if manner.time_limit is not None and manner.duration is not None:
+            self._twice(order.span)
+        limit = manner.time_limit if manner.time_limit is not None else manner.duration
+        answer = replace(
+            answer,
+            hold_limit=answer.hold_limit if limit is None else limit,
+            on_limit=manner.on_limit or answer.on_limit,
+            priority=answer.priority if manner.priority is None else manner.priority,
+        )
+        if manner.until is None:
+            return answer
+        return self._until(self._awaited(manner.until), answer, order.span)
+
+    def _awaited(self, condition: SaidCondition) -> EventKind:
+        match condition.alternatives:
+            case ((Occurs(event=EventKind() as event),),):
+                return event
+        hint = "write, say, `until the all clear`"
+        self.diagnostics.refuse("reaction", "a reaction waits for one event", condition.span, hint)
+
+    def _until(self, event: EventKind, answer: _Answer, span: Span) -> _Answer:
+        if answer.until not in (None, event):
+            self._twice(span)
+        return replace(answer, until=event)
+
+    def _responds(self, answer: _Answer, response: Response, order: ScriptOrder) -> _Answer:
+        goes_on = answer.afterwards is not None and response is Response.ABORT
+        stops = answer.ended and response is Response.RETURN  # `stop the mission and go home`
+        if goes_on or not (stops or answer.response in (None, Response.PAUSE, response)):
+            message = "two things to do at once in this event"
+            self.diagnostics.refuse("reaction", message, order.span, "leave one of them out")
+        return replace(answer, response=response)
+
+    def _afterwards(self, order: ScriptOrder, answer: _Answer, afterwards: Afterwards) -> _Answer:
+        if answer.response is Response.ABORT or answer.afterwards not in (None, afterwards):
+            self._twice(order.span)
+        return replace(answer, afterwards=afterwards)
+
+    def _waits(self, order: orders.WaitOrder, answer: _Answer) -> _Answer:
+        person = order.manner is not None and order.manner.person
+        held = answer.until is not None or answer.hold_limit is not None
+        if order.stays and answer.response is Response.RETURN and not (person or held):
+            return self._afterwards(order, answer, Afterwards.END)  # it stays in its dock
+        if answer.drives and (person or not held):
+            return self._afterwards(order, answer, Afterwards.WAIT)
+        return answer.pausing
+
+    def _home(self, order: orders.Home, answer: _Answer) -> _Answer:
+        pose, number = None, None
+        if order.dock.area is not None:
+            area = self.lookup.area(order.dock.area.area, order.dock.span)
+            pose, number = area.dock, area.number
+        answer = self._responds(answer, Response.RETURN, order)
+        if order.manner is not None and order.manner.pose is not None:
+            pose = self.lookup.point(order.manner.pose)
+        return replace(answer, pose=pose, area=number)
+
+    def _goes(self, order: orders.Go, answer: _Answer) -> _Answer:
+        if isinstance(order.where, FloorName):
+            message = "a reaction drives to a place, not to a floor"
+            self.diagnostics.refuse("reaction", message, order.span, "name a place of the site")
+        pose, _ = self.lookup.locate(order.where, "end")
+        return replace(self._responds(answer, Response.SAFE_AREA, order), pose=pose)
+
+    def _held(self, answer: _Answer, span: Span) -> _Answer:
+        """The answer with what happens when the time for which it holds is over."""
+        if answer.hold_limit is None:
+            return answer
+        if answer.drives and answer.until is None:
+            message = "after its drive a reaction holds until an event, not for a time"
+            hint = "write, say, `return and wait until the all-clear for at most 10 minutes`"
+            self.diagnostics.refuse("reaction", message, span, hint)
+        on_limit = answer.on_limit or answer.afterwards
+        if on_limit is None and answer.until is not None:
+            message = "this does not say what happens if the time is over before that event"
+            hint = "add `or else go on`, `or else end the mission` or `or else wait`"
+            self.diagnostics.refuse("reaction", message, span, hint)
+        return replace(answer, on_limit=on_limit or Afterwards.RESUME)
+
+    def _twice(self, span: Span) -> NoReturn:
+        message = "this is not what was said before of the same event"
+        self.diagnostics.refuse("reaction", message, span, "leave one of the two out")

@@ -1,16 +1,28 @@
-"""Steps that are repeated."""
+"""Steps that are repeated: a round is put where that is said, and filled once all is planned.
 
-from collections.abc import Iterable
+Until then a repetition stands in the program as an empty round, so that a condition behind it is
+one that is looked at after its last round.
+"""
+
+from collections.abc import Container, Iterable, Iterator
 from contextlib import suppress
-from dataclasses import replace
-from itertools import islice
+from dataclasses import dataclass, replace
+from itertools import islice, takewhile
 
-from argo_compiler.il import Action
+from argo_compiler.il import Action, WaitRule
 from argo_compiler.script.resolve.accepting import said
-from argo_compiler.script.resolve.context import Context, topmost
-from argo_compiler.script.resolve.limiting import make_round
-from argo_compiler.script.resolve.program import Do, ProgramBlock, ProgramNode, ProgramRound
-from argo_compiler.script.resolve.wrapping import Repetition, Wrapping
+from argo_compiler.script.resolve.context import Context
+from argo_compiler.script.resolve.manners import make_round
+from argo_compiler.script.resolve.program import (
+    Choice,
+    Do,
+    Leave,
+    ProgramBlock,
+    ProgramNode,
+    ProgramRound,
+    all_nodes,
+    nodes_from,
+)
 from argo_compiler.script.syntax.text.source import RefusedError
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.manner import Manner
@@ -19,13 +31,24 @@ from argo_compiler.script.syntax.tree.places import Steps
 _MOST_AGAIN = 1000
 
 
+@dataclass(frozen=True, slots=True)
+class _Repetition:
+    """Steps that are to be repeated."""
+
+    order: orders.Repeat
+    round: ProgramRound
+    late: Iterable[ProgramNode]
+    """the nodes of the step that asks for it; of these, the first `known` were there before"""
+    known: int
+
+
 class Repeating:
     """Makes rounds of steps. Raises RefusedError where it is not clear of which."""
 
     def __init__(self, context: Context) -> None:
         self.context = context
         self.diagnostics = context.diagnostics
-        self.pending: list[Repetition] = []
+        self.pending: list[_Repetition] = []
         """repetitions, whose steps need not all have been planned yet"""
 
     def repeat(self, order: orders.Repeat, block: ProgramBlock) -> None:
@@ -42,7 +65,7 @@ class Repeating:
             if order.steps is not None:
                 self._say_where(order, order.steps, block)
             round_ = make_round(order, base, context, order.name)
-            self.pending.append(Repetition(order, round_, context.step, len(context.step)))
+            self.pending.append(_Repetition(order, round_, context.step, len(context.step)))
             context.put([round_], block, block.last)
             context.recent = []
         context.choice = None
@@ -70,7 +93,7 @@ class Repeating:
             message = "this can be the step before, or all steps so far"
             hint = "name the steps: `repeat step 3 twice`, `repeat steps 1 to 3 twice`"
             self.diagnostics.refuse("step-range", message, order.span, hint)
-        nodes = topmost(context.step or context.before, block)
+        nodes = _topmost(context.step or context.before, block)
         starts = any(map(_is_start, nodes))
         one = not context.step or len(nodes) == 1 or all(n in context.recent for n in nodes)
         if not nodes or starts or not one or nodes[-1] is not block.last:
@@ -118,13 +141,13 @@ class Repeating:
             return False
         known = all(self.context.steps.get(p) for p in steps.points if isinstance(p, int))
         nodes = self.context.nodes_of(steps) if known else []
-        return bool(nodes) and topmost(nodes, block)[-1:] != [block.last]
+        return bool(nodes) and _topmost(nodes, block)[-1:] != [block.last]
 
     def _say_where(self, order: orders.Repeat, steps: Steps, block: ProgramBlock) -> None:
         """Warns where steps that are repeated stand apart from the line that says so."""
         if not all(isinstance(p, int) and self.context.steps.get(p) for p in steps.points):
             return
-        tops = topmost(self.context.nodes_of(steps), block)
+        tops = _topmost(self.context.nodes_of(steps), block)
         behind = block.last
         if not tops or isinstance(behind, ProgramRound) or behind in tops:
             return
@@ -162,16 +185,266 @@ class Repeating:
         return steps is None or all(p in named or p in numbered for p in steps.points)
 
     def finish(self) -> None:
-        """Fills the rounds with what is to be repeated, in the order in which it was asked for."""
+        """Fills the rounds with what is to be repeated, in the order in which it was asked for, and
+        puts pauses between them."""
         self._fill(self.pending)
         self.pending.clear()
+        self._put_pauses()
 
-    def _fill(self, repetitions: Iterable[Repetition]) -> None:
-        wrapping = Wrapping(self.context)
+    def _fill(self, repetitions: Iterable[_Repetition]) -> None:
         for repetition in repetitions:
             with suppress(RefusedError):  # what is wrong with the others is said as well
-                wrapping.wrap(repetition)
+                self._wrap(repetition)
+
+    # ---- what comes into a round
+
+    def _wrap(self, repetition: _Repetition) -> None:
+        """Moves what is to be repeated into the round, and the round to where it stood."""
+        order, round_ = repetition.order, repetition.round
+        tail = list(_conditions_behind(round_))
+        found = self._range(repetition, {id(node) for node in tail})
+        assert round_.block is not None
+        if not found:
+            return
+        follows = _leads_to(found[-1], round_)
+        if tail and (not follows or round_ in found):
+            message = "a condition behind a repetition is looked at after its last round"
+            hint = "write the repetition behind the steps that it repeats"
+            self.diagnostics.refuse("not-planned", message, order.span, hint)
+        for node in (round_, *tail):
+            assert node.block is not None
+            node.block.remove(node)
+        found = [node for node in found if node is not round_]
+        block, anchor = found[0].block, found[0].before
+        assert block is not None
+        for node in found:
+            block.remove(node)
+            round_.body.append(node)
+        block.insert_after(anchor, round_)
+        self._behind(round_, tail)
+
+    def _behind(self, round_: ProgramRound, tail: list[Choice]) -> None:
+        """Conditions behind a round come before a way that leads on from its last task."""
+        block = round_.block
+        assert block is not None
+        leave = round_.after if isinstance(round_.after, Leave) else None
+        if tail and leave is not None:
+            if tail[-1].otherwise.first is not None:
+                message = "after the last round this leads elsewhere, and so does `otherwise`"
+                hint = "leave one of the two out"
+                self.diagnostics.error("second-route", message, leave.span, hint)
+            block.remove(leave)
+            tail[-1].otherwise.append(leave)
+        self.context.put(tail, block, round_)
+
+    # ---- what is to be repeated
+
+    def _range(self, repetition: _Repetition, behind: Container[int]) -> list[ProgramNode]:
+        """The neighbouring nodes of one block that are to be repeated."""
+        order, round_ = repetition.order, repetition.round
+        if order.steps is None:
+            if not (found := self._all(round_)):
+                message = "nothing is planned before this that could be repeated"
+                hint = "write it behind what is to be repeated, or `do the following twice:`"
+                self.diagnostics.refuse("empty-step", message, order.span, hint)
+            return found
+        nodes = self.context.nodes_of(order.steps)
+        noted = [id(node) for node in repetition.late]
+        later = {*noted[repetition.known :]} - {*noted[: repetition.known]}
+        nodes = [n for n in nodes if id(n) not in later and id(n) not in behind and _repeats(n)]
+        if not nodes:
+            said = " to ".join(str(p) for p in order.steps.points)
+            message = f"step {said} leaves nothing to do that could be repeated"
+            hint = "name a step that measures or drives"
+            self.diagnostics.refuse("empty-step", message, order.steps.span, hint)
+        known = {id(node) for node in nodes}
+        if order.steps.through and not all(isinstance(p, int) for p in order.steps.points):
+            known |= _between(nodes[0], nodes[-1])
+        block = _around(nodes, known, self.context.program, order.name or "")
+        tops = _topmost(nodes, block)
+        if any(not _covered(top, known) for top in tops):
+            message = "these steps and those of another repetition have only some in common"
+            hint = "let one lie in the other as a whole, or separate them"
+            self.diagnostics.refuse("overlap", message, order.span, hint)
+        return self._together(order, tops)
+
+    def _all(self, round_: ProgramRound) -> list[ProgramNode]:
+        before = takewhile(lambda node: node is not round_, self.context.program)
+        return [
+            node
+            for node in before
+            if not (isinstance(node, Do) and (node.docks or node.action is Action.START))
+        ]
+
+    def _together(self, order: orders.Repeat, tops: list[ProgramNode]) -> list[ProgramNode]:
+        """From the first to the last of the nodes, in the order of their block."""
+        assert order.steps is not None
+        ends = {id(node) for node in tops}
+        first = tops[0]
+        while first.before is not None and id(first.before) in ends:
+            first = first.before
+        found: list[ProgramNode] = [first]
+        missing = len(ends) - 1
+        while missing and found[-1].after is not None:
+            found.append(found[-1].after)
+            missing -= id(found[-1]) in ends
+        if missing:
+            message = "the first of these steps comes after the last one"
+            hint = "write the earlier one first"
+            self.diagnostics.refuse("step-range", message, order.span, hint)
+        listed = len(order.steps.points) > 1 and not order.steps.through
+        if listed and any(_repeats(node) and id(node) not in ends for node in found):
+            message = "these steps are not next to each other"
+            hint = "repeat steps that follow each other"
+            self.diagnostics.refuse("step-range", message, order.span, hint)
+        return found
+
+    # ---- pauses between rounds, and not behind the last one
+
+    def _put_pauses(self) -> None:
+        """Make of `A three times, with a pause of 1 minute`: A, then twice the pause and A. Where
+        the rounds end by a condition, those behind the first come only if it does not hold by
+        then."""
+        for node in list(all_nodes(self.context.program)):
+            if isinstance(node, ProgramRound) and node.limits.pause:
+                self._put_pause(node)
+
+    def _put_pause(self, round_: ProgramRound) -> None:
+        context = self.context
+        limits = round_.limits
+        tasks = [
+            n for n in round_.body if isinstance(n, Do) and not (n.ways or n.failure or n.missed)
+        ]
+        whole = len(tasks) == len(list(round_.body))
+        ends = limits.count > 1 or (limits.until and not limits.count)
+        if limits.duration or limits.every or not whole or not tasks or not ends:
+            message = "a pause can only be between rounds of tasks without conditions, of which it "
+            message += "is said how many they are, or until what"
+            hint = "write the tasks and `wait 1 minute` out as often as they are done"
+            context.diagnostics.error("pause", message, round_.span, hint)
+            return
+        block, anchor = round_.block, round_.before
+        assert block is not None
+        for task in tasks:
+            round_.body.remove(task)
+        wait = Do("WAIT", Action.WAIT, round_.span, wait=WaitRule(duration=limits.pause))
+        copies = [wait, *(replace(task, ways=[], name=None) for task in tasks)]
+        only = limits.count == 2 and not limits.until and round_.name is None
+        before = [*tasks, *copies] if only else tasks
+        context.put(before, block, anchor)
+        for nodes in context.steps.values():
+            if nodes is not None and round_ in nodes:
+                at = nodes.index(round_)
+                nodes[at:at] = before  # whoever goes to this step begins with the first round
+        if only:
+            block.remove(round_)
+            return
+        context.put(copies, round_.body, None)
+        round_.limits = replace(limits, count=max(limits.count - 1, 0), pause=0.0)
+        if limits.until:
+            choice = Choice((limits.until,), round_.span, negated=True)
+            block.insert_after(round_, choice)
+            block.remove(round_)
+            choice.then.append(round_)
 
 
 def _is_start(node: ProgramNode) -> bool:
     return isinstance(node, Do) and node.action is Action.START
+
+
+def _topmost(nodes: Iterable[ProgramNode], block: ProgramBlock) -> list[ProgramNode]:
+    """The nodes of `block` that hold these, each once, in the block's order of first mention."""
+    found: dict[int, ProgramNode] = {}
+    for node in nodes:
+        at: ProgramNode | None = node
+        while at is not None and at.block is not block:
+            at = at.block.owner if at.block is not None else None
+        if at is not None:
+            found.setdefault(id(at), at)
+    return list(found.values())
+
+
+def _repeats(node: ProgramNode) -> bool:
+    """Whether a node is something that a round can begin or end with."""
+    if isinstance(node, Leave) or (isinstance(node, ProgramRound) and node.body.first is None):
+        return False
+    return not (isinstance(node, Do) and node.action is Action.START)
+
+
+def _conditions_behind(round_: ProgramRound) -> Iterator[Choice]:
+    node = round_.after
+    while isinstance(node, Choice):
+        yield node
+        node = node.after
+
+
+def _leads_to(last: ProgramNode, round_: ProgramRound) -> bool:
+    """Whether nothing is done between a node and a repetition behind it."""
+    node: ProgramNode | None = last
+    while node is not None:
+        if node.after is None:
+            owner = node.block.owner if node.block is not None else None
+            node = owner if isinstance(owner, ProgramRound) else None
+            continue
+        node = node.after
+        if node is round_:
+            return True
+        if _repeats(node):
+            return False
+    return False
+
+
+def _between(first: ProgramNode, last: ProgramNode) -> set[int]:
+    """What lies between two nodes, both included; nothing if the last does not follow."""
+    found: set[int] = set()
+    for node in nodes_from(first):
+        found.add(id(node))
+        if node is last:
+            return found
+    return set()
+
+
+def _around(
+    nodes: list[ProgramNode], known: set[int], program: ProgramBlock, name: str
+) -> ProgramBlock:
+    """The innermost block that all nodes lie in; that around a round which they make up, unless
+    the name says that it lies in that round: `Alpha/Beta`."""
+    chain = _blocks_around(nodes[0])
+    common = {id(block): i for i, block in enumerate(chain)}
+    at = 0
+    for node in nodes[1:]:
+        block = node.block
+        while block is not None and id(block) not in common:
+            block = block.owner.block if block.owner is not None else None
+        at = max(at, common[id(block)] if block is not None else len(chain) - 1)
+    while at + 1 < len(chain):
+        owner = chain[at].owner
+        if not (isinstance(owner, ProgramRound) and _covered(owner, known)):
+            break
+        if name.startswith(f"{owner.title}/"):
+            break
+        known.add(id(owner))
+        at += 1
+    return chain[at] if chain else program
+
+
+def _blocks_around(node: ProgramNode) -> list[ProgramBlock]:
+    found: list[ProgramBlock] = []
+    block = node.block
+    while block is not None:
+        found.append(block)
+        block = block.owner.block if block.owner is not None else None
+    return found
+
+
+def _covered(node: ProgramNode, known: set[int]) -> bool:
+    """Whether a node is one of these, or a round of them."""
+    waiting = [node]
+    while waiting:
+        node = waiting.pop()
+        if id(node) in known or not _repeats(node):
+            continue
+        if not isinstance(node, ProgramRound):
+            return False
+        waiting += [inner for inner in node.body if not isinstance(inner, Choice)]
+    return True

@@ -1,32 +1,105 @@
-"""Where a mission starts and ends."""
+"""Where a mission starts and ends, as its header and its orders say."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass
 from typing import NoReturn
 
 from argo_compiler.base.catalog import Area
 from argo_compiler.base.errors import Remedy, RemedyChoice
+from argo_compiler.base.listing import listed
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Span
-from argo_compiler.script.resolve import making
+from argo_compiler.il import Action
 from argo_compiler.script.resolve.context import Context
-from argo_compiler.script.resolve.header import AreaChoice, HeaderValues
-from argo_compiler.script.resolve.program import Do, HomeAhead
+from argo_compiler.script.resolve.program import Do, HomeAhead, dock
+from argo_compiler.script.syntax.text.source import Diagnostics
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.places import DockLocation
+from argo_compiler.script.syntax.tree.script import AreaChosen, Areas, ScriptHeader
+
+_REMEDIES = {"start": Remedy.CHOOSE_START, "end": Remedy.CHOOSE_END}
+
+
+@dataclass(frozen=True)
+class AreaChoice:
+    """A starting area that is chosen for the mission's start or end."""
+
+    area: int | None
+    span: Span | None = None
+    as_planned: bool = False
+    """the steps stay as they are"""
+    said: bool = False
+    """that it is this one, or none, was said at all"""
+
+
+def area_choices(
+    header: ScriptHeader, diagnostics: Diagnostics, start_area: int | None, end_area: int | None
+) -> tuple[AreaChoice, AreaChoice]:
+    """Return the choices for the start and the end; the options must be among what the header
+    offers."""
+    for which, option in (("start", start_area), ("end", end_area)):
+        if header.areas_open is not None and option is None:
+            message = f"the script leaves the {which} to the preparation"
+            hint, span = "choose a starting area for it", header.areas_open.span
+            diagnostics.error("area-choice", message, span, hint, _REMEDIES[which])
+    start = _choice("start", header.start_area, header.initial_position, start_area, diagnostics)
+    end = _choice("end", header.end_area, header.end_of_mission, end_area, diagnostics)
+    return start, end
+
+
+def _choice(
+    which: str,
+    header: AreaChosen | None,
+    cell: Areas | None,
+    option: int | None,
+    diagnostics: Diagnostics,
+) -> AreaChoice:
+    """The area of the mission's start or end: that of the option or of the header line, else the
+    only one that the cell offers."""
+    if header is not None:
+        if option is not None and option != header.area:
+            message = f"--{which}-area {option} contradicts the script"
+            hint = f"leave --{which}-area out, or take this line out of the script"
+            diagnostics.error("area-conflict", message, header.span, hint)
+        return AreaChoice(header.area, header.span, header.as_planned, said=True)
+    if cell is None:
+        return AreaChoice(option, said=option is not None)
+    offered, span = sorted(set(cell.areas)), cell.span
+    numbers = tuple(map(str, offered))
+    choice = RemedyChoice(_REMEDIES[which], "area", numbers)
+    if option is not None and offered and option not in offered:
+        message = f"the {which} in area {option} is not what the script offers"
+        diagnostics.error("area-not-offered", message, span, str(choice), choice)
+    elif option is None and len(offered) > 1:
+        areas = listed(numbers, "or")
+        message = f"the script leaves the {which} to the preparation: starting area {areas}"
+        diagnostics.error("area-choice", message, span, str(choice), choice)
+    elif option is None and not offered:
+        message = f"this names no starting area for the mission's {which}"
+        hint = "write, say, `starting area 1`"
+        diagnostics.error("no-area", message, span, hint, choice.remedy)
+    chosen = option if option in offered or not offered else None
+    area = chosen if chosen is not None else next(iter(offered), None)
+    return AreaChoice(area, span, said=True)
 
 
 class Starting:
     """The start, the end and the dock of a mission, as far as they are known."""
 
-    def __init__(self, context: Context, header: HeaderValues) -> None:
+    def __init__(
+        self, context: Context, header: ScriptHeader, wanted: AreaChoice, end: AreaChoice
+    ) -> None:
         self.context = context
         self.diagnostics = context.diagnostics
         self.lookup = context.lookup
         self.header = header
+        self.wanted = wanted
+        """where it is to start"""
+        self.end = end
         self.start: Do | None = None
         self.start_at: Span | None = None
-        self.start_area: int | None = None
+        self.start_area = None if wanted.as_planned else wanted.area
+        """known before the orders are, if the header says it"""
         self.end_area: int | None = None
         self.dock: Pose | None = None
         self.assumed: Area | None = None
@@ -43,74 +116,67 @@ class Starting:
         self.start_at = order.span
         pose, area = None, None
         if order.where is not None:
-            pose, area = self.context.locator.locate(order.where, "start")
-        wanted = self.header.start
+            pose, area = self.context.lookup.locate(order.where, "start")
+        wanted = self.wanted
         other = area is None or area.number != wanted.area
         if wanted.area is not None and not wanted.as_planned and other:
             self._conflict(order.span)
         self.start_area = area.number if area else None
         if order.ends_there:
             self._end_in(area, order.span)
-        self.start = making.start(pose, order.span)
+        self.start = Do("START", Action.START, order.span, pose)
         return self.start
 
     def _end_in(self, area: Area | None, span: Span) -> None:
         """Lets the mission end where it starts."""
-        end = self.header.end
+        end = self.end
         if area is None or (end.area is not None and end.area != area.number):
             message = "the mission can't end here"
             if area is not None:
                 message = f"the mission is to end in starting area {end.area}, not {area.number}"
             hint = "say in another sentence where it ends"
             self.diagnostics.refuse("area-conflict", message, span, hint)
-        self.header = replace(self.header, end=AreaChoice(area.number, span, said=True))
+        self.end = AreaChoice(area.number, span, said=True)
 
     def _conflict(self, span: Span) -> NoReturn:
-        wanted = self.header.start
+        wanted = self.wanted
         message = f"the starting area {wanted.area} contradicts the script's starting point"
         hint = "choose none, or take the starting point out of the script"
-        remedies: tuple[Remedy, ...] = (Remedy.CHOOSE_START,)
+        remedy: Remedy | None = Remedy.CHOOSE_START
         if wanted.span is not None:
-            remedies = ()
+            remedy = None
             message = f"line {wanted.span.line} says that it starts in area {wanted.area}"
             hint = "leave one of the two out, or add `as planned` to the header line"
-        self.diagnostics.refuse("area-conflict", message, span, hint, remedies)
-
-    def begin(self) -> None:
-        """Where the mission starts if only the header says it; known before the orders are."""
-        wanted = self.header.start
-        if wanted.area is not None and not wanted.as_planned:
-            self.start_area = wanted.area
+        self.diagnostics.refuse("area-conflict", message, span, hint, remedy)
 
     def _start_unsaid(self) -> None:
-        wanted = self.header.start
+        wanted = self.wanted
         if wanted.area is not None and not wanted.as_planned:
             area = self.lookup.area(wanted.area, wanted.span)
             self.start_area = area.number
-            self.start = making.start(area.dock, wanted.span)
+            self.start = Do("START", Action.START, wanted.span, area.dock)
         elif self.context.whole and not wanted.said:
             known = tuple(str(area.number) for area in self.lookup.catalog.areas)
             choice = RemedyChoice(Remedy.CHOOSE_START, "area", known)
             hint = f"write `Start in starting area 1`, or {choice}"
             message = "the script sets no starting point"
-            remedies = (choice.remedy,)
-            self.diagnostics.refuse("no-start", message, None, hint, remedies, choice)
+            self.diagnostics.refuse("no-start", message, None, hint, choice)
 
     # ---- the end
 
-    def docking_area(self, dock: DockLocation) -> Area:
+    def docking_area(self, said: DockLocation) -> Area:
         """The area into whose dock the mission drives at its end: the one that is named, else that
         of the header's end, else that of the start, else the nearest to it, with a warning."""
-        option = None if self.header.end.as_planned else self.header.end.area
+        option = None if self.end.as_planned else self.end.area
         number = self.start_area if option is None else option
-        if dock.area is not None:
-            number = dock.area.area
+        if said.area is not None:
+            number = said.area.area
             if option not in (None, number):
                 message = f"the mission is to end in starting area {option}, not {number}"
                 hint = "leave out the end area given beside (or `End area:`), or the one in this "
                 hint += "line"
-                self.diagnostics.refuse("area-conflict", message, dock.span, hint)
-        area = self._nearest(dock.span) if number is None else self.lookup.area(number, dock.span)
+                self.diagnostics.refuse("area-conflict", message, said.span, hint)
+        area = self._nearest(said.span) if number is None else self.lookup.area(number, said.span)
         self.end_area = area.number
         return area
 
@@ -125,10 +191,8 @@ class Starting:
         if self.assumed is None:
             self.assumed = area
             where = "nearest to where it starts" if at is not None else "first of the site"
-            message = (
-                f"this does not say which docking station; that of starting area {area.number} "
-            )
-            message += f"is taken, the {where}"
+            message = "this does not say which docking station; that of starting area "
+            message += f"{area.number} is taken, the {where}"
             hint = f"write `the docking station in starting area {area.number}`"
             self.diagnostics.warning("dock-assumed", message, span, hint)
         return area
@@ -143,22 +207,22 @@ class Starting:
             self._start_unsaid()
         if self.start is not None and not self.start.listed:
             context.put([self.start], context.program, None)
-        if self.header.start.as_planned:
-            self.start_area = self.header.start.area
-        end = self.header.end
+        if self.wanted.as_planned:
+            self.start_area = self.wanted.area
+        end = self.end
         if end.as_planned:
             self.end_area = end.area
         elif end.area is not None and (context.docked is None or not context.docked.listed):
             area = self.lookup.area(end.area, end.span)
             self.end_area = area.number
-            context.docked = making.dock(area.dock, end.span)
+            context.docked = dock(area.dock, end.span)
             context.put([context.docked], context.program, context.program.last)
         self._find_dock()
 
     def _find_dock(self) -> None:
         if self.header.dock_said:
             point = self.header.dock
-            self.dock = self.context.locator.point(point) if point else None
+            self.dock = self.context.lookup.point(point) if point else None
             return
         for number in (self.end_area, self.start_area):
             area = self.lookup.catalog.area(number) if number is not None else None
@@ -174,7 +238,7 @@ class Starting:
         last = self.context.program.last
         if isinstance(last, Do) and last.docks and not last.ways and last.pose == pose:
             return last
-        return self.homes.setdefault((pose.x, pose.y), making.dock(pose, ahead.span))
+        return self.homes.setdefault((pose.x, pose.y), dock(pose, ahead.span))
 
 
 def _distance(a: Pose, b: Pose) -> float:

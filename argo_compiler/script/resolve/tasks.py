@@ -1,16 +1,25 @@
 """The tasks that an order plans."""
 
+from dataclasses import replace
+
 from argo_compiler.base.catalog import CheckpointInfo
-from argo_compiler.script.resolve import making
+from argo_compiler.base.model import Pose
+from argo_compiler.diagnostics import Span
+from argo_compiler.il import Action, EventKind, WaitRule
+from argo_compiler.script.resolve.accepting import said
 from argo_compiler.script.resolve.context import Context
-from argo_compiler.script.resolve.manners import Manners
-from argo_compiler.script.resolve.program import Do
+from argo_compiler.script.resolve.lookup import told
+from argo_compiler.script.resolve.manners import Manners, make_round, timed
+from argo_compiler.script.resolve.program import Do, ProgramRound, dock, measurement
 from argo_compiler.script.resolve.starting import Starting
-from argo_compiler.script.resolve.waiting import wait_rule
 from argo_compiler.script.syntax.tree import orders
+from argo_compiler.script.syntax.tree.conditions import Occurs
+from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.nouns import AllOf, Labelled
-from argo_compiler.script.syntax.tree.orders import PlainWord, ScriptOrder
-from argo_compiler.script.syntax.tree.places import FloorName
+from argo_compiler.script.syntax.tree.orders import PlainWord, ScriptOrder, Side
+from argo_compiler.script.syntax.tree.places import FloorName, PlaceLocation
+
+_DEMANDS = frozenset(["latest", "earliest", "priority", "rank"])
 
 
 class TaskMaker:
@@ -32,16 +41,16 @@ class TaskMaker:
             case orders.Measure():
                 return self._measurements(order)
             case orders.Go(where=FloorName() as floor):
-                return [making.waypoint(self.context.lookup.floor(floor).patrol[0], span)]
+                return [_waypoint(self.context.lookup.floor(floor).patrol[0], span)]
             case orders.Go(where=where):
                 assert not isinstance(where, FloorName)
-                return [making.waypoint(self.context.locator.locate(where, "end")[0], span)]
+                return [_waypoint(self.context.lookup.locate(where, "end")[0], span)]
             case orders.Home():
-                return [making.dock(self.starting.docking_area(order.dock).dock, span)]
+                return [dock(self.starting.docking_area(order.dock).dock, span)]
             case orders.WaitOrder():
-                return [making.wait(wait_rule(order, self.context), span)]
+                return [Do("WAIT", Action.WAIT, span, wait=self._wait_rule(order))]
             case orders.Plain(word=PlainWord.MEET):
-                return [making.meeting(span)]
+                return [Do("MEET", Action.WAIT, span, wait=WaitRule(duration=0))]
         if isinstance(order, orders.Follow):
             message = "there are no steps within this one"
             hint = "write `repeat this three times`, or the steps as sub-steps below it"
@@ -60,7 +69,7 @@ class TaskMaker:
         self.context.memory.measured(found)
         if order.manner is not None and order.manner.backwards:
             found.reverse()
-        tasks = [making.measurement(c.id, order.span) for c in found]
+        tasks = [measurement(c, order.span) for c in found]
         if self.visiting is not None and self.visiting[1] == found[:1]:
             self.manners.furnish(self.visiting[0], tasks[:1])
             self.visiting = None
@@ -89,3 +98,120 @@ class TaskMaker:
         message = f"this does not say what to do at {checkpoint.name} (#{checkpoint.id})"
         hint = f"write `check checkpoint {checkpoint.id}`"
         self.context.diagnostics.error("visit", message, order.span, hint)
+
+    # ---- waits and patrols
+
+    def _wait_rule(self, order: orders.WaitOrder) -> WaitRule:
+        """How long it waits, or for what. Raises RefusedError if that is not clear."""
+        diagnostics = self.context.diagnostics
+        manner = order.manner or Manner()
+        until, duration, limit = manner.until, manner.duration, manner.time_limit
+        if order.person:
+            hint = "let somebody pause it there, or write how long: `wait 5 minutes`"
+            diagnostics.refuse("wait", "a mission does not wait for a person", order.span, hint)
+        if until is None:
+            if duration is None:
+                message = "this does not say how long, or for what"
+                hint = "write `wait 90 s`, `wait until #1 is below 3` or `wait for the all-clear`"
+                diagnostics.refuse("wait", message, order.span, hint)
+            if limit is not None:
+                message = "a wait that lasts for a time has no other limit"
+                diagnostics.refuse("wait", message, order.span, "leave one of them out")
+            return WaitRule(duration=duration)
+        if limit is not None and duration is not None:
+            message = "how long it waits at most is said twice"
+            diagnostics.refuse("repeated-limit", message, order.span, "leave one of them out")
+        limit = duration if limit is None else limit
+        event: EventKind | None = None
+        match until.alternatives:
+            case ((Occurs(event=EventKind() as awaited),), *others) if len(others) < 2:
+                event, until = awaited, replace(until, alternatives=tuple(others))
+        conditions = self.context.conditions.alternatives(until)
+        if len(conditions) > 1:
+            message = "a wait ends by conditions that all hold, not by one of several"
+            diagnostics.refuse("wait", message, until.span, "join them by `and`")
+        return WaitRule(event=event, conditions=conditions[0] if conditions else (), limit=limit)
+
+    def patrol_rounds(self, order: orders.Patrol) -> tuple[list[ProgramRound], list[Do]]:
+        """Return a patrol's rounds, one for each floor or one through the places, and stops."""
+        context = self.context
+        limited = timed(order, context.diagnostics)
+        rounds: list[ProgramRound] = []
+        tasks: list[Do] = []
+        for base, poses in self._patrol_places(order):
+            round_ = make_round(limited, base, context, order.name)
+            stops = [_waypoint(pose, order.span) for pose in poses]
+            self.manners.furnish(limited, stops)
+            context.put(stops, round_.body, None)
+            tasks += stops
+            rounds.append(round_)
+        return rounds, tasks
+
+    def _patrol_places(self, order: orders.Patrol) -> list[tuple[str, list[Pose]]]:
+        """What the rounds are called, and through which places they lead."""
+        context, manner = self.context, order.manner
+        floors = [p for p in order.places if isinstance(p, FloorName)]
+        if len(floors) > 1 and manner is not None and manner.duration is not None:
+            message = "this duration can be read as that of each floor or of all together"
+            hint = "write one patrol for each floor, each with its own duration"
+            context.diagnostics.refuse("ambiguous-duration", message, order.span, hint)
+        rounds: list[tuple[str, list[Pose]]] = []
+        through: list[Pose] = []
+        label = ""
+        for place in order.places:
+            if isinstance(place, FloorName):
+                floor = context.lookup.floor(place)
+                rounds.append((f"Patrol floor {floor.number}", list(floor.patrol)))
+                continue
+            pose, area = context.lookup.locate(place, "end")
+            if isinstance(place, PlaceLocation):
+                label = label or place.name.removeprefix("the ")
+            label = label or (f"area {area.number}" if area else "place")
+            through.append(pose)
+        if through:
+            rounds.append((f"Patrol {label}", through))
+        if order.name is not None and len(rounds) > 1:
+            message = "this name stands before a command with several rounds"
+            hint = "give each of them a line and a name"
+            context.diagnostics.error("one-name", message, order.span, hint)
+        return rounds
+
+    # ---- what is measured before already, or elsewhere
+
+    def demanded_of(self, order: orders.Measure) -> list[Do]:
+        """Return the tasks of which a sentence in the passive only says when they are due, or how
+        important; none if it plans them. Raises RefusedError if both may be meant."""
+        asked = said(order.manner) if order.passive and order.manner is not None else frozenset()
+        if not asked or not asked <= _DEMANDS:
+            return []
+        context = self.context
+        planned = [context.measurements(c) for c in context.nouns.all(order.what)]
+        if not all(planned):
+            return []
+        own_step = bool(context.steps) and not context.step
+        if own_step or any(len(tasks) > 1 for tasks in planned):
+            message = "this can be said of what is measured before, or ask for it once more"
+            hint = "say it where it is measured: `check checkpoint 4 within 5 minutes`"
+            context.diagnostics.refuse("ambiguous-demand", message, order.span, hint)
+        return [task for tasks in planned for task in tasks]
+
+    def measured_beside(self, order: orders.Beside) -> list[orders.Measure]:
+        """Return what is measured, in its order; what comes first may be measured already."""
+        context = self.context
+        anchor = context.nouns.all(order.anchor)
+        done = [c for c in anchor if context.measured.get(str(c.id))]
+        other = orders.Measure(span=order.span, what=order.anchor)
+        if order.side is Side.AFTER:
+            both = [order.order] if len(done) == len(anchor) else [other, order.order]
+        elif done:
+            message = f"{told(done[0])} is measured before this already"
+            hint = "write this before it, or say that it is measured once more"
+            context.diagnostics.refuse("ambiguous-edit", message, order.span, hint)
+        else:
+            both = [order.order, other]
+        context.once.update((str(c.id), order.span) for c in anchor if c not in done)
+        return both
+
+
+def _waypoint(pose: Pose, source: Span) -> Do:
+    return Do("WAYPOINT", Action.WAYPOINT, source, pose)

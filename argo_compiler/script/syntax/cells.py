@@ -9,15 +9,16 @@ down to the label do not end the sentence, and the text beside the label does no
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 
-from argo_compiler.script.syntax.labels import FieldLabels
+from argo_compiler.script.syntax.fields import ScriptFields
 from argo_compiler.script.syntax.text.source import ScriptText, join
 from argo_compiler.script.syntax.understanding import Understanding
-from argo_compiler.script.syntax.words.loading import everywhere
+from argo_compiler.script.syntax.words.loading import pattern
 
 _WORD = re.compile(r"[\w'-]+(?!\s*:)\b")
 _WORD_COLON = re.compile(r"[\w'-]+\s*:")
+_MARKED = r"\s*(?:[-*+•#]\s|(?:<step>\s+)?[0-9]{1,6}\s*[.):])"
+"""the mark of a line that is a step"""
 _SENTENCE_ENDS = (".", "!", "?", ":")
 
 
@@ -34,15 +35,15 @@ class _Cell:
 class Cells:
     """Puts the lines of a cell into one."""
 
-    def __init__(self, labels: FieldLabels, understanding: Understanding) -> None:
-        self.labels = labels
+    def __init__(self, fields: ScriptFields, understanding: Understanding) -> None:
+        self.fields = fields
         self.understanding = understanding
-        self.label = labels.prose.label
+        self.label = fields.prose.label
 
     def joined(self, lines: Sequence[ScriptText]) -> list[ScriptText]:
         """The lines, those of a cell in the line of its label, their own lines empty."""
         found = list(lines)
-        cells = [i for i, line in enumerate(lines) if self.labels.is_cell(line.strip())]
+        cells = [i for i, line in enumerate(lines) if self.fields.is_cell(line.strip())]
         above: _Cell | None = None
         waiting: list[int] = []
         first, last = (max(0, cells[0] - 4), cells[-1] + 4) if cells else (0, 0)
@@ -51,7 +52,7 @@ class Cells:
             if not text.content:
                 continue
             text = self._whole_label(found, i) or text
-            below = self._cell(i, text) if self.labels.is_cell(text) else None
+            below = self._cell(i, text) if self.fields.is_cell(text) else None
             if below is None and self._is_loose(found, i, above):
                 waiting.append(i)
                 continue
@@ -90,7 +91,7 @@ class Cells:
         if word is None or behind is None or self.label.match(second.content):
             return None
         label = join([first[: word.end()], second[: behind.end()]])
-        if not self.labels.is_cell(label):
+        if not self.fields.is_cell(label):
             return None
         return label, first[word.end() :].strip(), second[behind.end() :].strip()
 
@@ -98,7 +99,7 @@ class Cells:
         """Whether a line may belong to a cell: it has neither label nor mark, and makes no sense by
         itself."""
         line, text = lines[i], lines[i].strip()
-        if _marked().match(line.content) or self.labels.is_field(text):
+        if pattern(_MARKED).match(line.content) or self.fields.is_field(text):
             return False
         if line.content[0] == "\t" and self._before_cell(lines, i):
             return True
@@ -114,9 +115,9 @@ class Cells:
         """Whether the next line that has a label, a few lines on, is a cell's."""
         for k in range(i + 1, min(i + 1 + most, len(lines))):
             text = lines[k].strip()
-            if not text.content or _marked().match(text.content):
+            if not text.content or pattern(_MARKED).match(text.content):
                 return False
-            if self.labels.is_cell(text) or self._halves(lines, k) is not None:
+            if self.fields.is_cell(text) or self._halves(lines, k) is not None:
                 return True
         return False
 
@@ -146,10 +147,3 @@ def _first_of_below(lines: Sequence[ScriptText], below: _Cell | None) -> int:
         return len(lines)
     openings = [i for i, line in enumerate(lines) if line.content[0].isupper()]
     return openings[-1] if openings else len(lines)
-
-
-@cache
-def _marked() -> re.Pattern[str]:
-    """The mark of a line that is a step."""
-    step = rf"(?:(?:{everywhere('step')})\s+)?[0-9]{{1,6}}\s*[.):]"
-    return re.compile(rf"\s*(?:[-*+•#]\s|{step})", re.IGNORECASE)

@@ -1,13 +1,13 @@
-"""The lines of a script, and the numbers, letters and bullets that they begin with."""
+"""The lines of a script with the numbers, letters and bullets that they begin with, and where the
+sentences in them end: not behind `approx.`, in `Nr. R25` or in `2. Stock`."""
 
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from functools import cache
 
 from argo_compiler.script.syntax.text.source import ScriptText, quotes
-from argo_compiler.script.syntax.words.loading import everywhere
+from argo_compiler.script.syntax.words.loading import pattern
 
 
 class LineMark(StrEnum):
@@ -40,6 +40,11 @@ class ScriptLine:
         return self.marked or self.text
 
 
+_NUMBER = (
+    r"\(?(?:<step>\s+)?([0-9]{1,6})"
+    r"\s*(?:\.?\)(?![0-9])|\.(?![0-9])|:(?![0-9])|\s-\s+(?=[^\W\d_]))\s*"
+)
+_STEP = r"<step>\s+([0-9]{1,6})\b[.:)]?\s*"
 _SUB_NUMBER = re.compile(r"[0-9]{1,4}\.[0-9]{1,4}[.)]?\s+(?=[A-Z])")
 _BRACKETED = re.compile(r"\[([0-9]{1,6})\]\s+")
 _LETTER = re.compile(r"\(?([a-z]|[ivx]{1,4})[.)]\s+", re.IGNORECASE)
@@ -51,20 +56,17 @@ _RULE_SIGNS = ("-", "=", "_", "~", "*", "'", "+")
 _MAIL = re.compile(r"\s*(?:>\s?)+")
 """before the lines of a letter that is quoted in another one"""
 _RUN_IN = re.compile(r"(?:^|[,;.!])\s+([0-9]{1,3})[.)]\s+(?=[^\W\d_])")
-
-
-@cache
-def _number() -> re.Pattern[str]:
-    return re.compile(
-        rf"\(?(?:(?:{everywhere('step')})\s+)?([0-9]{{1,6}})"
-        r"\s*(?:\.?\)(?![0-9])|\.(?![0-9])|:(?![0-9])|\s-\s+(?=[^\W\d_]))\s*",
-        re.IGNORECASE,
-    )
-
-
-@cache
-def _step() -> re.Pattern[str]:
-    return re.compile(rf"(?:{everywhere('step')})\s+([0-9]{{1,6}})\b[.:)]?\s*", re.IGNORECASE)
+_LABEL = re.compile(r"\s*(?:[A-Za-z]?-?[0-9]|[A-Z](?!\w))")
+_ORDINAL = re.compile(r"(?<![\w.,])[0-9]{1,2}\.$")
+_SENTENCE_END = r"(?:[.!?…]+|;(?=\s*<new_sentence>\b))(?=\s|$)"
+_ABBREVIATED = r"\b<abbreviation>\.$"
+_NUMBERED = r"\b<number>\.$"
+_MORE_ORDINALS = r"(?:\s*(?:,|<between_ordinals>)\s*[0-9]{1,2}\.)"
+_BEHIND_ORDINAL = (
+    rf"{_MORE_ORDINALS}*(?:\s+<behind_ordinals>|\s*(?:,|<between_ordinals>)$)|{_MORE_ORDINALS}+$"
+)
+"""what stands behind an ordinal, where no line cuts it: `im 1. und 2. Stock`"""
+_NEXT_SIGN = re.compile(r"\s*(\S)")
 
 
 def lines_of(texts: Sequence[ScriptText]) -> Iterator[ScriptLine]:
@@ -111,7 +113,7 @@ def _marked(text: ScriptText, indent: int) -> ScriptLine:
         return ScriptLine(
             inner.text, indent, mark, inner.number, heading=text.content.startswith("#")
         )
-    patterns = (_number(), _step(), _BRACKETED)
+    patterns = (pattern(_NUMBER), pattern(_STEP), _BRACKETED)
     if number := next(filter(None, (p.match(text.content) for p in patterns)), None):
         rest = text[number.end() :].strip()
         return ScriptLine(rest, indent, LineMark.NUMBER, int(number[1]), marked=text)
@@ -145,3 +147,43 @@ def _split(line: ScriptLine) -> Iterator[ScriptLine]:
         yield line
     else:
         yield ScriptLine(line.text[start:].strip(), line.indent, line.mark, expected - 1)
+
+
+# ---- sentences
+
+
+def sentences(text: ScriptText) -> list[ScriptText]:
+    """The sentences of a text, without their full stops."""
+    found = (text[start:end].strip() for start, end in sentence_bounds(text.content))
+    return [sentence for sentence in found if sentence.content]
+
+
+def sentence_bounds(content: str) -> list[tuple[int, int]]:
+    """Where the sentences of a text begin and end; at least one."""
+    found: list[tuple[int, int]] = []
+    start = k = 0
+    quoted = quotes(content)
+    for end in pattern(_SENTENCE_END).finditer(content):
+        while k < len(quoted) and quoted[k][1] <= end.start():
+            k += 1
+        if k < len(quoted) and quoted[k][0] < end.start():
+            continue
+        behind = _NEXT_SIGN.match(content, end.end())
+        more = behind is not None and not behind[1].isupper()
+        if more and pattern(_ABBREVIATED).search(content, max(0, end.start() - 8), end.start() + 1):
+            continue
+        if _goes_on_behind(content, end.start() + 1):
+            continue
+        found.append((start, end.start()))
+        start = end.end()
+    if content[start:].strip() or not found:
+        found.append((start, len(content)))
+    return found
+
+
+def _goes_on_behind(content: str, stop: int) -> bool:
+    """Whether a full stop belongs to `Nr. R25` or `2. Stock`."""
+    if pattern(_NUMBERED).search(content, max(0, stop - 5), stop) and _LABEL.match(content, stop):
+        return True
+    ordinal = _ORDINAL.search(content, max(0, stop - 4), stop)
+    return ordinal is not None and pattern(_BEHIND_ORDINAL).match(content, stop) is not None

@@ -1,35 +1,26 @@
 """Script text to syntax tree."""
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.script.syntax.asides import Asides
-from argo_compiler.script.syntax.case_lists import CaseLists
 from argo_compiler.script.syntax.cells import Cells
-from argo_compiler.script.syntax.doubts import ask_of_dots
-from argo_compiler.script.syntax.field_reading import FieldReader
-from argo_compiler.script.syntax.field_values import FieldValues
+from argo_compiler.script.syntax.doubts import PlacingCheck, ask_of_dots
 from argo_compiler.script.syntax.fields import ScriptFields
-from argo_compiler.script.syntax.floor_lists import FloorLists, on_floors
-from argo_compiler.script.syntax.kind_lists import KindLists
-from argo_compiler.script.syntax.labels import FieldLabels
-from argo_compiler.script.syntax.layout import LineItem, items_of
-from argo_compiler.script.syntax.line_sense import LineSense
-from argo_compiler.script.syntax.lines import LineMark, lines_of
-from argo_compiler.script.syntax.placing import PlacingCheck
-from argo_compiler.script.syntax.quoted import ask_of_quotes
+from argo_compiler.script.syntax.layout import LineItem, LineSense, items_of
+from argo_compiler.script.syntax.lines import LineMark, lines_of, sentences
+from argo_compiler.script.syntax.lists import Lists, on_floors
 from argo_compiler.script.syntax.repeats import Repeats, repeats
 from argo_compiler.script.syntax.rows import tables
-from argo_compiler.script.syntax.sentence_ends import sentences
 from argo_compiler.script.syntax.sentence_reading import Said, SentenceReader
 from argo_compiler.script.syntax.text.healing import MOST_ERRORS, heal
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, Source
-from argo_compiler.script.syntax.titles import ask_of_title
-from argo_compiler.script.syntax.tree.orders import Sentence
+from argo_compiler.script.syntax.tree.nouns import Labelled
+from argo_compiler.script.syntax.tree.orders import Measure, Sentence, Start
 from argo_compiler.script.syntax.tree.script import Script, ScriptStep, Unread
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.language import Language
@@ -61,11 +52,10 @@ def parse(
     words = frozenset(word for name in (*names, *places) for word in name.lower().split())
     understanding = Understanding(language, words, diagnostics)
     asides = Asides(understanding)
-    labels = FieldLabels(understanding, diagnostics)
-    fields = ScriptFields(FieldReader(understanding, asides, diagnostics, FieldValues(diagnostics)))
-    reader = SentenceReader(understanding, asides, fields, labels, diagnostics)
+    fields = ScriptFields(understanding, diagnostics)
+    reader = SentenceReader(understanding, asides, fields, diagnostics)
     known = repeats(language.lexicon, words)
-    return _Parser(understanding, asides, fields, labels, diagnostics, reader, known).script()
+    return _Parser(understanding, asides, fields, diagnostics, reader, known).script()
 
 
 def _require_size(source: Source) -> None:
@@ -111,7 +101,6 @@ class _Parser:
     understanding: Understanding
     asides: Asides
     fields: ScriptFields
-    labels: FieldLabels
     diagnostics: Diagnostics
     reader: SentenceReader
     repeats: Repeats
@@ -126,21 +115,20 @@ class _Parser:
         rows = tables(source, self.understanding, self.diagnostics)
         healed = heal(source, _vocabulary(self.understanding, source.text), rows)
         self.diagnostics.extend(healed.diagnostics)
-        texts = Cells(self.labels, self.understanding).joined(healed.lines)
-        sense = LineSense(self.understanding, self.asides, self.labels)
+        texts = Cells(self.fields, self.understanding).joined(healed.lines)
+        sense = LineSense(self.understanding, self.asides, self.fields)
         items = items_of(lines_of(texts), sense, language.words)
-        items = CaseLists(self.understanding).told(items)
-        items = FloorLists(self.understanding).told(items)
-        steps = list(self._steps(KindLists(self.understanding, self.reader.note).told(items)))
+        lists = Lists(self.understanding, self.reader.note)
+        steps = list(self._steps(lists.told(items)))
         PlacingCheck(self.diagnostics).steps(steps)
-        ask_of_title(steps, self.diagnostics)
-        ask_of_quotes(steps, self.diagnostics)
-        first = [_step_of(sentence) for sentence in self.fields.reader.first]
-        last = [_step_of(sentence) for sentence in self.fields.reader.last]
+        _ask_of_title(steps, self.diagnostics)
+        _ask_of_quotes(steps, self.diagnostics)
+        first = [_step_of(sentence) for sentence in self.fields.first]
+        last = [_step_of(sentence) for sentence in self.fields.last]
         return Script(
             source_name=source.name,
             source_text=source.text,
-            header=self.fields.reader.values.header,
+            header=self.fields.header,
             steps=(*first, *steps, *last),
             remarks=tuple(self.reader.remarks),
             diagnostics=self.diagnostics.by_place(),
@@ -165,15 +153,20 @@ class _Parser:
     def _step(self, item: LineItem) -> ScriptStep | None:
         known = self.repeats.said(item.text) if self._is_plain(item) else None
         said = on_floors(self._said(item) if known is None else known, item.floors)
-        return self._of(item, said, list(self._steps(item.items)))
+        inner = tuple(self._steps(item.items))
+        if not said and not inner and item.line.number is None:
+            return None
+        return ScriptStep(
+            span=item.text.span(), number=item.line.number, sentences=tuple(said), steps=inner
+        )
 
     def _said(self, item: LineItem) -> list[Said]:
         """What an item says; kept, if it says so wherever it stands."""
         before = len(self.diagnostics.entries)
         plain = self._is_plain(item)  # now: what is said first hangs on being first
         text = self._without_letter(item)
-        text = self.labels.relabelled(text)
-        if self.labels.is_field(text):
+        text = self.fields.relabelled(text)
+        if self.fields.is_field(text):
             self.reader.begun = True
             text = self.fields.read(text)
         said: list[Said] = []
@@ -188,11 +181,11 @@ class _Parser:
             if remark:
                 said += self.reader.remark(sentence)
                 continue
-            if self.labels.is_field(sentence):
+            if self.fields.is_field(sentence):
                 sentence = self.fields.read(sentence)
             if sentence.content:
                 said += self.reader.read(sentence, item)
-        whole = text is item.text and not self.labels.is_field(text)
+        whole = text is item.text and not self.fields.is_field(text)
         whole = whole and len(said) == len(parts) and len(self.diagnostics.entries) == before
         plain = plain and whole and not self.understanding.unknown and self._is_plain(item)
         if plain and not any(isinstance(s, Unread) for s in said):
@@ -222,16 +215,6 @@ class _Parser:
         over = item.line.heading or item.text.content.endswith(":")
         return self.reader.ordered and not self.closed and not over
 
-    def _of(self, item: LineItem, said: list[Said], inner: list[ScriptStep]) -> ScriptStep | None:
-        if not said and not inner and item.line.number is None:
-            return None
-        return ScriptStep(
-            span=item.text.span(),
-            number=item.line.number,
-            sentences=tuple(said),
-            steps=tuple(inner),
-        )
-
     def _without_letter(self, item: LineItem) -> ScriptText:
         """The text of an item without what makes a letter of it."""
         text = item.text
@@ -254,3 +237,50 @@ class _Parser:
 
 def _step_of(sentence: Sentence) -> ScriptStep:
     return ScriptStep(span=sentence.span, number=None, sentences=(sentence,))
+
+
+def _ask_of_title(steps: Sequence[ScriptStep], diagnostics: Diagnostics) -> None:
+    """Asks about a line over numbered steps that orders to measure a bare number: `Test 12`."""
+    if len(steps) < 2 or steps[0].number is not None or steps[1].number != 1:
+        return
+    first = steps[0]
+    for sentence in first.sentences:
+        orders = sentence.orders if isinstance(sentence, Sentence) and not sentence.cases else ()
+        if len(orders) == 1 and isinstance(orders[0], Measure) and _is_bare_number(orders[0]):
+            message = "this line over the steps may be their title, or an order"
+            hint = "write `Designation: ...` for the first, a numbered step for the second"
+            diagnostics.error("ambiguous-title", message, first.span, hint)
+            return
+
+
+def _is_bare_number(order: Measure) -> bool:
+    noun = order.what.nouns[0]
+    plain = isinstance(noun, Labelled) and noun.kind is None and not noun.hash
+    return plain and len(order.what.nouns) == 1 and order.manner is None
+
+
+def _ask_of_quotes(steps: Sequence[ScriptStep], diagnostics: Diagnostics) -> None:
+    """Ask which orders count, where some are lines of a letter that is answered, `> Check #1`, and
+    others are not."""
+    lines = diagnostics.source.lines
+    first: dict[bool, Sentence] = {}  # that is quoted, and that is not
+    for sentence in _ordered(steps):
+        first.setdefault(lines[sentence.span.line - 1].lstrip().startswith(">"), sentence)
+    if len(first) < 2:
+        return
+    line = first[False].span.line
+    message = f"this is quoted, and line {line} is not: it may be done as well, or be "
+    message += "of another plan"
+    hint = "leave out what is not to be done, and `>` before what is"
+    diagnostics.error("ambiguous-quote", message, first[True].span, hint)
+
+
+def _ordered(steps: Sequence[ScriptStep]) -> Iterator[Sentence]:
+    """The sentences with orders other than to start."""
+    for step in steps:
+        for sentence in step.sentences:
+            if isinstance(sentence, Sentence) and any(
+                not isinstance(order, Start) for order in sentence.orders
+            ):
+                yield sentence
+        yield from _ordered(step.steps)

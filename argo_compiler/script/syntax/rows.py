@@ -9,19 +9,32 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from argo_compiler.base.listing import listed
-from argo_compiler.script.syntax.asking import Asking, ask_of_remark
-from argo_compiler.script.syntax.priorities import Priorities, PriorityScale, scale_of
+from argo_compiler.script.syntax.asides import Asides, ask_of_remark
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, Source, quotes
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.lexicon import expand
+from argo_compiler.script.syntax.words.prose import Prose
 
 _RULE = re.compile(r"[\s|:=+-]*-[\s|:=+-]*")
-_FIRST_NUMBER = re.compile(r"[0-9]{1,6}")
+_NUMBER = re.compile(r"[0-9]{1,6}")
 _MOST_COLUMNS = 12
 _MOST_ROWS = 10_000
 """of all tables of a script"""
 _CUTS = ("|", "\t", ";", "  ", ",")
 _PATTERNS = {cut: re.compile(r"\s{2,}" if cut == "  " else re.escape(cut)) for cut in _CUTS}
+_SCALED = re.compile(
+    r"(?P<heading>[^(\[:,;-]+?)[\s(\[:,;-]+(?P<number>[0-9]+)(?P<said>[^0-9]+)(?:[0-9].*)?"
+)
+
+
+def _greatest_first(heading: str, prose: Prose) -> bool | None:
+    """Return whether a heading such as `Priority (1 = highest)` says that the greatest number is
+    the most important; None if it says nothing of that."""
+    found = _SCALED.fullmatch(heading.strip())
+    if found is None or prose.column(found["heading"]) != "priority":
+        return None
+    highest = prose.is_highest(found["said"])
+    return None if highest is None else highest is not (int(found["number"]) <= 1)
 
 
 @dataclass(frozen=True)
@@ -30,7 +43,8 @@ class _Heading:
 
     holds: str
     start: int
-    scale: PriorityScale = PriorityScale.OPEN
+    greatest_first: bool | None = None
+    """which of the numbers in it is the most important; None: that is not said"""
 
 
 def tables(
@@ -85,14 +99,18 @@ def _cut_of(line: str) -> str:
 
 
 class _Rows:
-    """Makes sentences of rows."""
+    """Makes sentences of rows. Mutable: a script may have several tables."""
 
     def __init__(self, understanding: Understanding, diagnostics: Diagnostics) -> None:
         self.understanding = understanding
         self.prose = understanding.language.prose
-        self.asking = Asking(understanding)
+        self.asides = Asides(understanding)
         self.diagnostics = diagnostics
-        self.priorities = Priorities(self.prose, diagnostics)
+        self.greatest_first: bool | None = None
+        """of the priorities in the table"""
+        self.asked = False
+        """whether it has been asked which scale is meant"""
+        self.greatest = 0
 
     def headings(self, text: ScriptText, cut: str) -> list[_Heading] | None:
         """The columns, if a line has the headings of a table."""
@@ -100,9 +118,9 @@ class _Rows:
         if cut != "|" and first and self.prose.column(first) is None:
             return None
         cells = list(_cells(text, cut))
-        scales = {at: scale_of(cell.content, self.prose) for at, cell in cells}
+        scales = {at: _greatest_first(cell.content, self.prose) for at, cell in cells}
         known = [
-            ("priority" if scales[at] else self.prose.column(cell.content), at, cell)
+            ("priority" if scales[at] is not None else self.prose.column(cell.content), at, cell)
             for at, cell in cells
             if cell.content
         ]
@@ -119,22 +137,22 @@ class _Rows:
         if not held & {"checkpoint", "object", "action"}:
             return None
         by_start = {at: holds or "nothing" for holds, at, _ in known}
-        return [
-            _Heading(by_start.get(at, "nothing"), at, scales[at] or PriorityScale.OPEN)
-            for at, _ in cells
-        ]
+        return [_Heading(by_start.get(at, "nothing"), at, scales[at]) for at, _ in cells]
 
     def begin(self, headings: list[_Heading], cut: str, rows: Iterator[ScriptText]) -> None:
         """Looks at the priorities of all rows: what each is worth hangs on the others."""
         column = next((heading for heading in headings if heading.holds == "priority"), None)
         if column is not None:
             found = (_by_column(row, headings, cut).get("priority") for row in rows)
-            self.priorities.begin(column.scale, [cell.content for cell in found if cell])
+            said = [cell.content for cell in found if cell]
+            self.greatest_first, self.asked = column.greatest_first, False
+            self.greatest = max((int(c) for c in said if _NUMBER.fullmatch(c)), default=0)
 
     def sentence(self, text: ScriptText, headings: list[_Heading], cut: str) -> ScriptText:
         """The sentence of a row."""
         cells = _by_column(text, headings, cut)
-        if "remark" in cells and not self._asks(cells["remark"]):
+        remark = cells.get("remark")
+        if remark is not None and not (self.asides.asks(remark) or self.asides.bids(remark)):
             self._note(cells.pop("remark"))
         if "nothing" in cells:
             self._note(cells["nothing"])
@@ -142,7 +160,7 @@ class _Rows:
             self._done(cells["done"])
         number = cells.get("number")
         mark: list[str | ScriptText] = ["- "]
-        if number is not None and _FIRST_NUMBER.fullmatch(number.content.strip(" .)#")):
+        if number is not None and _NUMBER.fullmatch(number.content.strip(" .)#")):
             mark = [number.content.strip(" .)#"), ". "]
         elif number is not None:
             self._note(number)
@@ -175,11 +193,8 @@ class _Rows:
         hint = "leave the column out, or the rows that are not to be done"
         self.diagnostics.error("ambiguous-cell", message, cell.span(), hint)
 
-    def _asks(self, remark: ScriptText) -> bool:
-        return self.asking.asks(remark) or self.asking.bids(remark)
-
     def _note(self, aside: ScriptText) -> None:
-        if self.asking.corrects(aside) or self.asking.bids(aside):
+        if self.asides.corrects(aside) or self.asides.bids(aside):
             ask_of_remark(aside, self.diagnostics)
             return
         message = f"`{aside.content}` is taken for a remark and has no effect"
@@ -206,7 +221,7 @@ class _Rows:
     def _behind(self, cells: dict[str, ScriptText]) -> Iterator[str | ScriptText]:
         """What a row says of its step: priority, whether it may be left out, speed."""
         if (cell := cells.get("priority")) is not None:
-            worth = self.priorities.worth(cell)
+            worth = self._worth(cell)
             if worth != "1":
                 yield from (f" {self.prose.say['priority']} ", _as(worth, cell) if worth else cell)
         if (cell := cells.get("optional")) is not None:
@@ -226,6 +241,21 @@ class _Rows:
                 self._note(cell)
             else:
                 yield from (" ", cell)
+
+    def _worth(self, cell: ScriptText) -> str:
+        """The priority of a cell as the sentences count them, of which the greatest is the most
+        important; nothing for what is no priority. Without a scale numbers are asked about."""
+        if _NUMBER.fullmatch(cell.content) is None:
+            return self.prose.rank(cell.content) or ""
+        number = int(cell.content)
+        if self.greatest_first is None and not self.asked:
+            self.asked = True
+            message = f"`{cell.content}` can be counted from the most important one, or from the "
+            message += "least"
+            hint = "write over the column `Priority (1 = highest)` or `Priority (1 = lowest)`, or "
+            hint += "`high`, `medium` and `low` in it"
+            self.diagnostics.error("ambiguous-priority", message, cell.span(), hint)
+        return str(self.greatest + 1 - number if self.greatest_first is False else number)
 
     def _unless_needed(self, cell: ScriptText) -> Iterator[str | ScriptText]:
         """What a row says of its step under `Needed`, where `no` may mean two things."""

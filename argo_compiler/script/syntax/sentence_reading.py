@@ -2,28 +2,31 @@
 
 from dataclasses import dataclass, field, replace
 
-from argo_compiler.script.syntax.asides import Asides
-from argo_compiler.script.syntax.asking import ask_of_remark
-from argo_compiler.script.syntax.doubts import ask_of_words
+from argo_compiler.script.syntax.asides import Asides, ask_of_remark
+from argo_compiler.script.syntax.doubts import ask_of_words, placed_in
 from argo_compiler.script.syntax.fields import ScriptFields
 from argo_compiler.script.syntax.grammar.parser import StumbleError
-from argo_compiler.script.syntax.hints import not_understood
-from argo_compiler.script.syntax.labels import FieldLabels
 from argo_compiler.script.syntax.layout import LineItem
 from argo_compiler.script.syntax.lines import LineMark
-from argo_compiler.script.syntax.placing import placed_in
-from argo_compiler.script.syntax.preamble import Preamble
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
-from argo_compiler.script.syntax.titles import FoundTitle, Titles
-from argo_compiler.script.syntax.tree.facts import Fact
-from argo_compiler.script.syntax.tree.orders import Amend, Follow, Sentence, Start
+from argo_compiler.script.syntax.tree.orders import Amend, Fact, Follow, Sentence, Start
 from argo_compiler.script.syntax.tree.script import Text, Unread
 from argo_compiler.script.syntax.understanding import Reading, Understanding
-from argo_compiler.script.syntax.words.joints import VERBS
+from argo_compiler.script.syntax.words.word import VERBS
 
 Said = Sentence | Fact | Unread
 MAX_SENTENCE = 10_000
 """characters in a sentence of many lines; a longer one is refused unread"""
+
+
+@dataclass(frozen=True)
+class _Title:
+    """A title, and what stands behind it in the same line."""
+
+    head: ScriptText
+    fields: ScriptText | None = None
+    parts: tuple[ScriptText, ...] = ()
+    """what makes sense behind a comma"""
 
 
 @dataclass
@@ -33,7 +36,6 @@ class SentenceReader:
     understanding: Understanding
     asides: Asides
     fields: ScriptFields
-    labels: FieldLabels
     diagnostics: Diagnostics
     remarks: list[Text] = field(default_factory=list)
     ordered: bool = False
@@ -42,12 +44,6 @@ class SentenceReader:
     """whether anything but a title has been read"""
     listed: str = ""
     """`Pressure gauges`, if that is what was read last"""
-
-    def __post_init__(self) -> None:
-        self.preamble = Preamble(self.understanding, self.fields.reader)
-        self.titles = Titles(
-            self.understanding, self.asides, self.fields, self.labels, self.preamble
-        )
 
     def note(self, text: ScriptText, what: str) -> None:
         """Says that a text has no effect."""
@@ -60,14 +56,14 @@ class SentenceReader:
         """Says that a remark has no effect; a warning, where it tells what is to be done. What it
         says of the order is kept: `Note: valve R40 has to be checked before valve R12.`"""
         inner = self.asides.remark(text)
-        if self.asides.asking.ranks(inner):
+        if self.asides.ranks(inner):
             return self._ask_of_rank(inner)
         types = {*self.understanding.types(inner)}
         if types & {"BEFORE", "AFTER"} and not types & {"IF", "UNLESS", *VERBS}:
             reading = self.understanding.read(inner)
             if not isinstance(reading, StumbleError):
                 return [self._node(inner, reading)]
-        if self.asides.asking.bids(inner):
+        if self.asides.bids(inner):
             message = f"`{text.content}` is taken for a remark: what it asks for is not planned"
             hint = "write it as a step if it is to be done"
             self.diagnostics.warning("remark", message, text.span(), hint)
@@ -90,30 +86,33 @@ class SentenceReader:
         if self._is_stray(text, item):
             _ask_of_stray(text, self.listed, self.diagnostics)
             return [Unread(span=text.span())]
-        if item.line.number is None and self.asides.asking.ranks(text):
+        if item.line.number is None and self.asides.ranks(text):
             return self._ask_of_rank(text)
         self.listed = _kind_listed(text, tuple(self.understanding.types(text)))
         stands_over = item.line.heading or text.content.endswith(":")
-        if stands_over and self.preamble.introduces(text):
+        if stands_over and self.fields.introduces(text):
             return []
         if item.line.heading and {*self.understanding.types(text)} == {"KIND"}:
             self.note(text, "a heading")  # `Pressure gauges` over steps
             return []
-        if not self.ordered and self.preamble.whole_mission(text):
+        if not self.ordered and self.fields.whole_mission(text):
             return []
         reading = self.understanding.read(text)
         if isinstance(reading, StumbleError) or "WORD" in self.understanding.types(text):
             respelled = self.understanding.respelled(text)
             if respelled is not None:
                 text, reading = respelled, self.understanding.read(respelled)
-                if stands_over and self.preamble.introduces(text):
+                if stands_over and self.fields.introduces(text):
                     return []
         if isinstance(reading, StumbleError):
             cut = self.asides.without(text, first=not self.begun)
             if cut is not None:
                 text, asides = cut
                 for aside in asides:
-                    self._aside(aside)
+                    if self.asides.corrects(aside) and not self.asides.is_reason(aside):
+                        ask_of_remark(aside, self.diagnostics)
+                    else:
+                        self.note(aside, "a remark")
                 reading = self.understanding.read(text)
         if isinstance(reading, StumbleError):
             return self._not_understood(text, item, reading)
@@ -132,13 +131,6 @@ class SentenceReader:
             self.diagnostics.error("stray-clause", message, text.span(), hint)
             return [Unread(span=text.span())]
         return [node]
-
-    def _aside(self, aside: ScriptText) -> None:
-        """Says that a part of a sentence has no effect, or asks about it."""
-        if self.asides.asking.corrects(aside) and not self.asides.is_reason(aside):
-            ask_of_remark(aside, self.diagnostics)
-        else:
-            self.note(aside, "a remark")
 
     def _announced(self, text: ScriptText, node: Said) -> list[Said]:
         """What a line over steps of their own says besides `do the following:`."""
@@ -178,31 +170,77 @@ class SentenceReader:
         self, text: ScriptText, item: LineItem, stumble: StumbleError
     ) -> list[Said]:
         """What makes no sense: said of the mission as a whole, a title, small talk or an error."""
-        if self.preamble.whole_mission(text):
+        if self.fields.whole_mission(text):
             return []
         free = item.line.mark in (LineMark.NONE, LineMark.BULLET) and item.line.number is None
-        if free and self.preamble.leaves_open(text):
+        if free and self.fields.leaves_open(text):
             return []
         if free and self.asides.is_small_talk(text):
             self.note(text, "a remark")
             return []
-        header = self.fields.reader.values.header
+        header = self.fields.header
         first = not self.begun and header.title is None and item.line.number is None
-        title = self.titles.found(text, item, first)
+        title = self._title(text, item, first)
         if title is not None:
             return self._entitled(title, item, first)
-        if not self.labels.is_unknown(text):
-            not_understood(text, stumble, self.understanding, self.diagnostics)
+        if not self.fields.is_unknown(text):
+            self.understanding.not_understood(text, stumble)
         self.begun = True
         return [Unread(span=text.span())]
 
-    def _entitled(self, title: FoundTitle, item: LineItem, first: bool) -> list[Said]:
+    # ---- titles and headings, with what stands behind them: `Evening round, at most 40 minutes`
+
+    def _title(self, text: ScriptText, item: LineItem, first: bool) -> _Title | None:
+        """The title that a text may be. `first`: nothing but it has been read, and it is no
+        step."""
+        if not first and not self._is_heading(text, item):
+            return None
+        titled = self.fields.behind(text) if first else None
+        if titled is not None and self.asides.is_title(titled[0]):
+            return _Title(titled[0], fields=titled[1])
+        alone = text.content == item.text.content
+        over = first and alone and item.line.heading and self.asides.stands_for_title(text)
+        if over or self.asides.is_title(text):
+            return _Title(text)
+        if not first or "," not in text.content:
+            return None
+        head = text[: text.content.index(",")]
+        parts = self._behind(text[len(head.content) + 1 :].strip())
+        return _Title(head, parts=parts) if self.asides.is_title(head) and parts else None
+
+    def _behind(self, text: ScriptText) -> tuple[ScriptText, ...]:
+        """The parts of what stands behind a title, if all of them make sense."""
+        commas = [i for i, sign in enumerate(text.content) if sign == ","]
+        ends = [*commas, len(text.content)]
+        starts = [0, *(comma + 1 for comma in commas)]
+        parts = tuple(text[a:b].strip() for a, b in zip(starts, ends, strict=True))
+        sensible = (p for p in (parts, (text,)) if all(self._makes_sense(part) for part in p))
+        return next(sensible, ())
+
+    def _makes_sense(self, text: ScriptText) -> bool:
+        return self.fields.says_whole(text) or self.understanding.fits(text)
+
+    def _is_heading(self, text: ScriptText, item: LineItem) -> bool:
+        """Whether a line stands over others: marked as a heading, or with items of its own."""
+        line = item.line
+        if self.fields.has_value(text):
+            return False
+        whole = text.content == item.text.content.rstrip(".!")
+        above = bool(item.items) or text.content.endswith(":")
+        return line.heading or (whole and line.number is None and above)
+
+    def _entitled(self, title: _Title, item: LineItem, first: bool) -> list[Said]:
         """Keeps a title, and reads what stands behind it."""
         self.begun = True
         if first:
             self._entitle(title.head, asked=not self.asides.is_title(title.head))
-        elif self.asides.asking.sets_aside(title.head):
-            _ask_of_heading(title.head, self.diagnostics)
+        elif self.asides.sets_aside(title.head):
+            message = (
+                f"`{title.head.content}` may say that what stands below it is not to be done, "
+            )
+            message += "or not always"
+            hint = "leave out what is not to be done, and the heading; or write another heading"
+            self.diagnostics.error("ambiguous-title", message, title.head.span(), hint)
         else:
             self.note(title.head, "a heading")
         if title.fields is not None:
@@ -211,13 +249,13 @@ class SentenceReader:
         said: list[Said] = []
         for part in title.parts:
             reading = self.understanding.read(part)
-            if not self.preamble.whole_mission(part) and not isinstance(reading, StumbleError):
+            if not self.fields.whole_mission(part) and not isinstance(reading, StumbleError):
                 said.append(self._node(part, reading))
         return said
 
     def _entitle(self, title: ScriptText, asked: bool = False) -> None:
         """Takes a text for the title; with a warning, where something may be asked for in it."""
-        header = self.fields.reader.values.header
+        header = self.fields.header
         header.title = Text(span=title.span(), text=title.content)
         header.format_title = self.asides.is_explicit_title(title)
         if asked:
@@ -234,14 +272,6 @@ def _is_amend(node: Said) -> bool:
     if not isinstance(node, Sentence) or node.cases or not node.orders:
         return False
     return all(isinstance(order, Amend) for order in node.orders)
-
-
-def _ask_of_heading(heading: ScriptText, diagnostics: Diagnostics) -> None:
-    message = (
-        f"`{heading.content}` may say that what stands below it is not to be done, or not always"
-    )
-    hint = "leave out what is not to be done, and the heading; or write another heading"
-    diagnostics.error("ambiguous-title", message, heading.span(), hint)
 
 
 def _ask_of_stray(text: ScriptText, listed: str, diagnostics: Diagnostics) -> None:

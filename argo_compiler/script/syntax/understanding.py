@@ -6,20 +6,20 @@ from collections.abc import Mapping
 from functools import cache
 from itertools import islice, product
 
+from argo_compiler.base.listing import listed
 from argo_compiler.script.syntax.building.sentences import build
 from argo_compiler.script.syntax.grammar.parser import Branch, StumbleError, sentence_grammar
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, quotes
 from argo_compiler.script.syntax.text.spelling import candidates
-from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.nouns import Kind
-from argo_compiler.script.syntax.tree.orders import Sentence
+from argo_compiler.script.syntax.tree.orders import Fact, Sentence
 from argo_compiler.script.syntax.tree.places import FloorName, Location
 from argo_compiler.script.syntax.words.language import Language
 from argo_compiler.script.syntax.words.lexer import words, words_of
 from argo_compiler.script.syntax.words.lexicon import Entry, Lexicon, folded
 from argo_compiler.script.syntax.words.prose import either
 from argo_compiler.script.syntax.words.unknown import UnknownFigure
-from argo_compiler.script.syntax.words.word import Word
+from argo_compiler.script.syntax.words.word import VERBS, Word
 
 Reading = tuple[Branch, list[Word]]
 _AREA = ("AREA", "NUMBER")
@@ -33,6 +33,15 @@ _WORD = re.compile(r"(?<![\w.'-])(?=[^\W\d_]*[0-9])[^\W_]{4,}(?![\w-])")
 _LETTERS = {"0": "o", "1": "li", "5": "s", "8": "b"}
 """what text recognition takes for figures"""
 _DIGITS = str.maketrans("lIi|Oo", "111100")
+_MOST_TOLD = 8
+_UNTOLD = frozenset(
+    [
+        *("STRING", "LPAR_CALLED", "LPAR_BOUND", "SECOND_BOUND", "JOINTS", "STANDING", "SHOWN_IN"),
+        *("ABOUT", "LEAVING", "JOINT", "X", "Y", "Z", "RAD", "MODE", "VALUE", "FINISHING"),
+        *("STOPPING", "INCLUDED", "EXCLUDED", "ENDLESS", "IN_CIRCLES"),
+    ]
+)
+"""terminals that need not be named, as they are rare"""
 
 
 class Understanding:
@@ -63,11 +72,11 @@ class Understanding:
     def types(self, text: ScriptText) -> tuple[str, ...]:
         return tuple(word.type for word in self.words(text))
 
-    def read(self, text: ScriptText) -> Reading | StumbleError:
-        """The tree of a sentence, or where the grammar can't go on."""
+    def read(self, text: ScriptText, start: str = "sentence") -> Reading | StumbleError:
+        """The tree of a sentence, or of what `start` names, or where the grammar can't go on."""
         found = self.words(text)
         try:
-            return self.grammar.tree(tuple(word.type for word in found)), found
+            return self.grammar.tree(tuple(word.type for word in found), start), found
         except StumbleError as stumble:
             return stumble
 
@@ -80,12 +89,11 @@ class Understanding:
             return False
         if text.content.endswith(",") or tuple(w.type for w in found) == _AREA:
             return False
-        try:
-            tree = self.grammar.tree(tuple(word.type for word in found))
-        except StumbleError:
+        reading = self.read(text)
+        if isinstance(reading, StumbleError):
             return False
         last = found[-1]
-        return not (last.type == "KIND" and not last.value[2]) and not _is_amend(tree)
+        return not (last.type == "KIND" and not last.value[2]) and not _is_amend(reading[0])
 
     def unfinished(self, text: ScriptText) -> ScriptText | None:
         """The joint with which a text ends, if it does."""
@@ -100,12 +108,10 @@ class Understanding:
 
     def location(self, text: ScriptText) -> Location | tuple[FloorName, ...] | None:
         """The place that a text names, if it names one and says nothing else."""
-        found = self.words(text)
-        try:
-            tree = self.grammar.tree(tuple(word.type for word in found), "location")
-        except StumbleError:
+        reading = self.read(text, "location")
+        if isinstance(reading, StumbleError):
             return None
-        where: Location | tuple[FloorName, ...] = build(tree, found, text, self.diagnostics)
+        where: Location | tuple[FloorName, ...] = build(*reading, text, self.diagnostics)
         return where
 
     # ---- slips
@@ -129,7 +135,9 @@ class Understanding:
             for (word, _), meant_word in zip(reversed(slips), reversed(chosen), strict=True):
                 fixed = fixed.replace(word.start, word.end, meant_word)
             reading = self.read(fixed)
-            if not isinstance(reading, StumbleError) and _all_known(reading[1]):
+            if isinstance(reading, StumbleError):
+                continue
+            if all(word.type != "WORD" for word in reading[1]):
                 # `guages` are `gauges` or `gages`, which are the same
                 said = tuple((word.type, str(word.value)) for word in reading[1])
                 found.setdefault(said, (fixed, chosen))
@@ -181,6 +189,59 @@ class Understanding:
             message = f"read `{said}` as `{meant}`"
             self.diagnostics.warning("respelled", message, text.span(start, end))
 
+    # ---- what makes no sense
+
+    def not_understood(self, text: ScriptText, stumble: StumbleError) -> None:
+        """Add the error of a sentence that makes no sense, at the words that make none, with what
+        may stand there."""
+        found = self.words(text)
+        at = next((w for w in found if w.type in ("WORD", "CANNOT")), None)
+        if at is None and stumble.at < len(found):
+            at = found[stumble.at]
+        hint = self._hint(text, at, found, stumble)
+        if at is None:
+            message = "the sentence ends where more is expected"
+            self.diagnostics.error("unfinished", message, text.span(len(text.content)), hint)
+            return
+        said = text.content[at.start : at.end]
+        message = f"can't understand `{said}` here"
+        if at.type == "CANNOT":
+            message = f"`{said}` is nothing that the robot can do"
+        self.diagnostics.error("not-understood", message, text.span(at.start, at.end), hint)
+
+    def _hint(
+        self, text: ScriptText, at: Word | None, found: list[Word], stumble: StumbleError
+    ) -> str:
+        parts = []
+        if at is not None and at.type == "WORD":
+            said = text.content[at.start : at.end]
+            meant = candidates(said, self.known)
+            if meant and said.lower() not in meant:
+                choices = listed((f"`{word}`" for word in sorted(meant)[:3]), "or")
+                parts.append(f"is {choices} meant?")
+        if at is None or (stumble.at < len(found) and found[stumble.at] is at):
+            before = tuple(word.type for word in found[: stumble.at])
+            follow = self._may_follow(before)
+            if follow:
+                parts.append(f"here may stand {listed(follow, 'or')}")
+        samples = self.language.prose.samples
+        verb = next((w.type for w in found if w.type in samples), "MEASURE")
+        parts.append(f"say, `{samples[verb]}`")
+        return "; ".join(parts)
+
+    def _may_follow(self, before: tuple[str, ...]) -> list[str]:
+        """What the grammar accepts behind these words, in words of the language. Where an order may
+        begin there is too much to be told."""
+        accepted = self.grammar.accepted(before)
+        if accepted.issuperset(VERBS[:4]):
+            return []
+        prose, lexicon = self.language.prose, self.language.lexicon
+        shown = {type_: said for type_, said in prose.kinds.items() if type_ in accepted}
+        for (type_, _), phrases in lexicon.phrases.items():
+            if type_ in accepted and type_ not in _UNTOLD:
+                shown.setdefault(type_, f"`{phrases[0]}`")
+        return list(dict.fromkeys(shown.values()))[:_MOST_TOLD]
+
 
 def _both(one: Lexicon) -> list[dict[Entry, list[str]]]:
     """The phrases of a language and of the other one."""
@@ -208,10 +269,6 @@ def _identified(lexicon: Lexicon) -> re.Pattern[str]:
         for phrase in said
     ]
     return re.compile(rf"(?<!\w)(?:{either('|'.join(kinds))})\s+$", re.IGNORECASE)
-
-
-def _all_known(found: list[Word]) -> bool:
-    return all(word.type != "WORD" for word in found)
 
 
 def _is_amend(tree: Branch) -> bool:

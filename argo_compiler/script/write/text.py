@@ -1,9 +1,13 @@
-"""How the canonical script writes texts, numbers, poses and lines."""
+"""How the canonical script writes texts, numbers, poses, places and lines."""
 
+import re
 from collections.abc import Iterable
 from math import degrees, radians
 
+from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.model import Pose
+from argo_compiler.script.syntax.words.language import Language
+from argo_compiler.script.syntax.words.lexer import words
 from argo_compiler.script.syntax.words.numbers import read_figure
 
 WIDTH = 100
@@ -13,6 +17,7 @@ _PIECE = 70
 INDENT = "   "
 _MARKS = '*`"\\'
 """printable ASCII that needs an escape"""
+_WORDS = re.compile(r"[a-z]+(?: [a-z]+)*")
 
 
 class UnwritableError(Exception):
@@ -41,17 +46,14 @@ def _escaped(character: str) -> str:
         plain = character.isprintable() and character not in _MARKS
     else:
         # Of letters, the ligatures and those that change their length in lower case.
-        plain = character.isalpha() and len(character.lower()) == 1 and not _is_ligature(character)
+        ligature = "\ufb00" <= character <= "\ufb4f"
+        plain = character.isalpha() and len(character.lower()) == 1 and not ligature
     if plain:
         return character
     if character in '"\\':
         return "\\" + character
     units = character.encode("utf-16-be")
     return "".join(f"\\u{units[i : i + 2].hex()}" for i in range(0, len(units), 2))
-
-
-def _is_ligature(character: str) -> bool:
-    return "\ufb00" <= character <= "\ufb4f"
 
 
 def number(value: float) -> str:
@@ -124,3 +126,37 @@ def wrapped(text: str, indent: str = "") -> list[str]:
         else:
             current += (" " if current.strip() else "") + chunk
     return [*lines, current]
+
+
+class Places:
+    """The site's places by their poses, as a script names them."""
+
+    def __init__(self, catalog: Catalog) -> None:
+        language = Language.of("", [place.name for place in catalog.places])
+        self._areas = {area.dock: area.number for area in reversed(catalog.areas)}
+        self._docks = {area.number: area.dock for area in reversed(catalog.areas)}
+        self._names = {
+            place.pose: f"the {place.name}"
+            for place in reversed(catalog.places)
+            if _WORDS.fullmatch(place.name) and _is_place(place.name, language)
+        }
+
+    def dock(self, area: int) -> Pose | None:
+        """The docking station in the starting area of this number."""
+        return self._docks.get(area)
+
+    def name(self, pose: Pose) -> str | None:
+        """What the site calls the place with this pose."""
+        return self._names.get(pose)
+
+    def location(self, pose: Pose) -> str:
+        """The pose as a place or area of the site if it is one, else in coordinates."""
+        if pose in self._names:
+            return self._names[pose]
+        return f"starting area {self._areas[pose]}" if pose in self._areas else point(pose)
+
+
+def _is_place(name: str, language: Language) -> bool:
+    """Whether the words stand for that place, and for nothing else, behind `go to`."""
+    found = words(f"go to the {name}", language.lexicon)
+    return [word.type for word in found] == ["GO", "PLACE"] and found[1].value == name

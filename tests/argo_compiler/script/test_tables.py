@@ -9,7 +9,7 @@ from lark import Lark
 
 from argo_compiler.script.syntax.grammar import tables
 from argo_compiler.script.syntax.grammar.parser import Grammar, StumbleError
-from argo_compiler.script.syntax.words import tables as lexicon_tables
+from argo_compiler.script.syntax.words import loading
 from argo_compiler.script.syntax.words.language import Language
 from argo_compiler.script.syntax.words.lexer import words
 
@@ -21,15 +21,13 @@ def test_saved_tables_are_up_to_date(monkeypatch: pytest.MonkeyPatch) -> None:
         pytest.fail("the tables are not up to date: run `make generated`")
 
     monkeypatch.setattr(tables, "make_parser", not_current)
-    monkeypatch.setattr(lexicon_tables, "make_lexicons", not_current)
+    monkeypatch.setattr(loading, "make_lexicons", not_current)
     tables.load_parser()
-    lexicon_tables.load_lexicons()
+    loading.load_lexicons()
 
 
 def test_saved_lexicons_are_as_new_ones() -> None:
-    for saved, new in zip(
-        lexicon_tables.load_lexicons(), lexicon_tables.make_lexicons(), strict=True
-    ):
+    for saved, new in zip(loading.load_lexicons(), loading.make_lexicons(), strict=True):
         assert vars(saved) == vars(new)
 
 

@@ -1,12 +1,14 @@
-"""Makes conditions."""
+"""Makes conditions, and tells what `and` and `or` join in them.
 
-import re
-from dataclasses import replace
-from functools import cache
+Where both are said it is a comma that tells what belongs together: `A and B, or C`. Without one it
+is asked about, with both readings.
+"""
 
-from argo_compiler.script.syntax.building.alternatives import alternatives, is_named
-from argo_compiler.script.syntax.building.figures import Signed, duration
-from argo_compiler.script.syntax.building.part import Make, RulePart
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise, product
+
+from argo_compiler.script.syntax.building.part import Make, RulePart, Signed, duration
 from argo_compiler.script.syntax.tree.conditions import (
     Amount,
     Asked,
@@ -23,8 +25,16 @@ from argo_compiler.script.syntax.tree.conditions import (
     TooLate,
 )
 from argo_compiler.script.syntax.tree.nouns import Nouns
-from argo_compiler.script.syntax.words.loading import everywhere
+from argo_compiler.script.syntax.words.loading import pattern
 from argo_compiler.script.syntax.words.word import Word
+
+_Alternatives = tuple[tuple[Asked, ...], ...]
+_MOST = 64
+"""alternatives of one condition"""
+_NEGATING = r"\b<negating>\b(?!.*\b<closing>\W*$)"
+_BOUNDING = r"<bounding>(?!\w)"
+"""how a bound begins that has no verb of its own"""
+_BEYOND = {"OR_MORE": Relation.AT_LEAST, "OR_LESS": Relation.AT_MOST}
 
 
 def require_moment(part: RulePart) -> None:
@@ -45,7 +55,9 @@ def _is_failure(test: Test) -> bool:
 
 
 def _compared(part: RulePart) -> Compared:
-    relation = Relation[part.children[0].type]
+    """`above 75 %`, `75 % or more`"""
+    beyond = part.word("OR_MORE", "OR_LESS")
+    relation = _BEYOND[beyond.type] if beyond is not None else Relation[part.children[0].type]
     return Compared(span=part.span, relation=relation, bound=part.the(Amount))
 
 
@@ -64,12 +76,6 @@ def _exactly(part: RulePart) -> Between:
     return Between(span=part.span, low=amount, high=amount, inclusive=True)
 
 
-def _beyond(part: RulePart) -> Compared:
-    """`75 % or more`."""
-    relation = Relation.AT_LEAST if part.has("OR_MORE") else Relation.AT_MOST
-    return Compared(span=part.span, relation=relation, bound=part.the(Amount))
-
-
 def _predicate(part: RulePart) -> tuple[Predicate, bool, str]:
     negated = part.has("NOT")
     state = part.word("STATE")
@@ -83,10 +89,6 @@ def _predicate(part: RulePart) -> tuple[Predicate, bool, str]:
         found = plain or _exactly(part)
     verb = part.word("IS")
     return found, negated, str(verb.value) if verb is not None else ""
-
-
-def _stale(part: RulePart) -> InState:
-    return InState(span=part.span, state=TaskState.STALE, age=duration(part))
 
 
 def _detail(part: RulePart) -> dict[str, object]:
@@ -116,10 +118,6 @@ def _test(part: RulePart) -> Test:
     )
 
 
-def _occurs(part: RulePart) -> Occurs:
-    return Occurs(span=part.span, event=part.the_word("EVENT").value)
-
-
 def _battery(part: RulePart) -> BatteryDrops:
     compared = part.the(Compared)
     return BatteryDrops(span=part.span, relation=compared.relation, level=compared.bound)
@@ -137,7 +135,7 @@ def _condition(part: RulePart) -> SaidCondition:
             subject = test.subject
         tests.append(test)
     _require_plain_negation(part)
-    found = alternatives(part, tests, [is_named(test) for test in said])
+    found = _alternatives(part, tests, [_is_named(test) for test in said])
     return SaidCondition(span=part.span, alternatives=found)
 
 
@@ -149,38 +147,125 @@ def _require_plain_negation(part: RulePart) -> None:
         parted = joint.type == "OR_TEST" or (joint.type == "AND_TEST" and plain)
         said, behind = content[start : joint.start], content[joint.end :].lstrip()
         start = joint.end
-        if parted and _negating().search(said) and _bounding().match(behind):
+        if parted and pattern(_NEGATING).search(said) and pattern(_BOUNDING).match(behind):
             message = "`not` can be said of the first of these only, or of both"
             hint = "write `is not ... and is not ...`, or `is not ... or is ...`"
             part.error("ambiguous-and-or", message, hint)
             return
 
 
-@cache
-def _negating() -> re.Pattern[str]:
-    return re.compile(
-        rf"\b(?:{everywhere('negating')})\b(?!.*\b(?:{everywhere('closing')})\W*$)", re.IGNORECASE
-    )
+# ---- what is joined
 
 
-@cache
-def _bounding() -> re.Pattern[str]:
-    """How a bound begins that has no verb of its own."""
-    return re.compile(rf"(?:{everywhere('bounding')})(?!\w)", re.IGNORECASE)
+@dataclass(frozen=True)
+class _Joint:
+    """What stands between two tests."""
+
+    said: str
+    """`and` or `or`"""
+    parts: bool
+    """whether a comma parts the two sides"""
+    start: int
+    """where it stands in the text"""
+
+
+def _alternatives(part: RulePart, tests: Sequence[Asked], named: Sequence[bool]) -> _Alternatives:
+    """The alternatives, of each of which all tests must hold; `named` tells which tests say what
+    they ask of. Those that do not belong to the one before: `above 5 and below 7`."""
+    joints = tuple(_joints(part.every(Word)))
+    found = _joined(tests, joints, named)
+    if found is None:
+        _ask(part, joints, "put a comma where the two sides part, or write a sentence for each")
+        return (tuple(tests),)
+    if len(found) > _MOST:
+        message = f"this condition has more than {_MOST} alternatives"
+        part.error("condition", message, "divide it into several sentences")
+    return found
+
+
+def _joints(words: Sequence[Word]) -> Iterable[_Joint]:
+    """The joints; a comma alone is as the joint behind it, which then ends a list: `A, B, or C`."""
+    found: list[_Joint] = []
+    for i in range(len(words) - 1, -1, -1):
+        word = words[i]
+        said = "or" if word.type.startswith("OR_") else "and"
+        if found and word.value == ",":
+            said = found[-1].said
+        listed = word.value == "," or (i > 0 and words[i - 1].value == ",")
+        found.append(_Joint(said, word.value[:1] in ",;" and not listed, word.start))
+    return reversed(found)
+
+
+def _joined(
+    tests: Sequence[Asked], joints: Sequence[_Joint], named: Sequence[bool]
+) -> _Alternatives | None:
+    """None: it can be read in two ways."""
+    said = {joint.said for joint in joints}
+    if len(said) < 2:
+        return tuple((test,) for test in tests) if said == {"or"} else (tuple(tests),)
+    at = [i for i, joint in enumerate(joints) if joint.parts]
+    if not at:
+        at = [i for i, joint in enumerate(joints) if joint.said == "or" and named[i + 1]]
+        others = [joint.said for i, joint in enumerate(joints) if i not in at]
+        inner = [named[i + 1] for i in range(len(joints)) if i not in at]
+        if not at or "or" in others or any(inner):
+            return None
+    outer = {joints[i].said for i in at}
+    bounds = [-1, *at, len(joints)]
+    parts = [
+        _joined(tests[a + 1 : b + 1], joints[a + 1 : b], named[a + 1 : b + 1])
+        for a, b in pairwise(bounds)
+    ]
+    known = [part for part in parts if part is not None]
+    if len(outer) > 1 or len(known) < len(parts):
+        return None
+    if outer == {"or"}:
+        return sum(known, ())
+    found: _Alternatives = ((),)
+    for part in known:
+        found = tuple(one + other for one, other in product(found, part))
+        if len(found) > _MOST:
+            break
+    return found
+
+
+def require_one_joint(part: RulePart) -> None:
+    """Asks about a list of checkpoints that has both."""
+    words = [word for word in part.every(Word) if word.type != "EXCEPT"]
+    joints = tuple(_joints(words))
+    if len({joint.said for joint in joints}) > 1:
+        _ask(part, joints, "write a sentence, or what is asked of them, for each")
+
+
+def _ask(part: RulePart, joints: Sequence[_Joint], hint: str) -> None:
+    """Names both readings, of the first two joints that differ."""
+    content = part.text.content
+    second = next(i for i in range(1, len(joints)) if joints[i].said != joints[i - 1].said)
+    readings = []
+    for joint in (joints[second], joints[second - 1]):
+        before, behind = content[part.start : joint.start], content[joint.start : part.end]
+        readings.append(f"`{before.rstrip(' ,;')}, {behind.lstrip(' ,;')}`")
+    message = f"this can be read as {readings[0]} or as {readings[1]}"
+    part.error("ambiguous-and-or", message, hint)
+
+
+def _is_named(test: Asked) -> bool:
+    """Whether a test says what it asks of."""
+    return not isinstance(test, Test) or test.subject is not None
 
 
 RULES: dict[str, Make] = {
     "compared": _compared,
     "between": _between,
     "exactly": _exactly,
-    "beyond": _beyond,
+    "beyond": _compared,
     "predicate": _predicate,
     "age": duration,
-    "stale": _stale,
+    "stale": lambda part: InState(span=part.span, state=TaskState.STALE, age=duration(part)),
     "too_late": lambda part: TooLate(span=part.span),
     "detail": _detail,
     "test": _test,
-    "occurs": _occurs,
+    "occurs": lambda part: Occurs(span=part.span, event=part.the_word("EVENT").value),
     "battery": _battery,
     "condition": _condition,
 }

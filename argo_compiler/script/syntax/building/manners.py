@@ -7,8 +7,15 @@ from typing import Any
 
 from argo_compiler.il import Afterwards, Order
 from argo_compiler.script.syntax.building.conditions import require_moment
-from argo_compiler.script.syntax.building.figures import Signed, duration, seconds, speed, whole
-from argo_compiler.script.syntax.building.part import Make, RulePart
+from argo_compiler.script.syntax.building.part import (
+    Make,
+    RulePart,
+    Signed,
+    duration,
+    seconds,
+    speed,
+    whole,
+)
 from argo_compiler.script.syntax.tree.conditions import Occurs, SaidCondition
 from argo_compiler.script.syntax.tree.manner import Joints, Manner
 from argo_compiler.script.syntax.tree.places import Coordinates
@@ -106,14 +113,6 @@ def _joints(part: RulePart) -> Manner:
     return Manner(joints=Joints(names=names, **given))
 
 
-def _values(part: RulePart) -> tuple[float, ...]:
-    return tuple(signed.value for signed in part.every(Signed))
-
-
-def _on_limit(part: RulePart) -> Manner:
-    return Manner(on_limit=next(_ON_LIMIT[w.type] for w in part.children if w.type in _ON_LIMIT))
-
-
 def combined(part: RulePart, manners: Iterable[Manner]) -> Manner | None:
     """All of them in one; what is said twice is an error."""
     values: dict[str, Any] = {}
@@ -166,7 +165,7 @@ RULES: dict[str, Make] = {
     "shown": lambda part: Manner(shown_in=part.the_word("STRING").value),
     "about": lambda part: Manner(object_id=part.the_word("STRING").value),
     "joints": _joints,
-    "values": _values,
+    "values": lambda part: tuple(signed.value for signed in part.every(Signed)),
     "reading": lambda part: Manner(reading_limit=duration(part)),
-    "on_limit": _on_limit,
+    "on_limit": lambda part: Manner(on_limit=_ON_LIMIT[part.the_word(*_ON_LIMIT).type]),
 }

@@ -3,9 +3,8 @@
 from dataclasses import replace
 from typing import NamedTuple
 
-from argo_compiler.script.syntax.building.alternatives import require_one_joint
-from argo_compiler.script.syntax.building.figures import whole
-from argo_compiler.script.syntax.building.part import Make, RulePart
+from argo_compiler.script.syntax.building.conditions import require_one_joint
+from argo_compiler.script.syntax.building.part import Make, RulePart, whole
 from argo_compiler.script.syntax.tree.nouns import (
     AllOf,
     Kind,
@@ -37,19 +36,11 @@ def _label(part: RulePart) -> Label:
     return Label(whole(part, figure))
 
 
-def _upto(part: RulePart) -> Label:
-    return part.the(Label)
-
-
 def _kind(word: Word | None) -> tuple[Kind | None, bool]:
     if word is None:
         return None, False
     kind, plural = word.value[:2]
     return kind, plural
-
-
-def _quantity(word: Word | None) -> Quantity | None:
-    return None if word is None else Quantity(word.value)
 
 
 def named(part: RulePart) -> list[Noun]:
@@ -73,8 +64,10 @@ def named(part: RulePart) -> list[Noun]:
 def _of(part: RulePart) -> list[Noun]:
     word, nouns = part.children
     quantity = Quantity(word.value)
-    nouns = nouns if isinstance(nouns, list) else [nouns]
-    return [replace(noun, quantity=quantity) for noun in nouns]
+    return [
+        replace(noun, quantity=quantity) if isinstance(noun, Labelled) else noun
+        for noun in (nouns if isinstance(nouns, list) else [nouns])
+    ]
 
 
 def _aka(part: RulePart) -> list[Noun]:
@@ -103,7 +96,6 @@ def _the_one(part: RulePart) -> TheOne:
 
 
 def _pronoun(part: RulePart) -> Pronoun:
-    value = part.word("VALUE")
     them = part.word("THEM", "BOTH")
     number = part.word("NUMBER")
     return Pronoun(
@@ -111,7 +103,6 @@ def _pronoun(part: RulePart) -> Pronoun:
         every=them is not None,
         either=them is not None and them.value == "either",
         or_one=them is not None and them.value == "or one",
-        quantity=_quantity(value),
         count=whole(part, number.value) if number else None,
         kind=_kind(part.word("KIND"))[0],
     )
@@ -136,15 +127,11 @@ def _nouns(part: RulePart) -> Nouns:
     return Nouns(span=part.span, nouns=all_, but=tuple(but), either=either, parted=parted)
 
 
-def _but(part: RulePart) -> Nouns:
-    """`except valve R40`, behind how the others are measured."""
-    return Nouns(span=part.span, nouns=(), but=part.joined(list))
-
-
 RULES: dict[str, Make] = {
-    "but": _but,
+    # `except valve R40`, behind how the others are measured
+    "but": lambda part: Nouns(span=part.span, nouns=(), but=part.joined(list)),
     "label": _label,
-    "upto": _upto,
+    "upto": lambda part: part.the(Label),
     "named": named,
     "of": _of,
     "aka": _aka,

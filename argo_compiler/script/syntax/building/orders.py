@@ -1,12 +1,10 @@
 """Makes orders."""
 
-import re
 from dataclasses import replace
 
-from argo_compiler.script.syntax.building.figures import duration, whole
 from argo_compiler.script.syntax.building.manners import combined
 from argo_compiler.script.syntax.building.nouns import named
-from argo_compiler.script.syntax.building.part import Make, RulePart
+from argo_compiler.script.syntax.building.part import Make, RulePart, duration, whole
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.nouns import Labelled, Nouns, Pronoun
@@ -20,8 +18,11 @@ from argo_compiler.script.syntax.tree.places import (
     PlaceLocation,
     Steps,
 )
-from argo_compiler.script.syntax.words.loading import everywhere
+from argo_compiler.script.syntax.words.loading import pattern
 from argo_compiler.script.syntax.words.word import Word
+
+_WHEREABOUTS = r"\b<whereabouts>\b"
+"""words that say where something is, and not where to: `on the second floor`"""
 
 
 def _manner(part: RulePart) -> Manner | None:
@@ -63,16 +64,11 @@ def _go(part: RulePart) -> ScriptOrder:
     where_to = where(part)
     order = _towards(part, where_to)
     driven = order.manner is not None and order.manner.speed is not None
-    if isinstance(where_to, FloorName) and driven and _says_where(part.said):
+    if isinstance(where_to, FloorName) and driven and pattern(_WHEREABOUTS).search(part.said):
         message = "this may be where the robot goes to, or where it drives at this speed"
         hint = "write `go to floor 2` for the first, the speed behind each order for the second"
         part.error("ambiguous-place", message, hint)
     return order
-
-
-def _says_where(said: str) -> bool:
-    """Whether words say where something is, and not where to: `on the second floor`."""
-    return re.search(rf"\b(?:{everywhere('whereabouts')})\b", said, re.IGNORECASE) is not None
 
 
 def where(part: RulePart) -> Location | FloorName:
@@ -123,11 +119,6 @@ def _start(part: RulePart) -> ScriptOrder:
     return orders.Start(span=part.span, manner=_manner(part), where=place, ends_there=ends)
 
 
-def _start_here(part: RulePart) -> ScriptOrder:
-    where = part.first(Coordinates)
-    return orders.Start(span=part.span, manner=_manner(part), where=where, here=True)
-
-
 def _patrol(part: RulePart) -> ScriptOrder:
     places = next(c for c in part.children if isinstance(c, list))
     said = part.every(Manner)
@@ -166,17 +157,8 @@ def _wait(part: RulePart) -> ScriptOrder:
     return orders.WaitOrder(span=part.span, manner=manner, where=place, person=person, stays=stays)
 
 
-def _waits_between(part: RulePart) -> ScriptOrder:
-    """`Wait 1 minute between two readings`: said of the rounds before."""
-    return orders.Amend(span=part.span, manner=Manner(pause=duration(part)))
-
-
 def _things(part: RulePart) -> list[Nouns | Steps]:
     return [c for c in part.children if isinstance(c, Nouns | Steps)]
-
-
-def _side(part: RulePart) -> Side:
-    return Side.BEFORE if part.has("BEFORE") else Side.AFTER
 
 
 def _add(part: RulePart) -> ScriptOrder:
@@ -228,10 +210,13 @@ RULES: dict[str, Make] = {
     "jump": lambda part: orders.Jump(span=part.span, step=part.the(Steps)),
     "home": _home,
     "start": _start,
-    "start_here": _start_here,
+    "start_here": lambda part: orders.Start(
+        span=part.span, manner=_manner(part), where=part.first(Coordinates), here=True
+    ),
     "patrol": _patrol,
     "wait": _wait,
-    "waits_between": _waits_between,
+    # `wait 1 minute between two readings`: said of the rounds before
+    "waits_between": lambda part: orders.Amend(span=part.span, manner=Manner(pause=duration(part))),
     "target": _target,
     "visit": _visit,
     "beside": lambda part: orders.Beside(
@@ -250,5 +235,5 @@ RULES: dict[str, Make] = {
     "delete": lambda part: orders.Delete(span=part.span, what=_things(part)[0]),
     "move": _move,
     "replace": _replace,
-    "side": _side,
+    "side": lambda part: Side.BEFORE if part.has("BEFORE") else Side.AFTER,
 }

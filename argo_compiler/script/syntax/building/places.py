@@ -2,8 +2,7 @@
 
 from math import inf, pi
 
-from argo_compiler.script.syntax.building.figures import Signed, single, whole
-from argo_compiler.script.syntax.building.part import Make, RulePart
+from argo_compiler.script.syntax.building.part import Make, RulePart, Signed, single, whole
 from argo_compiler.script.syntax.tree.places import (
     AreaLocation,
     Coordinates,
@@ -60,8 +59,10 @@ def _floors(part: RulePart) -> tuple[FloorName, ...]:
             found.append(FloorName(span=part.text.span(word.start, word.end), number=number))
     if part.has("UPTO", "DASH") and len(found) == 2:
         return _range_of_floors(part, *found)
-    if len(found) > 1 and not part.has("ORDINAL") and not _plural(part):
-        said = " and ".join(str(floor.number) for floor in found)
+    floor = part.word("FLOOR")
+    plural = floor is not None and bool(floor.value)
+    if len(found) > 1 and not part.has("ORDINAL") and not plural:
+        said = " and ".join(str(one.number) for one in found)
         message = f"can't tell whether `{said}` are both floors"
         hint = f"write `floors {said}`, or name what else is meant: `checkpoint 4`"
         part.error("ambiguous-floor", message, hint)
@@ -76,11 +77,6 @@ def _range_of_floors(part: RulePart, first: FloorName, last: FloorName) -> tuple
         part.error("empty-range", f"`{part.said}` is no range of floors", hint)
         return first, last
     return tuple(FloorName(span=part.span, number=number) for number in between)
-
-
-def _plural(part: RulePart) -> bool:
-    word = part.word("FLOOR")
-    return word is not None and bool(word.value)
 
 
 def _coordinates(part: RulePart) -> Coordinates:
@@ -110,10 +106,6 @@ def _coordinates(part: RulePart) -> Coordinates:
     )
 
 
-def _height(part: RulePart) -> dict[str, float]:
-    return {"z": single(part)}
-
-
 def _heading(part: RulePart) -> dict[str, float]:
     if word := part.word("QUANTITY"):
         figure, unit = word.value
@@ -126,11 +118,6 @@ def _heading(part: RulePart) -> dict[str, float]:
         return {"yaw": (-1 if part.has("MINUS") else 1) * figure.value * _RADIANS}
     value = single(part)
     return {"yaw": value if part.has("RAD") else value * _RADIANS}
-
-
-def _location(part: RulePart) -> Location | tuple[FloorName, ...]:
-    found: Location | tuple[FloorName, ...] = part.children[-1]
-    return found
 
 
 def _steps(part: RulePart) -> Steps:
@@ -160,9 +147,9 @@ RULES: dict[str, Make] = {
     "floors": _floors,
     "on_floors": lambda part: part.joined(tuple),
     "coordinates": _coordinates,
-    "height": _height,
+    "height": lambda part: {"z": single(part)},
     "heading": _heading,
-    "location": _location,
+    "location": lambda part: part.children[-1],
     "steps": _steps,
     "places": _places,
 }

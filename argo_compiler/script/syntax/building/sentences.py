@@ -1,34 +1,42 @@
-"""Makes sentences, and runs through a sentence's tree to make all of its parts."""
+"""Makes sentences and facts, and runs through a sentence's tree to make all of its parts."""
 
 from dataclasses import replace
 from typing import Any
 
 from argo_compiler.script.syntax.building import (
     conditions,
-    facts,
-    figures,
     manners,
     nouns,
     orders,
+    part,
     places,
 )
-from argo_compiler.script.syntax.building.part import Make, RulePart
+from argo_compiler.script.syntax.building.part import Make, RulePart, T, seconds, whole
 from argo_compiler.script.syntax.grammar.parser import Branch
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.tree.conditions import SaidCondition
-from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.manner import Manner
-from argo_compiler.script.syntax.tree.nouns import Labelled, Pronoun
+from argo_compiler.script.syntax.tree.nouns import Labelled, Nouns, Pronoun
 from argo_compiler.script.syntax.tree.orders import (
     Amend,
+    BackWithin,
     Case,
+    Fact,
     Follow,
+    LeaveOut,
+    MaxDuration,
     Measure,
+    OrderFree,
+    ReadBefore,
     Repeat,
     Rest,
+    RoundsDriven,
     ScriptOrder,
     Sentence,
+    Side,
+    StepsOrdered,
 )
+from argo_compiler.script.syntax.tree.places import Steps
 from argo_compiler.script.syntax.words.word import Word
 
 
@@ -159,17 +167,45 @@ def _both(first: Measure, second: Measure) -> Measure:
     return replace(first, what=nouns, manner=second.manner or first.manner)
 
 
+# ---- facts: what is said of the mission as a whole
+
+
+def _duration(part: RulePart) -> float:
+    return seconds(part, part.the_word("DURATION", "MOST_TIME"))
+
+
+def _back_within(part: RulePart) -> Fact:
+    where = next(c for c in part.children if not isinstance(c, Word))
+    return BackWithin(span=part.span, where=where, seconds=_duration(part))
+
+
+def _in_order(part: RulePart, type_: type[T]) -> dict[str, T]:
+    """What comes first, and what second."""
+    first, second = part.every(type_)
+    if part.the(Side) is Side.AFTER:
+        first, second = second, first
+    return {"first": first, "second": second}
+
+
 _RULES: dict[str, Make] = {
-    **figures.RULES,
+    **part.RULES,
     **nouns.RULES,
     **places.RULES,
     **conditions.RULES,
     **manners.RULES,
     **orders.RULES,
-    **facts.RULES,
     "case": _case,
     "otherwise": _case,
     "sentence": _sentence,
+    "max_duration": lambda part: MaxDuration(span=part.span, seconds=_duration(part)),
+    "back_within": _back_within,
+    "precedence": lambda part: ReadBefore(span=part.span, **_in_order(part, Nouns)),
+    "steps_ordered": lambda part: StepsOrdered(span=part.span, **_in_order(part, Steps)),
+    "rounds_driven": lambda part: RoundsDriven(
+        span=part.span, steps=part.the(Steps), count=whole(part, part.the_word("TIMES").value)
+    ),
+    "order_free": lambda part: OrderFree(span=part.span),
+    "leave_out": lambda part: LeaveOut(span=part.span),
 }
 
 

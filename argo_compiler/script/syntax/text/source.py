@@ -155,10 +155,9 @@ class Diagnostics:
         message: str,
         span: Span | None,
         hint: str | None = None,
-        remedies: tuple[Remedy, ...] = (),
-        choice: RemedyChoice | None = None,
+        remedy: Remedy | RemedyChoice | None = None,
     ) -> None:
-        self._add(Severity.ERROR, code, message, span, hint, remedies, choice)
+        self._add(Severity.ERROR, code, message, span, hint, remedy)
 
     def refuse(
         self,
@@ -166,11 +165,10 @@ class Diagnostics:
         message: str,
         span: Span | None,
         hint: str | None = None,
-        remedies: tuple[Remedy, ...] = (),
-        choice: RemedyChoice | None = None,
+        remedy: Remedy | RemedyChoice | None = None,
     ) -> NoReturn:
         """Adds an error, and gives up what it is about. Raises RefusedError."""
-        self.error(code, message, span, hint, remedies, choice)
+        self.error(code, message, span, hint, remedy)
         raise RefusedError
 
     def each(self, find: Callable[[_Item], _Found], items: Iterable[_Item]) -> list[_Found]:
@@ -199,13 +197,14 @@ class Diagnostics:
         message: str,
         span: Span | None,
         hint: str | None,
-        remedies: tuple[Remedy, ...] = (),
-        choice: RemedyChoice | None = None,
+        remedy: Remedy | RemedyChoice | None = None,
     ) -> None:
         if severity is Severity.ERROR:
             self.errors += 1
             if self.errors > MOST_KEPT:
                 return
+        choice = remedy if isinstance(remedy, RemedyChoice) else None
+        kind = remedy.remedy if isinstance(remedy, RemedyChoice) else remedy
         excerpt = _excerpt(self.source.lines[span.line - 1], span) if span else None
         self.entries.append(
             Diagnostic(
@@ -215,7 +214,7 @@ class Diagnostics:
                 span=span,
                 excerpt=excerpt,
                 hint=hint,
-                remedies=remedies,
+                remedies=() if kind is None else (kind,),
                 choice=choice,
             )
         )

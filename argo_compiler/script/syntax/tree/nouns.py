@@ -58,7 +58,6 @@ class AllOf(Node):
     """how many there are, if that is said: `both valves`"""
     whole: bool = False
     """`everything`, `the whole round`: of no kind"""
-    quantity: Quantity | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,7 +68,6 @@ class TheOne(Node):
     floors: tuple[FloorName, ...] = ()
     plural: bool = False
     """`the valves on the third floor`"""
-    quantity: Quantity | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,7 +79,6 @@ class Pronoun(Node):
     """`one of them`"""
     or_one: bool = False
     """as `sie` in German, which may be one of them as well"""
-    quantity: Quantity | None = None
     count: int | None = None
     """how many they are, if that is said: `the same four`"""
     kind: Kind | None = None

@@ -1,12 +1,10 @@
-"""Orders: what the robot is to do, and changes of the plan."""
+"""Orders: what the robot is to do, and changes of the plan; facts; and sentences of both."""
 
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Self
 
-from argo_compiler.il import EventKind
 from argo_compiler.script.syntax.tree.conditions import SaidCondition
-from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.node import Node
 from argo_compiler.script.syntax.tree.nouns import Nouns
@@ -83,7 +81,6 @@ class Patrol(ScriptOrder):
 class WaitOrder(ScriptOrder):
     """`Wait 90 s`, `wait until #1 is below 3`, `wait for the all-clear`."""
 
-    event: EventKind | None = None
     person: bool = False
     """for the operator"""
     where: Location | FloorName | None = None
@@ -245,6 +242,63 @@ class Placed(Node):
     placing: Placing
     orders: int
     """how many of the sentence's orders begin before it"""
+
+
+# ---- what a sentence says of the mission as a whole
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fact(Node):
+    """Something that holds for the whole mission."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MaxDuration(Fact):
+    """`The mission may take 20 minutes at most`."""
+
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BackWithin(Fact):
+    """`It has to be back in its dock in starting area 1 within 35 minutes`."""
+
+    where: Location
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReadBefore(Fact):
+    """`Checkpoint 7 has to be read before checkpoint 18`."""
+
+    first: Nouns
+    second: Nouns
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OrderFree(Fact):
+    """`The order does not matter`."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StepsOrdered(Fact):
+    """`Always do step 2 before step 5`."""
+
+    first: Steps
+    second: Steps
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LeaveOut(Fact):
+    """`Leave out what does not fit`: each task may be."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RoundsDriven(Fact):
+    """`Steps 2 and 3 are a round that is driven three times`."""
+
+    steps: Steps
+    count: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

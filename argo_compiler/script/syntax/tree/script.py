@@ -4,9 +4,8 @@ from dataclasses import dataclass, field
 
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Mode, Order
-from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.node import Node
-from argo_compiler.script.syntax.tree.orders import Sentence
+from argo_compiler.script.syntax.tree.orders import Fact, Sentence
 from argo_compiler.script.syntax.tree.places import Coordinates, Steps
 
 
@@ -21,7 +20,6 @@ class Text(Node):
 class Areas(Node):
     """A field that names starting areas: more than one leaves the choice to the preparation."""
 
-    text: str
     areas: tuple[int, ...]
 
 

@@ -6,29 +6,14 @@ condition or with another order is known there only because the joint's type say
 
 from dataclasses import replace
 
-from argo_compiler.script.syntax.words.word import Word
+from argo_compiler.script.syntax.words.word import VERBS, Word
 
-VERBS = (
-    *("MEASURE", "KEEP_MEASURING", "GO", "HOME", "START", "START_HERE", "PATROL", "WAIT", "PAUSE"),
-    *("END", "ABORT", "GO_ON", "RECHARGE", "REPORT", "REPEAT", "DO_FOLLOWING", "ADD", "DELETE"),
-    *("REPLACE", "MOVE", "JUMP", "RETRY", "DOCK", "DONE", "MEET"),
-    *("PARK", "SPARE", "FROM"),
-)
 _NOUNS = [
     *("KIND", "HASH", "IDENT", "STRING", "ALL", "IT", "THEM", "BOTH", "THIS", "OF", "VALUE"),
     "EVERYTHING",
 ]
 _TESTS = [
-    "IS",
-    "GREATER",
-    "LESS",
-    "AT_LEAST",
-    "AT_MOST",
-    "BETWEEN",
-    "EXACTLY",
-    "STATE",
-    "NOT",
-    "FAILS",
+    *("IS", "GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "EXACTLY", "STATE", "NOT", "FAILS")
 ]
 _PLACES = ["FLOOR", "FLOOR_NAME", "ORDINAL", "AREA", "PLACE"]
 _IN_BRACKETS = frozenset(

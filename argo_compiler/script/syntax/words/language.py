@@ -9,7 +9,6 @@ from itertools import islice
 from argo_compiler.script.syntax.words import loading
 from argo_compiler.script.syntax.words.lexicon import Lexicon, folded
 from argo_compiler.script.syntax.words.prose import Prose
-from argo_compiler.script.syntax.words.tables import load_lexicons
 
 _WORD = re.compile(r"[^\W\d_]+")
 _MOST = 4000
@@ -51,7 +50,7 @@ def place_key(name: str, unsaid: Container[str]) -> str:
 
 @lru_cache(maxsize=8)
 def _lexicons(places: tuple[str, ...]) -> tuple[Lexicon, Lexicon]:
-    one, two = load_lexicons()
+    one, two = loading.load_lexicons()
     named = {place_key(place, one.articles): place for place in reversed(places)}
     for key, place in named.items():
         for lexicon in (one, two):

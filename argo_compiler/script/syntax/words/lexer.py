@@ -5,15 +5,14 @@ import re
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
+from types import MappingProxyType
 from typing import Any
 
+from argo_compiler.script.syntax.words.amounts import read_clock, read_glued
 from argo_compiler.script.syntax.words.joints import joined
-from argo_compiler.script.syntax.words.lengths import read_clock, read_glued
 from argo_compiler.script.syntax.words.lexicon import Lexicon, folded
-from argo_compiler.script.syntax.words.merging import merged
-from argo_compiler.script.syntax.words.negation import negated
+from argo_compiler.script.syntax.words.merging import merged, negated
 from argo_compiler.script.syntax.words.numbers import Figure, compose, read_figure, split_number
-from argo_compiler.script.syntax.words.phrases import longest
 from argo_compiler.script.syntax.words.unknown import UnknownError, UnknownFigure, unknown_text
 from argo_compiler.script.syntax.words.word import Word
 from argo_compiler.script.syntax.words.word_order import arranged
@@ -49,12 +48,7 @@ _UNSAID = frozenset(["FILLER", "IDLE"]) | _PLACED
 def words(text: str, lexicon: Lexicon) -> list[Word]:
     """The words of `text`, with the joints between them told apart by what they join; in another
     language where far more of them are known in that one."""
-    found = _in(text, lexicon)
-    unknown = _unknown(found)
-    if lexicon.other is None or not unknown:
-        return found
-    other = _in(text, lexicon.other)
-    return other if 2 * _unknown(other) < unknown else found
+    return words_of(text, lexicon)
 
 
 def _with_unknown(word: Word, text: str, left: dict[int, UnknownFigure]) -> Word:
@@ -74,19 +68,20 @@ def _unknown(words: list[Word]) -> int:
     return sum(word.type == "WORD" for word in words)
 
 
-def words_of(text: str, lexicon: Lexicon, unknown: Mapping[int, UnknownFigure]) -> list[Word]:
+def words_of(
+    text: str, lexicon: Lexicon, unknown: Mapping[int, UnknownFigure] = MappingProxyType({})
+) -> list[Word]:
     """As `words`; the figures that begin at these places are not known. Raises UnknownError if one
     of them is no number by itself."""
     found = _in(text, lexicon, unknown)
-    if lexicon.other is None or not _unknown(found):
+    strange = _unknown(found)
+    if lexicon.other is None or not strange:
         return found
     other = _in(text, lexicon.other, unknown)
-    return other if 2 * _unknown(other) < _unknown(found) else found
+    return other if 2 * _unknown(other) < strange else found
 
 
-def _in(
-    text: str, lexicon: Lexicon, unknown: Mapping[int, UnknownFigure] | None = None
-) -> list[Word]:
+def _in(text: str, lexicon: Lexicon, unknown: Mapping[int, UnknownFigure]) -> list[Word]:
     found = _looked_up(text, lexicon)
     if unknown:
         left = dict(unknown)
@@ -128,7 +123,7 @@ def _looked_up(text: str, lexicon: Lexicon, unsaid: frozenset[str] = _UNSAID) ->
         if i in apart:
             i += 1
             continue
-        phrase = longest(said, i, lexicon)
+        phrase = lexicon.longest(said, i)
         if phrase is None and pieces[i].lastgroup == "STRING":
             inner = [] if _is_name(found) else _unwrapped(pieces[i], text, lexicon)
             if inner and not (i + 1 < len(pieces) and pieces[i + 1].group() == ":"):
@@ -162,7 +157,7 @@ def _looked_up(text: str, lexicon: Lexicon, unsaid: frozenset[str] = _UNSAID) ->
 def _numbered(piece: re.Match[str], lexicon: Lexicon) -> list[Word]:
     """The words of `LLG2` and `checkpoint4`, kinds and numbers; none of a name such as `R25`."""
     parts = _GLUED_NUMBER.fullmatch(piece.group())
-    phrase = None if parts is None else longest([folded(parts[1])], 0, lexicon)
+    phrase = None if parts is None else lexicon.longest([folded(parts[1])], 0)
     if parts is None or phrase is None or phrase.entry[0] != "KIND":
         return []
     middle = piece.start() + len(parts[1])

@@ -1,11 +1,13 @@
 """The words of a language: which phrase is which terminal of the grammar, and what it means."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import product
 from typing import Any
+
+from argo_compiler.script.syntax.words.word import VERBS
 
 Entry = tuple[str, Any]
 """a terminal and its value"""
@@ -27,6 +29,17 @@ class PhraseStart:
         return PhraseStart, (self.entry, self.next, self.parted)
 
 
+@dataclass(slots=True)
+class FoundPhrase:
+    """A phrase: its entry, how many pieces it takes at its place, and which others behind it."""
+
+    entry: Entry
+    length: int
+    apart: range = range(0)
+
+
+_BEHIND = frozenset(["JOINT", "FILLER", "IF", "UNLESS", "UNTIL", "ELSE", "IF_TIME", "IF_ONLY"])
+_STOPS = frozenset(VERBS) - {"DOCK"} | {"IF", "UNLESS", "ELSE", "BACK"}
 _FIGURE = re.compile(r"(?<!\w)[0-9]+(?:\.[0-9]+)?(?!\w)")
 
 
@@ -96,6 +109,57 @@ class Lexicon:
             self.phrases.setdefault(entry, []).append(phrase)
             if entry[0] == "NUMBER_WORD" and " " not in said:
                 self.numerals[said] = entry[1]
+
+    # ---- phrases in the pieces of a text
+
+    def longest(self, said: Sequence[str], at: int) -> FoundPhrase | None:
+        """The longest phrase from piece `at` on; of a parted one its end decides."""
+        node = self.root.next.get(said[at])
+        if node is None:
+            return None
+        entry, behind, parted = node.entry, at + 1, None
+        if node.parted:
+            parted = self._parted(said, at, at + 1, node)
+        for k in range(at + 1, len(said)):
+            step = node.next.get(said[k])
+            if step is None:
+                if said[k] not in self.passed_over:
+                    break
+                continue
+            node = step
+            if node.entry is not None:
+                entry, behind, parted = node.entry, k + 1, None
+            if node.parted:
+                parted = self._parted(said, at, k + 1, node) or parted
+        if parted is not None:
+            return parted
+        return None if entry is None else FoundPhrase(entry, behind - at)
+
+    def _parted(
+        self, said: Sequence[str], at: int, behind: int, node: PhraseStart
+    ) -> FoundPhrase | None:
+        """The parted phrase that is begun, if its end is found in the same clause."""
+        for k in range(behind, len(said)):
+            for last, entry in node.parted.items():
+                end = k + len(last)
+                if tuple(said[k:end]) == last and self._may_end(said, end, last):
+                    return FoundPhrase(entry, behind - at, range(k, end))
+            if said[k] in (";", ":") or self._type(said[k]) in _STOPS:
+                return None
+        return None
+
+    def _may_end(self, said: Sequence[str], end: int, last: tuple[str, ...]) -> bool:
+        """Return whether a clause may end before piece `end`; the word before may be another."""
+        if end >= len(said) or last[-1] not in self.particles:
+            return True
+        after = said[end]
+        if after in self.passed_over:
+            return False
+        return after in (",", ".", ";", ":", ")") or self._type(after) in _BEHIND
+
+    def _type(self, piece: str) -> str | None:
+        node = self.root.next.get(piece)
+        return node.entry[0] if node is not None and node.entry is not None else None
 
 
 def _words(phrase: str) -> list[str]:

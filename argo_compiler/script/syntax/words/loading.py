@@ -1,4 +1,4 @@
-"""Reads the words of a language from its file, such as `english.toml`."""
+"""Reads the words of a language from its file, such as `english.toml`, or what was saved of it."""
 
 import re
 import tomllib
@@ -6,9 +6,12 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from importlib.resources import files
 from inspect import signature
+from pathlib import Path
 from typing import Any, TypeVar
 
+from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.base.listing import listed
+from argo_compiler.base.saved_tables import are_saved, find_tables, key_of, write_tables
 from argo_compiler.il import EventKind, Mode, Order
 from argo_compiler.script.syntax.tree.nouns import Kind
 from argo_compiler.script.syntax.words.lexicon import Entry, Lexicon, expand
@@ -17,6 +20,9 @@ from argo_compiler.script.syntax.words.prose import Prose, either
 
 _Made = TypeVar("_Made")
 LANGUAGES = ("english", "german")
+_SAVED = "lexicons.tables"
+"""beside the files: to make the lexicons takes a tenth of a second"""
+_MADE_BY = ("lexicon.py", "loading.py", "numbers.py")
 Table = Mapping[str, Any]
 """of a file"""
 _COUNTS = {"one": False, "several": True, "any": None}
@@ -65,6 +71,32 @@ def lexicon(language: str) -> Lexicon:
     return found
 
 
+def make_lexicons() -> tuple[Lexicon, ...]:
+    """Return the lexicons of all languages, made anew of their files."""
+    compare(*LANGUAGES)
+    return tuple(map(lexicon, LANGUAGES))
+
+
+@collector_held()
+def load_lexicons() -> tuple[Lexicon, ...]:
+    """Return what `make_lexicons` does, from what was saved if that is of these files. Nobody else
+    has the same ones, so that the places of a site can be added."""
+    saved: tuple[Lexicon, ...] | None = find_tables(__package__, _SAVED, _key())
+    return make_lexicons() if saved is None else saved
+
+
+def save_lexicons(folder: Path) -> None:
+    """Write what `load_lexicons` reads, unless it is there."""
+    path, key = folder / _SAVED, _key()
+    if not are_saved(path, key):
+        write_tables(path, key, make_lexicons())
+
+
+def _key() -> bytes:
+    languages = [f"{language}.toml" for language in LANGUAGES]
+    return key_of(__package__, [*languages, *_MADE_BY])
+
+
 @cache
 def prose(language: str, besides: str | None = None) -> Prose:
     """What stands around sentences in a language; labels of `besides` are mixed with its own."""
@@ -80,6 +112,13 @@ def everywhere(name: str) -> str:
     """A pattern of the words that `layout` has for `name` in any language."""
     said = (table_of(language)["layout"][name] for language in LANGUAGES)
     return either("|".join(words for words in said if words))
+
+
+@cache
+def pattern(text: str) -> re.Pattern[str]:
+    """Return the pattern, in any case, in whose text `<name>` is what `everywhere` has for it."""
+    whole = re.sub(r"<(\w+)>", lambda name: f"(?:{everywhere(name[1])})", text)
+    return re.compile(whole, re.IGNORECASE)
 
 
 def shown_words(language: str) -> dict[str, dict[str, str]]:

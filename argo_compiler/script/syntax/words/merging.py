@@ -1,13 +1,11 @@
 """Puts words together that are one, such as numbers in words, and tells by its neighbours what a
-word of two senses means."""
+word of two senses means, and what a negation belongs to."""
 
 from dataclasses import replace
 
-from argo_compiler.script.syntax.words.amounts import counted, hours_and, limited, total
-from argo_compiler.script.syntax.words.joints import VERBS
-from argo_compiler.script.syntax.words.lengths import Length
+from argo_compiler.script.syntax.words.amounts import Length, counted, hours_and, limited, total
 from argo_compiler.script.syntax.words.numbers import Figure, compose
-from argo_compiler.script.syntax.words.word import Word
+from argo_compiler.script.syntax.words.word import VERBS, Word
 
 _BEYOND = {"OR_MORE": "GREATER", "OR_LESS": "LESS"}
 _RELATIONS = frozenset(["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "EXACTLY"])
@@ -30,6 +28,11 @@ _UPTO = ("TO", "UNTIL")
 """`1 to 4`, `1 bis 4`"""
 _LABELS = frozenset(["NUMBER", "NUMBER_WORD", "IDENT", "STRING"])
 _LISTING = frozenset(["JOINT", "TO", "UNTIL", "DASH", "UPTO"])
+_PREDICATES = frozenset(
+    ["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "STATE", "FAILS", "OLDER", "OUTSIDE"]
+)
+_CASES = frozenset(["IF", "IF_ONLY", "UNLESS", "ELSE"])
+_ENDS = frozenset(["IF", "IF_ONLY", "UNLESS", "UNTIL", "ELSE"])
 
 
 def merged(words: list[Word]) -> list[Word]:
@@ -141,9 +144,8 @@ def _tells_order(words: list[Word], i: int) -> bool:
     """Whether an ordinal says only what comes when, and not which floor or gauge is meant:
     `first check ...`, `checkpoint 13 first, then ...`."""
     next_ = words[i + 1 : i + 3]
-    if words[i].value == 1 and any(word.type in VERBS for word in next_[: 1 + _is_it(next_)]):
-        return True
-    if words[i].value == 1 and _begins_name(next_):
+    ordered = next_[1:] if next_[:1] and next_[0].type == "IT" else next_[:1]
+    if words[i].value == 1 and (any(w.type in VERBS for w in ordered) or _begins_name(next_)):
         return True
     after = next((w for w in words[i + 1 :] if w.type not in _BETWEEN_FLOORS), None)
     listed = i + 1 < len(words) and words[i + 1].type in ("JOINT", "ORDINAL")
@@ -180,10 +182,6 @@ def _are_joined_by_or(words: list[Word]) -> bool:
     return "or" in next((said for said in joints if "or" in said or "and" in said), "")
 
 
-def _is_it(words: list[Word]) -> bool:
-    return words[:1] != [] and words[0].type == "IT"
-
-
 def _numbers(words: list[Word]) -> list[Word]:
     found: list[Word] = []
     i = 0
@@ -203,14 +201,10 @@ def _numbers(words: list[Word]) -> list[Word]:
 
 def _one_of_them(number: Word, found: list[Word], after: list[Word]) -> Word:
     """`If one is abnormal` asks about one of them, and not about checkpoint 1."""
-    asked = found and (found[-1].type in _ASKING or _begins_question(found))
+    last = found[-1].type if found else ""
+    asked = last in _ASKING or (last == "IS" and _begins(found))  # `Ist eins auffällig, ...`
     one = asked and after and after[0].type in _SAID and number.value.value == 1
     return replace(number, type="THEM", value="either") if one else number
-
-
-def _begins_question(found: list[Word]) -> bool:
-    """`Ist eins auffällig, ...`"""
-    return found[-1].type == "IS" and _begins(found)
 
 
 def _joined_bounds(words: list[Word]) -> list[Word]:
@@ -293,3 +287,43 @@ def _are_rounds(found: list[Word]) -> bool:
 def _begins(found: list[Word]) -> bool:
     """Whether the last word begins a sentence or what is joined to one."""
     return len(found) < 2 or found[-2].type in _OPENING
+
+
+# ---- what is not so without `not`: `neither A nor B is above 5`, `outside 3 to 4`
+
+
+def negated(words: list[Word]) -> list[Word]:
+    """The words with `not` in its place; `not outside` is inside."""
+    found: list[Word] = []
+    neither: Word | None = None
+    for i, word in enumerate(words):
+        if word.type == "IN_ANY_CASE" and not any(w.type in _CASES for w in words[:i]):
+            continue  # behind a condition it is not clear whether it depends on that
+        if word.type == "NEITHER" and any(words[k].type in _PREDICATES for k in _clause(words, i)):
+            neither = word
+            if word.value == "them":
+                found.append(replace(word, type="THEM", value="all"))
+            continue
+        if neither is not None and word.type == "NOR":
+            found.append(replace(word, type="JOINT", value="and"))
+            continue
+        if neither is not None and word.type in _PREDICATES:
+            found.append(replace(neither, type="NOT"))
+            neither = None
+        found += _outside(words, i, found) if word.type == "OUTSIDE" else [word]
+    return found
+
+
+def _clause(words: list[Word], i: int) -> range:
+    ends = (k for k in range(i + 1, len(words)) if words[k].type in _ENDS)
+    return range(i + 1, next(ends, len(words)))
+
+
+def _outside(words: list[Word], i: int, found: list[Word]) -> list[Word]:
+    """`not from`; a `not` before it is taken away with it."""
+    after = words[i + 1].type if i + 1 < len(words) else ""
+    range_ = [] if after in ("FROM", "BETWEEN") else [replace(words[i], type="FROM")]
+    if found and found[-1].type == "NOT":
+        found.pop()
+        return range_
+    return [replace(words[i], type="NOT"), *range_]

@@ -3,6 +3,14 @@
 from dataclasses import dataclass
 from typing import Any
 
+VERBS = (
+    *("MEASURE", "KEEP_MEASURING", "GO", "HOME", "START", "START_HERE", "PATROL", "WAIT", "PAUSE"),
+    *("END", "ABORT", "GO_ON", "RECHARGE", "REPORT", "REPEAT", "DO_FOLLOWING", "ADD", "DELETE"),
+    *("REPLACE", "MOVE", "JUMP", "RETRY", "DOCK", "DONE", "MEET"),
+    *("PARK", "SPARE", "FROM"),
+)
+"""terminals of the words that orders begin with"""
+
 
 @dataclass(slots=True)
 class Word:

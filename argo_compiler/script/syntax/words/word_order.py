@@ -8,8 +8,7 @@ are, and the grammar does not take them.
 from dataclasses import replace
 from itertools import takewhile
 
-from argo_compiler.script.syntax.words.joints import VERBS
-from argo_compiler.script.syntax.words.word import Word
+from argo_compiler.script.syntax.words.word import VERBS, Word
 
 _MOVED = frozenset(VERBS) - {"DOCK", "DONE", "MEET", "FROM"} | {"BACK"}
 _RELATIONS = frozenset(

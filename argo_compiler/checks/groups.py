@@ -13,8 +13,13 @@ from argo_compiler.checks.instant_loops import MIN_TIME_S
 from argo_compiler.checks.timing import has_timing_or_branch
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Group, Mission, Stop, Task
-from argo_compiler.il.grouping import GroupNesting, GroupRange, group_ranges, parent_name
-from argo_compiler.il.positions import task_positions
+from argo_compiler.il.grouping import (
+    GroupNesting,
+    GroupRange,
+    group_ranges,
+    parent_name,
+    task_positions,
+)
 from argo_compiler.il.subjects import Subjects
 from argo_compiler.il.ways import branches, default_target
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from importlib import import_module
+from operator import attrgetter
 from typing import Protocol, cast
 
 from argo_compiler.base.errors import NotFound
@@ -31,15 +32,15 @@ class Policy(Protocol):
 
 
 POLICIES: dict[str, str | Callable[[], Policy]] = {
-    "given-order": "baselines.heuristics.given_order:GivenOrder",
-    "nearest-neighbour": "baselines.heuristics.nearest_neighbour:NearestNeighbour",
-    "prize-over-time": "baselines.heuristics.prize_over_time:PrizeOverTime",
+    "given-order": "baselines.heuristics.greedy:GivenOrder",
+    "nearest-neighbour": "baselines.heuristics.greedy:NearestNeighbour",
+    "prize-over-time": "baselines.heuristics.greedy:PrizeOverTime",
     "insertion": "baselines.heuristics.insertion:Insertion",
     "portfolio": "baselines.portfolio:Portfolio",
     "portfolio-1s": "baselines.portfolio:QuickPortfolio",
     "portfolio-resolved": "baselines.portfolio:ResolvedPortfolio",
-    "learned": "baselines.learned.agent:greedy",
-    "learned-sampled": "baselines.learned.agent:sampled",
+    "learned": "baselines.learned.agent:LearnedPolicy.load",
+    "learned-sampled": "baselines.learned.agent:SampledPolicy.load",
 }
 """By name, what makes the policy: a class, a function, or `module:name` of one. A new policy is one
 line here, or `POLICIES["mine"] = Mine` in a program of one's own."""
@@ -60,7 +61,7 @@ def make_policy(name: str) -> Policy:
             "`module:class`"
         )
     try:
-        made = getattr(import_module(module), attribute)
+        made = attrgetter(attribute)(import_module(module))
     except (ImportError, AttributeError) as error:
         raise NotFound(f"policy `{name}`: there is no `{maker}` ({error})") from None
     return cast("Policy", made())

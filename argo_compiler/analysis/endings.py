@@ -37,11 +37,11 @@ def _endless(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator[Diagn
         path = study.path_words(trap[0])
         yield study.diagnostic(
             "endless-loop",
-            severity,
             f"{_tasks(study, trap)} {_follow(trap)} for ever: {but} or a person ends that "
             f"(path: {path})",
             _WAY_OUT,
             trap[0],
+            severity=severity,
         )
     if not can_end:
         why = (
@@ -53,10 +53,10 @@ def _endless(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator[Diagn
             why += ", unless an action fails"
         yield study.diagnostic(
             "no-end",
-            severity,
             f"the mission never ends: {why}",
             "let a task on each path have no unconditional transition, or leave the loop",
             subject="tasks",
+            severity=severity,
         )
 
 
@@ -72,7 +72,6 @@ def _kept(study: Study, loops: Iterable[KeptLoop]) -> Iterator[Diagnostic]:
         ]
         yield study.diagnostic(
             "kept-loop",
-            Severity.WARNING,
             f"{_tasks(study, leaves)} {_follow(leaves)} for ever if {name} "
             f"{' or '.join(shown)} when '{study.name(loop.leaf)}' is come to: "
             f"nothing in the loop measures it, so {but}, a person or a value that is told ends "
@@ -113,7 +112,6 @@ def _unbounded(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
         )
         yield study.diagnostic(
             "unbounded-loop",
-            Severity.WARNING,
             f"{' and '.join(parts)} may be repeated without limit: "
             f"{way_out}, so no duration of the mission can be promised",
             "make it a group with max_repeat_count or max_repeat_duration that goes on in any case",
@@ -155,7 +153,6 @@ def _elsewhere(study: Study) -> Iterator[Diagnostic]:
         path = f" (path: {study.path_words(leaf)})" if k < _PATHS else ""
         yield study.diagnostic(
             "end-elsewhere",
-            Severity.WARNING,
             f"the mission is to end docked in starting area {area}, but it can end {where}{path}",
             f"let each path end with a WAYPOINT task at the dock of starting area {area}",
             leaf,

@@ -13,7 +13,7 @@ from argo_compiler.analysis.values import told_by_others
 from argo_compiler.analysis.windows import time_limits, windows
 from argo_compiler.base.listing import quoted
 from argo_compiler.base.model import Pose
-from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.hfsm.conditions import words
 from argo_compiler.il import (
@@ -58,7 +58,6 @@ def _blocked(study: Study) -> Iterator[Diagnostic]:
     for leaf, reason in sorted(study.legs.blocked.items()):
         yield study.diagnostic(
             "unreachable-place",
-            Severity.ERROR,
             f"the robot can't carry out task '{study.name(leaf)}': {reason}",
             "choose another place or checkpoint, or remove the task",
             leaf,
@@ -88,7 +87,6 @@ def _blocked_retreats(study: Study, travel: Travel) -> Iterator[Diagnostic]:
         if isinstance(leg, NoWay):
             yield study.diagnostic(
                 "unreachable-place",
-                Severity.ERROR,
                 f"the robot can't {what}: {leg.reason}",
                 "choose a place that it can reach",
                 subject=subject,
@@ -100,7 +98,6 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
     if least is not None and least > limit:
         yield study.diagnostic(
             "too-long",
-            Severity.ERROR,
             f"the mission takes at least {time_words(least)} if nothing fails, longer than its "
             f"maximum duration of {time_words(limit)} (shortest: "
             f"{path_words(duration.least, time_words)})",
@@ -110,7 +107,6 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
     elif most is not None and most > limit:
         yield study.diagnostic(
             "maybe-too-long",
-            Severity.WARNING,
             f"the mission may take up to {time_words(most)}, longer than its maximum duration of "
             f"{time_words(limit)} (longest: {path_words(duration.most, time_words)})",
             "leave out tasks, shorten groups, or say by a reaction to time_up what happens then",
@@ -119,7 +115,6 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
     elif most is None:
         yield study.diagnostic(
             "maybe-too-long",
-            Severity.WARNING,
             f"the mission may take longer than its maximum duration of {time_words(limit)}, as "
             "something in it has no limit (shortest: "
             f"{path_words(duration.least, time_words)})",
@@ -147,7 +142,6 @@ def _cut_short(
         ends += f", after {time_words(worst.value)} at most"
     yield study.diagnostic(
         "cut-short",
-        Severity.WARNING,
         f"the plan may take {up_to}, longer than the mission's maximum duration of "
         f"{time_words(limit)}: {ends}"
         + (f"; if nothing fails, {quoted(lost)} will not be done by then" if lost else "")
@@ -162,7 +156,6 @@ def _too_far(study: Study, energy: Bounds, battery: float) -> Iterator[Diagnosti
     if least is not None and least > battery and not _may_do_with_less(study):
         yield study.diagnostic(
             "battery-exceeded",
-            Severity.ERROR,
             f"the mission needs at least {energy_words(least)} if nothing fails, and the battery "
             f"gives {energy_words(battery)} (least: {path_words(energy.least, energy_words)})",
             "leave out tasks or rounds, or charge in between",
@@ -173,7 +166,6 @@ def _too_far(study: Study, energy: Bounds, battery: float) -> Iterator[Diagnosti
         path = energy.least if most is None else energy.most
         yield study.diagnostic(
             "battery-maybe-exceeded",
-            Severity.WARNING,
             f"the mission may need energy {need}, and the battery gives {energy_words(battery)} "
             f"({'least' if most is None else 'most'}: {path_words(path, energy_words)})",
             "limit what is repeated, or react to low_battery",
@@ -215,7 +207,6 @@ def _no_way_back(study: Study, energy: Bounds, travel: Travel) -> Iterator[Diagn
         if stretch.until + back + RESERVE_SHARE * battery > battery:
             yield study.diagnostic(
                 "no-way-back",
-                Severity.WARNING,
                 f"after {stretch.words} the battery may not suffice for the way back to the dock "
                 f"with a reserve of {RESERVE_SHARE:.0%}: by then up to "
                 f"{energy_words(stretch.until)} are used, the way back needs up to "
@@ -276,7 +267,6 @@ def _stale(
             if math.isfinite(youngest) and youngest > condition.max_age:
                 yield study.diagnostic(
                     "always-stale",
-                    Severity.WARNING,
                     f"a condition of task '{study.name(leaf)}' never holds if nothing fails: "
                     f"{words(condition)}, but from the measurement to here it takes at least "
                     f"{time_words(youngest)}",

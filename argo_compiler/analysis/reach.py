@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.transitions import why_never
 from argo_compiler.base.listing import quoted
-from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.diagnostics import Diagnostic
 
 _REASONS = 3  # ways to a task that a message speaks of
 
@@ -21,7 +21,6 @@ def unreachable_tasks(study: Study) -> Iterator[Diagnostic]:
     for leaf in lost:
         yield study.diagnostic(
             "unreachable-task",
-            Severity.WARNING,
             f"task '{study.name(leaf)}' can't be reached: {_why(*reasons[leaf])}",
             "lead a transition to it that can be taken, or remove the task",
             leaf,

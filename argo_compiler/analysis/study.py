@@ -12,7 +12,7 @@ from argo_compiler.analysis.travel import Travel
 from argo_compiler.analysis.values import Paths
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.graphs import components, first_ways, leading_to, way_to
-from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.diagnostics import Diagnostic, Severity, diagnostic_of
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Afterwards, Mission, Response, Task
 
@@ -162,25 +162,19 @@ class Study:
     def diagnostic(
         self,
         code: str,
-        severity: Severity,
         message: str,
         hint: str,
         leaf: int | None = None,
         transition: int | None = None,
         subject: str | None = None,
+        severity: Severity | None = None,
     ) -> Diagnostic:
-        """A diagnostic about a leaf's task, one of its transitions, or what `subject` names."""
+        """A diagnostic about a leaf's task, one of its transitions, or what `subject` names;
+        without a severity it is as bad as its code is."""
         span = None
         if leaf is not None and self.is_own(leaf):
             span = self.task(leaf).source
             subject = subject_of("tasks", self.name(leaf))
             if transition is not None:
                 subject += f".transitions[{transition}]"
-        return Diagnostic(
-            code=f"analysis.{code}",
-            severity=severity,
-            message=message,
-            hint=hint,
-            span=span,
-            subject=subject,
-        )
+        return diagnostic_of(f"analysis.{code}", message, hint, subject, span, severity)

@@ -6,7 +6,7 @@ from argo_compiler.analysis.regions import Scale
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.values import GuardStatus, objects_of
 from argo_compiler.base.graphs import first_ways, way_to
-from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.hfsm.conditions import all_words, words
 from argo_compiler.il import Action, Condition
 
@@ -108,7 +108,6 @@ def _never(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
             name = study.object_name(condition.object_id)
             return study.diagnostic(
                 "never-measured",
-                Severity.WARNING,
                 f"{start}no path to '{task.name}' measures {name} before",
                 f"measure {name} earlier, or compare another checkpoint",
                 leaf,
@@ -116,7 +115,6 @@ def _never(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
             )
     return study.diagnostic(
         "transition-never",
-        Severity.WARNING,
         start + why_never(study, leaf, k),
         "correct its bounds, move it before the transition that covers them, or remove it",
         leaf,
@@ -148,7 +146,6 @@ def _always_taken(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
     after = len(task.transitions) > 1
     return study.diagnostic(
         "transition-always",
-        Severity.WARNING,
         f"the transition from task '{task.name}' to '{task.transitions[index].target}' is always "
         f"taken{' if it is looked at' if k else ''}: {held} holds for every value that can be "
         "there" + ("; only a failed measurement leads elsewhere" if after else ""),
@@ -183,7 +180,6 @@ class _Unmeasured:
         path = self._path(leaf, object_id)
         return study.diagnostic(
             "maybe-unmeasured",
-            Severity.WARNING,
             f"a transition from task '{task.name}' to '{task.transitions[index].target}' compares "
             f"{name}, which has no value yet on some paths, so it is not taken there"
             + (f", such as {path}" if path else ""),

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from argo_compiler.analysis.bounds import Extent
 from argo_compiler.analysis.quantities import time_words
 from argo_compiler.analysis.study import Study
-from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.diagnostics import Diagnostic
 
 _SOON = 1e-6  # s: sums of floats are not exact
 
@@ -25,7 +25,6 @@ def windows(study: Study, extent: Extent) -> Iterator[Diagnostic]:
                 soonest = f": it ends after {time_words(moment.soonest)} at the soonest"
             yield study.diagnostic(
                 "window-missed" if window.hard else "window-late",
-                Severity.ERROR if window.hard else Severity.WARNING,
                 f"if nothing fails, no path is in time for task '{name}', which is to have ended "
                 f"{latest} after the mission's start{soonest}",
                 "do it earlier, or let its window end later",
@@ -34,7 +33,6 @@ def windows(study: Study, extent: Extent) -> Iterator[Diagnostic]:
         elif moment.latest > window.latest + _SOON:
             yield study.diagnostic(
                 "window-maybe-missed",
-                Severity.WARNING,
                 f"task '{name}' may come too late: it is to have ended {latest} after the "
                 "mission's start, and some path may take longer",
                 "do it earlier, or let its window end later"
@@ -52,7 +50,6 @@ def time_limits(study: Study) -> Iterator[Diagnostic]:
             continue  # each attempt goes on from where the last one stopped
         yield study.diagnostic(
             "time-limit",
-            Severity.WARNING,
             f"task '{study.name(leaf)}' takes at least {time_words(taken)} as planned, longer than "
             f"its time limit of {time_words(limit)}, so it fails",
             "give it more time",

@@ -12,7 +12,7 @@ from argo_compiler.checks.instant_loops import check_instant_loops
 from argo_compiler.checks.precedence import check_precedence
 from argo_compiler.checks.reactions import check_reactions
 from argo_compiler.checks.tasks import TaskChecks
-from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.diagnostics import Diagnostic, diagnostic_of
 from argo_compiler.il import Mission
 
 __all__ = ["check"]
@@ -26,12 +26,11 @@ def check(mission: Mission, catalog: Catalog | None = None) -> tuple[Diagnostic,
     """
     if not mission.tasks:
         return (
-            Diagnostic(
-                code="il.empty-mission",
-                severity=Severity.ERROR,
-                message="the mission has no tasks",
-                hint="add a task; a mission that does nothing has a START task only",
-                subject="tasks",
+            diagnostic_of(
+                "il.empty-mission",
+                "the mission has no tasks",
+                "add a task; a mission that does nothing has a START task only",
+                "tasks",
             ),
         )
     if catalog and mission.site and mission.site != catalog.site:

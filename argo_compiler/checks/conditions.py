@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from argo_compiler.checks.diagnostic import diagnostic_about
-from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.checks.about import About
+from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Condition, ConditionType, Group, Task
 
 
@@ -18,30 +18,25 @@ class ConditionChecks:
     """on the site; None: not known"""
 
     def diagnostics(
-        self, at: str, part: Task | Group, condition: Condition, field: str
+        self, about: About, part: Task | Group, condition: Condition, field: str
     ) -> Iterator[Diagnostic]:
-        """What is wrong with a condition of the part whose subject is `at`, in that field."""
+        """What is wrong with a condition of the part, in that field."""
         which = f"a {condition.type} condition of {_name(part)}"
-        yield from _check_bounds(at, part, condition, field, which)
+        yield from _check_bounds(about, condition, field, which)
         if self.known is not None and condition.object_id not in self.known:
-            yield diagnostic_about(
-                at,
-                part,
+            yield about.diagnostic(
                 "il.unknown-object",
                 f"{_name(part)} names checkpoint '{condition.object_id}', which the site does not "
                 "have",
                 "use the number of a checkpoint in the site's catalogue",
-                field=field + ".object_id",
+                field + ".object_id",
             )
         elif condition.object_id not in self.measured:
-            yield diagnostic_about(
-                at,
-                part,
+            yield about.diagnostic(
                 "il.never-measured",
                 f"a condition of {_name(part)} looks at checkpoint '{condition.object_id}', which "
                 "no task measures, so it never holds unless somebody else tells a value",
                 f"measure checkpoint '{condition.object_id}' before",
-                Severity.WARNING,
                 field + ".object_id",
             )
 
@@ -51,64 +46,53 @@ def _name(part: Task | Group) -> str:
 
 
 def _check_bounds(
-    at: str, part: Task | Group, condition: Condition, field: str, which: str
+    about: About, condition: Condition, field: str, which: str
 ) -> Iterator[Diagnostic]:
     if not condition.type.compares:
-        yield from _check_state(at, part, condition, field, which)
+        yield from _check_state(about, condition, field, which)
         return
     low, high = condition.param1, condition.param2
     if low is None:
-        yield diagnostic_about(
-            at,
-            part,
+        yield about.diagnostic(
             "il.condition-bound",
             f"{which} has no param1",
             "give it as the bound that the value is compared with",
-            field=field,
+            field,
         )
     elif condition.type is not ConditionType.WITHIN:
         if high is not None:
-            yield diagnostic_about(
-                at,
-                part,
+            yield about.diagnostic(
                 "il.unused-field",
                 f"{which} has a param2, which has no effect",
                 "only WITHIN has an upper bound as well: remove it",
-                Severity.WARNING,
                 field + ".param2",
             )
     elif high is None:
-        yield diagnostic_about(
-            at,
-            part,
+        yield about.diagnostic(
             "il.within-bounds",
             f"{which} has no param2",
             "give it as the upper bound",
-            field=field,
+            field,
         )
     elif low > high or (low == high and not condition.inclusive):
-        yield diagnostic_about(
-            at,
-            part,
+        yield about.diagnostic(
             "il.within-bounds",
             f"{which} never holds: no value lies between {low:g} and {high:g}",
             "param1 is the lower bound, param2 the upper one",
-            field=field,
+            field,
         )
 
 
 def _check_state(
-    at: str, part: Task | Group, condition: Condition, field: str, which: str
+    about: About, condition: Condition, field: str, which: str
 ) -> Iterator[Diagnostic]:
     """What a condition that looks at the state of a reading has too much or too little of."""
     if condition.type is ConditionType.STALE and condition.max_age is None:
-        yield diagnostic_about(
-            at,
-            part,
+        yield about.diagnostic(
             "il.stale-without-age",
             f"{which} has no max_age",
             "say from which age on (s) a value is stale",
-            field=field,
+            field,
         )
     unused = {
         "param1": condition.param1 is not None,
@@ -118,12 +102,9 @@ def _check_state(
         and condition.type in (ConditionType.UNREADABLE, ConditionType.FAILED),
     }
     for name in (name for name, given in unused.items() if given):
-        yield diagnostic_about(
-            at,
-            part,
+        yield about.diagnostic(
             "il.unused-field",
             f"{which} has a {name}, which has no effect",
             "remove it",
-            Severity.WARNING,
             f"{field}.{name}",
         )

@@ -8,13 +8,18 @@ from bisect import bisect_left
 from collections.abc import Iterator, Mapping
 
 from argo_compiler.base.nearest_name import nearest_name
-from argo_compiler.checks.diagnostic import diagnostic_about
+from argo_compiler.checks.about import About
 from argo_compiler.checks.instant_loops import MIN_TIME_S
 from argo_compiler.checks.timing import has_timing_or_branch
-from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Action, Group, Mission, Stop, Task
-from argo_compiler.il.grouping import GroupNesting, GroupRange, group_ranges, parent_name
-from argo_compiler.il.positions import task_positions
+from argo_compiler.il.grouping import (
+    GroupNesting,
+    GroupRange,
+    group_ranges,
+    parent_name,
+    task_positions,
+)
 from argo_compiler.il.subjects import Subjects
 from argo_compiler.il.ways import branches, default_target
 
@@ -47,52 +52,33 @@ def check_groups(mission: Mission) -> tuple[Diagnostic, ...]:
     return (*diagnostics, *_check_unused(mission.groups, subjects))
 
 
-def _error(
-    at: str, group: Group, code: str, message: str, hint: str, field: str = ""
-) -> Diagnostic:
-    """A diagnostic about the group whose subject is `at`, or one of its fields."""
-    return Diagnostic(
-        code=code,
-        severity=Severity.ERROR,
-        message=message,
-        span=group.source,
-        hint=hint,
-        subject=at + field,
-    )
-
-
 def _check_names(groups: tuple[Group, ...], subjects: Subjects) -> Iterator[Diagnostic]:
     names = {group.name for group in groups}
     seen: set[str] = set()
     for i, group in enumerate(groups):
+        about = About(subjects.group(i), group.source)
         if group.name in seen:
-            yield _error(
-                subjects.group(i),
-                group,
+            yield about.diagnostic(
                 "il.duplicate-group",
                 f"more than one group is named '{group.name}'",
                 "give each group a name of its own",
-                field=".name",
+                ".name",
             )
         seen.add(group.name)
         parent = parent_name(group.name)
         if not all(group.name.split("/")):
-            yield _error(
-                subjects.group(i),
-                group,
+            yield about.diagnostic(
                 "il.group-name",
                 f"the group name '{group.name}' has an empty part",
                 "separate the names of nested groups by one '/', as in 'Alpha/Beta'",
-                field=".name",
+                ".name",
             )
         elif parent is not None and parent not in names:
-            yield _error(
-                subjects.group(i),
-                group,
+            yield about.diagnostic(
                 "il.group-parent",
                 f"group '{group.name}' is to lie in group '{parent}', which does not exist",
                 f"add a group '{parent}' around it or take the '/' out of its name",
-                field=".name",
+                ".name",
             )
 
 
@@ -100,14 +86,13 @@ def _check_ends(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]:
     position = task_positions(mission)
     hints = 0
     for i, group in enumerate(mission.groups):
+        about = About(subjects.group(i), group.source)
         unknown = {group.end: ".end", group.start: ".start"}
         unknown = {name: field for name, field in unknown.items() if name not in position}
         for name, field in reversed(unknown.items()):
             hints += 1
             near = nearest_name(name, position) if hints <= _MOST_HINTS else None
-            yield _error(
-                subjects.group(i),
-                group,
+            yield about.diagnostic(
                 "il.unknown-group-task",
                 f"group '{group.name}' begins or ends with '{name}', which is no task of the "
                 "mission",
@@ -115,34 +100,28 @@ def _check_ends(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]:
                 field,
             )
         if not unknown and position[group.start] > position[group.end]:
-            yield _error(
-                subjects.group(i),
-                group,
+            yield about.diagnostic(
                 "il.group-order",
                 f"group '{group.name}' starts with task '{group.start}', which comes after its "
                 f"end '{group.end}' in the list of tasks",
                 "swap its start and end or reorder the tasks",
-                field=".start",
+                ".start",
             )
         if group.stop is Stop.HARD and 0 < group.max_repeat_duration < MIN_TIME_S:
-            yield _error(
-                subjects.group(i),
-                group,
+            yield about.diagnostic(
                 "il.group-duration",
                 f"the time of group '{group.name}' is up after {group.max_repeat_duration:g} s, "
                 "before any action could be carried out",
                 f"allow it at least {MIN_TIME_S:g} s, or 0 for no limit",
-                field=".max_repeat_duration",
+                ".max_repeat_duration",
             )
         if 0 < group.every < MIN_PERIOD_S:
-            yield _error(
-                subjects.group(i),
-                group,
+            yield about.diagnostic(
                 "il.group-period",
                 f"the rounds of group '{group.name}' are to begin every {group.every:g} s, before "
                 "any of them could be over",
                 f"allow at least {MIN_PERIOD_S:g} s, or 0 for rounds without a pause",
-                field=".every",
+                ".every",
             )
 
 
@@ -153,9 +132,7 @@ def _check_nesting(ranges: tuple[GroupRange, ...], subjects: Subjects) -> Iterat
         name = r.group.name
         parent = by_name.get(parent_name(name) or "")
         if parent and not (parent.contains(r.first) and parent.contains(r.last)):
-            yield _error(
-                subjects.group(r.index),
-                r.group,
+            yield About(subjects.group(r.index), r.group.source).diagnostic(
                 "il.group-outside-parent",
                 f"group '{name}' reaches beyond group '{parent.group.name}', in which it is to lie",
                 f"keep its tasks between '{parent.group.start}' and '{parent.group.end}'",
@@ -165,9 +142,7 @@ def _check_nesting(ranges: tuple[GroupRange, ...], subjects: Subjects) -> Iterat
         if around and not name.startswith(around[-1].group.name + "/"):
             other = around[-1]
             same = (other.first, other.last) == (r.first, r.last)
-            yield _error(
-                subjects.group(r.index),
-                r.group,
+            yield About(subjects.group(r.index), r.group.source).diagnostic(
                 "il.group-same-range" if same else "il.group-overlap",
                 f"groups '{other.group.name}' and '{name}' "
                 + ("have the same tasks" if same else f"both contain task '{r.group.start}'")
@@ -185,9 +160,7 @@ def _check_starts(
     for r in ranges:
         i = bisect_left(starts, r.first)
         if i < len(starts) and r.contains(starts[i]):
-            yield _error(
-                subjects.group(r.index),
-                r.group,
+            yield About(subjects.group(r.index), r.group.source).diagnostic(
                 "il.start-in-group",
                 f"the START task '{mission.tasks[starts[i]].name}' lies in group '{r.group.name}'",
                 "move START before the group: it is not repeated",
@@ -196,27 +169,22 @@ def _check_starts(
 
 def _check_unused(groups: tuple[Group, ...], subjects: Subjects) -> Iterator[Diagnostic]:
     for i, group in enumerate(groups):
+        about = About(subjects.group(i), group.source)
         if group.count_interruptions and not group.max_repeat_duration:
-            diagnostic = _error(
-                subjects.group(i),
-                group,
+            yield about.diagnostic(
                 "il.unused-field",
                 f"group '{group.name}' has no duration that interruptions could count as part of",
                 "give it max_repeat_duration, or remove count_interruptions",
                 ".count_interruptions",
             )
-            yield diagnostic.model_copy(update={"severity": Severity.WARNING})
         if group.max_repeat_count == 1:
             for field in (f for f in ("every", "until") if getattr(group, f)):
-                diagnostic = _error(
-                    subjects.group(i),
-                    group,
+                yield about.diagnostic(
                     "il.unused-field",
                     f"group '{group.name}' has one round only, so its `{field}` has no effect",
                     "remove it, or allow more rounds",
                     f".{field}",
                 )
-                yield diagnostic.model_copy(update={"severity": Severity.WARNING})
 
 
 def _check_leaving(
@@ -244,14 +212,11 @@ def _check_leaving(
                 inside = layout.parent[inside]
             if left is None:
                 continue
-            yield diagnostic_about(
-                subjects.task(i),
-                task,
+            yield About(subjects.task(i), task.source).diagnostic(
                 "il.leaves-round",
                 f"the way from task '{task.name}' to '{target}' leaves the rounds of group "
                 f"'{left.name}' before they are over",
                 f"lead it to '{left.end}' if the round is to be completed",
-                Severity.WARNING,
                 field or ".transitions",
             )
 
@@ -303,9 +268,7 @@ def _check_endless(
     for i, r in enumerate(layout.ranges):
         left = lowest[i] < r.first or highest[i] > r.last
         if _endless(r.group) and not left and not bounded[i]:
-            yield _error(
-                subjects.group(r.index),
-                r.group,
+            yield About(subjects.group(r.index), r.group.source).diagnostic(
                 "il.endless-group",
                 f"group '{r.group.name}' is repeated for ever: it has neither a count nor a "
                 "duration, and no transition that can be taken leaves it",

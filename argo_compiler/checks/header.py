@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import Remedy, RemedyChoice
-from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.diagnostics import Diagnostic, diagnostic_of
 from argo_compiler.il import Mission
 
 _SHOWN = 12  # tasks that are left out, as far as they are named
@@ -14,45 +14,40 @@ def check_header(mission: Mission, catalog: Catalog | None) -> Iterator[Diagnost
     """What is wrong with the site, the areas and the current task of a mission, and what it does
     not do any more."""
     if mission.current is not None and mission.task(mission.current) is None:
-        yield Diagnostic(
-            code="il.unknown-current",
-            severity=Severity.WARNING,
-            message=f"the current task '{mission.current}' is no task of the mission",
-            hint="name a task or leave it out: only the planner uses it",
-            subject="current",
+        yield diagnostic_of(
+            "il.unknown-current",
+            f"the current task '{mission.current}' is no task of the mission",
+            "name a task or leave it out: only the planner uses it",
+            "current",
         )
     if omitted := mission.omitted:
         more = len(omitted) - _SHOWN
-        yield Diagnostic(
-            code="il.left-out",
-            severity=Severity.WARNING,
-            message=f"left out when the order was chosen: {', '.join(omitted[:_SHOWN])}"
+        yield diagnostic_of(
+            "il.left-out",
+            f"left out when the order was chosen: {', '.join(omitted[:_SHOWN])}"
             + (f" and {more} more" if more > 0 else ""),
-            hint="they are not done: allow more time and choose the order anew, or make another "
+            "they are not done: allow more time and choose the order anew, or make another "
             "mission of them",
-            subject="left_out",
+            "left_out",
         )
     if catalog is None:
         return
     if mission.site and mission.site != catalog.site:
         choice = RemedyChoice(Remedy.CHOOSE_SITE, "the site", (mission.site,))
-        yield Diagnostic(
-            code="il.other-site",
-            severity=Severity.ERROR,
-            message=f"the mission was planned for site `{mission.site}`, not for `{catalog.site}`",
-            hint=str(choice),
-            remedies=(choice.remedy,),
+        yield diagnostic_of(
+            "il.other-site",
+            f"the mission was planned for site `{mission.site}`, not for `{catalog.site}`",
+            str(choice),
+            "site",
             choice=choice,
-            subject="site",
         )
         return
     for field, area in (("start_area", mission.start_area), ("end_area", mission.end_area)):
         if area is not None and catalog.area(area) is None:
             known = ", ".join(str(a.number) for a in catalog.areas) or "none"
-            yield Diagnostic(
-                code="il.unknown-area",
-                severity=Severity.ERROR,
-                message=f"site {catalog.site} has no starting area {area}",
-                hint=f"there are: {known}",
-                subject=field,
+            yield diagnostic_of(
+                "il.unknown-area",
+                f"site {catalog.site} has no starting area {area}",
+                f"there are: {known}",
+                field,
             )

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from graphlib import CycleError, TopologicalSorter
 
-from argo_compiler.checks.diagnostic import diagnostic_about
+from argo_compiler.checks.about import About
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Action, Mission, OnFailure, Task
 from argo_compiler.il.grouping import GroupRange, group_ranges
@@ -39,9 +39,7 @@ def check_instant_loops(mission: Mission) -> Iterator[Diagnostic]:
         circle = error.args[1][::-1]
         position = next(i for i, t in enumerate(mission.tasks) if t.name == circle[0])
         shown = " > ".join(circle if len(circle) <= _SHOWN else [*circle[:_SHOWN], "..."])
-        yield diagnostic_about(
-            Subjects(mission).task(position),
-            mission.tasks[position],
+        yield About(Subjects(mission).task(position), mission.tasks[position].source).diagnostic(
             "il.instant-loop",
             f"nothing takes time on the way {shown}, so the mission might go round for ever in one "
             "moment",

@@ -5,7 +5,7 @@ from functools import cached_property
 from graphlib import CycleError, TopologicalSorter
 
 from argo_compiler.base.graphs import Successors, components, reached_from
-from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.diagnostics import Diagnostic, Severity, diagnostic_of
 from argo_compiler.il import Mission, Order
 from argo_compiler.il.velocities import BEGINNING, ways
 
@@ -24,16 +24,16 @@ def check_precedence(mission: Mission) -> Iterator[Diagnostic]:
     for i, pair in enumerate(mission.before):
         for name in pair:
             if name not in known:
-                yield _diagnostic(
-                    "unknown-before",
+                yield diagnostic_of(
+                    "il.unknown-before",
                     f"'{pair[0]}' is to come before '{pair[1]}', and there is no task '{name}'",
                     "name a task, or take the pair out",
                     f"before[{i}]",
                 )
     circle = _circle(mission.before)
     if circle:
-        yield _diagnostic(
-            "before-itself",
+        yield diagnostic_of(
+            "il.before-itself",
             f"'{circle[0]}' would have to come before itself: {' > '.join(circle[:_SHOWN])}",
             "take one of these pairs out",
             "before",
@@ -66,12 +66,12 @@ def _broken(mission: Mission, pairs: Iterable[tuple[str, str]]) -> Iterator[Diag
         hint = "move one of them, or take the pair out"
         if not precise:
             hint = "have the order chosen anew, or move one of them"
-        yield _diagnostic(
-            "order-broken",
+        yield diagnostic_of(
+            "il.order-broken",
             f"'{first}' is to come before '{second}', and '{second}' {said} before it",
             hint,
             "before",
-            severity,
+            severity=severity,
         )
 
 
@@ -159,11 +159,3 @@ class _Ways:
                 for other in self.following[node]:
                     ahead[number] |= ahead[self.part_of[other]]
         return ahead
-
-
-def _diagnostic(
-    code: str, message: str, hint: str, subject: str, severity: Severity = Severity.ERROR
-) -> Diagnostic:
-    return Diagnostic(
-        code=f"il.{code}", severity=severity, message=message, hint=hint, subject=subject
-    )

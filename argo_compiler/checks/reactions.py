@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from argo_compiler.checks.diagnostic import diagnostic_about
-from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.checks.about import About
+from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Afterwards, EventKind, Mission, Reaction, Response
 from argo_compiler.il.subjects import Subjects
 
@@ -16,61 +16,52 @@ def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
     subjects = Subjects(mission)
     ranked: dict[tuple[int, int], Reaction] = {}
     for i, reaction in enumerate(mission.reactions):
-        at = subjects.reaction(i)
+        about = About(subjects.reaction(i), reaction.source)
         if first[reaction.event] is not reaction:
-            yield diagnostic_about(
-                at,
-                reaction,
+            yield about.diagnostic(
                 "il.duplicate-reaction",
                 f"there is more than one reaction to {reaction.event}",
                 "keep one reaction for each event",
-                field=".event",
+                ".event",
             )
-        yield from _check_places(at, reaction, mission)
-        yield from _check_rank(at, reaction, ranked)
+        yield from _check_places(about, reaction, mission)
+        yield from _check_rank(about, reaction, ranked)
         if reaction.response is not Response.REPORT:
             ranked.setdefault(reaction.rank, reaction)
-        yield from _check_battery(at, reaction)
-        yield from _check_unused(at, reaction)
+        yield from _check_battery(about, reaction)
+        yield from _check_unused(about, reaction)
         if _may_hold(reaction.response) and reaction.until is not None:
-            yield from _check_until(at, reaction, first)
+            yield from _check_until(about, reaction, first)
         for field, event in (("event", reaction.event), ("until", reaction.until)):
             if event is EventKind.TIME_UP and mission.max_duration is None:
-                yield diagnostic_about(
-                    at,
-                    reaction,
+                yield about.diagnostic(
                     "il.time-up-without-limit",
                     f"the reaction to {reaction.event} waits for {event}, which never occurs: the "
                     "mission has no max_duration",
                     "give the mission a max_duration, or use another event",
-                    Severity.WARNING,
                     f".{field}",
                 )
 
 
-def _check_places(at: str, reaction: Reaction, mission: Mission) -> Iterator[Diagnostic]:
+def _check_places(about: About, reaction: Reaction, mission: Mission) -> Iterator[Diagnostic]:
     if reaction.response is Response.SAFE_AREA and reaction.pose is None:
-        yield diagnostic_about(
-            at,
-            reaction,
+        yield about.diagnostic(
             "il.safe-area-without-pose",
             f"the reaction to {reaction.event} does not say where the safe area is",
             "give the reaction a `pose`",
-            field=".response",
+            ".response",
         )
     if reaction.response is Response.RETURN and mission.dock is None and reaction.pose is None:
-        yield diagnostic_about(
-            at,
-            reaction,
+        yield about.diagnostic(
             "il.no-dock",
             f"the robot is to return to the dock on {reaction.event}, but the mission has no dock",
             "give the mission the pose of its docking station as `dock`, or the reaction a `pose`",
-            field=".response",
+            ".response",
         )
 
 
 def _check_rank(
-    at: str, reaction: Reaction, ranked: dict[tuple[int, int], Reaction]
+    about: About, reaction: Reaction, ranked: dict[tuple[int, int], Reaction]
 ) -> Iterator[Diagnostic]:
     """Of two reactions of one rank the later one waits; `ranked` are those that stand before."""
     other = ranked.get(reaction.rank)
@@ -82,32 +73,27 @@ def _check_rank(
         or reaction.until is other.event
     ):
         return
-    yield diagnostic_about(
-        at,
-        reaction,
+    yield about.diagnostic(
         "il.equal-priority",
         f"the reactions to {other.event} and {reaction.event} have the same priority "
         f"{reaction.rank[1]}: the one whose event occurs later waits until the other is over",
         "give the more urgent one the higher priority",
-        Severity.WARNING,
         ".priority",
     )
 
 
-def _check_battery(at: str, reaction: Reaction) -> Iterator[Diagnostic]:
+def _check_battery(about: About, reaction: Reaction) -> Iterator[Diagnostic]:
     if reaction.battery_below is not None and reaction.event is not EventKind.LOW_BATTERY:
-        yield diagnostic_about(
-            at,
-            reaction,
+        yield about.diagnostic(
             "il.battery-level",
             f"the reaction to {reaction.event} has `battery_below`, and the battery has nothing to "
             "do with that event",
             f"remove it, or let the reaction answer {EventKind.LOW_BATTERY}",
-            field=".battery_below",
+            ".battery_below",
         )
 
 
-def _check_unused(at: str, reaction: Reaction) -> Iterator[Diagnostic]:
+def _check_unused(about: About, reaction: Reaction) -> Iterator[Diagnostic]:
     response = reaction.response
     may_hold = _may_hold(response)
     unused = {
@@ -123,42 +109,34 @@ def _check_unused(at: str, reaction: Reaction) -> Iterator[Diagnostic]:
         and not (response is Response.PAUSE and reaction.afterwards is Afterwards.RESUME),
     }
     for field in (field for field, given in unused.items() if given):
-        yield diagnostic_about(
-            at,
-            reaction,
+        yield about.diagnostic(
             "il.unused-field",
             f"the reaction to {reaction.event} has `{field}`, which has no effect on the response "
             f"{response}",
             "remove it or choose another response",
-            Severity.WARNING,
             f".{field}",
         )
 
 
 def _check_until(
-    at: str, reaction: Reaction, first: dict[EventKind, Reaction]
+    about: About, reaction: Reaction, first: dict[EventKind, Reaction]
 ) -> Iterator[Diagnostic]:
     if reaction.until is reaction.event:
-        yield diagnostic_about(
-            at,
-            reaction,
+        yield about.diagnostic(
             "il.until-itself",
             f"the reaction to {reaction.event} waits for {reaction.event} itself, which changes "
             "nothing while it is active",
             "wait for an event that tells that it is over, such as all_clear",
-            field=".until",
+            ".until",
         )
         return
     other = first.get(reaction.until) if reaction.until else None
     if other and other.response is not Response.REPORT and other.rank > reaction.rank:
-        yield diagnostic_about(
-            at,
-            reaction,
+        yield about.diagnostic(
             "il.until-answered",
             f"the reaction to {reaction.event} waits for {reaction.until}, which has a reaction of "
             "higher priority that is carried out instead",
             "wait for another event, or give this reaction the higher priority",
-            Severity.WARNING,
             ".until",
         )
 

@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Iterator
 
 from argo_compiler.base.nearest_name import nearest_name
+from argo_compiler.checks.about import About
 from argo_compiler.checks.conditions import ConditionChecks
-from argo_compiler.checks.diagnostic import diagnostic_about
 from argo_compiler.checks.timing import (
     check_failure,
     check_unused_fields,
@@ -12,7 +12,7 @@ from argo_compiler.checks.timing import (
     check_window,
     has_timing_or_branch,
 )
-from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Action, Mission, OnFailure, Task
 from argo_compiler.il.reserved import RESERVED_NAMES
 from argo_compiler.il.subjects import Subjects
@@ -65,121 +65,116 @@ class TaskChecks:
             if action is _MEASURE:
                 object_id = task.object_id
                 if object_id is None or (known is not None and object_id not in known):
-                    yield _wrong_object(self.subjects.task(i), task)
+                    yield _wrong_object(self._about(i, task), task)
             elif action is _WAYPOINT:
                 if task.pose is None:
-                    yield _no_pose(self.subjects.task(i), task)
+                    yield self._about(i, task).diagnostic(
+                        "il.waypoint-without-pose",
+                        f"the WAYPOINT task '{task.name}' has no pose",
+                        "say where it leads",
+                    )
             elif action is _WAIT:
-                yield from check_wait(self.subjects.task(i), task)
-                yield from check_unused_fields(self.subjects.task(i), task)
+                yield from check_wait(self._about(i, task), task)
+                yield from check_unused_fields(self._about(i, task), task)
             else:
                 starts += 1
                 if starts > 1:
-                    yield self._second_start(self.subjects.task(i), task)
-                yield from check_unused_fields(self.subjects.task(i), task)
+                    yield self._about(i, task).diagnostic(
+                        "il.many-starts",
+                        f"'{task.name}' is a second START task; '{self.starts[0]}' is the first",
+                        "a mission begins at one place: remove all START tasks but one",
+                    )
+                yield from check_unused_fields(self._about(i, task), task)
             if has_timing_or_branch(task):
-                yield from self._timing(self.subjects.task(i), task)
+                yield from self._timing(self._about(i, task), task)
             transitions = task.transitions
             if len(transitions) != 1 or transitions[0].conditions:
-                yield from self._branching(self.subjects.task(i), task)
+                yield from self._branching(self._about(i, task), task)
             elif transitions[0].target not in targets:
-                at = self.subjects.task(i)
-                yield self._wrong_target(at, task, transitions[0].target, _TARGET.format(0))
+                about = self._about(i, task)
+                yield self._wrong_target(about, task, transitions[0].target, _TARGET.format(0))
             if task.retries > MANY_RETRIES:
-                yield _many_retries(self.subjects.task(i), task)
+                yield self._about(i, task).diagnostic(
+                    "il.many-retries",
+                    f"task '{task.name}' would be tried again {task.retries} times",
+                    f"up to {MANY_RETRIES} are thought of: let on_failure say what comes then",
+                    ".retries",
+                )
             if task.joint_states is not None:
-                yield from _check_joints(self.subjects.task(i), task)
+                yield from _check_joints(self._about(i, task), task)
         yield from _check_returns(self.mission, self.subjects)
         for i, group in enumerate(self.mission.groups):
             for n, condition in enumerate(group.until):
-                at = self.subjects.group(i)
-                yield from self.conditions.diagnostics(at, group, condition, f".until[{n}]")
+                about = About(self.subjects.group(i), group.source)
+                yield from self.conditions.diagnostics(about, group, condition, f".until[{n}]")
 
-    def _timing(self, at: str, task: Task) -> Iterator[Diagnostic]:
+    def _about(self, i: int, task: Task) -> About:
+        return About(self.subjects.task(i), task.source)
+
+    def _timing(self, about: About, task: Task) -> Iterator[Diagnostic]:
         """What a task says about failing, waiting and time windows."""
         if task.action in (_WAYPOINT, _MEASURE):
-            yield from check_unused_fields(at, task)
-        yield from check_failure(at, task)
-        yield from check_window(at, task)
+            yield from check_unused_fields(about, task)
+        yield from check_failure(about, task)
+        yield from check_window(about, task)
         for n, condition in enumerate(task.wait.conditions if task.wait else ()):
             field = f".wait.conditions[{n}]"
-            yield from self.conditions.diagnostics(at, task, condition, field)
+            yield from self.conditions.diagnostics(about, task, condition, field)
         for field, target in branches(task).items():
             if target not in self.targets:
-                yield self._wrong_target(at, task, target, f".{field}")
+                yield self._wrong_target(about, task, target, f".{field}")
 
-    def _second_start(self, at: str, task: Task) -> Diagnostic:
-        return diagnostic_about(
-            at,
-            task,
-            "il.many-starts",
-            f"'{task.name}' is a second START task; '{self.starts[0]}' is the first",
-            "a mission begins at one place: remove all START tasks but one",
-        )
-
-    def _branching(self, at: str, task: Task) -> Iterator[Diagnostic]:
+    def _branching(self, about: About, task: Task) -> Iterator[Diagnostic]:
         """The transitions of a task that has none, several, or a conditional one."""
         unconditional = 0
         for k, transition in enumerate(task.transitions):
             if transition.target not in self.targets:
-                yield self._wrong_target(at, task, transition.target, _TARGET.format(k))
+                yield self._wrong_target(about, task, transition.target, _TARGET.format(k))
             unconditional += not transition.conditions
             for n, condition in enumerate(transition.conditions):
                 field = f".transitions[{k}].conditions[{n}]"
-                yield from self.conditions.diagnostics(at, task, condition, field)
+                yield from self.conditions.diagnostics(about, task, condition, field)
         if unconditional > 1:
-            yield diagnostic_about(
-                at,
-                task,
+            yield about.diagnostic(
                 "il.many-unconditional",
                 f"task '{task.name}' has {unconditional} unconditional transitions",
                 "keep one and give the others conditions",
-                field=".transitions",
+                ".transitions",
             )
         if task.action is Action.START and unconditional < len(task.transitions):
-            yield diagnostic_about(
-                at,
-                task,
+            yield about.diagnostic(
                 "il.start-condition",
                 f"the START task '{task.name}' has a conditional transition, which is never taken: "
                 "nothing has been measured yet",
                 "remove it",
-                Severity.WARNING,
                 ".transitions",
             )
         elif task.transitions and not unconditional:
-            yield diagnostic_about(
-                at,
-                task,
+            yield about.diagnostic(
                 "il.no-unconditional",
                 f"the mission ends after task '{task.name}' if none of its conditions hold",
                 "add an unconditional transition if it is to go on",
-                Severity.WARNING,
                 ".transitions",
             )
 
-    def _wrong_target(self, at: str, task: Task, target: str, field: str) -> Diagnostic:
+    def _wrong_target(self, about: About, task: Task, target: str, field: str) -> Diagnostic:
         if target in self.names:
-            return diagnostic_about(
-                at,
-                task,
+            return about.diagnostic(
                 "il.start-as-target",
                 f"a transition of task '{task.name}' leads to the START task '{target}', which is "
                 "only where the mission begins",
                 "lead it to the task that follows START",
-                field=field,
+                field,
             )
         near = self._nearest(target)
-        return diagnostic_about(
-            at,
-            task,
+        return about.diagnostic(
             "il.unknown-target",
             f"a transition of task '{task.name}' leads to '{target}', which is no task of the "
             "mission",
             f"is '{near}' meant?"
             if near
             else f"add a task '{target}' or lead the transition to another one",
-            field=field,
+            field,
         )
 
     def _nearest(self, name: str) -> str | None:
@@ -190,69 +185,40 @@ class TaskChecks:
 def _check_names(tasks: Iterable[Task], subjects: Subjects) -> Iterator[Diagnostic]:
     seen: set[str] = set()
     for i, task in enumerate(tasks):
+        about = About(subjects.task(i), task.source)
         if task.name in seen:
-            yield diagnostic_about(
-                subjects.task(i),
-                task,
+            yield about.diagnostic(
                 "il.duplicate-task",
                 f"more than one task is named '{task.name}'",
                 "give each task a name of its own: transitions and groups go by it",
-                field=".name",
+                ".name",
             )
         if task.name in RESERVED_NAMES:
-            yield diagnostic_about(
-                subjects.task(i),
-                task,
+            yield about.diagnostic(
                 "il.reserved-name",
                 f"the machine needs the name '{task.name}' for a drive of its own",
                 "give the task another name",
-                field=".name",
+                ".name",
             )
         seen.add(task.name)
 
 
-def _wrong_object(at: str, task: Task) -> Diagnostic:
+def _wrong_object(about: About, task: Task) -> Diagnostic:
     if task.object_id is None:
-        return diagnostic_about(
-            at,
-            task,
+        return about.diagnostic(
             "il.measure-without-object",
             f"the MEASURE task '{task.name}' has no object_id",
             "say which checkpoint it measures",
         )
-    return diagnostic_about(
-        at,
-        task,
+    return about.diagnostic(
         "il.unknown-object",
         f"task '{task.name}' names checkpoint '{task.object_id}', which the site does not have",
         "use the number of a checkpoint in the site's catalogue",
-        field=".object_id",
+        ".object_id",
     )
 
 
-def _no_pose(at: str, task: Task) -> Diagnostic:
-    return diagnostic_about(
-        at,
-        task,
-        "il.waypoint-without-pose",
-        f"the WAYPOINT task '{task.name}' has no pose",
-        "say where it leads",
-    )
-
-
-def _many_retries(at: str, task: Task) -> Diagnostic:
-    return diagnostic_about(
-        at,
-        task,
-        "il.many-retries",
-        f"task '{task.name}' would be tried again {task.retries} times",
-        f"up to {MANY_RETRIES} are thought of: let on_failure say what comes then",
-        Severity.WARNING,
-        ".retries",
-    )
-
-
-def _check_joints(at: str, task: Task) -> Iterator[Diagnostic]:
+def _check_joints(about: About, task: Task) -> Iterator[Diagnostic]:
     joints = task.joint_states
     if joints is None:
         return
@@ -270,13 +236,11 @@ def _check_joints(at: str, task: Task) -> Iterator[Diagnostic]:
         fault = "names a joint twice"
     else:
         return
-    yield diagnostic_about(
-        at,
-        task,
+    yield about.diagnostic(
         "il.joint-states",
         f"task '{task.name}' {fault}",
         "give one for each joint or none at all, and each joint once",
-        field=".joint_states",
+        ".joint_states",
     )
 
 
@@ -288,12 +252,10 @@ def _check_returns(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]
     if returning:
         task = mission.tasks[returning[0]]
         others = f" (and {len(returning) - 1} more)" if len(returning) > 1 else ""
-        yield diagnostic_about(
-            subjects.task(returning[0]),
-            task,
+        yield About(subjects.task(returning[0]), task.source).diagnostic(
             "il.no-dock",
             f"task '{task.name}'{others} is to return to the dock if it fails, but the mission has "
             "no dock",
             "give the mission the pose of its docking station as `dock`",
-            field=".on_failure",
+            ".on_failure",
         )

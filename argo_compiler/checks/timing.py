@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from argo_compiler.checks.diagnostic import diagnostic_about
-from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.checks.about import About
+from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Action, OnFailure, Task
 
 _PLAIN = Task(name="any", action=Action.WAYPOINT)
@@ -38,22 +38,19 @@ def has_timing_or_branch(task: Task) -> bool:
     )
 
 
-def check_unused_fields(at: str, task: Task) -> Iterator[Diagnostic]:
+def check_unused_fields(about: About, task: Task) -> Iterator[Diagnostic]:
     """What a task says that has no effect on its action."""
     for field, actions in _USED_BY.items():
         if task.action not in actions and getattr(task, field) != _DEFAULTS[field]:
-            yield diagnostic_about(
-                at,
-                task,
+            yield about.diagnostic(
                 "il.unused-field",
                 f"the {task.action} task '{task.name}' has `{field}`, which has no effect on it",
                 "remove it",
-                Severity.WARNING,
                 f".{field}",
             )
 
 
-def check_wait(at: str, task: Task) -> Iterator[Diagnostic]:
+def check_wait(about: About, task: Task) -> Iterator[Diagnostic]:
     """What is wrong with how long a WAIT lasts, its conditions apart."""
     rule = task.wait
     happens = rule is not None and (rule.event is not None or bool(rule.conditions))
@@ -61,84 +58,66 @@ def check_wait(at: str, task: Task) -> Iterator[Diagnostic]:
         says = "does not say how long it lasts"
         if rule is not None and rule.duration is not None:
             says = "has both a duration and something that it waits for"
-        yield diagnostic_about(
-            at,
-            task,
+        yield about.diagnostic(
             "il.wait-rule",
             f"the WAIT task '{task.name}' {says}",
             "give its `wait` a `duration`, or else an `event`, `conditions` or both",
-            field=".wait" if rule else "",
+            ".wait" if rule else "",
         )
     elif happens and rule.limit is None and (task.window is None or task.window.latest is None):
-        yield diagnostic_about(
-            at,
-            task,
+        yield about.diagnostic(
             "il.wait-without-limit",
             f"the WAIT task '{task.name}' has no limit: it may last for ever",
             "give its `wait` a `limit` in seconds",
-            Severity.WARNING,
             ".wait",
         )
     elif rule.duration is not None and rule.limit is not None:
-        yield diagnostic_about(
-            at,
-            task,
+        yield about.diagnostic(
             "il.unused-field",
             f"the WAIT task '{task.name}' lasts for a time, so its `limit` has no effect",
             "remove it",
-            Severity.WARNING,
             ".wait.limit",
         )
 
 
-def check_failure(at: str, task: Task) -> Iterator[Diagnostic]:
+def check_failure(about: About, task: Task) -> Iterator[Diagnostic]:
     """Whether a failure branch and its policy belong together; the target itself apart."""
     branches = task.on_failure is OnFailure.BRANCH
     if branches and task.failure_target is None:
-        yield diagnostic_about(
-            at,
-            task,
+        yield about.diagnostic(
             "il.branch-without-target",
             f"task '{task.name}' is to go on elsewhere when it has failed, and does not say where",
             "give it a `failure_target`",
-            field=".on_failure",
+            ".on_failure",
         )
     elif not branches and task.failure_target is not None:
-        yield diagnostic_about(
-            at,
-            task,
+        yield about.diagnostic(
             "il.unused-field",
             f"task '{task.name}' has a `failure_target`, but its `on_failure` is {task.on_failure}",
             "set `on_failure` to branch, or remove the target",
-            Severity.WARNING,
             ".failure_target",
         )
 
 
-def check_window(at: str, task: Task) -> Iterator[Diagnostic]:
+def check_window(about: About, task: Task) -> Iterator[Diagnostic]:
     """What is wrong with a task's time window."""
     window = task.window
     if window is None:
         return
     if window.latest is not None and window.latest <= window.earliest:
-        yield diagnostic_about(
-            at,
-            task,
+        yield about.diagnostic(
             "il.window-order",
             f"task '{task.name}' is to be done between {window.earliest:g} s and "
             f"{window.latest:g} s, which leaves no time",
             "give `latest` a time after `earliest`, in s since the mission's start",
-            field=".window",
+            ".window",
         )
     if window.missed_target is not None and (window.latest is None or not window.hard):
         why = "has no `latest`" if window.latest is None else "is not hard"
-        yield diagnostic_about(
-            at,
-            task,
+        yield about.diagnostic(
             "il.unused-field",
             f"the window of task '{task.name}' {why}, so it is never missed and its "
             "`missed_target` has no effect",
             "remove it, or give the window a hard `latest`",
-            Severity.WARNING,
             ".window.missed_target",
         )

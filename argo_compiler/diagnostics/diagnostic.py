@@ -7,6 +7,7 @@ from pydantic.json_schema import SkipJsonSchema
 
 from argo_compiler.base.errors import Remedy, RemedyChoice
 from argo_compiler.base.model import Model
+from argo_compiler.diagnostics.codes import CODES
 from argo_compiler.diagnostics.codes.code import Severity
 
 MAX_EXCERPT = 200
@@ -53,6 +54,28 @@ class Diagnostic(Model):
     """how to take the way out, for front ends that add their own words"""
     choice: SkipJsonSchema[RemedyChoice | None] = Field(default=None, exclude=True)
     """what the hint lets one choose by the remedy, where it says that"""
+
+
+def diagnostic_of(
+    code: str,
+    message: str,
+    hint: str | None = None,
+    subject: str | None = None,
+    span: Span | None = None,
+    severity: Severity | None = None,
+    choice: RemedyChoice | None = None,
+) -> Diagnostic:
+    """Return a diagnostic; without a severity it is as bad as its code is."""
+    return Diagnostic(
+        code=code,
+        severity=severity or CODES[code].severity,
+        message=message,
+        hint=hint,
+        subject=subject,
+        span=span,
+        remedies=() if choice is None else (choice.remedy,),
+        choice=choice,
+    )
 
 
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:

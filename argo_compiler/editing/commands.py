@@ -19,28 +19,10 @@ from pydantic import (
 )
 
 from argo_compiler.base.model import Model, Pose
+from argo_compiler.editing import groups, header, reactions, removal, tasks, transitions
 from argo_compiler.editing.consequences import Edited
-from argo_compiler.editing.groups import change_group, dissolve_group, rename_group, wrap_tasks
-from argo_compiler.editing.header import set_header, wrong_values
-from argo_compiler.editing.reactions import add_reaction, change_reaction, remove_reaction
+from argo_compiler.editing.header import wrong_values
 from argo_compiler.editing.refusals import EditInvalid, invalid
-from argo_compiler.editing.removal import remove_task
-from argo_compiler.editing.tasks import (
-    add_task,
-    change_task,
-    move_task,
-    rename_task,
-    replace_task,
-)
-from argo_compiler.editing.transitions import (
-    add_condition,
-    add_transition,
-    remove_condition,
-    remove_transition,
-    set_conditions,
-    set_target,
-    set_transitions,
-)
 from argo_compiler.il import (
     Condition,
     EventKind,
@@ -314,31 +296,12 @@ Edit = Annotated[
 ]
 """all edits there are, told apart by `kind`"""
 
+_KINDS = {command.model_fields["kind"].default for command in EditCommand.__subclasses__()}
 FUNCTIONS: dict[str, Callable[..., Edited]] = {
-    function.__name__: function
-    for function in (
-        add_task,
-        remove_task,
-        replace_task,
-        change_task,
-        move_task,
-        rename_task,
-        wrap_tasks,
-        dissolve_group,
-        rename_group,
-        change_group,
-        set_transitions,
-        add_transition,
-        remove_transition,
-        set_target,
-        set_conditions,
-        add_condition,
-        remove_condition,
-        add_reaction,
-        change_reaction,
-        remove_reaction,
-        set_header,
-    )
+    name: function
+    for module in (tasks, removal, groups, transitions, reactions, header)
+    for name, function in vars(module).items()
+    if name in _KINDS
 }
 """what makes the edit of each kind"""
 

@@ -53,14 +53,10 @@ class MissionDraft:
 
     def _read_tasks(self) -> None:
         tasks = self.before.tasks
-        layout = GroupNesting.of(self.before) if self.nested and self.before.groups else None
-        following = following_names(tasks)
-        for i, task in enumerate(tasks):
-            inner = None if layout is None else layout.innermost[i]
-            around = "" if layout is None or inner is None else layout.ranges[inner].group.name
-            entry = DraftTask(
-                task, _goes_on(task, following[i]), self.nested and task.group == around
-            )
+        around = _groups_around(self.before) if self.nested else [""] * len(tasks)
+        for task, group, following in zip(tasks, around, following_names(tasks), strict=True):
+            shown = self.nested and task.group == group
+            entry = DraftTask(task, _goes_on(task, following), shown)
             self.tasks.append(entry)
             if self._found.setdefault(task.name, entry) is not entry:
                 self._repeated.add(task.name)
@@ -236,16 +232,21 @@ class MissionDraft:
 
     def _displayed(self, made: Mission, entries: list[DraftTask]) -> Mission:
         """The mission with the tasks shown in the groups that are around them now."""
-        layout = GroupNesting.of(made) if made.groups else None
-        tasks = list(made.tasks)
-        for i, entry in enumerate(entries):
-            if not entry.shown:
-                continue
-            inner = None if layout is None else layout.innermost[i]
-            around = "" if layout is None or inner is None else layout.ranges[inner].group.name
-            if tasks[i].group != around:
-                tasks[i] = tasks[i].model_copy(update={"group": around})
+        tasks = [
+            task.model_copy(update={"group": group})
+            if entry.shown and task.group != group
+            else task
+            for task, group, entry in zip(made.tasks, _groups_around(made), entries, strict=True)
+        ]
         return made.model_copy(update={"tasks": tuple(tasks)})
+
+
+def _groups_around(mission: Mission) -> list[str]:
+    """For each task, the name of the innermost group around it; empty: there is none."""
+    if not mission.groups:
+        return [""] * len(mission.tasks)
+    layout = GroupNesting.of(mission)
+    return ["" if i is None else layout.ranges[i].group.name for i in layout.innermost]
 
 
 def _is_alone(entry: DraftTask, g: DraftGroup) -> bool:

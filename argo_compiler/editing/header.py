@@ -6,9 +6,9 @@ from typing import TypedDict, Unpack
 from pydantic import ValidationError
 
 from argo_compiler.base.model import Pose
-from argo_compiler.diagnostics import Diagnostic
+from argo_compiler.diagnostics import Diagnostic, diagnostic_of
 from argo_compiler.editing.consequences import Edited, edited
-from argo_compiler.editing.refusals import EditInvalid, diagnostic, unknown
+from argo_compiler.editing.refusals import EditInvalid, unknown
 from argo_compiler.il import Mission, Mode, Order
 
 
@@ -57,7 +57,7 @@ def require_fields(given: Iterable[str], known: Collection[str], of: str) -> Non
     if wrong:
         hint = f"the fields that can be changed: {', '.join(known)}"
         raise EditInvalid(
-            diagnostic("edit.value", f"`{name}` is no field of {of} that can be changed", hint)
+            diagnostic_of("edit.value", f"`{name}` is no field of {of} that can be changed", hint)
             for name in wrong
         )
 
@@ -65,7 +65,7 @@ def require_fields(given: Iterable[str], known: Collection[str], of: str) -> Non
 def wrong_values(error: ValidationError) -> list[Diagnostic]:
     """What is said of values that a field can't have."""
     return [
-        diagnostic(
+        diagnostic_of(
             "edit.value",
             _said(fault["loc"], fault["msg"]),
             "give it a value that the mission format allows",

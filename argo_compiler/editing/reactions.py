@@ -1,8 +1,9 @@
 """Edits of a mission's reactions, which go by their events."""
 
+from argo_compiler.diagnostics import diagnostic_of
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.consequences import Edited, edited
-from argo_compiler.editing.refusals import EditNotFound, conflict, diagnostic, require_kind
+from argo_compiler.editing.refusals import EditNotFound, conflict, require_kind
 from argo_compiler.il import EventKind, Mission, Reaction
 
 
@@ -48,7 +49,7 @@ def _index(mission: Mission, event: EventKind) -> int:
     known = ", ".join(reaction.event for reaction in mission.reactions) or "none"
     message = f"the mission has no reaction to {event}"
     hint = f"it has reactions to: {known}"
-    raise EditNotFound([diagnostic("edit.unknown-reaction", message, hint)])
+    raise EditNotFound([diagnostic_of("edit.unknown-reaction", message, hint)])
 
 
 def _require_free(mission: Mission, event: EventKind) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Sequence
 
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound
 from argo_compiler.base.nearest_name import nearest_name
-from argo_compiler.diagnostics import Diagnostic, Severity, to_text
+from argo_compiler.diagnostics import Diagnostic, diagnostic_of, to_text
 from argo_compiler.diagnostics.subject import subject_of
 
 _SURROGATE = re.compile("[\ud800-\udfff]")
@@ -38,19 +38,12 @@ class EditConflict(EditError, Conflict):
     """The edit does not fit the mission as it is."""
 
 
-def diagnostic(code: str, message: str, hint: str, subject: str | None = None) -> Diagnostic:
-    """What is said about an edit."""
-    return Diagnostic(
-        code=code, severity=Severity.ERROR, message=message, hint=hint, subject=subject
-    )
-
-
 def unknown(kind: str, name: str, known: Collection[str]) -> EditNotFound:
     """The refusal of an edit that names a task or group that is not there."""
     near = nearest_name(name, known)
     return EditNotFound(
         [
-            diagnostic(
+            diagnostic_of(
                 f"edit.unknown-{kind}",
                 f"the mission has no {kind} '{name}'",
                 f"is '{near}' meant?" if near else f"name a {kind} of the mission",
@@ -80,17 +73,17 @@ def name_taken(kind: str, name: str, subject: str) -> EditConflict:
     """The refusal of a name that something else has."""
     hint = f"choose another name, or rename the {kind} that has it"
     message = f"there is a {kind} '{name}' already"
-    return EditConflict([diagnostic("edit.name-taken", message, hint, subject)])
+    return conflict("edit.name-taken", message, hint, subject)
 
 
 def conflict(code: str, message: str, hint: str, subject: str | None = None) -> EditConflict:
     """A refusal for one reason."""
-    return EditConflict([diagnostic(code, message, hint, subject)])
+    return EditConflict([diagnostic_of(code, message, hint, subject)])
 
 
 def invalid(code: str, message: str, hint: str) -> EditInvalid:
     """A refusal of what was given."""
-    return EditInvalid([diagnostic(code, message, hint)])
+    return EditInvalid([diagnostic_of(code, message, hint)])
 
 
 def require_kind(value: object, kind: type, what: str) -> None:

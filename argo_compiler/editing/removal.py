@@ -10,7 +10,7 @@ from argo_compiler.editing.consequences import Consequence, Edited, edited
 from argo_compiler.editing.draft import DraftGroup, DraftTask, MissionDraft
 from argo_compiler.editing.refusals import EditConflict, conflict
 from argo_compiler.editing.ways import defaults, retargeted
-from argo_compiler.il import Action, Mission, Task, Transition
+from argo_compiler.il import Action, Mission, Task
 from argo_compiler.il.ways import beginning, branches, default_target
 
 _NAMES = 3
@@ -94,14 +94,12 @@ class _Removal:
         self._require_round_starts()
         self._require_same_groups()
         for other in self.leading:
-            ways = self._ways(other)
-            self._require_branches(other.task)
             if self.name in defaults(other.task):
                 other.goes_on = other.goes_on and self.entry.goes_on
-            task = other.task.model_copy(update={"transitions": ways})
             if self.successor is not None:
-                task = retargeted(task, {self.name: self.successor})
-            other.task = task
+                other.task = retargeted(other.task, {self.name: self.successor})
+            else:
+                self._end_after(other)
         return self.successor
 
     def _leads_here(self, task: Task) -> bool:
@@ -109,17 +107,6 @@ class _Removal:
 
     def _branches_here(self, task: Task) -> bool:
         return self.name in branches(task).values()
-
-    def _require_branches(self, task: Task) -> None:
-        """That what follows a failure of a task does not become the end of the mission."""
-        if self.successor is None and self._branches_here(task):
-            raise self._conflict(
-                "edit.ends-by-condition",
-                f"when task '{task.name}' has failed or missed its window, '{self.name}' follows, "
-                "after which the mission ends, and no branch can end a mission",
-                f"lead it to another task before '{self.name}' is removed",
-                task.name,
-            )
 
     def _successor(self) -> str | None:
         target = default_target(self.entry.task)
@@ -131,15 +118,9 @@ class _Removal:
             following = following.after
         return None if following is None else following.task.name
 
-    def _ways(self, other: DraftTask) -> tuple[Transition, ...]:
+    def _end_after(self, other: DraftTask) -> None:
+        """Lets the mission end where a task led to the one that goes."""
         task = other.task
-        if self.successor is not None:
-            return tuple(
-                way.model_copy(update={"target": self.successor})
-                if way.target == self.name
-                else way
-                for way in task.transitions
-            )
         conditional = [way for way in task.transitions if way.conditions]
         while conditional and conditional[-1].target == self.name:
             conditional.pop()
@@ -147,15 +128,25 @@ class _Removal:
         ends = all(target == self.name for target in defaults(task))
         ends = ends and all(g.last is not other for g in self.draft.groups)
         dropped = [way for way in task.transitions if way.conditions and way.target == self.name]
+        hint = f"lead it to another task before '{self.name}' is removed"
         if dropped and not (ends and all(way.target != self.name for way in conditional)):
             raise self._conflict(
                 "edit.ends-by-condition",
                 f"a transition of task '{task.name}' with conditions leads to '{self.name}', after "
                 "which the mission ends, and no condition can end a mission",
-                f"lead it to another task before '{self.name}' is removed",
+                hint,
                 task.name,
             )
-        return tuple(way for way in task.transitions if way.target != self.name)
+        if self._branches_here(task):
+            raise self._conflict(
+                "edit.ends-by-condition",
+                f"when task '{task.name}' has failed or missed its window, '{self.name}' follows, "
+                "after which the mission ends, and no branch can end a mission",
+                hint,
+                task.name,
+            )
+        kept = tuple(way for way in task.transitions if way.target != self.name)
+        other.task = task.model_copy(update={"transitions": kept})
 
     # ---- groups
 

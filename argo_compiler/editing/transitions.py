@@ -2,9 +2,10 @@
 
 from collections.abc import Sequence
 
+from argo_compiler.diagnostics import diagnostic_of
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.consequences import Edited, edited
-from argo_compiler.editing.refusals import EditNotFound, conflict, diagnostic, require_kind, unknown
+from argo_compiler.editing.refusals import EditNotFound, conflict, only_one, require_kind, unknown
 from argo_compiler.il import Condition, Mission, Task, Transition
 
 
@@ -112,7 +113,7 @@ def _way(task: str, ways: Sequence[Transition], at: int) -> Transition:
 
 def _no_such(kind: str, of: str, at: int, count: int) -> EditNotFound:
     hint = f"it has {count}, counted from 0"
-    return EditNotFound([diagnostic(f"edit.unknown-{kind}", f"{of} has no {kind} {at}", hint)])
+    return EditNotFound([diagnostic_of(f"edit.unknown-{kind}", f"{of} has no {kind} {at}", hint)])
 
 
 def _task(mission: Mission, name: str) -> Task:
@@ -121,10 +122,4 @@ def _task(mission: Mission, name: str) -> Task:
 
 def _index(mission: Mission, name: str) -> int:
     found = [i for i, task in enumerate(mission.tasks) if task.name == name]
-    if not found:
-        raise unknown("task", name, {task.name for task in mission.tasks})
-    if len(found) > 1:
-        message = f"more than one task is named '{name}'"
-        hint = "write the mission with a name for each task first"
-        raise conflict("edit.ambiguous-task", message, hint, subject_of("tasks", name))
-    return found[0]
+    return only_one(name, found, {task.name for task in mission.tasks})

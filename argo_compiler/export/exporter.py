@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span
+from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Span, diagnostic_of
 from argo_compiler.hfsm import Hfsm
 from argo_compiler.il import Mission, Reaction, Response
 
@@ -27,9 +27,7 @@ def refusal(
     code: str, message: str, hint: str | None = None, span: Span | None = None
 ) -> Diagnostic:
     """Says that the target can't say something of the mission; `code` without `export.`."""
-    return Diagnostic(
-        code=f"export.{code}", severity=Severity.ERROR, message=message, span=span, hint=hint
-    )
+    return diagnostic_of(f"export.{code}", message, hint, span=span)
 
 
 def level_refusals(reactions: Iterable[Reaction]) -> Iterator[Diagnostic]:

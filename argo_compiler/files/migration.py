@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from argo_compiler.base.listing import quoted
-from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.diagnostics import Diagnostic, diagnostic_of
 from argo_compiler.files.json_places import JsonPath
 from argo_compiler.il import Action, EventKind, Mission, Mode, OnFailure, Response, Task
 from argo_compiler.il.velocities import of_ways_there
@@ -103,7 +103,8 @@ def _changes(mission: Mission) -> Iterator[Diagnostic]:
         and task.on_failure is OnFailure.CONTINUE
     ]
     if failing:
-        yield _changed(
+        yield diagnostic_of(
+            "file.meaning-changed",
             f"where {quoted(failing)} fails, conditions do not see the value of an earlier "
             "measurement any more",
             "add a transition with a READING_FAILED condition, or a `failure_target`, for what is "
@@ -115,20 +116,23 @@ def _changes(mission: Mission) -> Iterator[Diagnostic]:
         safety = reaction.response is Response.ABORT or reaction.event is EventKind.EMERGENCY_STOP
         others = (r.priority or 0 for r in interrupting if r is not reaction)
         if safety and any(priority >= (reaction.priority or 0) for priority in others):
-            yield _changed(
+            yield diagnostic_of(
+                "file.meaning-changed",
                 f"the reaction to {reaction.event} comes before all others now, whatever their "
                 "priorities",
                 "nothing is to be done if that is what was meant",
                 f"reactions['{reaction.event}']",
             )
     if mission.mode is Mode.SUPERVISORY:
-        yield _changed(
+        yield diagnostic_of(
+            "file.meaning-changed",
             "a mission in supervisory mode begins paused now, until a person resumes it",
             "set `mode` to autonomous if it is to begin by itself",
             "mode",
         )
     if posed := [task.name for task in mission.tasks if _has_own_pose(task)]:
-        yield _changed(
+        yield diagnostic_of(
+            "file.meaning-changed",
             f"the pose of {quoted(posed)} was never used, and is left out",
             "give it again if the robot is to measure from there",
             "tasks",
@@ -140,20 +144,11 @@ def _has_own_pose(task: Task) -> bool:
 
 
 def _velocities(differ: tuple[str, ...]) -> Diagnostic:
-    return _changed(
+    return diagnostic_of(
+        "file.meaning-changed",
         f"{quoted(differ)} was driven to at different velocities, by where the robot came from; "
         "it is the slowest of them now",
         "a velocity belongs to the way to a task now, wherever the robot comes from: save the "
         f"mission as version {VERSION}, and set `velocity` there",
         "tasks",
-    )
-
-
-def _changed(message: str, hint: str, subject: str) -> Diagnostic:
-    return Diagnostic(
-        code="file.meaning-changed",
-        severity=Severity.WARNING,
-        message=message,
-        hint=hint,
-        subject=subject,
     )

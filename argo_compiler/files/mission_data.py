@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from pydantic import TypeAdapter, ValidationError
 
 from argo_compiler.base.model import Model
-from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.diagnostics import Diagnostic, diagnostic_of
 from argo_compiler.files.fields import field_hint
 from argo_compiler.files.json_places import JsonPath, format_path
 from argo_compiler.il import Group, Mission, Reaction, Task
@@ -42,10 +42,7 @@ def unplaced(
 ) -> UnplacedDiagnostic:
     """An error about what is at the path; None: about the whole file."""
     subject = None if path is None else format_path(path)
-    diagnostic = Diagnostic(
-        code=code, severity=Severity.ERROR, message=message, hint=hint, subject=subject
-    )
-    return UnplacedDiagnostic(diagnostic, path)
+    return UnplacedDiagnostic(diagnostic_of(code, message, hint, subject), path)
 
 
 def too_deep() -> UnplacedDiagnostic:

@@ -43,7 +43,6 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from argo_compiler.hfsm.cause import Cause
     from argo_compiler.hfsm.conditions import CheckpointReading, Measured
     from argo_compiler.hfsm.events import (
         ActionFailed,
@@ -63,6 +62,7 @@ if TYPE_CHECKING:
         Tick,
     )
     from argo_compiler.hfsm.executor import EndedVisit, Executor
+    from argo_compiler.hfsm.kinds import Cause, Outcome, ReadingKind
     from argo_compiler.hfsm.lowering import lower
     from argo_compiler.hfsm.model import (
         Composite,
@@ -73,14 +73,12 @@ if TYPE_CHECKING:
         StateTransition,
         TransitionKind,
     )
-    from argo_compiler.hfsm.outcome import Outcome
     from argo_compiler.hfsm.progress import (
         ByHand,
         Progress,
         ReadingProgress,
         TaskTally,
     )
-    from argo_compiler.hfsm.reading_kind import ReadingKind
     from argo_compiler.hfsm.trace import TraceEntry
 else:
     __getattr__, __dir__ = lazy_names(
@@ -105,6 +103,7 @@ else:
                 "Tick",
             ],
             "executor": ["EndedVisit", "Executor"],
+            "kinds": ["Cause", "Outcome", "ReadingKind"],
             "lowering": ["lower"],
             "model": [
                 "Composite",
@@ -115,10 +114,7 @@ else:
                 "StateTransition",
                 "TransitionKind",
             ],
-            "outcome": ["Outcome"],
             "progress": ["ByHand", "Progress", "ReadingProgress", "TaskTally"],
-            "reading_kind": ["ReadingKind"],
-            "cause": ["Cause"],
             "trace": ["TraceEntry"],
         },
     )

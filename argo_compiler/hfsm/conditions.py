@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from argo_compiler.hfsm.reading_kind import ReadingKind
+from argo_compiler.hfsm.kinds import ReadingKind
 from argo_compiler.il import Condition, ConditionType, WaitRule
 
 

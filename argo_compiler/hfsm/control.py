@@ -3,9 +3,8 @@
 import math
 from collections.abc import Sequence
 
-from argo_compiler.hfsm.cause import Cause
 from argo_compiler.hfsm.interrupts import Effect, Stage, Trigger
-from argo_compiler.hfsm.outcome import Outcome
+from argo_compiler.hfsm.kinds import Cause, Outcome
 from argo_compiler.hfsm.progress import ByHand
 from argo_compiler.hfsm.standing import InterruptState, TakenRow, advance
 from argo_compiler.hfsm.tables import ReactionNode, Tables

@@ -6,7 +6,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import NoReturn
 
-from argo_compiler.hfsm.cause import Cause
 from argo_compiler.hfsm.conditions import CheckpointReading, Measured
 from argo_compiler.hfsm.control import Control
 from argo_compiler.hfsm.events import (
@@ -27,8 +26,8 @@ from argo_compiler.hfsm.events import (
     TakeOver,
     Tick,
 )
+from argo_compiler.hfsm.kinds import Cause, Outcome
 from argo_compiler.hfsm.model import DONE, MISSION, Hfsm
-from argo_compiler.hfsm.outcome import Outcome
 from argo_compiler.hfsm.progress import ByHand, Progress
 from argo_compiler.hfsm.restoring import (
     group_progress,

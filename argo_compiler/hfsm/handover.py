@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import TypeVar
 
 from argo_compiler.base.model import Model
-from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.diagnostics import Diagnostic, diagnostic_of
 from argo_compiler.hfsm.progress import ByHand, GroupProgress, Progress
 from argo_compiler.il import Action, Mission, OnFailure, Response
 from argo_compiler.il.grouping import group_ranges
@@ -72,34 +72,26 @@ def match(progress: Progress, mission: Mission) -> tuple[Progress | None, tuple[
     return matched, (*of_groups, *of_done, *of_reactions)
 
 
-def _diagnostic(
-    code: str, message: str, hint: str, severity: Severity = Severity.WARNING
-) -> Diagnostic:
-    return Diagnostic(code=f"handover.{code}", severity=severity, message=message, hint=hint)
-
-
 def _active(progress: Progress, mission: Mission) -> Iterator[Diagnostic]:
     name = progress.active
     if name is None:
         return
     if name == RETURN_TASK:
         if all(task.on_failure is not OnFailure.RETURN for task in mission.tasks):
-            yield _diagnostic(
-                "no-return",
+            yield diagnostic_of(
+                "handover.no-return",
                 "the robot is on its way back to the dock after a failure, but no task of the plan "
                 "returns when it has failed",
                 "give a task `on_failure` return, or cancel the mission",
-                Severity.ERROR,
             )
         return
     task = mission.task(name)
     if task is None or task.action is Action.START:
-        yield _diagnostic(
-            "task-gone",
+        yield diagnostic_of(
+            "handover.task-gone",
             f"the mission stands at task '{name}', which the plan does not have any more",
             "put a task of that name back, or set `active` in the progress to the task that the "
             "mission is to go on with",
-            Severity.ERROR,
         )
 
 
@@ -113,8 +105,8 @@ def _groups(
     ]
     known = {p.group: p for p in progress.groups}
     diagnostics = [
-        _diagnostic(
-            "new-group",
+        diagnostic_of(
+            "handover.new-group",
             f"group '{name}' is new around task '{progress.active}': it begins in round 1, with "
             "its clock at 0",
             "set its round in the progress if it is to be another one",
@@ -123,8 +115,8 @@ def _groups(
         if name not in known
     ]
     diagnostics += [
-        _diagnostic(
-            "group-gone",
+        diagnostic_of(
+            "handover.group-gone",
             f"group '{name}' is not around task '{progress.active}' any more: its round "
             f"{p.round} and its clock are dropped",
             "keep the group if its rounds are to be completed",
@@ -142,8 +134,8 @@ def _by_hand(progress: Progress, mission: Mission) -> tuple[tuple[ByHand, ...], 
     for done in progress.by_hand:
         if done.task not in actions:
             diagnostics.append(
-                _diagnostic(
-                    "by-hand-gone",
+                diagnostic_of(
+                    "handover.by-hand-gone",
                     f"task '{done.task}' was done by hand, but the plan does not have it",
                     "put it back into the plan if it is to count",
                 )
@@ -152,8 +144,8 @@ def _by_hand(progress: Progress, mission: Mission) -> tuple[tuple[ByHand, ...], 
         kept.append(done)
         if done.value is not None and actions[done.task] is not Action.MEASURE:
             diagnostics.append(
-                _diagnostic(
-                    "by-hand-value",
+                diagnostic_of(
+                    "handover.by-hand-value",
                     f"a value was given for task '{done.task}', which measures nothing",
                     "leave the value out, or give it for the task that measures it",
                 )
@@ -165,8 +157,8 @@ def _reactions(progress: Progress, mission: Mission) -> tuple[Progress, tuple[Di
     answered = {r.event for r in mission.reactions if r.response is not Response.REPORT}
     begun = answered - {r.event for r in mission.reactions if r.response is Response.ABORT}
     diagnostics = [
-        _diagnostic(
-            "reaction-gone",
+        diagnostic_of(
+            "handover.reaction-gone",
             f"the plan does not react to {w.event} any more, which waited for its turn",
             "put the reaction back into the plan if it is to be carried out",
         )
@@ -179,8 +171,8 @@ def _reactions(progress: Progress, mission: Mission) -> tuple[Progress, tuple[Di
     active = progress.reaction
     if active is not None and active.event not in begun:
         diagnostics.append(
-            _diagnostic(
-                "reaction-gone",
+            diagnostic_of(
+                "handover.reaction-gone",
                 f"the mission was interrupted by {active.event}, for which the plan has no such "
                 "reaction any more: it is paused",
                 "resume it when it is safe to go on",

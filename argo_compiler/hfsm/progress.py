@@ -5,8 +5,7 @@ from enum import StrEnum
 from pydantic import Field
 
 from argo_compiler.base.model import Model
-from argo_compiler.hfsm.outcome import Outcome
-from argo_compiler.hfsm.reading_kind import ReadingKind
+from argo_compiler.hfsm.kinds import Outcome, ReadingKind
 from argo_compiler.il import EventKind
 
 

@@ -1,14 +1,12 @@
 """The part of a machine that can still be reached from where a mission stands."""
 
 import heapq
-from collections.abc import Iterator
 from itertools import count
 
-from argo_compiler.base.errors import Conflict
-from argo_compiler.hfsm.model import DONE, RETURN, Composite, Hfsm, Leaf, task_id
+from argo_compiler.hfsm.model import DONE, Composite, Hfsm, Leaf
 from argo_compiler.hfsm.progress import GroupProgress, Progress
+from argo_compiler.hfsm.restoring import leaf_of
 from argo_compiler.hfsm.tables import CompiledTransition, GroupNode, LeafNode, tables
-from argo_compiler.il.reserved import RETURN_TASK
 
 
 def remaining(hfsm: Hfsm, progress: Progress) -> Hfsm:
@@ -86,13 +84,7 @@ class _Reach:
         self._pending: list[tuple[int, int, LeafNode]] = []
         if progress.outcome is not None or progress.active is None:
             return
-        name = progress.active
-        self.start = known.leaves.get(RETURN if name == RETURN_TASK else task_id(name))
-        if self.start is None:
-            raise Conflict(
-                f"the progress is at task '{name}', which the mission does not have; use the "
-                "mission that it was saved from, or match it to this one first"
-            )
+        self.start = leaf_of(known, progress.active)
         self._last_round = _in_last_round(self.start, progress.groups)
         self._add(self.start, len(self._last_round))
         while self._pending:
@@ -117,7 +109,7 @@ class _Reach:
             self._take((leaf.missed,), under_way)
         if leaf.failure is not None and (leaf.may_fail or (missable and leaf.missed is None)):
             self._take((leaf.failure,), under_way)
-        for group in _outward(leaf):
+        for group in leaf.groups:
             if (group.id, under_way, True) in self._looked_at:
                 break
             if group.timeout is not None:
@@ -155,18 +147,11 @@ class _Reach:
             time_up = False
 
 
-def _outward(leaf: LeafNode) -> Iterator[GroupNode]:
-    group = leaf.parent
-    while group is not None:
-        yield group
-        group = group.parent
-
-
 def _in_last_round(leaf: LeafNode, progress: tuple[GroupProgress, ...]) -> list[bool]:
     """For each group around the leaf, outermost first, whether it is not repeated in this visit."""
     known = {p.group: p for p in progress}
     found = []
-    for group in _outward(leaf):
+    for group in leaf.groups:
         p = known.get(group.name)
         found.append(
             p is not None

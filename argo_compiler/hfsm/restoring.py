@@ -33,7 +33,7 @@ def place_of(tables: Tables, progress: Progress, now: float, away: float) -> Con
     """
     place = Configuration(tables)
     place.began = now - progress.elapsed - away
-    leaf = None if progress.active is None else _leaf(tables, progress.active)
+    leaf = None if progress.active is None else leaf_of(tables, progress.active)
     place.visit = TaskVisit(
         leaf,
         place.new_visit(),
@@ -136,7 +136,8 @@ def reaction_progress(
     return active, waiting
 
 
-def _leaf(tables: Tables, name: str) -> LeafNode:
+def leaf_of(tables: Tables, name: str) -> LeafNode:
+    """Return the leaf of the task that a mission stands at. Raises ArgoError if there is none."""
     leaf = tables.leaves.get(RETURN if name == RETURN_TASK else task_id(name))
     if leaf is None:
         raise Conflict(
@@ -146,12 +147,7 @@ def _leaf(tables: Tables, name: str) -> LeafNode:
 
 
 def _groups(leaf: LeafNode, progress: Progress) -> list[GroupNode]:
-    groups = []
-    group = leaf.parent
-    while group is not None:
-        groups.append(group)
-        group = group.parent
-    groups.reverse()
+    groups = [*leaf.groups][::-1]
     if [group.name for group in groups] != [known.group for known in progress.groups]:
         raise Conflict(
             f"the progress has task '{leaf.name}' in other groups than the mission; {_OTHER}"

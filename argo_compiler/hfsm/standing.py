@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from argo_compiler.hfsm.interrupts import ROWS, Effect, Given, InterruptRow, Stage, Trigger
-from argo_compiler.hfsm.outcome import Outcome
+from argo_compiler.hfsm.kinds import Outcome
 from argo_compiler.il import Afterwards, EventKind, Reaction, Response
 
 Reactions = Mapping[EventKind, Reaction]

@@ -1,10 +1,11 @@
 """The tables that an executor runs on: a machine whose states know each other directly."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from argo_compiler.base.garbage_collector import collector_held
-from argo_compiler.hfsm.cause import Cause
 from argo_compiler.hfsm.conditions import Test, reading_test
+from argo_compiler.hfsm.kinds import Cause
 from argo_compiler.hfsm.model import (
     MISSION,
     RETURN,
@@ -113,6 +114,14 @@ class LeafNode:
     ways: tuple[CompiledTransition, ...] = ()
     failure: CompiledTransition | None = None
     missed: CompiledTransition | None = None
+
+    @property
+    def groups(self) -> Iterator[GroupNode]:
+        """The groups that it lies in, from the innermost outward."""
+        group = self.parent
+        while group is not None:
+            yield group
+            group = group.parent
 
     @property
     def may_fail(self) -> bool:

@@ -5,12 +5,10 @@ from collections import defaultdict, deque
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from argo_compiler.hfsm.cause import Cause
 from argo_compiler.hfsm.conditions import CheckpointReading, all_words
 from argo_compiler.hfsm.configuration import Configuration
-from argo_compiler.hfsm.outcome import Outcome
+from argo_compiler.hfsm.kinds import Cause, Outcome, ReadingKind
 from argo_compiler.hfsm.progress import ByHand
-from argo_compiler.hfsm.reading_kind import ReadingKind
 from argo_compiler.hfsm.tables import CompiledTransition, LeafNode, Tables
 from argo_compiler.hfsm.trace import KeptStep, RawEntry
 from argo_compiler.il import EventKind

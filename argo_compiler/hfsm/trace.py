@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from argo_compiler.hfsm.cause import Cause
 from argo_compiler.hfsm.conditions import words
+from argo_compiler.hfsm.kinds import Cause
 from argo_compiler.hfsm.tables import CompiledTransition, LeafNode
 from argo_compiler.il import Condition, EventKind
 

@@ -1,10 +1,10 @@
 """Which tasks lie in which group: the groups of a mission as nested ranges of its task list."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from argo_compiler.base.remembering import remembering
 from argo_compiler.il.mission import Group, Mission
-from argo_compiler.il.positions import task_positions
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,6 +19,13 @@ class GroupRange:
 
     def contains(self, position: int) -> bool:
         return self.first <= position <= self.last
+
+
+@remembering
+def task_positions(mission: Mission) -> Mapping[str, int]:
+    """The position of each task by its name; of several with one name, the first one's."""
+    names = [task.name for task in mission.tasks]
+    return dict(zip(reversed(names), range(len(names) - 1, -1, -1), strict=True))
 
 
 def parent_name(name: str) -> str | None:

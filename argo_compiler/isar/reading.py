@@ -10,7 +10,8 @@ from pydantic import ValidationError
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.model import Pose
 from argo_compiler.base.quaternions import to_yaw
-from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
+from argo_compiler.diagnostics import Diagnostic, DiagnosticError, diagnostic_of, has_errors
+from argo_compiler.files.json_places import format_path
 from argo_compiler.files.mission_file import MAX_BYTES
 from argo_compiler.files.reading import FileError, decode_text
 from argo_compiler.il import Action, Mission, Task, Transition
@@ -83,7 +84,11 @@ def from_isar(data: Any, source_name: str, catalog: Catalog | None = None) -> Im
         read = MissionDefinition.model_validate(definition)
     except ValidationError as error:
         diagnostics = [
-            _diagnostic("wrong-field", _path(e["loc"]), e["msg"], "correct the isar mission")
+            diagnostic_of(
+                "isar.wrong-field",
+                f"{format_path(e['loc']) or 'the mission'}: {e['msg']}",
+                "correct the isar mission",
+            )
             for e in error.errors(include_url=False)[:100]
         ]
         raise DiagnosticError(source_name, diagnostics) from None
@@ -122,7 +127,7 @@ class _Reader:
                 self._check_inspection(place, task)
                 object_id = names.get(task.tag or "", task.tag)
                 tasks.append(Task(name=name, action=Action.MEASURE, object_id=object_id, pose=pose))
-        if any(diagnostic.severity is Severity.ERROR for diagnostic in self.diagnostics):
+        if has_errors(self.diagnostics):
             raise DiagnosticError(self.source_name, self.diagnostics)
         linked = [
             task.model_copy(update={"transitions": (Transition(target=following.name),)})
@@ -164,9 +169,8 @@ class _Reader:
 
     def _require(self, place: str, given: bool, code: str, message: str) -> None:
         if not given:
-            self.diagnostics.append(
-                _diagnostic(code, place, message, "remove the task, or complete it")
-            )
+            hint = "remove the task, or complete it"
+            self.diagnostics.append(diagnostic_of(f"isar.{code}", f"{place}: {message}", hint))
 
     def _warn_of_extras(self, place: str, part: Part) -> None:
         for name, value in (part.model_extra or {}).items():
@@ -174,8 +178,7 @@ class _Reader:
                 self._warn(f"{place}.{name}".removeprefix("."), "is not taken over")
 
     def _warn(self, place: str, message: str) -> None:
-        diagnostic = _diagnostic("dropped", place, message, None)
-        self.diagnostics.append(diagnostic.model_copy(update={"severity": Severity.WARNING}))
+        self.diagnostics.append(diagnostic_of("isar.dropped", f"{place}: {message}"))
 
 
 def _fresh(name: str, used: set[str]) -> str:
@@ -183,14 +186,3 @@ def _fresh(name: str, used: set[str]) -> str:
         name += "'"
     used.add(name)
     return name
-
-
-def _path(location: tuple[int | str, ...]) -> str:
-    steps = (f"[{step}]" if isinstance(step, int) else f".{step}" for step in location)
-    return "".join(steps).removeprefix(".") or "the mission"
-
-
-def _diagnostic(code: str, place: str, message: str, hint: str | None) -> Diagnostic:
-    return Diagnostic(
-        code=f"isar.{code}", severity=Severity.ERROR, message=f"{place}: {message}", hint=hint
-    )

@@ -35,10 +35,9 @@ if TYPE_CHECKING:
         to_ros1_bag,
         to_ros2_bag,
     )
+    from argo_compiler.ros.messages import Received, from_message, to_message
     from argo_compiler.ros.package import message_package
-    from argo_compiler.ros.reading import Received, from_message
     from argo_compiler.ros.types import RosTypes, ros1_types, ros2_types
-    from argo_compiler.ros.writing import to_message
 else:
     __getattr__, __dir__ = lazy_names(
         __name__,
@@ -52,9 +51,8 @@ else:
                 "to_ros1_bag",
                 "to_ros2_bag",
             ],
+            "messages": ["Received", "from_message", "to_message"],
             "package": ["message_package"],
-            "reading": ["Received", "from_message"],
             "types": ["RosTypes", "ros1_types", "ros2_types"],
-            "writing": ["to_message"],
         },
     )

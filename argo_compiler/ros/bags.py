@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 from argo_compiler.base.errors import Invalid
-from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
+from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.files.reading import FileError, opened
 from argo_compiler.il import Mission
 from argo_compiler.ros.compression import (
@@ -18,10 +18,9 @@ from argo_compiler.ros.compression import (
     check_metadata,
     check_ros1_chunks,
 )
+from argo_compiler.ros.messages import Received, from_message, refuse, to_message
 from argo_compiler.ros.package import SPECIFICATION
-from argo_compiler.ros.reading import Received, from_message
 from argo_compiler.ros.types import RosTypes, ros1_types, ros2_types
-from argo_compiler.ros.writing import to_message
 
 TOPIC = "/mission"
 STAMP = 1_000_000_000
@@ -134,13 +133,13 @@ def read_bag(path: Path, source_name: str | None = None) -> Received:
     is_folder = os.path.isdir(path)
     if is_folder and not os.path.isfile(path / "metadata.yaml"):
         hint = "name the script, mission or bag in it; a rosbag2 folder has a metadata.yaml"
-        _refuse(name, "file.directory", "is a directory", hint)
+        refuse(name, "file.directory", "is a directory", hint)
     try:
         first = b"" if is_folder else _beginning(path)
     except FileError as error:
-        _refuse(name, f"file.{error.problem}", error.message, error.hint)
+        refuse(name, f"file.{error.problem}", error.message, error.hint)
     if not is_folder and not first.startswith((_ROS1, _MCAP, _SQLITE)):
-        _refuse(name, "ros.not-a-bag", "is no bag", "name a ROS 1 bag or a rosbag2 folder")
+        refuse(name, "ros.not-a-bag", "is no bag", "name a ROS 1 bag or a rosbag2 folder")
     types = ros1_types() if first.startswith(_ROS1) else ros2_types()
     # rosbags raises whatever the broken bytes lead to: errors of its own, of SQLite, of struct, of
     # YAML, of the decompressors, KeyError, AssertionError.
@@ -151,10 +150,10 @@ def read_bag(path: Path, source_name: str | None = None) -> Received:
     except DiagnosticError:
         raise
     except TooLargeError as error:
-        _refuse(name, "ros.compressed", f"is not unpacked: {error}", _UNPACK)
+        refuse(name, "ros.compressed", f"is not unpacked: {error}", _UNPACK)
     except Exception as error:
         reason = " ".join(str(error).split())[:200] or type(error).__name__
-        _refuse(
+        refuse(
             name, "ros.broken-bag", f"can't be read as a bag: {reason}", "record or copy it anew"
         )
     return from_message(message, types, name)
@@ -206,10 +205,10 @@ def _read(name: str, reader: Any, types: RosTypes) -> bytes:
         topics = sorted({c.topic for c in reader.connections})
         more = ", ..." if len(topics) > _SHOWN else ""
         listed = f"only {', '.join(topics[:_SHOWN])}{more}" if topics else "no topic at all"
-        _refuse(name, "ros.no-mission", f"has no topic {TOPIC}, {listed}", f"record {TOPIC}")
+        refuse(name, "ros.no-mission", f"has no topic {TOPIC}, {listed}", f"record {TOPIC}")
     for connection in connections:
         if connection.msgtype != SPECIFICATION:
-            _refuse(
+            refuse(
                 name,
                 "ros.wrong-type",
                 f"has messages of the type {connection.msgtype} on {TOPIC}",
@@ -217,7 +216,7 @@ def _read(name: str, reader: Any, types: RosTypes) -> bytes:
             )
         # Bags from before ROS 2 Iron, and MCAP files by themselves, hold no type hash.
         if connection.digest and connection.digest != types.digest():
-            _refuse(
+            refuse(
                 name,
                 "ros.other-definitions",
                 f"was written with other definitions of {SPECIFICATION}: {connection.digest}",
@@ -226,7 +225,7 @@ def _read(name: str, reader: Any, types: RosTypes) -> bytes:
     found: set[bytes] = set()
     for count, (_, _, raw) in enumerate(reader.messages(connections=connections), 1):
         if len(raw) > MAX_BYTES:
-            _refuse(
+            refuse(
                 name,
                 "file.too-large",
                 f"has a message larger than {MAX_BYTES // 1_000_000} MB",
@@ -234,14 +233,14 @@ def _read(name: str, reader: Any, types: RosTypes) -> bytes:
             )
         found.add(bytes(raw))
         if len(found) > 1 or count > _MAX_MESSAGES:
-            _refuse(
+            refuse(
                 name,
                 "ros.several-missions",
                 f"holds more than one mission on {TOPIC}",
                 "keep one of them: rosbag filter, or ros2 bag convert",
             )
     if not found:
-        _refuse(name, "ros.no-mission", f"has no message on {TOPIC}", f"record {TOPIC} again")
+        refuse(name, "ros.no-mission", f"has no message on {TOPIC}", f"record {TOPIC} again")
     return found.pop()
 
 
@@ -258,8 +257,3 @@ def _beginning(path: Path) -> bytes:
     """Enough to tell what the file is. Raises FileError if it can't be read."""
     with opened(path, "bag") as file:
         return file.read(16)
-
-
-def _refuse(source_name: str, code: str, message: str, hint: str) -> NoReturn:
-    diagnostic = Diagnostic(code=code, severity=Severity.ERROR, message=message, hint=hint)
-    raise DiagnosticError(source_name, [diagnostic]) from None

@@ -1,5 +1,6 @@
 """The messages as Python objects and as bytes: made by `rosbags` from their definitions."""
 
+from collections.abc import Iterator
 from enum import Enum
 from functools import cache
 from typing import Any, TypeVar
@@ -29,6 +30,11 @@ class RosTypes:
     def new(self, message: str, /, **fields: Any) -> Any:
         """A message of `argo_mission_msgs`; fields that are not given are 0 or empty."""
         return self._make(f"{PACKAGE}/msg/{message}", fields)
+
+    def fields(self, message: str) -> Iterator[tuple[str, str]]:
+        """The fields of a message, each with its type."""
+        for name, (_, detail) in self.store.fielddefs[f"{PACKAGE}/msg/{message}"][1]:
+            yield name, str(detail[0])
 
     def pose(self, x: float, y: float, z: float, qz: float, qw: float) -> Any:
         """A geometry_msgs/Pose, turned about z only."""

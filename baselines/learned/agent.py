@@ -1,7 +1,7 @@
 """The learned policies as the arena plays them, for any number of checkpoints.
 
-`greedy` takes the node with the highest score, step by step. `sampled` first plays the rest of the
-route many times in thought, on the travel times that it is shown, and goes the best of these ways.
+One takes the node with the highest score, step by step. The other first plays the rest of the route
+many times in thought, on the travel times that it is shown, and goes the best of these ways.
 """
 
 from collections.abc import Mapping
@@ -190,13 +190,3 @@ def _move(
     legal &= state["travel"] + state["home"] <= state["left"] - _MARGIN
     legal[:, DOCK] = True
     state["mask"] = legal.astype(np.int8)
-
-
-def greedy() -> LearnedPolicy:
-    """The learned policy with the weights that ship."""
-    return LearnedPolicy.load()
-
-
-def sampled() -> SampledPolicy:
-    """The best of 64 rollouts with the weights that ship."""
-    return SampledPolicy.load()

@@ -10,7 +10,7 @@ from argo_env.envs.route_noise import RouteNoise
 from baselines import portfolio
 from baselines.episodes import play
 from baselines.families import TEST_SETS, InstanceFamily, InstanceSet
-from baselines.heuristics.given_order import GivenOrder
+from baselines.heuristics.greedy import GivenOrder
 from baselines.policy import POLICIES, Policy, make_policy
 from baselines.problem import hindsight
 
@@ -141,7 +141,7 @@ def test_an_action_that_is_no_node_is_told_with_the_policys_name():
 def test_a_policy_of_ones_own(monkeypatch):
     monkeypatch.setitem(POLICIES, "mine", Stubborn)
     assert make_policy("mine").name == "stubborn"
-    made = make_policy("baselines.heuristics.given_order:GivenOrder")
+    made = make_policy("baselines.heuristics.greedy:GivenOrder")
     assert isinstance(made, GivenOrder)
 
 

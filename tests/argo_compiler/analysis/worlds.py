@@ -35,9 +35,8 @@ from argo_compiler.il import (
     Reaction,
     Response,
     Task,
-    Transition,
 )
-from tests.mission_parts import HERE, OBJECTS, groups_over, transitions, wait_rules, windows
+from tests.mission_parts import HERE, OBJECTS, groups_over, starts, transitions, wait_rules, windows
 
 STEPS = 80
 SHELTER = Pose(x=-1, y=0, z=0)
@@ -136,13 +135,10 @@ def missions(draw, least=1, most=8):
         draw(tasks_named(name, names, i, None if kinds[i] in "WT" else kinds[i]))
         for i, name in enumerate(names)
     ]
-    if draw(st.booleans()):
-        way = draw(st.lists(st.sampled_from(names), max_size=1))
-        ways = tuple(Transition(target=w) for w in way)
-        tasks.insert(0, Task(name="S", action=Action.START, transitions=ways))
+    tasks = (*draw(starts(names)), *tasks)
     until = conditions_of_all_kinds() if draw(st.booleans()) else None
     return Mission(
-        tasks=tuple(tasks),
+        tasks=tasks,
         groups=draw(groups_over(names, interruptions=False, plans=True, until=until)),
         dock=HERE,
         reactions=draw(reactions()),
@@ -202,6 +198,15 @@ class MadeUpTravel:
         action = Random(f"{self.seed} {place}").choice([0, 1]) if task.object_id else 0
         energy = rng.choice([0.5, 1.0, 3.0])
         return Leg(distance / (velocity or 1) + action, energy, place, action)
+
+
+def travels():
+    return st.builds(
+        MadeUpTravel,
+        st.integers(0, 10**6),
+        st.sampled_from([0.0, 0.5, 2.0]),
+        standing_power=st.sampled_from([0.0, 3600.0]),
+    )
 
 
 @dataclass

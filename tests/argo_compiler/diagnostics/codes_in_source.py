@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).parents[3]
 PACKAGES = ("argo_compiler", "argo_env", "argo_planner")
-SHARED = frozenset(["parse_yaml", "refusal"])
+SHARED = frozenset(["diagnostic_of", "parse_yaml", "refusal"])
 """functions that pass codes on for other folders as well"""
 
 

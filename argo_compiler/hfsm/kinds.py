@@ -1,4 +1,4 @@
-"""The causes of the entries of a trace."""
+"""Why there is an entry in a trace, how a mission has ended, and what came of a measurement."""
 
 from enum import StrEnum
 
@@ -38,3 +38,30 @@ class Cause(StrEnum):
     CANCEL = "cancel"
     END = "end"
     """a reaction ends the mission"""
+
+
+class Outcome(StrEnum):
+    """How a mission has ended."""
+
+    COMPLETED = "completed"
+    """all was done that the plan asked for"""
+    COMPLETED_WITH_FAILURES = "completed with failures"
+    """the plan came to its end, and a task that is not optional had failed for good"""
+    RETURNED = "returned"
+    """at the dock, after a failure or an event"""
+    SHELTERED = "sheltered"
+    """in a safe area, after an event"""
+    FAILED = "failed"
+    """the way to the dock or to a safe area failed as well"""
+    ABORTED = "aborted"
+    """where the robot stood, after a failure or an event"""
+    CANCELLED = "cancelled"
+    """by a person"""
+
+
+class ReadingKind(StrEnum):
+    """What came of the last measurement at a checkpoint (C3)."""
+
+    VALUE = "value"
+    UNREADABLE = "unreadable"
+    FAILED = "failed"

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from argo_env.evaluation.plan import EvaluationPlan, PlannedRun
 from argo_env.evaluation.rates import Decision, judge_requirements, rate_of
 from argo_env.evaluation.row import RunRow
-from argo_env.evaluation.statistics.strata import Stratum, allocation
+from argo_env.evaluation.statistics.rates import Stratum, allocation
 
 
 def batches(plan: EvaluationPlan, rows: Sequence[RunRow]) -> Iterator[Iterator[PlannedRun]]:

@@ -10,10 +10,13 @@ import numpy as np
 
 from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.comparison import PlanComparison
-from argo_env.evaluation.durations import DurationCurve, duration_curve
-from argo_env.evaluation.places import failure_places_of
 from argo_env.evaluation.rates import PlanRate
-from argo_env.evaluation.results import EvaluationResults
+from argo_env.evaluation.results import (
+    DurationCurve,
+    EvaluationResults,
+    duration_curve,
+    failure_places_of,
+)
 from argo_env.evaluation.row import RunOutcome
 from argo_env.evaluation.statistics.rates import Rate
 from argo_env.formatting import clock

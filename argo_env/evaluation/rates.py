@@ -9,10 +9,15 @@ from enum import StrEnum
 from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.row import RunOutcome, RunRow
-from argo_env.evaluation.statistics.rates import Rate, clopper_pearson, wilson
+from argo_env.evaluation.statistics.rates import (
+    Rate,
+    Stratum,
+    clopper_pearson,
+    stratified_rate,
+    weighted_world_means,
+    wilson,
+)
 from argo_env.evaluation.statistics.sequences import ConfidenceSequence
-from argo_env.evaluation.statistics.strata import Stratum, stratified_rate
-from argo_env.evaluation.statistics.world_means import weighted_world_means
 
 
 class IntervalMethod(StrEnum):

@@ -8,8 +8,7 @@ from pydantic import Field
 from argo_compiler.base.model import Model
 from argo_compiler.il import Action
 from argo_env.evaluation.case import EvaluationCase, PlanName
-from argo_env.evaluation.detection import FaultDetection, detections
-from argo_env.evaluation.false_alarms import false_alarms
+from argo_env.evaluation.detection import FaultDetection, detections, false_alarms
 from argo_env.run.record import RunRecord
 from argo_env.run.spec import RunSpec
 from argo_env.site import Site

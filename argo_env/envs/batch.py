@@ -11,8 +11,7 @@ from gymnasium.vector.utils import batch_space, concatenate, create_empty_array
 from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid, NotFound
-from argo_env.envs.copying import Copying
-from argo_env.envs.episode import no_state
+from argo_env.envs.episode import Copying, no_state
 from argo_env.envs.observations import Observation
 from argo_env.envs.options import check_whole
 from argo_env.envs.workers import Workers, core_count

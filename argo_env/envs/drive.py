@@ -12,13 +12,19 @@ from numpy.typing import NDArray
 from argo_compiler.base.errors import Invalid
 from argo_env.drives.tracked.body import FLIPPER_LIMITS, TIME_STEP
 from argo_env.envs import lidar
-from argo_env.envs.copying import Copying
-from argo_env.envs.drive_site import DriveSite
-from argo_env.envs.drive_sites import NEAREST, DriveOptions, DriveSites
-from argo_env.envs.episode import Parts, check_begun, check_state, check_under_way, no_state
+from argo_env.envs.drive_site import NEAREST, DriveOptions, DriveSite, DriveSites
+from argo_env.envs.episode import (
+    Copying,
+    Parts,
+    Rendering,
+    check_begun,
+    check_render_mode,
+    check_state,
+    check_under_way,
+    no_state,
+)
 from argo_env.envs.observations import Observation, dict_space
 from argo_env.envs.options import LONGEST, check_positive, check_scenario, read_options
-from argo_env.envs.rendering import Rendering, check_render_mode
 from argo_env.navigation.path import wrap
 from argo_env.pictures.drive import draw_drive
 from argo_env.robot.pose import BodyPose

@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.il import EventKind
-from argo_env.envs.copying import Copying
 from argo_env.envs.episode import (
+    Copying,
     Parts,
+    Rendering,
     check_begun,
+    check_render_mode,
     check_state,
     check_under_way,
     no_state,
@@ -22,8 +24,7 @@ from argo_env.envs.episode import (
 )
 from argo_env.envs.inspection_drawing import draw_inspection
 from argo_env.envs.inspection_options import MOST_FAULTS, InspectOptions, draw_faults
-from argo_env.envs.inspection_run import Deed, Inspection, beginning
-from argo_env.envs.inspection_travel import travel_times
+from argo_env.envs.inspection_run import Deed, Inspection, beginning, travel_times
 from argo_env.envs.observations import Observation, dict_space
 from argo_env.envs.options import (
     LONGEST,
@@ -33,7 +34,6 @@ from argo_env.envs.options import (
     check_whole,
     read_options,
 )
-from argo_env.envs.rendering import Rendering, check_render_mode
 from argo_env.faults.kinds import AnyFault
 from argo_env.planning import open_site
 from argo_env.run.drives_and_sensors import DRIVES, ROUTE

@@ -8,17 +8,18 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from argo_env.envs.copying import Copying
 from argo_env.envs.episode import (
+    Copying,
     Parts,
+    Rendering,
     check_begun,
+    check_render_mode,
     check_state,
     check_under_way,
     no_state,
     read_choice,
 )
 from argo_env.envs.observations import Observation
-from argo_env.envs.rendering import Rendering, check_render_mode
 from argo_env.envs.route_drawing import draw_route
 from argo_env.envs.route_episodes import (
     FPS,

@@ -12,11 +12,9 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid
-from argo_env.envs.copying import Copying
-from argo_env.envs.episode import no_state
+from argo_env.envs.episode import Copying, check_render_mode, no_state
 from argo_env.envs.observations import Observation
 from argo_env.envs.options import check_whole
-from argo_env.envs.rendering import check_render_mode
 from argo_env.envs.route_drawing import draw_route
 from argo_env.envs.route_episodes import (
     FPS,

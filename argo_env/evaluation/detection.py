@@ -9,9 +9,8 @@ from argo_env.drives.battery import ESTIMATE_ERROR
 from argo_env.faults.checkpoints import AbnormalValue
 from argo_env.faults.kinds import AnyFault
 from argo_env.run.conditions import ValueProfile
-from argo_env.run.instruments import shown_at
 from argo_env.run.record import Anomaly, Finding, Reading, RunRecord
-from argo_env.run.rig import true_values
+from argo_env.run.rig import shown_at, true_values
 from argo_env.run.spec import RunSpec
 from argo_env.sensing.onboard import LOW
 from argo_env.site import Site

@@ -13,7 +13,7 @@ from argo_env.seeding import draw
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
 from argo_env.surroundings import Alarm, GasLeak, HotSpot, PumpFault, PumpSound
-from argo_env.surroundings.sources import Source
+from argo_env.surroundings.surroundings import Source
 
 if TYPE_CHECKING:
     from argo_env.faults.targets import FaultTargets

@@ -1,10 +1,16 @@
-"""The file that a recording is written to, without a buffer: what is written is with the system."""
+"""What tells a recording, and the file that it is written to, without a buffer: what is written is
+with the system."""
 
 import os
 from contextlib import suppress
 from pathlib import Path
 
 from argo_compiler.base.errors import Unavailable
+
+VERSION = "2"
+"""of what a recording of Argo's holds"""
+MAGIC = b"\x89MCAP0\r\n"
+"""what every .mcap file begins and ends with (MCAP specification)"""
 
 
 class UnwritableRecording(Unavailable):

@@ -1,14 +1,12 @@
 """From how a run stands to its record."""
 
 from argo_compiler.hfsm import Progress
-from argo_env.run.interruptions import InterruptionWatch
 from argo_env.run.log import RunLog
 from argo_env.run.machine import Machine
 from argo_env.run.record import RunRecord, TraceStep
 from argo_env.run.rig import Rig
-from argo_env.run.rounds import RoundWatch
 from argo_env.run.spec import RunSpec
-from argo_env.run.stays import stays_of, waits_of, windows_of
+from argo_env.run.stays import InterruptionWatch, RoundWatch, stays_of, waits_of, windows_of
 from argo_env.run.verdict import judge
 
 

@@ -11,10 +11,9 @@ from argo_env.site.equipment import (
     build_pump,
     build_vessel,
 )
-from argo_env.site.railings import outside, railing
 from argo_env.site.shapes import Box, Element, Role, Solid
 from argo_env.site.spec import FloorSpec, Rect, SiteSpec
-from argo_env.site.stairs import build_flight, mouths
+from argo_env.site.stairs import build_flight, mouths, outside, railing
 
 DECK_THICKNESS = 0.04  # m
 SLAB_THICKNESS = 0.2  # m

@@ -1,4 +1,7 @@
-"""Calls handed to workers, and what came of each: also of those that kill their worker."""
+"""Calls handed to workers, and what came of each: also of those that kill their worker.
+
+Several calls are handed over together, since that takes as long for a short one as the call itself.
+"""
 
 import time
 from collections import deque

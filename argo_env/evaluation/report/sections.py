@@ -1,4 +1,5 @@
-"""What a report says of plans and of runs that are no success, and how it was made."""
+"""What a report says of plans, of runs that are no success, and of how the evaluation was made,
+without the time of day: equal rows have an equal report."""
 
 import re
 import shlex

@@ -1,4 +1,10 @@
-"""How often something happens: rates with confidence intervals."""
+"""How often something happens: rates with confidence intervals, of runs, of worlds and of strata.
+
+The runs of one world depend on each other and count as one. Strata are faults that come with known
+probabilities: where failures are rare and most of them come with a few faults, it tells more to run
+each fault often enough than to wait until chance brings it (stratified sampling: W. G. Cochran,
+Sampling techniques, 3rd edition, 1977, chapter 5).
+"""
 
 import math
 from collections import defaultdict

@@ -2,15 +2,12 @@
 
 from argo_env.seeding import generator
 from argo_env.sensing.signals.alarm_watch import AlarmWatch
-from argo_env.sensing.signals.gas_sensors import GasSensor, UltrasonicMicrophone
-from argo_env.sensing.signals.gas_watch import GasWatch
-from argo_env.sensing.signals.heat_watch import HeatWatch
+from argo_env.sensing.signals.gas_watch import GasSensor, GasWatch, UltrasonicMicrophone
+from argo_env.sensing.signals.heat_watch import HeatWatch, ThermalCamera
 from argo_env.sensing.signals.microphone import Microphone
 from argo_env.sensing.signals.pump_watch import PumpWatch
 from argo_env.sensing.signals.site_map import SiteMap
-from argo_env.sensing.signals.terrain_scanner import TerrainScanner
-from argo_env.sensing.signals.terrain_watch import TerrainWatch
-from argo_env.sensing.signals.thermal_camera import ThermalCamera
+from argo_env.sensing.signals.terrain_watch import TerrainScanner, TerrainWatch
 from argo_env.sensing.watch import Watch
 from argo_env.surroundings import Surroundings
 from argo_env.world.world import World

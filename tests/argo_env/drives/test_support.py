@@ -11,8 +11,8 @@ from hypothesis.extra.numpy import arrays
 from scipy.optimize import linprog
 
 from argo_compiler.base.model import Pose
-from argo_env.drives import support
-from argo_env.drives.support import STEP, GroundMemory, ground_memory, resting, resting_poses
+from argo_env.drives import kinematic
+from argo_env.drives.kinematic import STEP, GroundMemory, ground_memory, resting, resting_poses
 from argo_env.navigation.path import Motion
 from argo_env.site.shapes import Box
 
@@ -148,7 +148,7 @@ def test_ground_that_is_remembered_is_not_probed_again(simulation, robot, monkey
     motion = drive(1.9, 2.5, 2.5, 1.9, 9.0, 2.5, 90)
     first = memory.resting_poses(simulation, motion, robot)
     assert first == resting_poses(simulation, motion, robot)
-    monkeypatch.setattr(support, "resting_poses", None)
+    monkeypatch.setattr(kinematic, "resting_poses", None)
     assert memory.resting_poses(simulation, drive(1.9, 2.5, 2.5, 1.9, 9.0, 2.5, 90), robot) == first
 
 

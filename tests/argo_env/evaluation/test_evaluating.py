@@ -2,9 +2,8 @@
 
 import pytest
 
-from argo_env.evaluation.carrying_out import WorkOrder, carry_out
 from argo_env.evaluation.case import EvaluationCase
-from argo_env.evaluation.evaluating import Evaluating
+from argo_env.evaluation.evaluating import Evaluating, WorkOrder, carry_out
 from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.pool.backends import make_backend
 from argo_env.evaluation.rates import Decision, IntervalMethod

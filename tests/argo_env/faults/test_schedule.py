@@ -10,7 +10,7 @@ from argo_env.faults.schedule import Schedule
 from argo_env.faults.targets import FaultTargets
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.ideal import IdealSensor
-from argo_env.sensing.onboard_sensor import OnboardSensor
+from argo_env.sensing.onboard import OnboardSensor
 from argo_env.surroundings import Surroundings
 from argo_env.surroundings.network import RadioNetwork
 from argo_env.world.paper_world import PaperWorld

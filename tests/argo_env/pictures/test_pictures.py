@@ -10,7 +10,7 @@ from PIL import Image
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Mission, Task
-from argo_env.pictures import check_film, frames, overview, write_film, write_overview
+from argo_env.pictures import check_film, film, overview, write_film, write_overview
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.chase import ChaseCamera
 from argo_env.pictures.motion import RecordedMotion
@@ -170,17 +170,17 @@ def test_a_gif_has_a_frame_for_each_time(record, umad, robot, tmp_path):
 
 @pytest.mark.long
 def test_several_processes_draw_the_same_film(record, umad, robot, tmp_path, monkeypatch):
-    monkeypatch.setattr(frames, "usable_processors", lambda: 2)
+    monkeypatch.setattr(film, "usable_processors", lambda: 2)
     for name, worth_it in (("alone.gif", 10**6), ("together.gif", 2)):
-        monkeypatch.setattr(frames, "_WORTH_IT", worth_it)
+        monkeypatch.setattr(film, "_WORTH_IT", worth_it)
         write_film(record, umad, robot, tmp_path / name, speed=10, fps=4, size=(120, 80))
     assert (tmp_path / "alone.gif").read_bytes() == (tmp_path / "together.gif").read_bytes()
 
 
 def test_a_process_that_draws_and_is_killed_is_told(record, umad, robot, tmp_path, monkeypatch):
-    monkeypatch.setattr(frames, "usable_processors", lambda: 2)
-    monkeypatch.setattr(frames, "_WORTH_IT", 2)
-    monkeypatch.setattr(frames, "_drawn", killed)
+    monkeypatch.setattr(film, "usable_processors", lambda: 2)
+    monkeypatch.setattr(film, "_WORTH_IT", 2)
+    monkeypatch.setattr(film, "_drawn", killed)
     with pytest.raises(ArgoError, match="a process that drew the frames was ended"):
         write_film(record, umad, robot, tmp_path / "film.gif", speed=10, fps=4, size=(120, 80))
     assert list(tmp_path.iterdir()) == []

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from argo_compiler.base.model import Pose
-from argo_env.planning.poses_to_read_from import unseen_from_poses
+from argo_env.planning.site_warnings import unseen_from_poses
 from tests.yard import measure, mission, opened, yard
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from argo_env.planning.speeds_to_drive_at import too_fast
+from argo_env.planning.site_warnings import too_fast
 from argo_env.robot.spec import load_robot
 from tests.yard import measure, mission
 

@@ -14,7 +14,7 @@ from argo_compiler.hfsm import Cancel, Occurred, Outcome, Pause, Resume
 from argo_compiler.il import Afterwards, EventKind, Group, OnFailure, Reaction, Response
 from argo_env.formatting import clock
 from argo_env.report import write_report
-from argo_env.report.waiting import waits
+from argo_env.report.rounds import waits
 from argo_env.run.headline import Tone
 from argo_env.run.record import RunRecord
 from argo_env.run.spec import logged

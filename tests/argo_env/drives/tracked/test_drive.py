@@ -7,8 +7,7 @@ import pytest
 
 from argo_compiler.base.model import Pose
 from argo_env.drives.drive import DriveStatus, Trouble
-from argo_env.drives.tracked.drive import TrackedDrive
-from argo_env.drives.tracked.stall_watch import WINDOW, StallWatch
+from argo_env.drives.tracked.drive import WINDOW, StallWatch, TrackedDrive
 from argo_env.navigation.path import Motion, Path, wrap
 from argo_env.robot.pose import BodyPose
 

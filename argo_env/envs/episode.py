@@ -20,6 +20,17 @@ Parts = Mapping[str, type | tuple[type, ...]]
 _WHOLE = (int, np.integer)
 
 
+def seeds_of(seed: int | Sequence[int | None] | None, count: int) -> list[int | None]:
+    """The seed of each of so many environments: an int seeds them with seed, seed + 1 and so on."""
+    if seed is None:
+        return [None] * count
+    if isinstance(seed, int | np.integer):
+        return [int(seed) + k for k in range(count)]
+    if len(seed) != count:
+        raise ValueError(f"{count} environments need as many seeds, not {len(seed)}")
+    return list(seed)
+
+
 def check_begun(over: bool | None, env: str) -> None:
     """Raises ResetNeeded if there is no episode yet; `over` is None then."""
     if over is None:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.il import EventKind
+from argo_env.envs.batch import SpreadVectorEnv
 from argo_env.envs.episode import (
     Copying,
     Parts,
@@ -427,3 +428,15 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
         if not self._asked[slot]:
             return "outside"
         return "open" if self._mask[slot] else "closed"
+
+
+class InspectVectorEnv(SpreadVectorEnv):
+    """Many inspections at once, as `gymnasium.make_vec("argo/Inspect-v0", num_envs=8)` makes them.
+    Arguments and options are those of `InspectEnv`, and `processes`."""
+
+    single = InspectEnv
+    _title = "argo/Inspect-v0"
+
+    def action_masks(self) -> NDArray[np.bool_]:
+        """Which actions are legal now, shape (num_envs, n + d)."""
+        return np.stack(self.call("action_masks"))

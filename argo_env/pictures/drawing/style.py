@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from PIL import ImageDraw
 
-from argo_env.pictures.drawing.sheet import FINER, PAPER, Pixel, font
+from argo_env.pictures.drawing.sheet import FINER, INK, PAPER, Pixel, font
 from argo_env.robot.spec import Footprint
 
 Ink = str | tuple[int, int, int]
@@ -51,6 +51,12 @@ def paint_disc(
         draw.line((x - half, y + half, x + half, y - half), "#98a2ac", round(1.5 * FINER))
     size = min(13.0, 1.25 * radius) * min(1.0, 2.4 / max(len(name), 1))
     draw.text((x, y), name, style.text, font(size), "mm")
+
+
+def paint_station(draw: ImageDraw.ImageDraw, place: Pixel, half: float) -> None:
+    """The square of a station; `half` of its side in px of the picture."""
+    (x, y), r = place, half * FINER
+    draw.rectangle((x - r, y - r, x + r, y + r), fill=INK, outline=PAPER, width=FINER)
 
 
 def paint_ring(draw: ImageDraw.ImageDraw, place: Pixel, radius: float) -> None:

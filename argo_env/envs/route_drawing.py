@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.base.model import Pose
-from argo_env.envs.route_aisles import DEPTH, WIDTH
 from argo_env.envs.route_instance import DOCK, RouteInstance, Stair
 from argo_env.envs.route_site_times import navigator_without
-from argo_env.envs.route_sources import RandomRoutes, RouteSource, SiteRoutes
+from argo_env.envs.route_sources import DEPTH, WIDTH, RandomRoutes, RouteSource, SiteRoutes
 from argo_env.navigation import Navigator
 from argo_env.pictures.drawing.floors import FloorPlan, aisles, open_floors
 from argo_env.pictures.drawing.plan import Marker, PlanDrawing, StationMark, draw_plan

@@ -15,6 +15,7 @@ from PIL import Image
 
 from argo_compiler.base.errors import Invalid, Unavailable, located
 from argo_compiler.files.writing import check_place, drafting
+from argo_env.files.folders import ANOTHER_PLACE, writing
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.caption import add_caption, add_verdict
 from argo_env.pictures.chase import ChaseCamera
@@ -165,25 +166,20 @@ def write_film(
     count = math.ceil(motion.end / (speed * frame_time) - 1e-9) + 1
     times = [min(k * speed * frame_time, motion.end) for k in range(count)]
     times += [motion.end] * (round(VERDICT_TIME / frame_time) - 1)
-    try:
-        with drafting(file) as draft:
-            with Scene(site, robot) as scene:
-                shots = [*shots_of(motion, scene, times, (width, height), frame_time)]
-                spread = _spread(times) if is_gif else []
-                sampled = shots_of(motion, scene, spread, (width, height), math.inf)
-                samples = [draw(record, scene, shot, motion.end) for shot in sampled]
-            frames = _shown(draw_all(record, site, robot, shots, motion.end), shots, progress)
-            if is_gif:
-                write_gif(frames, draft, make_palette(samples), frame_time)
-            else:
-                try:
-                    write_mp4(frames, draft, (width, height), fps)
-                except Unavailable as error:
-                    raise located(error, str(file)) from None
-    except OSError as error:
-        raise Unavailable(
-            f"{file}: the film can't be written: {error.strerror}; choose another place"
-        ) from error
+    with writing(file, "the film", ANOTHER_PLACE), drafting(file) as draft:
+        with Scene(site, robot) as scene:
+            shots = [*shots_of(motion, scene, times, (width, height), frame_time)]
+            spread = _spread(times) if is_gif else []
+            sampled = shots_of(motion, scene, spread, (width, height), math.inf)
+            samples = [draw(record, scene, shot, motion.end) for shot in sampled]
+        frames = _shown(draw_all(record, site, robot, shots, motion.end), shots, progress)
+        if is_gif:
+            write_gif(frames, draft, make_palette(samples), frame_time)
+        else:
+            try:
+                write_mp4(frames, draft, (width, height), fps)
+            except Unavailable as error:
+                raise located(error, str(file)) from None
 
 
 def _spread(times: list[float]) -> list[float]:

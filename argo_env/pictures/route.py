@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from argo_compiler.base.errors import Unavailable
 from argo_compiler.base.model import Pose
 from argo_compiler.files.writing import write_folder
 from argo_compiler.il import Action, Task
 from argo_compiler.reorder.mission import MissionRoute
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.problem import Tour
+from argo_env.files.folders import ANOTHER_PLACE, writing
 from argo_env.formatting import clock
 from argo_env.navigation import Navigator
 from argo_env.pictures.drawing.floors import plans_of
@@ -82,12 +82,8 @@ def write_route(
         content = io.BytesIO()
         Image.fromarray(image).save(content, "png")
         pictures[_name(plan.number)] = content.getvalue()
-    try:
+    with writing(folder, "the pictures", ANOTHER_PLACE):
         write_folder(folder, pictures)
-    except OSError as error:
-        raise Unavailable(
-            f"{folder}: the pictures can't be written: {error.strerror}; choose another place"
-        ) from error
     return [folder / name for name in pictures]
 
 

@@ -6,6 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from argo_compiler.base.errors import Unavailable
+from argo_env.files.folders import ANOTHER_PLACE, writing
 
 VERSION = "2"
 """of what a recording of Argo's holds"""
@@ -34,12 +35,8 @@ class RecordingFile:
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        try:
+        with writing(path, "the recording", ANOTHER_PLACE):
             self._file = path.open("wb", buffering=0)
-        except OSError as error:
-            raise Unavailable(
-                f"{path}: the recording can't be written: {error.strerror}; choose another place"
-            ) from error
         self._size = 0
         self._kept = 0
         self._failed = False

@@ -15,9 +15,8 @@ from argo_compiler.hfsm import Occurred
 from argo_compiler.il import Action, EventKind
 from argo_env.navigation import Path as Way
 from argo_env.recording import messages, scene
-from argo_env.recording.motion import Limbs, MotionTopics
+from argo_env.recording.motion import Limbs, MotionTopics, write_shot
 from argo_env.recording.output import VERSION
-from argo_env.recording.shots import write_shot
 from argo_env.recording.topic_writer import TopicWriter
 from argo_env.recording.writer import media_type
 from argo_env.report.files import to_json

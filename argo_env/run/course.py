@@ -24,10 +24,9 @@ from argo_env.run.record import RunRecord, TaskRun
 from argo_env.run.robot import ActionEnd, AnyRobot, RobotAction
 from argo_env.run.spec import RunSpec
 from argo_env.run.stays import InterruptionWatch, RoundWatch
-from argo_env.run.steering import as_seen_on
-from argo_env.run.summary import make_record
-from argo_env.run.supervision import Supervision
+from argo_env.run.steering import Supervision, as_seen_on
 from argo_env.run.vehicle import way_come
+from argo_env.run.verdict import make_record
 
 
 class GivenEvents:

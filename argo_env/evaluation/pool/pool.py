@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from argo_env.closing import Closing
 from argo_env.evaluation.pool.backend import WorkerBackend, WorkerDiedError
 
 _WORTH = 0.25  # s that a bundle should take: as long as nobody minds waiting for what came of it
@@ -100,7 +101,7 @@ class _Call:
     """whether it is to be handed over by itself"""
 
 
-class Pool:
+class Pool(Closing):
     """Hands calls of one function to workers and gives back what came of them, as it comes.
 
     Short calls are handed over several together. Where a worker dies, its calls are tried again in
@@ -143,12 +144,6 @@ class Pool:
     def close(self) -> None:
         """Ends the workers. What they were at is lost."""
         self._backend.close()
-
-    def __enter__(self) -> "Pool":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def _hand_over(self) -> None:
         if self._suspects and not self._backend.names_the_dead:

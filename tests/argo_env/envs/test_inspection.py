@@ -17,17 +17,10 @@ CHECKPOINTS = 20  # of the site
 
 
 @pytest.fixture
-def make():
-    made = []
-
-    def one(**arguments):
-        env = gym.make("argo/Inspect-v0", disable_env_checker=True, **arguments).unwrapped
-        made.append(env)
-        return env
-
-    yield one
-    for env in made:
-        env.close()
+def make(closing):
+    return lambda **arguments: closing(
+        gym.make("argo/Inspect-v0", disable_env_checker=True, **arguments).unwrapped
+    )
 
 
 def end_dock(observation):

@@ -7,9 +7,8 @@ from hypothesis import strategies as st
 
 from argo_env.files import cache
 from argo_env.pictures.light import shadowed, sun_camera
-from argo_env.pictures.overview import site_camera
+from argo_env.pictures.overview import site_camera, still_view, with_robot
 from argo_env.pictures.scene import Scene
-from argo_env.pictures.still import still_view, with_robot
 from argo_env.robot.pose import BodyPose
 
 SIZE, MAP = (480, 360), 320
@@ -53,7 +52,7 @@ def test_it_is_rendered_once(umad, robot, tmp_path, monkeypatch):
     monkeypatch.setenv(cache.VARIABLE, str(tmp_path))
     camera, sun = site_camera(umad, (80, 60)), sun_camera(umad, 50)
     first = still_view(umad, robot, camera, sun)
-    monkeypatch.setattr("argo_env.pictures.still.Scene", None)  # none can be made any more
+    monkeypatch.setattr("argo_env.pictures.overview.Scene", None)  # none can be made any more
     again = still_view(umad, robot, camera, sun)
     assert (again.view.colours == first.view.colours).all()
     assert (again.view.depth == first.view.depth).all()

@@ -8,10 +8,9 @@ from argo_compiler.il import EventKind
 from argo_env.drives.battery import ESTIMATE_ERROR
 from argo_env.faults.checkpoints import AbnormalValue
 from argo_env.faults.kinds import AnyFault
-from argo_env.run.conditions import ValueProfile
 from argo_env.run.record import Anomaly, Finding, Reading, RunRecord
 from argo_env.run.rig import shown_at, true_values
-from argo_env.run.spec import RunSpec
+from argo_env.run.spec import RunSpec, ValueProfile
 from argo_env.sensing.onboard import LOW
 from argo_env.site import Site
 

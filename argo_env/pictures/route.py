@@ -18,7 +18,6 @@ from argo_env.files.folders import ANOTHER_PLACE, writing
 from argo_env.formatting import clock
 from argo_env.navigation import Navigator
 from argo_env.pictures.drawing.floors import plans_of
-from argo_env.pictures.drawing.legend import draw_headline
 from argo_env.pictures.drawing.sheet import (
     FINER,
     FOOT,
@@ -30,7 +29,7 @@ from argo_env.pictures.drawing.sheet import (
     make_sheet,
 )
 from argo_env.pictures.drawing.spots import Spots, draw_plate
-from argo_env.pictures.drawing.style import disc, paint_disc, paint_station
+from argo_env.pictures.drawing.style import disc, draw_headline, paint_disc, paint_station
 from argo_env.pictures.drawing.way import Moment, draw_crossings, draw_lines, draw_thin, lines
 from argo_env.planning.travel import SiteTravel
 from argo_env.report.track import colour

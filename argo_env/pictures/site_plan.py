@@ -10,7 +10,6 @@ from PIL import Image, ImageDraw
 
 from argo_env.navigation.raster import CELL
 from argo_env.pictures.drawing.floors import plans_of
-from argo_env.pictures.drawing.legend import draw_headline, draw_length
 from argo_env.pictures.drawing.sheet import (
     FINER,
     FOOT,
@@ -26,7 +25,7 @@ from argo_env.pictures.drawing.sheet import (
     make_sheet,
 )
 from argo_env.pictures.drawing.spots import Spots, draw_plate
-from argo_env.pictures.drawing.style import STYLES, paint_disc
+from argo_env.pictures.drawing.style import STYLES, draw_headline, draw_length, paint_disc
 from argo_env.planning.flaws import Flaw, Standing
 from argo_env.site import Site
 

@@ -16,8 +16,7 @@ from argo_env.drives.timetable import steps
 from argo_env.files.parts import Arrays, Parts
 from argo_env.navigation.path import Motion, Path
 from argo_env.planning.start import start_pose
-from argo_env.robot.calibration import MotionKind
-from argo_env.robot.spec import RobotSpec
+from argo_env.robot.spec import MotionKind, RobotSpec
 from argo_env.site import Site
 
 if TYPE_CHECKING:

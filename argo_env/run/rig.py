@@ -18,9 +18,8 @@ from argo_env.faults.reading import FaultText
 from argo_env.faults.schedule import Schedule
 from argo_env.faults.targets import FaultTargets
 from argo_env.navigation import Navigator
-from argo_env.run.conditions import ValueProfile
 from argo_env.run.drives_and_sensors import DRIVES, IDEAL, ROUTE, SENSORS, WORLD_DRIVES
-from argo_env.run.spec import RunSpec
+from argo_env.run.spec import RunSpec, ValueProfile
 from argo_env.seeding import generator
 from argo_env.sensing.ideal import IdealSensor, draw_values
 from argo_env.sensing.onboard import OnboardSensor, onboard_watches

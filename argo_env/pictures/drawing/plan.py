@@ -7,13 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import ImageDraw
 
-from argo_env.pictures.drawing.legend import Shown, draw_headline, draw_legend
 from argo_env.pictures.drawing.sheet import FINER, FloorSheet, Pixel
 from argo_env.pictures.drawing.spots import Spots, draw_plate
 from argo_env.pictures.drawing.style import (
     POINT,
     STYLES,
+    Shown,
     disc,
+    draw_headline,
+    draw_legend,
     paint_disc,
     paint_point,
     paint_ring,

@@ -17,9 +17,8 @@ from argo_env.navigation import Path
 from argo_env.navigation.path import Motion, wrap
 from argo_env.navigation.views import in_sight
 from argo_env.planning.travel import SiteTravel
-from argo_env.robot.calibration import Calibration, MotionPace
 from argo_env.robot.pose import BodyPose
-from argo_env.robot.spec import load_robot
+from argo_env.robot.spec import Calibration, MotionPace, load_robot
 from argo_env.world.paper_world import PaperWorld
 from benchmarks.drives import random_mission
 from tests import yard

@@ -15,15 +15,15 @@ from argo_compiler.il.docked import at_dock
 from argo_env.faults.walkway import Brick
 from argo_env.navigation import Path
 from argo_env.navigation.path import Motion
-from argo_env.robot.calibration import MotionKind
 from argo_env.robot.pose import BodyPose
+from argo_env.robot.spec import MotionKind
 from argo_env.run.drives_and_sensors import DRIVES
 from argo_env.run.journal import open_journal
 from argo_env.run.record import Anomaly, RunRecord
 from argo_env.run.rig import true_values
 from argo_env.run.session import resume
 from argo_env.run.simulation import SAMPLE_PERIOD
-from tests.yard import Watching, opened, simulated
+from tests.yard import Watching, measure, opened, simulated
 
 FRONT = Pose(x=8.05, y=-2.05, z=-0.03, yaw=0.0)
 
@@ -35,10 +35,6 @@ def start(pose=FRONT, **fields):
 def waypoint(name, x, y, z=-0.03, degrees=0.0, **fields):
     pose = Pose(x=x, y=y, z=z, yaw=math.radians(degrees))
     return Task(name=name, action=Action.WAYPOINT, pose=pose, **fields)
-
-
-def measure(id, **fields):
-    return Task(name=f"MEASURE {id}", action=Action.MEASURE, object_id=str(id), **fields)
 
 
 def mission(*tasks, **fields):

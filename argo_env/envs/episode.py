@@ -4,7 +4,8 @@ shows itself."""
 import os
 import sys
 from abc import abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from copy import deepcopy
 from typing import Any, Self, cast
 
@@ -224,6 +225,18 @@ class Rendering:
 
     def _picture(self) -> NDArray[np.uint8]:
         raise NotImplementedError
+
+    @contextmanager
+    def _repeating(self) -> Iterator[None]:
+        """While the steps of a state are made again nothing is shown; it is none if it goes on
+        after the end of its episode."""
+        mode, self.render_mode = self.render_mode, None
+        try:
+            yield
+        except gym.error.ResetNeeded:
+            raise no_state(self._title) from None
+        finally:
+            self.render_mode = mode
 
     def _show(self) -> None:
         """Brings the window up to date, if there is one."""

@@ -23,7 +23,6 @@ from argo_env.envs.episode import (
     check_render_mode,
     check_state,
     check_under_way,
-    no_state,
     read_choice,
 )
 from argo_env.envs.inspection_drawing import draw_inspection
@@ -336,17 +335,12 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
         """Goes on from what `get_state` gave; returns the observation of that moment. Raises
         ArgoError if it is no state of this environment."""
         check_state(state, _STATE, self._title)
-        mode, self.render_mode = self.render_mode, None
-        try:
+        with self._repeating():
             self.np_random.bit_generator.state = state["begun"]
             observation, _ = self.reset(options=dict(state["options"]))
             for action in state["actions"]:
                 observation = self.step(action)[0]
             self.np_random.bit_generator.state = state["generator"]
-        except gym.error.ResetNeeded:  # it goes on after its end
-            raise no_state(self._title) from None
-        finally:
-            self.render_mode = mode
         return observation
 
     def _copied_state(self) -> tuple[InspectOptions, dict[str, Any] | None]:

@@ -12,8 +12,8 @@ from argo_compiler.base.errors import Conflict, Invalid, NotFound, Remedy
 from argo_compiler.base.model import Model
 from argo_compiler.files.reading import read_bytes
 from argo_compiler.files.writing import write_whole
-from argo_env.evaluation.batches import is_enough
 from argo_env.evaluation.plan import EvaluationPlan
+from argo_env.evaluation.rates import is_enough
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
 from argo_env.evaluation.store import RowStore, read_rows

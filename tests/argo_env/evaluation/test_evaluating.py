@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from argo_env.evaluation.batches import batches
 from argo_env.evaluation.case import EvaluationCase
-from argo_env.evaluation.evaluating import Evaluating, WorkOrder, carry_out
+from argo_env.evaluation.evaluating import Evaluating, WorkOrder, batches, carry_out
 from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.pool.backends import make_backend
 from argo_env.evaluation.rates import Decision, IntervalMethod

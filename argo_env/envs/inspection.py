@@ -13,7 +13,7 @@ from pydantic import Field, StrictInt
 from argo_compiler.base.errors import ArgoError, Invalid, NotFound
 from argo_compiler.base.model import Model
 from argo_compiler.il import EventKind
-from argo_env.drives.route import RouteDrive
+from argo_env.drives.timed_drive import RouteDrive
 from argo_env.envs.batch import SpreadVectorEnv
 from argo_env.envs.episode import (
     Copying,

@@ -10,7 +10,7 @@ from argo_env.faults.fault import Fault, Sign, TimedFault
 from argo_env.seeding import draw
 from argo_env.site import Site
 from argo_env.site.spec import Rect
-from argo_env.surroundings.network import Shadow
+from argo_env.surroundings.surroundings import Shadow
 
 if TYPE_CHECKING:
     from argo_env.faults.targets import FaultTargets

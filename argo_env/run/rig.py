@@ -12,7 +12,7 @@ from argo_compiler.base.errors import Invalid
 from argo_env.drives.battery import Battery
 from argo_env.drives.drive import Drive
 from argo_env.drives.powertrain import Powertrain
-from argo_env.drives.route import RouteDrive
+from argo_env.drives.timed_drive import RouteDrive
 from argo_env.faults.kinds import changed_site, settle
 from argo_env.faults.reading import FaultText
 from argo_env.faults.schedule import Schedule
@@ -28,7 +28,7 @@ from argo_env.sensing.signals import standard_watches
 from argo_env.sensing.watch import Watch
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.surroundings import Surroundings
-from argo_env.surroundings.network import RadioNetwork
+from argo_env.surroundings.surroundings import RadioNetwork
 from argo_env.world.paper_world import AnyWorld, PaperWorld
 from argo_env.world.world import World
 

@@ -24,7 +24,7 @@ from argo_env.seeding import generator
 from argo_env.sensing.sensor import Measurement, MeasurementError, Sensor
 from argo_env.sensing.watch import Detection, Told, Watch
 from argo_env.site import Site
-from argo_env.surroundings.network import RadioNetwork
+from argo_env.surroundings.surroundings import RadioNetwork
 
 _HEALTHY_NOISE = 0.001  # of the scale, in the picture of the test pattern
 _SHOTS = 8  # pictures of the test pattern in one self-test

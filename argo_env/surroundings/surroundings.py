@@ -1,13 +1,15 @@
 """The surroundings of the robot: the sources of gas, heat and sound out of the ordinary that are
-there now, since when, and the weather. What they send out is in the modules beside this one; how
-the robot senses it, in `argo_env.sensing.signals`."""
+there now, since when, the weather, and where the wireless network has a signal. What they send out
+is in the modules beside this one; how the robot senses it, in `argo_env.sensing.signals`."""
 
 from dataclasses import dataclass
 from enum import StrEnum
 
 from argo_compiler.base.errors import NotFound
+from argo_env.robot.pose import BodyPose
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
+from argo_env.site.spec import Rect
 
 
 class PumpFault(StrEnum):
@@ -123,3 +125,32 @@ class Surroundings:
         _, start = self._there.pop(first)
         if isinstance(source, GasLeak):
             self._ended.append(Release(source, start, now))
+
+
+@dataclass(frozen=True)
+class Shadow:
+    """A part of the site without a signal; what is None does not limit it."""
+
+    rect: Rect | None = None
+    floor: int | None = None
+
+    def holds(self, pose: BodyPose, site: Site) -> bool:
+        """Whether a robot at `pose` is in it."""
+        if self.floor is not None and site.floor_at(pose.z) != self.floor:
+            return False
+        if self.rect is None:
+            return True
+        x0, y0, x1, y1 = self.rect
+        return x0 <= pose.x <= x1 and y0 <= pose.y <= y1
+
+
+class RadioNetwork:
+    """The network of a site. Holds the shadows that are there now."""
+
+    def __init__(self, site: Site) -> None:
+        self._site = site
+        self.shadows: list[Shadow] = []
+
+    def connected(self, pose: BodyPose) -> bool:
+        """Whether a robot at `pose` has a connection."""
+        return not any(shadow.holds(pose, self._site) for shadow in self.shadows)

@@ -11,7 +11,7 @@ from argo_compiler.analysis import analyse
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.base.model import Pose
 from argo_env.drives.drive import DriveStatus
-from argo_env.drives.route import RouteDrive
+from argo_env.drives.timed_drive import RouteDrive
 from argo_env.drives.timetable import Timetable
 from argo_env.navigation import Path
 from argo_env.navigation.path import Motion, wrap

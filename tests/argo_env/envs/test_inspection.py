@@ -7,7 +7,7 @@ import pytest
 import argo_env  # noqa: F401
 from argo_compiler.base.errors import ArgoError
 from argo_env.drives.drive import Incident, Trouble
-from argo_env.drives.route import RouteDrive
+from argo_env.drives.timed_drive import RouteDrive
 from argo_env.envs.inspection import ABNORMAL, DEAD, DOCKED, FINDING, READING
 from argo_env.robot.pose import BodyPose
 from argo_env.run.session import simulate

@@ -19,7 +19,7 @@ from argo_compiler.il import EventKind
 from argo_compiler.schemas.generate import schema_of
 from argo_env.drives.battery import Battery
 from argo_env.drives.powertrain import Powertrain
-from argo_env.drives.route import RouteDrive
+from argo_env.drives.timed_drive import RouteDrive
 from argo_env.faults.fault import Fault
 from argo_env.faults.kinds import KINDS, FaultFile, changed_site, settle
 from argo_env.faults.reading import decode_faults, read_faults
@@ -34,7 +34,7 @@ from argo_env.site import make_site
 from argo_env.site.shapes import Box, Role
 from argo_env.site.spec import SiteSpec
 from argo_env.surroundings import Surroundings
-from argo_env.surroundings.network import RadioNetwork
+from argo_env.surroundings.surroundings import RadioNetwork
 from argo_env.world.paper_world import PaperWorld
 from argo_env.world.world import World
 from tests.conftest import examples

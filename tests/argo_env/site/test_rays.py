@@ -6,8 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from argo_env.site import load_site
-from argo_env.site.index import ElementIndex
-from argo_env.site.rays import SolidRays
+from argo_env.site.index import ElementIndex, SolidRays
 from argo_env.site.shapes import Box, Cylinder, Element, Role, crossing
 from tests.conftest import examples
 

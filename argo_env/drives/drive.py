@@ -78,8 +78,8 @@ class Drive(Protocol):
 
 
 RAISED = math.radians(30.0)
-"""rad, tips up: on the flat"""
+"""rad, of the flippers, tips up: on the flat"""
 FLAT = 0.0
-"""rad: on a flight"""
+"""rad, of the flippers: on a flight"""
 RATE = math.radians(110.0)
-"""rad/s (public model files of the taurob tracker)"""
+"""rad/s, of the flippers (public model files of the taurob tracker)"""

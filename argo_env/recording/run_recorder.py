@@ -33,6 +33,8 @@ from argo_env.run.spec import RunSpec
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.world.world import Shot, World
 
+_log = logging.getLogger(__name__)
+
 
 class MissionState(Model):
     """How the mission stands."""
@@ -88,8 +90,6 @@ def mission_state(machine: Machine, done: int, readings: int, abnormal: int) -> 
         abnormal=abnormal,
     )
 
-
-_log = logging.getLogger(__name__)
 
 _LEVELS = {Tone.GOOD: Log.INFO, Tone.NOTICE: Log.WARNING, Tone.BAD: Log.ERROR}
 SAMPLE_PERIOD = 0.1

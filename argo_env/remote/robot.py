@@ -35,6 +35,8 @@ from argo_env.sensing.sensor import Measurement, MeasurementError
 from argo_env.site import Site
 from argo_env.world.paper_world import PaperWorld
 
+_log = logging.getLogger(__name__)
+
 
 class ToldDrive:
     """Is where the robot told that it is. Nobody here can move it but by an order."""
@@ -188,8 +190,6 @@ class RemoteAction:
             climbed=round(climbed - self._way[1], DIGITS),
         )
 
-
-_log = logging.getLogger(__name__)
 
 SILENCE = 2.0
 """s after which a robot of which nothing was heard counts as silent"""

@@ -10,7 +10,9 @@ _PERIOD = 1.0  # s between two looks whether the parent is there
 
 def usable_processors() -> int:
     """How many processors this process may use."""
-    return len(os.sched_getaffinity(0))
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def serve_parent(parent: int) -> None:

@@ -38,9 +38,8 @@ from argo_env.navigation import Navigator, Path
 from argo_env.navigation.path import Motion
 from argo_env.planning import OpenedSite, open_site
 from argo_env.planning.start import start_pose
-from argo_env.robot.calibration import Calibration, MotionKind
 from argo_env.robot.pose import BodyPose
-from argo_env.robot.spec import RobotSpec, calibration_file, load_robot
+from argo_env.robot.spec import Calibration, MotionKind, RobotSpec, calibration_file, load_robot
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_env.seeding import generator

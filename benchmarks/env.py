@@ -29,7 +29,7 @@ import numpy as np
 import argo_env  # noqa: F401
 from argo_env.envs import ENVIRONMENTS
 from argo_env.envs.expert import Expert
-from argo_env.envs.workers import core_count
+from argo_env.worker_processes import usable_processors
 
 WINDOWS = 5
 NODES = 20
@@ -328,7 +328,7 @@ def batches(given: argparse.Namespace) -> None:
     The numbers of processes take turns. Each line tells what processor time other work took
     meanwhile: where that is much, there was no free core to gain from. Linux only.
     """
-    processes = core_count()
+    processes = usable_processors()
     for id, steps in BATCH_STEPS.items():
         ratios = []
         for seed in range(given.rounds):

@@ -22,9 +22,8 @@ from pathlib import Path
 
 import numpy as np
 
-from argo_env.evaluation.carrying_out import WorkOrder, carry_out
 from argo_env.evaluation.case import EvaluationCase
-from argo_env.evaluation.evaluating import Evaluating
+from argo_env.evaluation.evaluating import Evaluating, WorkOrder, carry_out
 from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.pool.backends import BACKENDS, make_backend
 from argo_env.evaluation.row import RunOutcome, RunRow

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
 from argo_env.navigation.path import Motion
-from argo_env.robot.calibration import Calibration, MotionKind, MotionPace
-from argo_env.robot.spec import RobotSpec
+from argo_env.robot.spec import Calibration, MotionKind, MotionPace, RobotSpec
 
 _DIGITS = 4
 _MOST = 10.0  # times slower than told, or s lost, that a motion is taken to be

@@ -14,7 +14,7 @@ from argo_env.run.observer import Observer
 from argo_env.run.rig import Rig
 from argo_env.run.session import simulate
 from argo_env.run.simulation import Simulation
-from argo_env.run.spec import RunSpec
+from argo_env.run.spec import RunSpec, logged
 from argo_env.sensing.sensor import Measurement
 from argo_env.site import make_site
 from argo_env.site.spec import SiteSpec
@@ -198,6 +198,11 @@ def run_with(plan, rig, *, observers=(), journal=None, interrupted=lambda: False
         spec, opened(rig.navigator), past=past, observers=observers, rig=rig
     ) as simulation:
         return simulation.run(interrupted)
+
+
+def run(navigator, plan, *events, values=None):
+    """The record of a run without physics that is told of these events at their times."""
+    return run_with(plan, fast_rig(navigator, values), events=logged(*events))
 
 
 def simulation_of(spec, site, **arguments):

@@ -1,5 +1,7 @@
-"""What every drive can do, whatever it costs: move the robot along a path."""
+"""What every drive can do, whatever it costs: move the robot along a path, its flippers raised or
+flat."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -73,3 +75,11 @@ class Drive(Protocol):
         """Stops and forgets the path. The steps that follow say MOVING while the robot comes to
         rest, then ARRIVED."""
         ...
+
+
+RAISED = math.radians(30.0)
+"""rad, of the flippers, tips up: on the flat"""
+FLAT = 0.0
+"""rad, of the flippers: on a flight"""
+RATE = math.radians(110.0)
+"""rad/s, of the flippers (public model files of the taurob tracker)"""

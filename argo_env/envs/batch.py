@@ -11,11 +11,11 @@ from gymnasium.vector.utils import batch_space, concatenate, create_empty_array
 from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid, NotFound
-from argo_env.envs.copying import Copying
-from argo_env.envs.episode import no_state
+from argo_env.envs.episode import Copying, no_state, seeds_of
 from argo_env.envs.observations import Observation
 from argo_env.envs.options import check_whole
-from argo_env.envs.workers import Workers, core_count
+from argo_env.envs.workers import Workers
+from argo_env.worker_processes import usable_processors
 
 _MOST = 10_000  # environments
 _RENDER_MODES = ("rgb_array",)
@@ -65,7 +65,7 @@ class SpreadVectorEnv(Copying, VectorEnv[Observation, NDArray[Any], NDArray[Any]
             one.close()
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
-        wanted = core_count() if processes is None else int(processes)
+        wanted = usable_processors() if processes is None else int(processes)
         make = partial(self.single, **arguments)
         self._workers = Workers(make, num_envs, min(wanted, num_envs))
 
@@ -76,15 +76,7 @@ class SpreadVectorEnv(Copying, VectorEnv[Observation, NDArray[Any], NDArray[Any]
         options: dict[str, Any] | None = None,
     ) -> tuple[Observation, dict[str, Any]]:
         """Begins all episodes; an int seeds them with seed, seed + 1 and so on."""
-        seeds: list[int | None]
-        if seed is None:
-            seeds = [None] * self.num_envs
-        elif isinstance(seed, int | np.integer):
-            seeds = [int(seed) + k for k in range(self.num_envs)]
-        else:
-            seeds = list(seed)
-        if len(seeds) != self.num_envs:
-            raise ValueError(f"{self.num_envs} environments need as many seeds, not {len(seeds)}")
+        seeds = seeds_of(seed, self.num_envs)
         self._begun = False
         told = self._ask("resets", [(seeds[share], options) for share in self._shares])
         self._begun = True

@@ -12,13 +12,20 @@ from numpy.typing import NDArray
 from argo_compiler.base.errors import Invalid
 from argo_env.drives.tracked.body import FLIPPER_LIMITS, TIME_STEP
 from argo_env.envs import lidar
-from argo_env.envs.copying import Copying
-from argo_env.envs.drive_site import DriveSite
-from argo_env.envs.drive_sites import NEAREST, DriveOptions, DriveSites
-from argo_env.envs.episode import Parts, check_begun, check_state, check_under_way, no_state
+from argo_env.envs.batch import SpreadVectorEnv
+from argo_env.envs.drive_site import NEAREST, DriveOptions, DriveSite, DriveSites
+from argo_env.envs.episode import (
+    Copying,
+    Parts,
+    Rendering,
+    check_begun,
+    check_render_mode,
+    check_state,
+    check_under_way,
+    no_state,
+)
 from argo_env.envs.observations import Observation, dict_space
 from argo_env.envs.options import LONGEST, check_positive, check_scenario, read_options
-from argo_env.envs.rendering import Rendering, check_render_mode
 from argo_env.navigation.path import wrap
 from argo_env.pictures.drive import draw_drive
 from argo_env.robot.pose import BodyPose
@@ -371,3 +378,11 @@ class DriveEnv(Copying, Rendering, gym.Env[Observation, NDArray[np.float32]]):
         view, camera = site.look(pose, math.degrees(site.body.flipper))
         floors = site.site.floor_at(pose.z), site.site.floor_at(goal[2])
         return draw_drive(view, camera, goal, self._time, floors, self._togo)
+
+
+class DriveVectorEnv(SpreadVectorEnv):
+    """Many robots at once, as `gymnasium.make_vec("argo/Drive-v0", num_envs=8)` makes them: each on
+    a site of its own. Arguments and options are those of `DriveEnv`, and `processes`."""
+
+    single = DriveEnv
+    _title = "argo/Drive-v0"

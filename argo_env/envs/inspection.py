@@ -2,28 +2,31 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Any, cast
 
 import gymnasium as gym
 import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
+from pydantic import Field, StrictInt
 
-from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.errors import ArgoError, Invalid, NotFound
+from argo_compiler.base.model import Model
 from argo_compiler.il import EventKind
-from argo_env.envs.copying import Copying
+from argo_env.drives.timed_drive import RouteDrive
+from argo_env.envs.batch import SpreadVectorEnv
 from argo_env.envs.episode import (
+    Copying,
     Parts,
+    Rendering,
     check_begun,
+    check_render_mode,
     check_state,
     check_under_way,
-    no_state,
     read_choice,
 )
 from argo_env.envs.inspection_drawing import draw_inspection
-from argo_env.envs.inspection_options import MOST_FAULTS, InspectOptions, draw_faults
-from argo_env.envs.inspection_run import Deed, Inspection, beginning
-from argo_env.envs.inspection_travel import travel_times
+from argo_env.envs.inspection_run import Deed, Inspection, beginning, travel_times
 from argo_env.envs.observations import Observation, dict_space
 from argo_env.envs.options import (
     LONGEST,
@@ -33,14 +36,66 @@ from argo_env.envs.options import (
     check_whole,
     read_options,
 )
-from argo_env.envs.rendering import Rendering, check_render_mode
-from argo_env.faults.kinds import AnyFault
+from argo_env.faults.kinds import KINDS, AnyFault, settle
+from argo_env.faults.robot import EmergencyStop
 from argo_env.planning import open_site
 from argo_env.run.drives_and_sensors import DRIVES, ROUTE
 from argo_env.run.fitting_together import check_run
 from argo_env.run.record import RunRecord
 from argo_env.run.rig import check_spec
 from argo_env.run.spec import RunSpec
+from argo_env.seeding import draw
+from argo_env.site import Site
+
+MOST_FAULTS = 8
+_Count = Annotated[int, Field(ge=0, le=MOST_FAULTS, strict=True)]
+
+
+class InspectOptions(Model):
+    """What `reset(options=...)` of Inspect-v0 may say."""
+
+    scenario: str | None = None
+    floor: StrictInt | tuple[StrictInt, ...] = ()
+    faults: _Count | tuple[AnyFault, ...] | None = None
+    seed: int | None = Field(default=None, ge=0, strict=True)
+
+    @property
+    def floors(self) -> tuple[int, ...]:
+        return (self.floor,) if isinstance(self.floor, int) else self.floor
+
+
+def draw_faults(
+    count: int, drive: str, site: Site, rng: np.random.Generator
+) -> tuple[AnyFault, ...]:
+    """Up to `count` faults of different kinds, of those that the drive can find and the site
+    can have."""
+    paper = drive == RouteDrive.name
+    kinds = [
+        kind
+        for kind, model in KINDS.items()
+        if not (model.needs_world and paper) and _fits(kind, site)
+    ]
+    drawn = [kinds[k] for k in rng.permutation(len(kinds))[:count]]
+    return tuple(_fault(kind, rng) for kind in drawn)
+
+
+def _fits(kind: str, site: Site) -> bool:
+    """Whether the site has what such a fault needs, such as a pump or stairs."""
+    try:
+        settle([cast("AnyFault", KINDS[kind].model_validate({}))], site, 0)
+    except ArgoError:
+        return False
+    return True
+
+
+def _fault(kind: str, rng: np.random.Generator) -> AnyFault:
+    """A fault of that kind, what matters drawn by the run's seed; someone releases an emergency
+    stop after a minute."""
+    if kind == "emergency_stop":
+        at = draw(rng, 0.0, 600.0, 1)
+        return EmergencyStop(at=at, until=at + 60.0)
+    return cast("AnyFault", KINDS[kind].model_validate({}))
+
 
 READING, ABNORMAL, FINDING, CONTACT, DOCKED, DEAD = 10.0, 10.0, 5.0, -1.0, 20.0, -20.0
 """points: see the description of the environment"""
@@ -280,17 +335,12 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
         """Goes on from what `get_state` gave; returns the observation of that moment. Raises
         ArgoError if it is no state of this environment."""
         check_state(state, _STATE, self._title)
-        mode, self.render_mode = self.render_mode, None
-        try:
+        with self._repeating():
             self.np_random.bit_generator.state = state["begun"]
             observation, _ = self.reset(options=dict(state["options"]))
             for action in state["actions"]:
                 observation = self.step(action)[0]
             self.np_random.bit_generator.state = state["generator"]
-        except gym.error.ResetNeeded:  # it goes on after its end
-            raise no_state(self._title) from None
-        finally:
-            self.render_mode = mode
         return observation
 
     def _copied_state(self) -> tuple[InspectOptions, dict[str, Any] | None]:
@@ -427,3 +477,15 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
         if not self._asked[slot]:
             return "outside"
         return "open" if self._mask[slot] else "closed"
+
+
+class InspectVectorEnv(SpreadVectorEnv):
+    """Many inspections at once, as `gymnasium.make_vec("argo/Inspect-v0", num_envs=8)` makes them.
+    Arguments and options are those of `InspectEnv`, and `processes`."""
+
+    single = InspectEnv
+    _title = "argo/Inspect-v0"
+
+    def action_masks(self) -> NDArray[np.bool_]:
+        """Which actions are legal now, shape (num_envs, n + d)."""
+        return np.stack(self.call("action_masks"))

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from argo_env.envs.inspection_run import Inspection
 from argo_env.pictures.drawing.plan import Marker, PlanDrawing, StationMark, draw_plan
-from argo_env.pictures.drawing.site_sheets import site_sheet
+from argo_env.pictures.drawing.sheet import site_sheet
 from argo_env.pictures.drawing.way import Moment
 
 _LEGEND = {

@@ -17,11 +17,11 @@ ENVIRONMENTS: dict[str, dict[str, str]] = {
     },
     "argo/Drive-v0": {
         "entry_point": "argo_env.envs.drive:DriveEnv",
-        "vector_entry_point": "argo_env.envs.drive_batch:DriveVectorEnv",
+        "vector_entry_point": "argo_env.envs.drive:DriveVectorEnv",
     },
     "argo/Inspect-v0": {
         "entry_point": "argo_env.envs.inspection:InspectEnv",
-        "vector_entry_point": "argo_env.envs.inspection_batch:InspectVectorEnv",
+        "vector_entry_point": "argo_env.envs.inspection:InspectVectorEnv",
     },
 }
 """What is registered, by id: the tests run over all of them."""

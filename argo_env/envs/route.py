@@ -8,17 +8,17 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from argo_env.envs.copying import Copying
 from argo_env.envs.episode import (
+    Copying,
     Parts,
+    Rendering,
     check_begun,
+    check_render_mode,
     check_state,
     check_under_way,
-    no_state,
     read_choice,
 )
 from argo_env.envs.observations import Observation
-from argo_env.envs.rendering import Rendering, check_render_mode
 from argo_env.envs.route_drawing import draw_route
 from argo_env.envs.route_episodes import (
     FPS,
@@ -227,18 +227,13 @@ budget; 1 also where it is longer |
         """Goes on from what `get_state` gave; returns the observation of that moment. Raises
         ArgoError if it is no state of this environment."""
         check_state(state, _STATE, self._title)
-        mode, self.render_mode = self.render_mode, None
-        try:
+        with self._repeating():
             self._over = None
             self.np_random.bit_generator.state = state["generator"]
             self._key, self._episode = state["key"], state["episode"] - 1
             observation, _ = self.reset(options=dict(state["options"]))
             for node in state["route"]:
                 observation = self.step(node)[0]
-        except gym.error.ResetNeeded:  # it goes on after its end
-            raise no_state(self._title) from None
-        finally:
-            self.render_mode = mode
         return observation
 
     def _copied_state(self) -> tuple[dict[str, Any], dict[str, Any] | None]:

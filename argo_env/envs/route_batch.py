@@ -12,11 +12,9 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid
-from argo_env.envs.copying import Copying
-from argo_env.envs.episode import no_state
+from argo_env.envs.episode import Copying, check_render_mode, no_state, seeds_of
 from argo_env.envs.observations import Observation
 from argo_env.envs.options import check_whole
-from argo_env.envs.rendering import check_render_mode
 from argo_env.envs.route_drawing import draw_route
 from argo_env.envs.route_episodes import (
     FPS,
@@ -96,15 +94,7 @@ class RouteVectorEnv(Copying, VectorEnv[Observation, NDArray[np.int64], NDArray[
         """Begins all routes; an int seeds them with seed, seed + 1 and so on."""
         if options is not None:
             self._episodes.choose(read_route_options(options, self._episodes, self.num_envs))
-        seeds: Sequence[int | None]
-        if seed is None:
-            seeds = [None] * self.num_envs
-        elif isinstance(seed, int | np.integer):
-            seeds = [int(seed) + k for k in range(self.num_envs)]
-        else:
-            seeds = seed
-        if len(seeds) != self.num_envs:
-            raise ValueError(f"{self.num_envs} environments need as many seeds, not {len(seeds)}")
+        seeds = seeds_of(seed, self.num_envs)
         self._episode += 1
         for k, one in enumerate(seeds):
             if one is not None or not self._seeded[k]:

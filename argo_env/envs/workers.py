@@ -23,13 +23,6 @@ _PATIENCE = 10.0  # s that a worker has to end by itself
 MakeEnv = Callable[[], gym.Env[Any, Any]]
 
 
-def core_count() -> int:
-    """How many cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
 class Workers(NonCopyable):
     """Processes that hold so many environments each, nearly the same number. Close it; else the
     processes end with this object."""

@@ -13,8 +13,8 @@ from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
 from argo_env.evaluation.statistics.pairs import Difference, SuccessPairs, difference, power
+from argo_env.evaluation.statistics.rates import world_means
 from argo_env.evaluation.statistics.sequences import ConfidenceSequence
-from argo_env.evaluation.statistics.world_means import world_means
 
 _Pairs = list[tuple[RunRow, RunRow]]
 

@@ -22,8 +22,7 @@ from argo_env.evaluation.statistics.control import (
     ControlVariate,
     controlled_mean,
 )
-from argo_env.evaluation.statistics.strata import Estimate
-from argo_env.evaluation.statistics.world_means import weighted_world_means
+from argo_env.evaluation.statistics.rates import Estimate, weighted_world_means
 from argo_env.planning.opening import open_site
 from argo_env.robot.spec import load_robot
 from argo_env.run.drives_and_sensors import IDEAL, ROUTE

@@ -1,20 +1,77 @@
-"""An evaluation under way: runs are handed out, rows come back and are kept."""
+"""An evaluation under way: runs are handed out and carried out in whatever process, rows come back
+and are kept."""
 
 import logging
+import os
+import threading
 import time
+import traceback
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from argo_env.evaluation.batches import batches
-from argo_env.evaluation.carrying_out import TOOK_TOO_LONG, WorkOrder, carry_out
-from argo_env.evaluation.case import PlanName
+from argo_compiler.base.errors import ArgoError
+from argo_env.evaluation.case import EvaluationCase, PlanName
 from argo_env.evaluation.plan import EvaluationPlan, PlannedRun
 from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.evaluation.pool.pool import Finished, Pool
+from argo_env.evaluation.rates import is_enough
 from argo_env.evaluation.results import EvaluationResults
-from argo_env.evaluation.row import RunOutcome, RunRow, row_without_end
+from argo_env.evaluation.row import RunOutcome, RunRow, row_of, row_without_end
+from argo_env.evaluation.statistics.rates import Stratum, allocation
 from argo_env.evaluation.store import RowStore
+from argo_env.planning.opening import OpenedSite, open_site
+from argo_env.robot.spec import load_robot
+from argo_env.run.session import simulate
+from argo_env.run.spec import RunSpec
+
+TOOK_TOO_LONG = 70
+"""exit code of a worker whose run took longer than it may"""
+
+
+@dataclass(frozen=True)
+class WorkOrder:
+    """What a worker is told: a run, and the key that its row has."""
+
+    key: str
+    case: EvaluationCase
+    spec: RunSpec
+    world: dict[str, float]
+    """what was drawn for its world"""
+    drawn: str = ""
+    """what the faults are called that were"""
+    limit: float | None = None
+    """s of wall time that it may take; then its process ends, and that is its reason"""
+
+
+def carry_out(order: WorkOrder, site: OpenedSite | None = None) -> RunRow:
+    """Makes the run, on the site that it names unless one is given, and its row. What goes wrong in
+    the simulator is an outcome as well: one of many thousand runs must not end them all."""
+    row = _row(order, site)
+    return row.model_copy(update={"world": order.world, "drawn": order.drawn})
+
+
+def _row(order: WorkOrder, site: OpenedSite | None) -> RunRow:
+    watchdog = None
+    if order.limit is not None:
+        watchdog = threading.Timer(order.limit, os._exit, (TOOK_TOO_LONG,))
+        watchdog.daemon = True
+        watchdog.start()
+    try:
+        opened = site or open_site(order.spec.site, load_robot(order.spec.robot))
+        record = simulate(order.spec, opened)
+        return row_of(order.key, order.case, order.spec, record, opened.site)
+    except ArgoError as error:
+        return row_without_end(order.key, order.case, order.spec, RunOutcome.ERROR, str(error))
+    except Exception as error:  # told in the row, with its place
+        frame = traceback.extract_tb(error.__traceback__)[-1]
+        place = f"{os.path.basename(frame.filename)}, line {frame.lineno}"
+        reason = f"{type(error).__name__}: {error} ({place})"
+        return row_without_end(order.key, order.case, order.spec, RunOutcome.ERROR, reason)
+    finally:
+        if watchdog is not None:
+            watchdog.cancel()
+
 
 _log = logging.getLogger(__name__)
 _COMPACTED = 5_000
@@ -172,3 +229,48 @@ class Evaluating:
                 "drawn": self._plan.drawn_in(run.seed),
             }
         )
+
+
+def batches(plan: EvaluationPlan, rows: Sequence[RunRow]) -> Iterator[Iterator[PlannedRun]]:
+    """The runs of an evaluation, in batches. `rows` has those of all batches before when the next
+    one is asked for, so that what is decided does not depend on which run was the quickest."""
+    if plan.strata:
+        yield from _by_strata(plan, rows)
+        return
+    stopping = plan.stopping
+    if stopping.width is None and not stopping.require:
+        yield plan.runs()
+        return
+    for first in range(0, len(plan.seeds), stopping.every):
+        if first and is_enough(plan, rows):
+            return
+        yield plan.runs(plan.seeds[first : first + stopping.every])
+
+
+def _by_strata(plan: EvaluationPlan, rows: Sequence[RunRow]) -> Iterator[Iterator[PlannedRun]]:
+    """First as many runs of each case, then where they tell most. No seed is used twice, so that
+    the strata know nothing of each other."""
+    seeds = iter(plan.seeds)
+    left = len(plan.seeds)
+    cases = len(plan.cases)
+    shares = (plan.stopping.every,) * cases
+    while left:
+        runs: list[PlannedRun] = []
+        for case, share in enumerate(shares):
+            for _ in range(min(share, left)):
+                runs.append(plan.run(case, next(seeds)))
+                left -= 1
+        yield iter(runs)
+        if plan.stopping.width is not None and is_enough(plan, rows):
+            return
+        shares = allocation(_strata(plan, rows), min(left, plan.stopping.every * cases))
+
+
+def _strata(plan: EvaluationPlan, rows: Sequence[RunRow]) -> list[Stratum]:
+    whole = sum(case.weight for case in plan.cases)
+    found = []
+    for case in plan.cases:
+        ran = [row for row in rows if row.faults == case.faults and row.carried_out]
+        done = sum(row.success for row in ran)
+        found.append(Stratum(case.weight / whole, done, len(ran)))
+    return found

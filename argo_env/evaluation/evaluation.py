@@ -1,6 +1,7 @@
 """Evaluations from Python: missions, worlds and faults in, results out."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 
 from argo_compiler.base.errors import Invalid
@@ -98,28 +99,16 @@ class Evaluation:
         Raises ArgoError if there are no such workers, or the folder can't be used, as where another
         evaluation is in it.
         """
-        if folder is None:
-            return self._carried_out(None, backend, workers, address, heard)
-        where = Path(folder)
-        digest = digest_of(self.plan.model_dump_json().encode())
-        with open_rows(where, self.plan, digest, replace=replace) as store:
-            return self._carried_out(store, backend, workers, address, heard)
-
-    def _carried_out(
-        self,
-        store: RowStore | None,
-        backend: str | WorkerBackend,
-        workers: int | None,
-        address: str | None,
-        heard: Callable[[EvaluationProgress], None],
-    ) -> EvaluationResults:
-        own = isinstance(backend, str)
-        has = make_backend(backend, workers, address) if isinstance(backend, str) else backend
-        try:
-            evaluating = Evaluating(self.plan, has, store)
+        with ExitStack() as stack:
+            store: RowStore | None = None
+            if folder is not None:
+                digest = digest_of(self.plan.model_dump_json().encode())
+                rows = open_rows(Path(folder), self.plan, digest, replace=replace)
+                store = stack.enter_context(rows)
+            if isinstance(backend, str):
+                backend = make_backend(backend, workers, address)
+                stack.callback(backend.close)
+            evaluating = Evaluating(self.plan, backend, store)
             for _ in evaluating.rows_as_they_come():
                 heard(evaluating.progress)
             return evaluating.results
-        finally:
-            if own:
-                has.close()

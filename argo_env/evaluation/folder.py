@@ -8,16 +8,16 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from argo_compiler.base.errors import Conflict, Invalid, NotFound, Remedy, Unavailable
+from argo_compiler.base.errors import Conflict, Invalid, NotFound, Remedy
 from argo_compiler.base.model import Model
 from argo_compiler.files.reading import read_bytes
 from argo_compiler.files.writing import write_whole
-from argo_env.evaluation.batches import is_enough
 from argo_env.evaluation.plan import EvaluationPlan
+from argo_env.evaluation.rates import is_enough
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
 from argo_env.evaluation.store import RowStore, read_rows
-from argo_env.files.folders import make_folder
+from argo_env.files.folders import make_folder, writing
 
 PLAN = "evaluation.json"
 FAILING = "failing"
@@ -96,10 +96,8 @@ def keep_plan(folder: Path, plan: EvaluationPlan, digest: str) -> None:
 def write_file(path: Path, text: str) -> Path:
     """Writes a file of an evaluation and returns its path. Raises Unavailable where that can't be
     done."""
-    try:
+    with writing(path):
         write_whole(path, text)
-    except OSError as error:
-        raise Unavailable(f"{path}: can't be written: {error.strerror}") from error
     return path
 
 

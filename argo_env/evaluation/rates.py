@@ -9,10 +9,15 @@ from enum import StrEnum
 from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.row import RunOutcome, RunRow
-from argo_env.evaluation.statistics.rates import Rate, clopper_pearson, wilson
+from argo_env.evaluation.statistics.rates import (
+    Rate,
+    Stratum,
+    clopper_pearson,
+    stratified_rate,
+    weighted_world_means,
+    wilson,
+)
 from argo_env.evaluation.statistics.sequences import ConfidenceSequence
-from argo_env.evaluation.statistics.strata import Stratum, stratified_rate
-from argo_env.evaluation.statistics.world_means import weighted_world_means
 
 
 class IntervalMethod(StrEnum):
@@ -172,3 +177,17 @@ def judge_requirements(
                 RequirementVerdict(plan, str(requirement), verdict, low, high, sequence.runs)
             )
     return tuple(found)
+
+
+def is_enough(plan: EvaluationPlan, rows: Sequence[RunRow]) -> bool:
+    """Whether all that one stops for is reached."""
+    stopping = plan.stopping
+    if stopping.require:
+        verdicts = judge_requirements(plan, rows)
+        if any(one.verdict is Decision.OPEN for one in verdicts):
+            return False
+    if stopping.width is not None:
+        rates = [rate_of(plan, name, rows) for name in plan.plans]
+        if any(rate.high - rate.low > stopping.width for rate in rates):
+            return False
+    return bool(stopping.require) or stopping.width is not None

@@ -1,10 +1,13 @@
-"""What came of an evaluation."""
+"""What came of an evaluation: its rows, how long missions took, and where runs failed."""
 
 import html
+import math
+from bisect import bisect_left
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import accumulate
 from typing import TYPE_CHECKING
 
 from argo_env.evaluation.case import PlanName
@@ -20,10 +23,10 @@ from argo_env.evaluation.rates import (
 )
 from argo_env.evaluation.row import RunOutcome, RunRow
 from argo_env.evaluation.statistics.rates import Rate
+from argo_env.site.shapes import Vector
 
 if TYPE_CHECKING:
     import pandas
-
 
 _LEAST_BLOCK = 10  # seeds
 
@@ -170,3 +173,80 @@ class EvaluationResults:
             )
             lines.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
         return f"<table><thead><tr>{head}</tr></thead><tbody>{''.join(lines)}</tbody></table>"
+
+
+@dataclass(frozen=True)
+class DurationCurve:
+    """The share of a plan's runs that had succeeded by a time. A run that failed never does."""
+
+    plan: PlanName
+    times: tuple[float, ...]
+    """s, of the runs that succeeded, ascending"""
+    shares: tuple[float, ...]
+    """of all runs that were carried out, 0 to 1: those that had succeeded by each of the times"""
+    limits: tuple[float, ...]
+    """s, the mission's longest durations; one, or none"""
+
+    @property
+    def last(self) -> float:
+        """The share that succeeded at all."""
+        return self.shares[-1] if self.shares else 0.0
+
+    def by(self, share: float) -> float | None:
+        """The time (s) by which that share (0 to 1) of the runs had succeeded; None: never."""
+        k = bisect_left(self.shares, share - 1e-9)
+        return self.times[k] if k < len(self.times) else None
+
+
+def duration_curve(results: EvaluationResults, plan: PlanName) -> DurationCurve:
+    """That of a plan. Each of its cases counts by its weight, however often it was run."""
+    ran = [row for row in results.of(plan) if row.carried_out]
+    weights = {case.faults: case.weight for case in results.plan.cases if case.plan == plan}
+    often = {name: sum(row.faults == name for row in ran) for name in weights}
+    whole = sum(weight for name, weight in weights.items() if often[name])
+    done = sorted(
+        (row.duration, weights[row.faults] / often[row.faults] / whole)
+        for row in ran
+        if row.success and row.duration is not None
+    )
+    return DurationCurve(
+        plan,
+        tuple(time for time, _ in done),
+        tuple(min(share, 1.0) for share in accumulate(share for _, share in done)),
+        tuple(sorted({row.limit for row in ran if row.limit is not None})),
+    )
+
+
+_NEAR = 0.5  # m
+
+
+@dataclass
+class FailurePlace:
+    """A place where runs failed."""
+
+    floor: int
+    at: Vector
+    """m, of the first of them; the others are at most half a metre away"""
+    tasks: Counter[str] = field(default_factory=Counter)
+    """how many failed there at each task"""
+
+    @property
+    def runs(self) -> int:
+        """How many failed there."""
+        return self.tasks.total()
+
+
+def failure_places_of(rows: Iterable[RunRow]) -> tuple[FailurePlace, ...]:
+    """The places where these runs failed, by floor, and where most did first."""
+    found: list[FailurePlace] = []
+    for row in rows:
+        if row.success or row.place is None or row.floor is None:
+            continue
+        for place in found:
+            if place.floor == row.floor and math.dist(place.at, row.place) <= _NEAR:
+                break
+        else:
+            place = FailurePlace(row.floor, row.place)
+            found.append(place)
+        place.tasks[row.task or "no task"] += 1
+    return tuple(sorted(found, key=lambda one: (one.floor, -one.runs, one.at)))

@@ -8,8 +8,7 @@ from pydantic import Field
 from argo_compiler.base.model import Model
 from argo_compiler.il import Action
 from argo_env.evaluation.case import EvaluationCase, PlanName
-from argo_env.evaluation.detection import FaultDetection, detections
-from argo_env.evaluation.false_alarms import false_alarms
+from argo_env.evaluation.detection import FaultDetection, detections, false_alarms
 from argo_env.run.record import RunRecord
 from argo_env.run.spec import RunSpec
 from argo_env.site import Site
@@ -107,7 +106,7 @@ def row_of(key: str, case: EvaluationCase, spec: RunSpec, record: RunRecord, sit
     done = {run.task for run in record.tasks if run.outcome == "done"}
     last = record.path[-1] if record.path else None
     failed = tuple(dict.fromkeys(r.task for r in record.tasks if r.outcome == "failed"))
-    row = _bare(key, case, spec, RunOutcome.FAILURE, result.verdict)
+    row = row_without_end(key, case, spec, RunOutcome.FAILURE, result.verdict)
     return row.model_copy(
         update={
             "outcome": RunOutcome.SUCCESS if result.success else RunOutcome.FAILURE,
@@ -136,13 +135,7 @@ def row_of(key: str, case: EvaluationCase, spec: RunSpec, record: RunRecord, sit
 def row_without_end(
     key: str, case: EvaluationCase, spec: RunSpec, outcome: RunOutcome, reason: str
 ) -> RunRow:
-    """The row of a run that could not be carried out."""
-    return _bare(key, case, spec, outcome, reason)
-
-
-def _bare(
-    key: str, case: EvaluationCase, spec: RunSpec, outcome: RunOutcome, reason: str
-) -> RunRow:
+    """The row of a run that could not be carried out, or of which no more is known yet."""
     return RunRow(
         key=key,
         mission=case.mission,
@@ -161,12 +154,9 @@ def _bare(
 def _where_it_failed(record: RunRecord) -> dict[str, object]:
     """The first task that failed and where the robot was at its end; else where it all ended."""
     first = next((run for run in record.tasks if run.outcome == "failed"), None)
-    task, t = (first.task, first.end) if first else (_last_task(record), math.inf)
+    last = record.tasks[-1].task if record.tasks else None
+    task, t = (first.task, first.end) if first else (last, math.inf)
     seen = next((s for s in record.path if s.t >= t), record.path[-1] if record.path else None)
     if seen is None:
         return {"task": task}
     return {"task": task, "place": (seen.x, seen.y, seen.z), "floor": seen.floor}
-
-
-def _last_task(record: RunRecord) -> str | None:
-    return record.tasks[-1].task if record.tasks else None

@@ -16,6 +16,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from argo_compiler.base.errors import Conflict, NotFound, Unavailable
+from argo_env.closing import Closing
 from argo_env.evaluation.parts import (
     PARTS,
     can_write_parts,
@@ -39,7 +40,7 @@ _LOCK = ".lock"
 _SYNC = 1.0  # s between two times that rows are made to outlive the machine
 
 
-class RowStore:
+class RowStore(Closing):
     """The rows of an evaluation in a folder. One process at a time has it open for writing."""
 
     def __init__(self, folder: Path, clock: Callable[[], float] = time.monotonic) -> None:
@@ -138,12 +139,6 @@ class RowStore:
         self.sync()
         os.close(self._file)
         os.close(self._lock)
-
-    def __enter__(self) -> "RowStore":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
 
 def read_rows(folder: Path) -> tuple[RunRow, ...]:

@@ -102,16 +102,8 @@ class DisplacedCheckpoint(CheckpointFault):
         # Towards the plan: rounded to the nearest, some would be farther away than may be.
         x, y, z = (math.trunc(v * 1e4) / 1e4 for v in drawn.offset)
         turn, roll = (round(math.degrees(angle), 1) for angle in (drawn.turn, drawn.roll))
-        return (
-            super()
-            .settled(site, rng)
-            ._with(
-                checkpoint=checkpoint.id,
-                offset=(x, y, z) if self.offset is None else self.offset,
-                turn=turn if self.turn is None else self.turn,
-                roll=roll if self.roll is None else self.roll,
-            )
-        )
+        settled = super().settled(site, rng)._with(checkpoint=checkpoint.id)
+        return settled._filled(offset=(x, y, z), turn=turn, roll=roll)
 
     def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.checkpoint is not None

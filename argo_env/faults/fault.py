@@ -86,6 +86,10 @@ class Fault(Model):
     def _with(self, **fields: Any) -> Self:
         return self.model_copy(update=fields)
 
+    def _filled(self, **drawn: Any) -> Self:
+        """The same fault, with what was `drawn` for the fields that are None."""
+        return self._with(**{name: v for name, v in drawn.items() if getattr(self, name) is None})
+
 
 class TimedFault(Fault):
     """A fault that begins during the run, and may end."""
@@ -112,4 +116,4 @@ class TimedFault(Fault):
     def settled(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
         latest = LATEST if self.until is None else min(LATEST, self.until)
         drawn = draw(rng, 0.0, latest, 1)
-        return self if self.at is not None else self._with(at=max(0.0, min(drawn, latest - 0.1)))
+        return self._filled(at=max(0.0, min(drawn, latest - 0.1)))

@@ -13,7 +13,7 @@ from argo_env.seeding import draw
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
 from argo_env.surroundings import Alarm, GasLeak, HotSpot, PumpFault, PumpSound
-from argo_env.surroundings.sources import Source
+from argo_env.surroundings.surroundings import Source
 
 if TYPE_CHECKING:
     from argo_env.faults.targets import FaultTargets
@@ -56,11 +56,7 @@ class GasLeakFault(ProcessFault):
     def settled(self, site: Site, rng: np.random.Generator) -> Self:
         _check_place(site, self.place)
         place, rate = _near_equipment(site, rng, 0.0), draw(rng, 0.01, 0.04, 4)
-        return (
-            super()
-            .settled(site, rng)
-            ._with(place=place if self.place is None else self.place, rate=self.rate or rate)
-        )
+        return super().settled(site, rng)._filled(place=place, rate=rate)
 
     def is_at(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
         return _within(_GAS_REACHES, self.place, noticed_from)
@@ -87,14 +83,7 @@ class HotSpotFault(ProcessFault):
         _check_place(site, self.place)
         place = _near_equipment(site, rng, 0.3)
         temperature = draw(rng, 80.0, 150.0, 1)
-        return (
-            super()
-            .settled(site, rng)
-            ._with(
-                place=place if self.place is None else self.place,
-                temperature=self.temperature or temperature,
-            )
-        )
+        return super().settled(site, rng)._filled(place=place, temperature=temperature)
 
     def is_at(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
         return _within(_SPOT_OFF, self.place, place)
@@ -124,9 +113,7 @@ class AbnormalPump(ProcessFault):
             raise NotFound(
                 f"site {site.name} has no pump `{self.pump}`; there are: {', '.join(known)}"
             )
-        return (
-            super().settled(site, rng)._with(pump=self.pump or pump, defect=self.defect or defect)
-        )
+        return super().settled(site, rng)._filled(pump=pump, defect=defect)
 
     def is_at(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
         # It is heard at the pump that is nearest.

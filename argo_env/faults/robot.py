@@ -10,7 +10,7 @@ from argo_env.faults.fault import Fault, Sign, TimedFault
 from argo_env.seeding import draw
 from argo_env.site import Site
 from argo_env.site.spec import Rect
-from argo_env.surroundings.network import Shadow
+from argo_env.surroundings.surroundings import Shadow
 
 if TYPE_CHECKING:
     from argo_env.faults.targets import FaultTargets
@@ -25,8 +25,7 @@ class LowBattery(Fault):
     """share of the capacity that is there at the start, unless there is less anyway"""
 
     def settled(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
-        drawn = draw(rng, 0.1, 0.25, 3)
-        return self._with(charge=self.charge or drawn)
+        return self._filled(charge=draw(rng, 0.1, 0.25, 3))
 
     def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.charge is not None
@@ -42,8 +41,7 @@ class WornBattery(Fault):
     """share of the capacity that is left"""
 
     def settled(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
-        drawn = draw(rng, 0.2, 0.6, 3)
-        return self._with(capacity=self.capacity or drawn)
+        return self._filled(capacity=draw(rng, 0.2, 0.6, 3))
 
     def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.capacity is not None
@@ -98,7 +96,7 @@ class SensorDysfunction(TimedFault):
 
     def settled(self, site: Site, rng: np.random.Generator) -> Self:
         drawn = "fails" if rng.uniform() < 0.5 else "noise"
-        return super().settled(site, rng)._with(effect=self.effect or drawn)
+        return super().settled(site, rng)._filled(effect=drawn)
 
     def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         if self.effect == "fails":
@@ -121,7 +119,7 @@ class DriveDysfunction(TimedFault):
 
     def settled(self, site: Site, rng: np.random.Generator) -> Self:
         drawn = draw(rng, 0.0, 0.5, 2)
-        return super().settled(site, rng)._with(speed=drawn if self.speed is None else self.speed)
+        return super().settled(site, rng)._filled(speed=drawn)
 
     def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.speed is not None

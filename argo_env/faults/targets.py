@@ -4,9 +4,9 @@ from dataclasses import dataclass, field
 
 from argo_env.drives.battery import Battery
 from argo_env.drives.powertrain import Powertrain
-from argo_env.sensing.onboard_sensor import OnboardSensor
+from argo_env.sensing.onboard import OnboardSensor
 from argo_env.surroundings import Surroundings
-from argo_env.surroundings.network import RadioNetwork
+from argo_env.surroundings.surroundings import RadioNetwork
 from argo_env.world.paper_world import AnyWorld
 
 

@@ -56,9 +56,7 @@ class Brick(Fault):
                 raise Invalid(f"there is no walkway at ({place[0]:g}, {place[1]:g}) of floor "
                                 f"{floor.number}")  # fmt: skip
             yaw = draw(rng, -90.0, 90.0, 1)
-            settled = self._with(
-                floor=floor.number, place=place, yaw=yaw if self.yaw is None else self.yaw
-            )
+            settled = self._with(floor=floor.number, place=place)._filled(yaw=yaw)
             area = settled._over_dock(site, floor)
             if area is None:
                 return settled
@@ -168,7 +166,7 @@ class BlockedStairs(Fault):
             )
         if self.floor is not None and self.floor not in [f.number for f in floors]:
             raise NotFound(f"site {site.name} has no stairs up from floor {self.floor}")
-        return self._with(tower=self.tower or tower, floor=self.floor or floor)
+        return self._filled(tower=tower, floor=floor)
 
     def changed(self, site: Site) -> tuple[Element, ...]:
         assert self.floor is not None

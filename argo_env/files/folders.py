@@ -1,7 +1,9 @@
-"""Folders that results are written to."""
+"""Where results are written to."""
 
 import errno
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from argo_compiler.base.errors import Conflict, Unavailable
@@ -26,3 +28,17 @@ def make_folder(path: Path) -> None:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise Unavailable(f"{path}: can't be made a folder: {error.strerror}") from error
+
+
+@contextmanager
+def writing(place: Path, what: str = "", way_out: str = "") -> Iterator[None]:
+    """Raises Unavailable for what goes wrong while `what`, such as `the film`, is written there."""
+    try:
+        yield
+    except OSError as error:
+        what = f"{what} " if what else ""
+        raise Unavailable(f"{place}: {what}can't be written: {error.strerror}{way_out}") from error
+
+
+ANOTHER_PLACE = "; choose another place"
+"""a way out"""

@@ -33,19 +33,24 @@ class Blockage:
 
 def closed_cells(surface: Surface, blockages: Sequence[Blockage]) -> NDArray[np.bool_]:
     """Which cells of the surface a blockage touches, even at their edges."""
-    x, y, z = surface.positions().T
+    places = surface.positions()
     closed = np.zeros(surface.size, dtype=bool)
     for blockage in blockages:
-        x0, y0, x1, y1 = blockage.rect
-        half = CELL / 2 + 1e-9
-        closed |= (
-            (np.abs(z - blockage.z) <= LAYER)
-            & (x >= x0 - half)
-            & (x <= x1 + half)
-            & (y >= y0 - half)
-            & (y <= y1 + half)
-        )
+        closed |= _within(places, blockage, CELL / 2 + 1e-9)
     return closed
+
+
+def _within(places: NDArray[np.float64], blockage: Blockage, reach: float) -> NDArray[np.bool_]:
+    """Which places, shape (n, 3), are in the blockage's layer and within `reach` (m) of it along
+    each axis."""
+    (x0, y0, x1, y1), (x, y, z) = blockage.rect, places.T
+    return np.asarray(
+        (np.abs(z - blockage.z) <= LAYER)
+        & (x >= x0 - reach)
+        & (x <= x1 + reach)
+        & (y >= y0 - reach)
+        & (y <= y1 + reach)
+    )
 
 
 def close(lattice: Lattice, blockages: Sequence[Blockage]) -> Lattice:
@@ -79,16 +84,7 @@ def close(lattice: Lattice, blockages: Sequence[Blockage]) -> Lattice:
 
 def _near(lattice: Lattice, places: NDArray[np.float64], blockage: Blockage) -> NDArray[np.int64]:
     """The states that may touch the blockage; `places` are those of the cells."""
-    x0, y0, x1, y1 = blockage.rect
-    reach = lattice.robot.footprint.radius + MARGIN
-    x, y, z = places.T
-    cells = (
-        (np.abs(z - blockage.z) <= LAYER)
-        & (x >= x0 - reach)
-        & (x <= x1 + reach)
-        & (y >= y0 - reach)
-        & (y <= y1 + reach)
-    )
+    cells = _within(places, blockage, lattice.robot.footprint.radius + MARGIN)
     states = lattice.state_of[cells]
     return np.sort(states[states >= 0])
 

@@ -16,8 +16,7 @@ from argo_env.navigation.graphs import Graph, graph_of, graph_of_moves, part_of,
 from argo_env.navigation.raster import CELL
 from argo_env.navigation.stencil import HEADINGS, Stencil, heading_angle, standing, turning
 from argo_env.navigation.surface import Surface
-from argo_env.robot.calibration import MotionKind, drive_kind
-from argo_env.robot.spec import RobotSpec
+from argo_env.robot.spec import MotionKind, RobotSpec, drive_kind
 
 MARGIN = 0.02  # m kept free around the footprint
 ROOM = 0.1  # m around the footprint where driving is preferred

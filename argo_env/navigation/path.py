@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.base.model import Pose
-from argo_env.robot.calibration import MotionKind, drive_kind
-from argo_env.robot.spec import RobotSpec
+from argo_env.robot.spec import MotionKind, RobotSpec, drive_kind
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,7 @@ from argo_env.navigation.path import Motion, Path, merge, wrap
 from argo_env.navigation.raster import CELL, Grid
 from argo_env.navigation.stencil import overlaps
 from argo_env.navigation.surface import DIRECTIONS, Surface
-from argo_env.robot.calibration import MotionKind
-from argo_env.robot.spec import Footprint, RobotSpec
+from argo_env.robot.spec import Footprint, MotionKind, RobotSpec
 
 _SAME_PLACE, _SAME_YAW = 1e-9, 1e-9  # m, rad
 _TURN_STEP = math.radians(5.0)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from argo_compiler.base.errors import Conflict, Invalid
-from argo_env.drives.flipper_motion import FLAT, RAISED
+from argo_env.drives.drive import FLAT, RAISED
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
 from argo_env.run.record import RunRecord

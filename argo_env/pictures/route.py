@@ -8,30 +8,28 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from argo_compiler.base.errors import Unavailable
 from argo_compiler.base.model import Pose
 from argo_compiler.files.writing import write_folder
 from argo_compiler.il import Action, Task
 from argo_compiler.reorder.mission import MissionRoute
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.problem import Tour
+from argo_env.files.folders import ANOTHER_PLACE, writing
 from argo_env.formatting import clock
 from argo_env.navigation import Navigator
 from argo_env.pictures.drawing.floors import plans_of
-from argo_env.pictures.drawing.legend import draw_headline
 from argo_env.pictures.drawing.sheet import (
     FINER,
     FOOT,
     INK,
-    PAPER,
     SIZE,
     SOFT,
     FloorSheet,
     font,
     make_sheet,
 )
-from argo_env.pictures.drawing.spots import Spots
-from argo_env.pictures.drawing.style import disc, paint_disc
+from argo_env.pictures.drawing.spots import Spots, draw_plate
+from argo_env.pictures.drawing.style import disc, draw_headline, paint_disc, paint_station
 from argo_env.pictures.drawing.way import Moment, draw_crossings, draw_lines, draw_thin, lines
 from argo_env.planning.travel import SiteTravel
 from argo_env.report.track import colour
@@ -83,12 +81,8 @@ def write_route(
         content = io.BytesIO()
         Image.fromarray(image).save(content, "png")
         pictures[_name(plan.number)] = content.getvalue()
-    try:
+    with writing(folder, "the pictures", ANOTHER_PLACE):
         write_folder(folder, pictures)
-    except OSError as error:
-        raise Unavailable(
-            f"{folder}: the pictures can't be written: {error.strerror}; choose another place"
-        ) from error
     return [folder / name for name in pictures]
 
 
@@ -162,9 +156,7 @@ def _draw(
     position = {visit: k + 1 for k, visit in enumerate(route.order)}
     for x, y, there, _ in stations:
         if there == floor:
-            px, py = sheet.at(x, y, floor)
-            r = _STATION * FINER
-            draw.rectangle((px - r, py - r, px + r, py + r), fill=INK, outline=PAPER, width=FINER)
+            paint_station(draw, sheet.at(x, y, floor), _STATION)
     for visit, true, place in marks:
         if place != true:
             draw.line([true, place], fill=INK, width=2 * FINER)
@@ -172,10 +164,10 @@ def _draw(
         state = "open" if visit in position else "closed"
         paint_disc(draw, place, _RADIUS, state, str(position.get(visit, "")))
     for visit, _, place in marks:
-        _plate(draw, spots, place, planned.visits.names[visit], floor)
+        draw_plate(draw, spots, place, planned.visits.names[visit], floor)
     for x, y, there, name in stations:
         if there == floor:
-            _plate(draw, spots, sheet.at(x, y, floor), name, floor)
+            draw_plate(draw, spots, sheet.at(x, y, floor), name, floor)
     draw_crossings(draw, sheet, spots, new)
     draw_headline(draw, headline)
     _draw_legend(draw, bool(thin), bool(bold), len(position) < planned.problem.size)
@@ -205,18 +197,6 @@ def _place(planned: MissionRoute, visit: int, site: Site) -> tuple[float, float,
         return checkpoint.position[0], checkpoint.position[1], checkpoint.floor
     pose = task.pose or Pose(x=0.0, y=0.0, z=0.0)
     return pose.x, pose.y, site.floor_at(pose.z)
-
-
-def _plate(
-    draw: ImageDraw.ImageDraw, spots: Spots, place: tuple[float, float], text: str, floor: int
-) -> None:
-    """A name on a plate where it covers nothing."""
-    face = font(11)
-    wide, high = draw.textlength(text, font=face) / 2 + 4.0 * FINER, 8.0 * FINER
-    x, y = spots.beside(place, wide, high, floor)
-    box = (x - wide, y - high, x + wide, y + high)
-    draw.rounded_rectangle(box, 3 * FINER, fill=PAPER, outline=SOFT, width=FINER)
-    draw.text((x, y), text, fill=INK, font=face, anchor="mm")
 
 
 def _draw_legend(draw: ImageDraw.ImageDraw, old: bool, new: bool, dropped: bool) -> None:

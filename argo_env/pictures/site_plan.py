@@ -10,7 +10,6 @@ from PIL import Image, ImageDraw
 
 from argo_env.navigation.raster import CELL
 from argo_env.pictures.drawing.floors import plans_of
-from argo_env.pictures.drawing.legend import draw_headline, draw_length
 from argo_env.pictures.drawing.sheet import (
     FINER,
     FOOT,
@@ -25,8 +24,8 @@ from argo_env.pictures.drawing.sheet import (
     font,
     make_sheet,
 )
-from argo_env.pictures.drawing.spots import Spots
-from argo_env.pictures.drawing.style import STYLES, Ink, paint_disc
+from argo_env.pictures.drawing.spots import Spots, draw_plate
+from argo_env.pictures.drawing.style import STYLES, draw_headline, draw_length, paint_disc
 from argo_env.planning.flaws import Flaw, Standing
 from argo_env.site import Site
 
@@ -155,7 +154,7 @@ def _draw_things(draw: ImageDraw.ImageDraw, sheet: FloorSheet, spots: Spots, sit
         paint_disc(draw, place, _RADIUS, "open", str(checkpoint.id))
     named += _stairs(sheet, site)
     for place, floor, name in named:
-        _plate(draw, spots, place, name, floor)
+        draw_plate(draw, spots, place, name, floor)
 
 
 def _stairs(sheet: FloorSheet, site: Site) -> Iterator[tuple[Pixel, int, str]]:
@@ -174,18 +173,6 @@ def _draw_face(draw: ImageDraw.ImageDraw, place: Pixel, yaw: float) -> None:
         place[1] - _FACE * FINER * math.sin(yaw),
     )
     draw.line([place, end], fill=STYLES["open"].rim, width=2 * FINER)
-
-
-def _plate(
-    draw: ImageDraw.ImageDraw, spots: Spots, place: Pixel, text: str, floor: int, ink: Ink = INK
-) -> None:
-    """A name on a plate where it covers nothing."""
-    face = font(11)
-    wide, high = draw.textlength(text, font=face) / 2 + 4.0 * FINER, 8.0 * FINER
-    x, y = spots.beside(place, wide, high, floor)
-    box = (x - wide, y - high, x + wide, y + high)
-    draw.rounded_rectangle(box, 3 * FINER, fill=PAPER, outline=SOFT, width=FINER)
-    draw.text((x, y), text, fill=ink, font=face, anchor="mm")
 
 
 def _draw_flaw(draw: ImageDraw.ImageDraw, spots: Spots, true: Pixel, floor: int, text: str) -> None:

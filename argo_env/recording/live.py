@@ -1,7 +1,6 @@
 """A run live in Foxglove: the topics of a recording, served to those who look on."""
 
-import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
 from threading import Lock, Thread
@@ -9,14 +8,12 @@ from typing import TYPE_CHECKING, Any, cast
 
 from argo_compiler.base.errors import Unavailable
 from argo_compiler.base.extras import install_line
-from argo_compiler.base.model import Model
 from argo_env.recording.files import require_libraries
-from argo_env.recording.plain_schema import plain_schema
+from argo_env.recording.topic_writer import TopicWriter
 
 if TYPE_CHECKING:  # what the extras bring
     import foxglove
     from foxglove.websocket import WebSocketServer
-    from google.protobuf.message import Message
 
 PORT = 8765
 """where Foxglove looks by itself"""
@@ -27,54 +24,16 @@ _PATIENCE = 1.0
 """s that clients have at the end to read what they were sent"""
 
 
-class LiveWriter:
+class LiveWriter(TopicWriter):
     """Serves what a recorder writes. Holds the last message of each topic, which whoever begins to
     look at it gets first. Nobody can send anything."""
 
     def __init__(self, server: "WebSocketServer", context: "foxglove.Context") -> None:
+        super().__init__()
         self.server = server
         self._context = context
         self._lock = Lock()
-        self._channels: dict[str, foxglove.Channel] = {}
         self._last: dict[int, tuple[foxglove.Channel, bytes, int]] = {}
-
-    @property
-    def until(self) -> float | None:
-        """Nothing is kept."""
-        return None
-
-    def put(self, topic: str, message: "Message", t: float) -> None:
-        """Tells a protobuf message at time t (s)."""
-        if topic not in self._channels:
-            from mcap_protobuf.schema import build_file_descriptor_set
-
-            descriptors = build_file_descriptor_set(type(message))
-            self._open(
-                topic, "protobuf", message.DESCRIPTOR.full_name, descriptors.SerializeToString()
-            )
-        self._tell(topic, message.SerializeToString(), t)
-
-    def put_json(self, topic: str, message: Model, t: float) -> None:
-        """Tells a model as JSON at time t (s)."""
-        if topic not in self._channels:
-            schema = json.dumps(plain_schema(type(message)), ensure_ascii=False).encode()
-            self._open(topic, "json", f"argo.{type(message).__name__}", schema)
-        self._tell(topic, message.model_dump_json(exclude_none=True).encode(), t)
-
-    def attach(self, name: str, media_type: str, content: str | bytes, t: float = 0.0) -> None:
-        """Files are for recordings."""
-
-    def describe(self, name: str, facts: Mapping[str, str]) -> None:
-        """Likewise."""
-
-    def flush_if_due(self, t: float) -> None:
-        """Nothing waits."""
-
-    def flush(self, t: float) -> None:
-        """Nothing waits."""
-
-    def close(self) -> None:
-        """The run is over; who looks on keeps what was told last."""
 
     def tell_again(self, channel: int) -> None:
         """Tells the last message of a channel once more, as somebody has begun to look at it."""

@@ -1,10 +1,17 @@
-"""The file that a recording is written to, without a buffer: what is written is with the system."""
+"""What tells a recording, and the file that it is written to, without a buffer: what is written is
+with the system."""
 
 import os
 from contextlib import suppress
 from pathlib import Path
 
 from argo_compiler.base.errors import Unavailable
+from argo_env.files.folders import ANOTHER_PLACE, writing
+
+VERSION = "2"
+"""of what a recording of Argo's holds"""
+MAGIC = b"\x89MCAP0\r\n"
+"""what every .mcap file begins and ends with (MCAP specification)"""
 
 
 class UnwritableRecording(Unavailable):
@@ -28,12 +35,8 @@ class RecordingFile:
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        try:
+        with writing(path, "the recording", ANOTHER_PLACE):
             self._file = path.open("wb", buffering=0)
-        except OSError as error:
-            raise Unavailable(
-                f"{path}: the recording can't be written: {error.strerror}; choose another place"
-            ) from error
         self._size = 0
         self._kept = 0
         self._failed = False

@@ -9,15 +9,15 @@ from pathlib import Path
 
 from foxglove_schemas_protobuf.Log_pb2 import Log
 
+from argo_compiler.base.model import Model
 from argo_compiler.base.version import __version__
 from argo_compiler.hfsm import Occurred
+from argo_compiler.il import Action, EventKind
 from argo_env.navigation import Path as Way
 from argo_env.recording import messages, scene
-from argo_env.recording.format import VERSION
-from argo_env.recording.motion import Limbs, MotionTopics
-from argo_env.recording.shots import write_shot
+from argo_env.recording.motion import Limbs, MotionTopics, write_shot
+from argo_env.recording.output import VERSION
 from argo_env.recording.topic_writer import TopicWriter
-from argo_env.recording.topics import BatteryState, MissionState, mission_state
 from argo_env.recording.writer import media_type
 from argo_env.report.files import to_json
 from argo_env.robot.robot_model import read_model
@@ -34,6 +34,62 @@ from argo_env.site import Site, SiteCheckpoint
 from argo_env.world.world import Shot, World
 
 _log = logging.getLogger(__name__)
+
+
+class MissionState(Model):
+    """How the mission stands."""
+
+    task: str | None = None
+    """whose action is under way; absent: none is"""
+    action: Action | None = None
+    object_id: str | None = None
+    states: tuple[str, ...]
+    """ids of the active states, from the mission to the leaf, then the reaction's"""
+    groups: tuple[str, ...]
+    """names of the active groups, the outermost first"""
+    rounds: tuple[int, ...]
+    """which round, from 1, each of these groups is in"""
+    paused: bool
+    reaction: EventKind | None = None
+    """the event whose reaction is active"""
+    outcome: str | None = None
+    """how the mission has ended"""
+    done: int
+    """actions that have ended as planned"""
+    readings: int
+    abnormal: int
+    """readings outside the nominal range"""
+
+
+class BatteryState(Model):
+    """How the battery stands."""
+
+    charge: float
+    """0 to 1"""
+    voltage: float
+    """V, under the present load"""
+    current: float
+    """A; less than 0 while it is charged"""
+
+
+def mission_state(machine: Machine, done: int, readings: int, abnormal: int) -> MissionState:
+    """How the mission stands, as its machine tells it, with what has been done."""
+    running = machine.running
+    return MissionState(
+        task=running.name if running else None,
+        action=running.action if running else None,
+        object_id=running.object_id if running else None,
+        states=machine.configuration,
+        groups=tuple(machine.rounds),
+        rounds=tuple(machine.rounds.values()),
+        paused=machine.paused,
+        reaction=machine.reaction,
+        outcome=machine.outcome,
+        done=done,
+        readings=readings,
+        abnormal=abnormal,
+    )
+
 
 _LEVELS = {Tone.GOOD: Log.INFO, Tone.NOTICE: Log.WARNING, Tone.BAD: Log.ERROR}
 SAMPLE_PERIOD = 0.1

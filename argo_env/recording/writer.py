@@ -1,18 +1,14 @@
 """An .mcap file under way: topics, messages and attachments at simulated times."""
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import IO, cast
 
-from google.protobuf.message import Message
-from mcap.well_known import MessageEncoding, SchemaEncoding
+from mcap.well_known import SchemaEncoding
 from mcap.writer import CompressionType, Writer
-from mcap_protobuf.schema import build_file_descriptor_set
 
-from argo_compiler.base.model import Model
 from argo_env.recording.output import RecordingFile
-from argo_env.recording.plain_schema import plain_schema
+from argo_env.recording.topic_writer import TopicWriter
 
 FLUSH_PERIOD = 10.0
 """s of simulated time after which what was recorded is on disk, whatever happens to the process"""
@@ -23,13 +19,12 @@ def nanoseconds(t: float) -> int:
     return round(t * 1e9)
 
 
-class RecordingWriter:
+class RecordingWriter(TopicWriter):
     """Writes one file. Holds the open chunk and what has been registered; close it at the end."""
 
     def __init__(self, stream: RecordingFile) -> None:
+        super().__init__()
         self._stream = stream
-        self.until: float | None = None
-        """s of simulated time up to which all can be read, whatever happens; None: nothing can"""
         self._latest = 0.0
         self._writer = Writer(
             cast(IO[bytes], stream),
@@ -37,36 +32,10 @@ class RecordingWriter:
             enable_crcs=True,
             enable_data_crcs=True,
         )
-        self._channels: dict[str, int] = {}
         self._schemas: dict[str, int] = {}
         self._sequences: dict[str, int] = {}
         self._flushed = 0.0
         self._writer.start(profile="", library="argo")
-
-    def put(self, topic: str, message: Message, t: float) -> None:
-        """Writes a protobuf message at time t (s)."""
-        if topic not in self._channels:
-            name = message.DESCRIPTOR.full_name
-            if name not in self._schemas:
-                self._schemas[name] = self._writer.register_schema(
-                    name,
-                    SchemaEncoding.Protobuf,
-                    build_file_descriptor_set(type(message)).SerializeToString(deterministic=True),
-                )
-            self._register(topic, MessageEncoding.Protobuf, self._schemas[name])
-        self._add(topic, message.SerializeToString(), t)
-
-    def put_json(self, topic: str, message: Model, t: float) -> None:
-        """Writes a model as JSON at time t (s); fields that are None are left out."""
-        if topic not in self._channels:
-            name = f"argo.{type(message).__name__}"
-            if name not in self._schemas:
-                schema = json.dumps(plain_schema(type(message)), ensure_ascii=False)
-                self._schemas[name] = self._writer.register_schema(
-                    name, SchemaEncoding.JSONSchema, schema.encode()
-                )
-            self._register(topic, MessageEncoding.JSON, self._schemas[name])
-        self._add(topic, message.model_dump_json(exclude_none=True).encode(), t)
 
     def attach(self, name: str, media_type: str, content: str | bytes, t: float = 0.0) -> None:
         """Adds a file to the recording, and has all on disk that came before."""
@@ -96,11 +65,14 @@ class RecordingWriter:
         self.flush(self._latest)
         self._writer.finish()  # type: ignore[no-untyped-call]
 
-    def _register(self, topic: str, encoding: str, schema: int) -> None:
-        self._channels[topic] = self._writer.register_channel(topic, encoding, schema)
+    def _open(self, topic: str, encoding: str, name: str, schema: bytes) -> None:
+        if name not in self._schemas:
+            kind = SchemaEncoding.Protobuf if encoding == "protobuf" else SchemaEncoding.JSONSchema
+            self._schemas[name] = self._writer.register_schema(name, kind, schema)
+        self._channels[topic] = self._writer.register_channel(topic, encoding, self._schemas[name])
         self._sequences[topic] = 0
 
-    def _add(self, topic: str, data: bytes, t: float) -> None:
+    def _tell(self, topic: str, data: bytes, t: float) -> None:
         time, size = nanoseconds(t), self._stream.tell()
         self._latest = max(self._latest, t)
         self._writer.add_message(self._channels[topic], time, data, time, self._sequences[topic])

@@ -1,17 +1,19 @@
-"""A robot that is somewhere else, as the run's own."""
+"""A robot that is somewhere else, as the run's own: its actions, what it reports, and what stands
+in a rig for its parts."""
 
 import logging
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, NoReturn
 
 from pydantic import ValidationError
 
 from argo_compiler.base.errors import Unavailable
-from argo_compiler.hfsm import StartAction
-from argo_compiler.il import EventKind
+from argo_compiler.hfsm import ActionFailed, ActionStopped, ActionSucceeded, StartAction
+from argo_compiler.il import EventKind, Task
+from argo_env.drives.drive import DriveStatus, Incident
 from argo_env.navigation import Blockage, Navigator, Path
-from argo_env.remote.action import RemoteAction
 from argo_env.remote.channel import Channel
 from argo_env.remote.messages import (
     REPORTS,
@@ -21,19 +23,173 @@ from argo_env.remote.messages import (
     RobotState,
     StartOrder,
 )
-from argo_env.remote.reports import anomaly_of, reading_of
-from argo_env.remote.stand_ins import ToldDrive, ToldPower, ToldSensor
 from argo_env.robot.pose import BodyPose
 from argo_env.run.beginning import RunBeginning
 from argo_env.run.log import Entry
 from argo_env.run.odometry import Odometry
 from argo_env.run.perception import abnormal_reading
-from argo_env.run.record import Anomaly
+from argo_env.run.record import DIGITS, Anomaly, Reading, TaskRun
 from argo_env.run.rig import Rig
-from argo_env.run.robot import RobotAction, Sensed
+from argo_env.run.robot import ActionEnd, RobotAction, Sensed
+from argo_env.sensing.sensor import Measurement, MeasurementError
+from argo_env.site import Site
 from argo_env.world.paper_world import PaperWorld
 
 _log = logging.getLogger(__name__)
+
+
+class ToldDrive:
+    """Is where the robot told that it is. Nobody here can move it but by an order."""
+
+    name = "remote"
+    failure: str | None = None
+    incidents: Sequence[Incident] = ()
+
+    def __init__(self, time_step: float, pose: BodyPose) -> None:
+        self.time_step = time_step
+        self.pose = pose
+
+    def place(self, pose: BodyPose) -> None:
+        """A robot that is somewhere else stays where it is."""
+
+    def begin(self, path: Path, velocity: float | None) -> NoReturn:
+        raise NotImplementedError("a remote robot plans its own paths")
+
+    def step(self) -> DriveStatus:
+        return DriveStatus.ARRIVED
+
+    def halt(self) -> None:
+        """Orders do that."""
+
+
+class ToldSensor:
+    """Reads nothing here: the robot tells what it reads."""
+
+    name = "remote"
+
+    def measure(self, checkpoint_id: int, pose: BodyPose) -> Measurement:  # noqa: ARG002
+        raise MeasurementError("a remote robot reads checkpoints itself")
+
+
+class ToldPower:
+    """The battery, as the robot told."""
+
+    charge: float | None = None
+    charging = False
+
+    @property
+    def empty(self) -> bool:
+        return self.charge is not None and self.charge <= 0.0
+
+
+def anomaly_of(report: FoundReport, site: Site, pose: BodyPose, now: float) -> Anomaly:
+    """What the robot has noticed, at time `now` (s) and `pose`."""
+    here = (round(pose.x, DIGITS), round(pose.y, DIGITS), round(pose.z, DIGITS))
+    place = report.place
+    return Anomaly(
+        t=now,
+        kind=report.event,
+        detail=report.detail,
+        source="robot",
+        place=place,
+        noticed_from=None if place else here,
+        floor=site.floor_at((place or here)[2]),
+    )
+
+
+def reading_of(
+    task: Task, ended: EndReport, site: Site, pose: BodyPose, now: float
+) -> Reading | None:
+    """What was measured, at time `now` (s) and `pose`; None: nothing was. A distance that the robot
+    did not tell is that from its origin."""
+    if ended.outcome != "done" or ended.value is None or task.object_id is None:
+        return None
+    checkpoint = site.measured_by(task.object_id)
+    away = math.dist(checkpoint.position, (pose.x, pose.y, pose.z))
+    return Reading(
+        checkpoint=checkpoint.id,
+        name=checkpoint.name,
+        kind=checkpoint.kind,
+        floor=checkpoint.floor,
+        task=task.name,
+        t=now,
+        value=ended.value,
+        unit=checkpoint.unit,
+        nominal=checkpoint.nominal,
+        normal=checkpoint.nominal.contains(ended.value),
+        distance=round(away if ended.distance is None else ended.distance, DIGITS),
+        confidence=round(ended.confidence, DIGITS),
+    )
+
+
+class RemoteAction:
+    """Holds what was ordered, and whether it is to be cancelled."""
+
+    path: Path | None = None
+    came: Path | None = None
+
+    def __init__(
+        self,
+        id: str,
+        command: StartAction,
+        started: float,
+        way: tuple[float, float],
+        cancel: Callable[[], None],
+    ) -> None:
+        """Its id for the robot; then when (s) and after what way (m driven, m upwards) it was
+        ordered, and what orders the robot to stop it."""
+        self.id = id
+        self._command = command
+        self._started = started
+        self._way = way
+        self._order_to_cancel = cancel
+        self.cancelled: str | None = None
+        """why it is to be cancelled, if it is"""
+        self._interrupted = False
+
+    @property
+    def task(self) -> Task:
+        return self._command.task
+
+    def cancel(self, reason: str, interrupted: bool) -> None:
+        """Orders the robot to stop; its report is awaited."""
+        if self.cancelled is None:
+            self.cancelled, self._interrupted = reason, interrupted
+            self._order_to_cancel()
+
+    def detour(self, rig: Rig) -> None:
+        """The robot finds its way itself."""
+
+    def end(self, report: EndReport, abnormal: bool) -> ActionEnd:
+        """What the machine is told of the end that the robot reported."""
+        name, id = self.task.name, self._command.id or None
+        if report.outcome == "done":
+            return ActionSucceeded(name, report.value, abnormal, id)
+        if report.outcome == "stopped" and self.cancelled is not None:
+            return ActionStopped(name, id)
+        reason = report.reason or f"the robot reported that it has {report.outcome}"
+        return ActionFailed(name, reason, report.unreadable, id)
+
+    def run(self, end: ActionEnd, now: float, distance: float, climbed: float) -> TaskRun:
+        """The action as it goes into the record."""
+        reason = end.reason if isinstance(end, ActionFailed) else None
+        outcome = "done"
+        if not isinstance(end, ActionSucceeded):
+            outcome = "interrupted" if self._interrupted else "cancelled"
+            outcome = "failed" if self.cancelled is None else outcome
+            reason = "; ".join(filter(None, (self.cancelled, reason))) or None
+        return TaskRun(
+            task=self.task.name,
+            action=self.task.action,
+            object_id=self.task.object_id,
+            start=self._started,
+            end=now,
+            outcome=outcome,
+            reason=reason,
+            distance=round(distance - self._way[0], DIGITS),
+            climbed=round(climbed - self._way[1], DIGITS),
+        )
+
 
 SILENCE = 2.0
 """s after which a robot of which nothing was heard counts as silent"""

@@ -3,8 +3,9 @@
 import json
 from pathlib import Path
 
-from argo_compiler.base.errors import Conflict, Unavailable
+from argo_compiler.base.errors import Conflict
 from argo_compiler.files.writing import write_folder
+from argo_env.files.folders import writing
 from argo_env.report.html import page
 from argo_env.run.record import RunRecord
 from argo_env.site import Site
@@ -25,12 +26,8 @@ def write_report(record: RunRecord, site: Site, folder: Path) -> Path:
             f"the record is of a run on site `{record.site}`, not on `{site.name}`: load that site"
         )
     contents = {RECORD: to_json(record).encode(), PAGE: page(record, site).encode()}
-    try:
+    with writing(folder, "the report", "; choose another folder"):
         write_folder(folder, contents)
-    except OSError as error:
-        raise Unavailable(
-            f"{folder}: the report can't be written: {error.strerror}; choose another folder"
-        ) from error
     return folder / PAGE
 
 

@@ -11,15 +11,12 @@ from argo_compiler.hfsm import Hfsm
 from argo_compiler.il import Action, Mission
 from argo_compiler.il.reserved import RETURN_TASK
 from argo_env.formatting import clock
-from argo_env.report.charge import charge_curve
-from argo_env.report.elevation import elevation
 from argo_env.report.machine import drawable, machine
-from argo_env.report.plan import floor_plan, visited_floors
-from argo_env.report.rounds import blocks, repeat_rules, with_readings, with_waits
+from argo_env.report.plan import elevation, floor_plan, visited_floors
+from argo_env.report.rounds import blocks, repeat_rules, waits, with_readings, with_waits
 from argo_env.report.svg import Node, clean, drawing, markup, node
-from argo_env.report.timeline import is_untold, timeline
+from argo_env.report.timeline import charge_curve, is_untold, timeline
 from argo_env.report.track import colour
-from argo_env.report.waiting import waits
 from argo_env.run.record import Anomaly, Reading, RunRecord
 from argo_env.site import Site
 from argo_env.site.site import SCALES

@@ -1,19 +1,106 @@
-"""The plan of a floor with the path over it, drawn from the solids of the site."""
+"""Drawings of the site in the report: floors from above, and all of it from the side."""
 
 import math
+from collections.abc import Iterable
+from dataclasses import dataclass
 from itertools import pairwise
 
 from argo_compiler.il import EventKind
-from argo_env.report.canvas import Canvas
-from argo_env.report.outline import on_floor, outline
-from argo_env.report.svg import Node, drawing, node
+from argo_env.report.outline import DRAWING_ORDER, Point, heights, on_floor, outline
+from argo_env.report.svg import Node, drawing, node, polyline
 from argo_env.report.timeline import found_mark
 from argo_env.report.track import arrows, flag, stretches, track
 from argo_env.run.record import PathSample, RunRecord
 from argo_env.site import Site, SiteCheckpoint
+from argo_env.site.shapes import Element, Role, Solid
 
-SCALE = 46.0  # px for 1 m
-_ASIDE = 2.0 / SCALE  # m to the right of the way, so that the way back is seen beside it
+MARGIN = 34.0  # px, for the axes
+
+
+@dataclass(frozen=True)
+class Canvas:
+    """The rectangle from (x0, y0) to (x1, y1) in m, drawn with `scale` px for 1 m."""
+
+    x0: float
+    y0: float
+    x1: float
+    y1: float
+    scale: float
+
+    @property
+    def width(self) -> float:
+        """px."""
+        return (self.x1 - self.x0) * self.scale + 2 * MARGIN
+
+    @property
+    def height(self) -> float:
+        """px."""
+        return (self.y1 - self.y0) * self.scale + 2 * MARGIN
+
+    def at(self, x: float, y: float) -> Point:
+        """The place in px of a point in m; the second axis points up."""
+        return MARGIN + (x - self.x0) * self.scale, MARGIN + (self.y1 - y) * self.scale
+
+    def solids(self, role: Role, solids: Iterable[Solid], axes: tuple[int, int]) -> Node:
+        """The solids of one role as a single path."""
+        shapes = (
+            polyline((self.at(*p) for p in outline(solid, axes)), closed=True) for solid in solids
+        )
+        return node("path", d="".join(shapes), class_=f"site-{role}")
+
+    def elements(
+        self, shown: Iterable[tuple[Role, tuple[Solid, ...]]], axes: tuple[int, int]
+    ) -> list[Node]:
+        """All solids, what lies below first."""
+        parts = list(shown)
+        drawn = []
+        for role in DRAWING_ORDER:
+            solids = [solid for r, group in parts if r is role for solid in group]
+            if solids:
+                drawn.append(self.solids(role, solids, axes))
+        return drawn
+
+    def frame(self, names: tuple[str, str]) -> list[Node]:
+        """The frame with coordinates every 2 m along both axes."""
+        left, top = self.at(self.x0, self.y1)
+        right, bottom = self.at(self.x1, self.y0)
+        marks = [
+            node("rect", x=left, y=top, width=right - left, height=bottom - top, class_="frame")
+        ]
+        for x in _every(2, self.x0, self.x1):
+            px = self.at(x, self.y0)[0]
+            marks.append(node("path", d=f"M{px:.1f},{bottom:.1f}v5", class_="tick"))
+            marks.append(_text(px, bottom + 16, f"{x}", "axis middle"))
+        for y in _every(2, self.y0, self.y1):
+            py = self.at(self.x0, y)[1]
+            marks.append(node("path", d=f"M{left:.1f},{py:.1f}h-5", class_="tick"))
+            marks.append(_text(left - 8, py + 4, f"{y}", "axis end"))
+        marks.append(_text(right, bottom + 30, f"{names[0]} in m", "axis end"))
+        marks.append(_text(left, top - 8, f"{names[1]} in m", "axis"))
+        return marks
+
+    def scale_bar(self) -> Node:
+        """A bar of 1 m above the frame's right end."""
+        right, top = self.at(self.x1, self.y1)
+        return node(
+            "g",
+            node("path", d=f"M{right - self.scale:.1f},{top - 9:.1f}v-4v4h{self.scale:g}v-4"),
+            _text(right - self.scale - 6, top - 8, "1 m", "axis end"),
+            class_="scale-bar",
+        )
+
+
+def _text(x: float, y: float, text: str, class_: str) -> Node:
+    return node("text", x=x, y=y, text=text, class_=class_)
+
+
+def _every(step: int, low: float, high: float) -> range:
+    """The multiples of `step` between the bounds."""
+    return range(math.ceil(low / step) * step, math.floor(high) + 1, step)
+
+
+_PLAN_SCALE = 46.0  # px for 1 m
+_ASIDE = 2.0 / _PLAN_SCALE  # m to the right of the way, so that the way back is seen beside it
 _ARROWS_UP_TO = 120.0
 """m of path on a floor; on longer ones heads would hide the lines"""
 
@@ -31,7 +118,7 @@ def floor_plan(site: Site, record: RunRecord, number: int) -> Node:
     corners = [p for _, solids in shown for s in solids for p in outline(s, (0, 1))]
     corners += [(s.x, s.y) for part in parts for s in part]
     xs, ys = [c[0] for c in corners], [c[1] for c in corners]
-    canvas = Canvas(min(xs) - 0.5, min(ys) - 0.5, max(xs) + 0.5, max(ys) + 0.5, SCALE)
+    canvas = Canvas(min(xs) - 0.5, min(ys) - 0.5, max(xs) + 0.5, max(ys) + 0.5, _PLAN_SCALE)
     measured = {r.checkpoint: r.normal for r in record.readings}
     marks = [_checkpoint(canvas, c, measured) for c in site.checkpoints if c.floor == number]
     contacts = [_cross(canvas, c.x, c.y) for c in record.contacts if site.floor_at(c.z) == number]
@@ -113,3 +200,56 @@ def _north(canvas: Canvas) -> Node:
         node("text", x=x, y=y - 3, text="N", class_="middle"),
         class_="north",
     )
+
+
+_ELEVATION_SCALE = 34.0  # px for 1 m
+_SHOWN = frozenset({Role.GROUND, Role.DECK, Role.STAIR, Role.VESSEL, Role.STRUCTURE})
+
+
+def elevation(site: Site, record: RunRecord) -> Node:
+    """The site from the south, x to the right and z up."""
+    shown = [
+        (e.role, e.solids)
+        for e in site.elements
+        # Of the structure, the columns are shown, and not what carries the checkpoints.
+        if e.role in _SHOWN and (e.role is not Role.STRUCTURE or _height(e) > site.spec.storey)
+    ]
+    corners = [p for _, solids in shown for s in solids for p in outline(s, (0, 2))]
+    xs, zs = [c[0] for c in corners], [c[1] for c in corners]
+    canvas = Canvas(min(xs) - 0.3, min(zs), max(xs) + 0.3, max(zs) + 0.3, _ELEVATION_SCALE)
+    parts = stretches(record.path, None)
+    end = record.path[-1].t if record.path else 0.0
+    drawn = track(parts, lambda s: (s.x, s.z), canvas.at, end)
+    labels = [
+        node(
+            "text",
+            x=canvas.at(canvas.x1, 0.0)[0] - 6,
+            y=canvas.at(0.0, floor.z)[1] - 5,
+            text=f"floor {floor.number}",
+            class_="axis end",
+        )
+        for floor in site.spec.floors
+    ]
+    if record.path:
+        first, last = record.path[0], record.path[-1]
+        place = canvas.at(last.x, last.z)
+        near = abs(first.x - last.x) < 0.5 and abs(first.z - last.z) < 0.5
+        drawn.append(flag(canvas.at(first.x, first.z), "S", "start"))
+        drawn.append(flag((place[0] + (20 if near else 0), place[1]), "E", "end"))
+    return drawing(
+        canvas.width,
+        canvas.height,
+        "Side view from the south with the driven path",
+        *canvas.frame(("x", "z")),
+        *canvas.elements(shown, (0, 2)),
+        *labels,
+        *drawn,
+        canvas.scale_bar(),
+        class_="drawing side",
+    )
+
+
+def _height(element: Element) -> float:
+    """m from the lowest to the highest point."""
+    ends = [end for solid in element.solids for end in heights(solid)]
+    return max(ends) - min(ends)

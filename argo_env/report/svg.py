@@ -17,14 +17,19 @@ _CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
 """What XML can't hold, not even escaped."""
 
 
-def node(tag: str, *children: Node, text: str = "", **attributes: str | float) -> Node:
-    """An element. In names of attributes `_` stands for `-`, and one at the end is dropped."""
+def node(
+    tag: str, *children: Node, text: str = "", title: str = "", **attributes: str | float
+) -> Node:
+    """An element, with a title last in it if it has one. In names of attributes `_` stands for `-`,
+    and one at the end is dropped."""
     element = ElementTree.Element(tag)
     for name, value in attributes.items():
         key = "viewBox" if name == "viewBox" else name.rstrip("_").replace("_", "-")
         element.set(key, clean(value) if isinstance(value, str) else number(value))
     element.text = clean(text) or None
     element.extend(children)
+    if title:
+        element.append(node("title", text=title))
     return element
 
 

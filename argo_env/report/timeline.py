@@ -1,12 +1,15 @@
-"""The tasks along the simulated time: a row for each task, a bar for each run."""
+"""The tasks along the simulated time, a row for each task and a bar for each run, and the battery's
+charge."""
 
 import math
 from collections.abc import Iterator
 
+import numpy as np
+
 from argo_compiler.il import Action
 from argo_env.formatting import clock
 from argo_env.report.rounds import blocks
-from argo_env.report.svg import Node, drawing, node, shorten
+from argo_env.report.svg import Node, drawing, node, polyline, shorten, simplify
 from argo_env.run.record import RunRecord, TaskRun
 
 WIDTH = 1160.0  # px
@@ -30,9 +33,8 @@ def timeline(record: RunRecord) -> Node:
     for name, row in rows.items():
         y = HEAD + ROW * row
         parts.append(node("path", d=f"M0,{y + ROW:g}h{WIDTH:g}", class_="row"))
-        label = node("text", x=0.0, y=y + 16, text=shorten(name, 30), class_="label")
-        label.append(node("title", text=name))
-        parts.append(label)
+        said = shorten(name, 30)
+        parts.append(node("text", x=0.0, y=y + 16, text=said, title=name, class_="label"))
     for run in record.tasks:
         parts += _bars(run, HEAD + ROW * rows[run.task], px)
     for name, start, until, said in _waiting(record):
@@ -41,15 +43,15 @@ def timeline(record: RunRecord) -> Node:
     parts += _windows(record, rows, px)
     for reading in record.readings:
         if reading.task in rows:
+            text = f"{reading.name}: {reading.value:.4g} {reading.unit} at {clock(reading.t)}"
             mark = node(
                 "circle",
+                title=text,
                 cx=LABELS + reading.t * px,
                 cy=HEAD + ROW * rows[reading.task] + ROW / 2,
                 r=3.2,
                 class_="moment" if reading.normal else "moment abnormal",
             )
-            text = f"{reading.name}: {reading.value:.4g} {reading.unit} at {clock(reading.t)}"
-            mark.append(node("title", text=text))
             parts.append(mark)
     parts += _anomalies(record, px, bottom)
     return drawing(WIDTH, bottom + 24, "Tasks along the time", *parts, class_="drawing timeline")
@@ -73,8 +75,9 @@ def _bars(run: TaskRun, y: float, px: float) -> list[Node]:
 
 
 def _bar(start: float, end: float, y: float, px: float, class_: str, title: str) -> Node:
-    bar = node(
+    return node(
         "rect",
+        title=title,
         x=LABELS + start * px,
         y=y + 4,
         width=max((end - start) * px, 1.5),
@@ -82,8 +85,6 @@ def _bar(start: float, end: float, y: float, px: float, class_: str, title: str)
         rx=2.0,
         class_=class_,
     )
-    bar.append(node("title", text=title))
-    return bar
 
 
 def _waiting(record: RunRecord) -> Iterator[tuple[str, float, float, str]]:
@@ -119,11 +120,10 @@ def _windows(record: RunRecord, rows: dict[str, int], px: float) -> Iterator[Nod
         y = HEAD + ROW * rows[run.task] + 2
         line = f"M{LABELS + left * px:.1f},{y + 4:g}v-4H{LABELS + right * px:.1f}"
         line += "v4" if run.latest is not None and run.latest <= end else ""
-        mark = node("path", d=line, class_="window" if run.hard else "window soft")
         kind = "hard" if run.hard else "soft"
         until = "" if run.latest is None else f" to {clock(run.latest)}"
-        mark.append(node("title", text=f"{kind} time window, {clock(run.earliest)}{until}"))
-        yield mark
+        said = f"{kind} time window, {clock(run.earliest)}{until}"
+        yield node("path", d=line, title=said, class_="window" if run.hard else "window soft")
 
 
 def time_axis(end: float, px: float, top: float, bottom: float) -> list[Node]:
@@ -142,21 +142,22 @@ def _interruptions(record: RunRecord, px: float, bottom: float) -> list[Node]:
     marks = []
     for interruption in record.interruptions:
         width = max((interruption.end - interruption.start) * px, 1.5)
+        span = f"{clock(interruption.start)} to {clock(interruption.end)}"
         band = node(
             "rect",
+            title=f"{interruption.cause}, {span}",
             x=LABELS + interruption.start * px,
             y=HEAD - 8,
             width=width,
             height=bottom - HEAD + 8,
             class_=f"interruption {'reaction' if interruption.event else 'pause'}",
         )
-        span = f"{clock(interruption.start)} to {clock(interruption.end)}"
-        band.append(node("title", text=f"{interruption.cause}, {span}"))
         marks.append(band)
     for t in record.resumed:
-        line = node("path", d=f"M{LABELS + t * px:.1f},{HEAD - 8:g}V{bottom:g}", class_="resumed")
-        line.append(node("title", text=f"resumed from the journal at {clock(t)}"))
-        marks.append(line)
+        line, said = f"M{LABELS + t * px:.1f},{HEAD - 8:g}V{bottom:g}", f"at {clock(t)}"
+        marks.append(
+            node("path", d=line, title=f"resumed from the journal {said}", class_="resumed")
+        )
     return marks
 
 
@@ -166,10 +167,9 @@ def _anomalies(record: RunRecord, px: float, bottom: float) -> list[Node]:
     free_from = -math.inf
     for number, anomaly in enumerate(record.anomalies, start=1):
         x = LABELS + anomaly.t * px
-        line = node("path", d=f"M{x:.1f},{HEAD - 8:g}V{bottom:g}", class_="found-line")
-        what = anomaly.kind.replace("_", " ")
-        line.append(node("title", text=f"{number} {what}: {anomaly.detail}, {clock(anomaly.t)}"))
-        marks.append(line)
+        line, what = f"M{x:.1f},{HEAD - 8:g}V{bottom:g}", anomaly.kind.replace("_", " ")
+        said = f"{number} {what}: {anomaly.detail}, {clock(anomaly.t)}"
+        marks.append(node("path", d=line, title=said, class_="found-line"))
         if x > free_from:
             marks.append(found_mark(x, HEAD - 8, number, "found"))
             free_from = x + 16
@@ -209,3 +209,43 @@ def _rounds(record: RunRecord, px: float, bottom: float) -> list[Node]:
                 marks.append(text)
                 free_from = middle
     return marks
+
+
+HEIGHT = 96.0  # px of the curve
+TOP = 12.0  # px above it
+LOW = 20.0  # %, where the robot calls the battery low
+
+
+def charge_curve(record: RunRecord) -> Node | None:
+    """The charge in percent under the timeline, on the same time axis; None if none was noted."""
+    points = [(s.t, 100.0 * s.charge) for s in record.path if s.charge is not None]
+    if len(points) < 2:
+        return None
+    end = max([record.result.duration, *(run.end for run in record.tasks), 1.0])
+    px = (WIDTH - LABELS - 20) / end
+    bottom = TOP + HEIGHT
+
+    def at(t: float, percent: float) -> tuple[float, float]:
+        return LABELS + t * px, bottom - HEIGHT * percent / 100.0
+
+    line = np.array([at(*point) for point in points])
+    kept = line[simplify(line, 0.3)].tolist()
+    area = [(kept[0][0], bottom), *kept, (kept[-1][0], bottom)]
+    marks = time_axis(end, px, TOP, bottom)
+    for percent in (0, 50, 100):
+        x, y = at(0.0, percent)
+        marks.append(node("path", d=f"M{x:.1f},{y:.1f}H{WIDTH - 20:g}", class_="row"))
+        marks.append(node("text", x=x - 8, y=y + 4, text=f"{percent} %", class_="axis end"))
+    x, y = at(0.0, LOW)
+    marks.append(node("path", d=f"M{x:.1f},{y:.1f}H{WIDTH - 20:g}", class_="low-charge"))
+    marks.append(node("text", x=0.0, y=TOP + HEIGHT / 2 + 4, text="battery", class_="label"))
+    first, last = points[0][1], points[-1][1]
+    return drawing(
+        WIDTH,
+        bottom + 24,
+        f"Charge of the battery: {first:.1f} % at the start, {last:.1f} % at the end",
+        *marks,
+        node("path", d=polyline(area, closed=True), class_="charge-area"),
+        node("path", d=polyline(kept), class_="charge"),
+        class_="drawing timeline",
+    )

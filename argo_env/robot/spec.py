@@ -1,7 +1,9 @@
-"""What planning and driving need to know of a robot: `urdf/robot/<name>.yaml`."""
+"""What planning and driving need to know of a robot: `urdf/robot/<name>.yaml`; and how fast it gets
+ahead in fact, beside the speeds that it is told to go at."""
 
 import math
 import os
+from enum import StrEnum
 from functools import lru_cache
 from pathlib import Path
 from typing import TypeVar
@@ -12,7 +14,52 @@ from pydantic import BaseModel, Field, ValidationError, model_validator
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Model
 from argo_env.files import resources
-from argo_env.robot.calibration import Calibration, MotionKind
+
+
+class MotionKind(StrEnum):
+    """The kinds of motions that a path is made of; each has a speed of its own."""
+
+    AHEAD = "ahead"
+    """forwards on the flat"""
+    REVERSE = "reverse"
+    """backwards on the flat"""
+    UP = "up"
+    """backwards up stairs"""
+    DOWN = "down"
+    """forwards down stairs"""
+    TURN = "turn"
+    """in place"""
+
+
+def drive_kind(gear: int, on_stairs: bool) -> MotionKind:
+    """The kind of a drive in gear +1 or -1. On stairs the front is the lower end."""
+    if on_stairs:
+        return MotionKind.DOWN if gear > 0 else MotionKind.UP
+    return MotionKind.AHEAD if gear > 0 else MotionKind.REVERSE
+
+
+class MotionPace(Model):
+    """What one kind of motion takes: its length over the real speed, and a time for each motion."""
+
+    share: float = Field(1.0, gt=0)
+    """of the speed that is told, what the robot reaches"""
+    lost: float = Field(0.0, ge=0)
+    """s that each motion takes in addition, to set off and to come to rest"""
+
+
+class Calibration(Model):
+    """The pace of each kind of motion. Without a measurement a robot does as it is told."""
+
+    ahead: MotionPace = MotionPace()
+    reverse: MotionPace = MotionPace()
+    up: MotionPace = MotionPace()
+    down: MotionPace = MotionPace()
+    turn: MotionPace = MotionPace()
+
+    def pace(self, kind: MotionKind) -> MotionPace:
+        pace: MotionPace = getattr(self, kind)
+        return pace
+
 
 _Described = TypeVar("_Described", bound=BaseModel)
 

@@ -243,7 +243,7 @@ class ActionUnderWay:
             case DriveStatus.MOVING:
                 return None
             case DriveStatus.FAILED:
-                return self._drive_failed()
+                return self._failed(self._rig.drive.failure or "the drive failed")
             case DriveStatus.ARRIVED:
                 return following()
 
@@ -252,13 +252,7 @@ class ActionUnderWay:
             self._rig.drive.halt()
             self._phase = self._brake_unread
             return self._brake_unread()
-        match self._rig.drive.step():
-            case DriveStatus.MOVING:
-                return None
-            case DriveStatus.FAILED:
-                return self._drive_failed()
-            case DriveStatus.ARRIVED:
-                return self._arrived()
+        return self._then(self._arrived)
 
     def _arrived(self) -> ActionEnd | None:
         """Begins at the place, unless it is too early."""
@@ -350,9 +344,6 @@ class ActionUnderWay:
 
     def _stop(self) -> ActionEnd:
         return ActionStopped(self.task.name, self._id)
-
-    def _drive_failed(self) -> ActionFailed:
-        return self._failed(self._rig.drive.failure or "the drive failed")
 
     def _failed(self, reason: str) -> ActionFailed:
         return ActionFailed(self.task.name, reason, self._looked, self._id)

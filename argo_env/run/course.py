@@ -1,6 +1,8 @@
-"""The course of a run: what its entries add up to, and the machine that they are told to."""
+"""The course of a run: what its entries add up to, the machine that they are told to, and the
+events that are given beforehand."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Sequence
 
 from argo_compiler.base.errors import Invalid, Remedy
 from argo_compiler.hfsm import (
@@ -8,24 +10,73 @@ from argo_compiler.hfsm import (
     CancelAction,
     Command,
     Event,
+    GiveBack,
     Progress,
+    Resume,
     StartAction,
 )
 from argo_env.navigation import Path
 from argo_env.run.beginning import KnownAnomaly, RunBeginning
-from argo_env.run.interruptions import InterruptionWatch
 from argo_env.run.log import Entry, LoggedEvent, RunLog
 from argo_env.run.machine import Machine
 from argo_env.run.perception import blockage
 from argo_env.run.record import RunRecord, TaskRun
 from argo_env.run.robot import ActionEnd, AnyRobot, RobotAction
-from argo_env.run.rounds import RoundWatch
-from argo_env.run.scheduled_events import GivenEvents
 from argo_env.run.spec import RunSpec
-from argo_env.run.steering import as_seen_on
-from argo_env.run.summary import make_record
-from argo_env.run.supervision import Supervision
+from argo_env.run.stays import InterruptionWatch, RoundWatch
+from argo_env.run.steering import Supervision, as_seen_on
 from argo_env.run.vehicle import way_come
+from argo_env.run.verdict import make_record
+
+
+class GivenEvents:
+    """Gives out events when they are due. Holds how many have occurred."""
+
+    def __init__(self, events: Iterable[tuple[float, LoggedEvent]]) -> None:
+        self._events: list[tuple[float, Event]] = []
+        self.occurred = 0
+        self.add(events)
+
+    @property
+    def pending(self) -> bool:
+        """Whether any are still to occur."""
+        return self.occurred < len(self._events)
+
+    @property
+    def next_time(self) -> float:
+        """When the next one occurs (s); infinite if none does."""
+        return self._events[self.occurred][0] if self.pending else math.inf
+
+    @property
+    def ahead(self) -> tuple[tuple[float, LoggedEvent], ...]:
+        """Those that are still to occur."""
+        return tuple((t, LoggedEvent.of(event)) for t, event in self._events[self.occurred :])
+
+    def add(self, events: Iterable[tuple[float, LoggedEvent]]) -> None:
+        """More of them; of equal times, those that were there before come first."""
+        ahead = [*self._events[self.occurred :], *((t, event.original()) for t, event in events)]
+        self._events[self.occurred :] = sorted(ahead, key=lambda given: given[0])
+
+    def due(self, now: float, at_rest: bool, acting: bool = False) -> list[Event]:
+        """Those that occur now, at time `now` (s). A robot is given back only `at_rest`, without
+        an action, and in a step of its own; and where it is `acting` by hand the mission is not
+        resumed. What comes after waits as well."""
+        first = self.occurred
+        while self.pending and self._events[self.occurred][0] <= now:
+            if self._gives_back and (not at_rest or self.occurred > first):
+                break
+            if acting and isinstance(self._events[self.occurred][1], Resume):
+                break
+            self.occurred += 1
+        return [event for _, event in self._events[first : self.occurred]]
+
+    def waits_to_give_back(self, now: float) -> bool:
+        """Whether something should have been given back by `now` (s), and waits."""
+        return self.pending and self._events[self.occurred][0] <= now and self._gives_back
+
+    @property
+    def _gives_back(self) -> bool:
+        return isinstance(self._events[self.occurred][1], GiveBack)
 
 
 class Course:

@@ -458,7 +458,7 @@ class RunRecord(Model):
     def findings(self) -> tuple[Finding, ...]:
         """All that was out of the ordinary, each once, and what came of it."""
         told = {anomaly.t for anomaly in self.anomalies if anomaly.is_reading}
-        bare = [_abnormal(r) for r in self.readings if not (r.normal or r.t in told)]
+        bare = [found_by(r) for r in self.readings if not (r.normal or r.t in told)]
         found = [
             self._finding(anomaly, number, self.anomalies[number:])
             for number, anomaly in enumerate(self.anomalies, start=1)
@@ -536,12 +536,14 @@ class RunRecord(Model):
         return False, "the reaction to it did not begin"
 
 
-def _abnormal(reading: Reading) -> Anomaly:
-    """What a reading tells that no anomaly was made of, as one made by hand."""
+def found_by(reading: Reading, place: Vector | None = None) -> Anomaly:
+    """Return what a reading outside the nominal range tells; `place` (m) is its checkpoint's, None
+    for one that no anomaly was made of, as one made by hand."""
     return Anomaly(
         t=reading.t,
         kind=EventKind.ABNORMAL_READING,
         detail=f"{reading.name} shows {reading.value:g} {reading.unit}",
         source=FROM_READING,
+        place=place,
         floor=reading.floor,
     )

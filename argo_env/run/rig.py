@@ -1,5 +1,7 @@
-"""The rig: all that a mission is carried out with, and how it is fitted out for a run."""
+"""The rig: all that a mission is carried out with, how it is fitted out for a run, and what the
+site's instruments show meanwhile."""
 
+import math
 from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -10,26 +12,69 @@ from argo_compiler.base.errors import Invalid
 from argo_env.drives.battery import Battery
 from argo_env.drives.drive import Drive
 from argo_env.drives.powertrain import Powertrain
-from argo_env.drives.route import RouteDrive
+from argo_env.drives.timed_drive import RouteDrive
 from argo_env.faults.kinds import changed_site, settle
 from argo_env.faults.reading import FaultText
 from argo_env.faults.schedule import Schedule
 from argo_env.faults.targets import FaultTargets
 from argo_env.navigation import Navigator
 from argo_env.run.drives_and_sensors import DRIVES, IDEAL, ROUTE, SENSORS, WORLD_DRIVES
-from argo_env.run.instruments import Instruments
-from argo_env.run.spec import RunSpec
+from argo_env.run.spec import RunSpec, ValueProfile
+from argo_env.seeding import generator
 from argo_env.sensing.ideal import IdealSensor, draw_values
-from argo_env.sensing.onboard import onboard_watches
-from argo_env.sensing.onboard_sensor import OnboardSensor
+from argo_env.sensing.onboard import OnboardSensor, onboard_watches
 from argo_env.sensing.sensor import Measurement, Sensor
 from argo_env.sensing.signals import standard_watches
 from argo_env.sensing.watch import Watch
-from argo_env.site import Site
+from argo_env.site import Site, SiteCheckpoint
 from argo_env.surroundings import Surroundings
-from argo_env.surroundings.network import RadioNetwork
+from argo_env.surroundings.surroundings import RadioNetwork
 from argo_env.world.paper_world import AnyWorld, PaperWorld
 from argo_env.world.world import World
+
+
+class Instruments:
+    """Lets instruments show what they show at a time. A fault of a value comes before its
+    profile."""
+
+    def __init__(
+        self, targets: FaultTargets, site: Site, seed: int, profiles: Mapping[int, ValueProfile]
+    ) -> None:
+        """The profiles are by number of the checkpoint. Raises NotFound for one that the site does
+        not have."""
+        self._targets = targets
+        self._site = site
+        self._seed = seed
+        self._profiles = {site.checkpoint(id).id: profile for id, profile in profiles.items()}
+        self._first = {id: targets.usual[id] for id in self._profiles}
+
+    def look_at(self, checkpoint_id: int, now: float) -> None:
+        """Somebody is about to look at the checkpoint, at time `now` (s)."""
+        self._targets.sensor.moment = now
+        profile = self._profiles.get(checkpoint_id)
+        if profile is None:
+            return
+        checkpoint = self._site.checkpoint(checkpoint_id)
+        value = shown_at(checkpoint, self._first[checkpoint_id], profile, self._seed, now)
+        as_usual = self._targets.truth[checkpoint_id] == self._targets.usual[checkpoint_id]
+        self._targets.usual[checkpoint_id] = value
+        if as_usual:
+            self._targets.show(checkpoint_id, value)
+
+
+def shown_at(
+    checkpoint: SiteCheckpoint, first: float, profile: ValueProfile, seed: int, now: float
+) -> float:
+    """What the checkpoint shows at time `now` (s), in its unit, if it showed `first` at 0 s and no
+    fault changes it; the `seed` of the run draws what flickers."""
+    value = first + profile.drift * now / 3600.0
+    value += math.fsum(step.change for step in profile.steps if step.at <= now)
+    if profile.noise:
+        # Of the moment alone, so that no other look changes it.
+        rng = generator(seed, "value", checkpoint.id, round(1000 * now))
+        value += profile.noise * float(rng.standard_normal())
+    scale = checkpoint.range
+    return round(min(max(value, scale.low), scale.high), 3)
 
 
 @dataclass(frozen=True)

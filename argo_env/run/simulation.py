@@ -40,14 +40,15 @@ from argo_env.run.steering import (
     StopByHand,
     StopRun,
     as_seen_on,
+    check_by_hand,
     check_event,
     check_given,
     from_now,
     require_at_rest,
     require_hand_off,
+    require_supervised,
     require_taken_over,
 )
-from argo_env.run.supervision import check_by_hand, require_supervised
 from argo_env.run.vehicle import Vehicle
 
 _log = logging.getLogger(__name__)

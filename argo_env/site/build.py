@@ -1,20 +1,227 @@
-"""From a site's description to its solids: the one generator that all else is made from."""
+"""From a site's description to its solids, the one generator that all else is made from: process
+equipment, columns, docking stations, and decks out of rectangles, with the free edges where a
+railing belongs."""
 
+import math
+from dataclasses import dataclass
 from itertools import chain, pairwise
 
-from argo_env.site.decks import Deck
-from argo_env.site.equipment import (
-    build_column,
-    build_dock,
-    build_mount,
-    build_pipe,
-    build_pump,
-    build_vessel,
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_env.site.shapes import Box, Cylinder, Element, Role, Solid, Vector
+from argo_env.site.spec import (
+    AreaSpec,
+    CheckpointSpec,
+    FloorSpec,
+    PipeSpec,
+    PumpSpec,
+    Rect,
+    SiteSpec,
+    VesselSpec,
 )
-from argo_env.site.railings import outside, railing
-from argo_env.site.shapes import Box, Element, Role, Solid
-from argo_env.site.spec import FloorSpec, Rect, SiteSpec
-from argo_env.site.stairs import build_flight, mouths
+from argo_env.site.stairs import build_flight, mouths, outside, railing
+
+DOCK_DISTANCE = 0.62  # m from the centre of a docked robot to the face of its station
+MOUNT_LENGTH = 0.2  # m from the face of a checkpoint back to what carries it
+
+
+def build_vessel(vessel: VesselSpec, z: float) -> Element:
+    """A vessel with its centre `center` above height `z`; a lying one stands on two saddles."""
+    x, y, height = vessel.center
+    turn: Vector = {
+        "x": (0.0, math.pi / 2, 0.0),
+        "y": (math.pi / 2, 0.0, 0.0),
+        "z": (0.0, 0.0, 0.0),
+    }[vessel.axis]
+    shell = Cylinder((x, y, z + height), vessel.radius, vessel.length, turn)
+    if vessel.axis == "z":
+        return Element(vessel.name, Role.VESSEL, (shell,), "vessel")
+    along = (1.0, 0.0) if vessel.axis == "x" else (0.0, 1.0)
+    saddles = tuple(
+        Box(
+            (x + s * along[0], y + s * along[1], z + height / 2 - vessel.radius / 4),
+            (
+                0.2 if along[0] else 1.4 * vessel.radius,
+                0.2 if along[1] else 1.4 * vessel.radius,
+                height - vessel.radius / 2,
+            ),
+        )
+        for s in (-0.3 * vessel.length, 0.3 * vessel.length)
+    )
+    return Element(vessel.name, Role.VESSEL, (shell, *saddles), "vessel")
+
+
+def build_pipe(pipe: PipeSpec) -> Element:
+    """A pipe as a cylinder from each point to the next."""
+    solids = []
+    for (x0, y0, z0), (x1, y1, z1) in pairwise(pipe.points):
+        dx, dy, dz = x1 - x0, y1 - y0, z1 - z0
+        length = math.sqrt(dx * dx + dy * dy + dz * dz)
+        turn = (0.0, math.acos(dz / length), math.atan2(dy, dx))
+        center = ((x0 + x1) / 2, (y0 + y1) / 2, (z0 + z1) / 2)
+        # Reaching half a bore beyond the points closes the corners.
+        solids.append(Cylinder(center, pipe.radius, length + pipe.radius, turn))
+    return Element(pipe.name, Role.PIPE, tuple(solids), "pipe")
+
+
+def build_pump(pump: PumpSpec, z: float) -> Element:
+    """A centrifugal pump and its motor on a skid of 1.2 m by 0.6 m."""
+    yaw = math.radians(pump.yaw)
+    cos, sin = math.cos(yaw), math.sin(yaw)
+
+    def at(along: float, up: float) -> Vector:
+        return pump.center[0] + along * cos, pump.center[1] + along * sin, z + up
+
+    lying = (0.0, math.pi / 2, yaw)
+    solids: tuple[Solid, ...] = (
+        Box(at(0.0, 0.08), (1.2, 0.6, 0.16), (0.0, 0.0, yaw)),
+        Cylinder(at(-0.2, 0.42), 0.22, 0.62, lying),
+        Cylinder(at(0.32, 0.42), 0.06, 0.5, lying),
+        Cylinder(at(0.42, 0.44), 0.27, 0.18, lying),
+        Cylinder(at(0.42, 0.75), 0.07, 0.4),
+    )
+    return Element(pump.name, Role.PUMP, solids, "pump")
+
+
+def build_column(number: int, center: tuple[float, float], bottom: float, top: float) -> Element:
+    """A steel column of 0.2 m by 0.2 m."""
+    box = Box((center[0], center[1], (bottom + top) / 2), (0.2, 0.2, top - bottom))
+    return Element(f"column {number}", Role.STRUCTURE, (box,), "structure")
+
+
+def build_dock(area: AreaSpec, ground_z: float) -> Element:
+    """A docking station: a cabinet whose charging contacts face the docked robot, and a sign."""
+    x, y, degrees = area.dock
+    yaw = math.radians(degrees)
+
+    def at(along: float, up: float) -> Vector:
+        return x + along * math.cos(yaw), y + along * math.sin(yaw), ground_z + up
+
+    turn = (0.0, 0.0, yaw)
+    solids: tuple[Solid, ...] = (
+        Box(at(DOCK_DISTANCE + 0.2, 0.35), (0.4, 0.7, 0.7), turn),
+        Box(at(DOCK_DISTANCE + 0.3, 0.9), (0.08, 0.08, 0.4), turn),
+        Box(at(DOCK_DISTANCE + 0.2, 1.2), (0.1, 0.5, 0.3), turn),
+    )
+    return Element(f"docking station {area.number}", Role.DOCK, solids, "dock")
+
+
+def build_mount(checkpoint: CheckpointSpec, floor_z: float) -> Element:
+    """The bracket between a checkpoint and the pipe or vessel behind it."""
+    x, y, height = checkpoint.position
+    yaw = math.radians(checkpoint.yaw)
+    back = (MOUNT_LENGTH + 0.06) / 2
+    center = (x - back * math.cos(yaw), y - back * math.sin(yaw), floor_z + height)
+    box = Box(center, (MOUNT_LENGTH - 0.06, 0.04, 0.04), (0.0, 0.0, yaw))
+    return Element(f"mount of {checkpoint.name}", Role.STRUCTURE, (box,), "structure")
+
+
+_EPSILON = 1e-6
+
+
+@dataclass(frozen=True)
+class RimEdge:
+    """A straight piece of a deck's rim, from `start` to `end` (m); `outward` is its unit normal."""
+
+    start: tuple[float, float]
+    end: tuple[float, float]
+    outward: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Deck:
+    """A deck cut at all its coordinates: `plan[i, j]` says whether the field x[i]..x[i+1],
+    y[j]..y[j+1] is plated."""
+
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    plan: NDArray[np.bool_]
+
+    @staticmethod
+    def from_rectangles(
+        plates: tuple[Rect, ...], openings: tuple[Rect, ...], cuts: tuple[Rect, ...] = ()
+    ) -> "Deck":
+        """The union of `plates` less the union of `openings`; edges are also cut along `cuts`."""
+        everything = np.array(plates + openings + cuts)
+        x, y = _coordinates(everything[:, [0, 2]]), _coordinates(everything[:, [1, 3]])
+        middle_x, middle_y = np.meshgrid((x[:-1] + x[1:]) / 2, (y[:-1] + y[1:]) / 2, indexing="ij")
+
+        def covered(rectangles: tuple[Rect, ...]) -> NDArray[np.bool_]:
+            inside = np.zeros(middle_x.shape, dtype=bool)
+            for x0, y0, x1, y1 in rectangles:
+                inside |= (middle_x > x0) & (middle_x < x1) & (middle_y > y0) & (middle_y < y1)
+            return inside
+
+        return Deck(x, y, covered(plates) & ~covered(openings))
+
+    def plates(self) -> list[Rect]:
+        """The plated area as rectangles that do not overlap: runs along x, merged along y."""
+        rectangles: list[Rect] = []
+        open_runs: dict[tuple[int, int], int] = {}
+        for j in range(len(self.y) - 1):
+            runs = _runs(self.plan[:, j])
+            for run in [r for r in open_runs if r not in runs]:
+                rectangles.append(self._rectangle(run, open_runs.pop(run), j))
+            for run in runs:
+                open_runs.setdefault(run, j)
+        for run, first in open_runs.items():
+            rectangles.append(self._rectangle(run, first, len(self.y) - 1))
+        return rectangles
+
+    def _rectangle(self, run: tuple[int, int], first: int, last: int) -> Rect:
+        return (
+            float(self.x[run[0]]),
+            float(self.y[first]),
+            float(self.x[run[1]]),
+            float(self.y[last]),
+        )
+
+    def free_edges(self, gaps: tuple[Rect, ...]) -> list[RimEdge]:
+        """The rim of the deck, without the pieces that lie in one of the `gaps`."""
+        padded = np.pad(self.plan, 1)
+        edges: list[RimEdge] = []
+        for axis, lines, across in ((0, self.x, self.y), (1, self.y, self.x)):
+            plan = padded if axis == 0 else padded.T
+            for line in range(len(lines)):
+                before, after = plan[line, 1:-1], plan[line + 1, 1:-1]
+                for sign, rim in ((1.0, before & ~after), (-1.0, after & ~before)):
+                    at = float(lines[line])
+                    kept = rim & ~_in_gaps(at, across, gaps, axis)
+                    for first, last in _runs(kept):
+                        a, b = float(across[first]), float(across[last])
+                        if axis == 0:
+                            edges.append(RimEdge((at, a), (at, b), (sign, 0.0)))
+                        else:
+                            edges.append(RimEdge((a, at), (b, at), (0.0, sign)))
+        return edges
+
+
+def _coordinates(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.unique(np.round(values, 6))
+
+
+def _runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Stretches of true as (first, one past the last)."""
+    steps = np.diff(np.pad(flags.astype(np.int8), 1))
+    return list(
+        zip(np.flatnonzero(steps == 1).tolist(), np.flatnonzero(steps == -1).tolist(), strict=True)
+    )
+
+
+def _in_gaps(
+    at: float, across: NDArray[np.float64], gaps: tuple[Rect, ...], axis: int
+) -> NDArray[np.bool_]:
+    """Which pieces of the line at coordinate `at` lie inside a gap."""
+    middle = (across[:-1] + across[1:]) / 2
+    inside = np.zeros(len(middle), dtype=bool)
+    for gap in gaps:
+        near, far = gap[axis], gap[axis + 2]
+        low, high = gap[1 - axis], gap[3 - axis]
+        if near - _EPSILON <= at <= far + _EPSILON:
+            inside |= (middle > low) & (middle < high)
+    return inside
+
 
 DECK_THICKNESS = 0.04  # m
 SLAB_THICKNESS = 0.2  # m

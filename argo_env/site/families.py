@@ -12,7 +12,7 @@ import numpy as np
 from argo_compiler.base.catalog import CheckpointKind, Interval
 from argo_compiler.base.errors import Invalid
 from argo_env.seeding import generator
-from argo_env.site.equipment import MOUNT_LENGTH
+from argo_env.site.build import MOUNT_LENGTH
 from argo_env.site.family import Family, Stairs
 from argo_env.site.layout import MARGIN, Layout, Slot, draw_layout
 from argo_env.site.spec import (

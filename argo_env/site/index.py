@@ -1,4 +1,4 @@
-"""What is where: the solids of a site in arrays."""
+"""What is where: the solids of a site in arrays, and what rays meet first of them."""
 
 from collections.abc import Sequence
 
@@ -74,3 +74,116 @@ class ElementIndex:
         local = np.einsum("nj,njk->nk", point - self._centers[solids], self._rotations[solids])
         away = np.maximum(np.abs(local) - self._halves[solids], 0.0)
         return np.asarray((away**2).sum(axis=1))
+
+
+_TINY = 1e-9
+
+
+class SolidRays:
+    """The solids of elements in arrays, for many rays at once. A solid goes by its number, counted
+    through the elements in order."""
+
+    def __init__(self, elements: tuple[Element, ...]) -> None:
+        parts = [(e, s) for e in elements for s in e.solids]
+        self.elements = tuple(e for e, _ in parts)
+        """for each solid, the one that it belongs to"""
+        self._centers = np.array([s.center for _, s in parts]).reshape(-1, 3)
+        self._rotations = np.array([s.rotation() for _, s in parts]).reshape(-1, 3, 3)
+        self._round = np.array([not isinstance(s, Box) for _, s in parts], dtype=bool)
+        self._halves = np.array(
+            [
+                np.array(s.size) / 2 if isinstance(s, Box) else (s.radius, s.radius, s.length / 2)
+                for _, s in parts
+            ]
+        ).reshape(-1, 3)
+        half = np.array([half_extents(s) for _, s in parts]).reshape(-1, 3)
+        self.low, self.high = self._centers - half, self._centers + half
+        """m, corners of the solids' bounding boxes along the site's axes, shape (n, 3)"""
+        # Axis by axis, as most solids are ruled out by a few comparisons of whole columns.
+        self._bounds = [
+            (self.low[:, k].copy() - _TINY, self.high[:, k].copy() + _TINY) for k in range(3)
+        ]
+
+    def first(
+        self,
+        origin: NDArray[np.float64],
+        directions: NDArray[np.float64],
+        reach: float,
+        inside: bool = False,
+    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """The distance (m) to the first solid from `origin`, shape (3,) or (n, 3), in each of
+        `directions`, unit vectors of the shape (n, 3), and which solid it is; inf and -1 where
+        there is none within `reach` (m). Solids that a ray starts inside of are left out, or with
+        `inside` come first, at less than 0: as far back as they begin."""
+        ends = origin + reach * directions
+        near = np.ones(len(self._centers), dtype=bool)
+        for axis, (low, high) in enumerate(self._bounds):
+            start, end = origin[..., axis], ends[:, axis]
+            near &= low <= max(start.max(), end.max())
+            near &= high >= min(start.min(), end.min())
+        rays, solids = self._candidates(np.flatnonzero(near), origin, directions, reach)
+        result, which = np.full(len(directions), np.inf), np.full(len(directions), -1)
+        if not len(rays):
+            return result, which
+        entry, leave = self._crossings(
+            origin[rays] if origin.ndim == 2 else origin, directions[rays], solids
+        )
+        met = (entry <= leave) & ((leave if inside else entry) >= 0.0)
+        distance = np.where(met, entry, np.inf)
+        # The nearest first, and of equals the first solid.
+        order = np.lexsort((solids, distance, rays))
+        first = order[np.r_[True, np.diff(rays[order]) > 0]]
+        first = first[distance[first] <= reach]
+        result[rays[first]], which[rays[first]] = distance[first], solids[first]
+        return result, which
+
+    def _candidates(
+        self,
+        near: NDArray[np.int64],
+        origin: NDArray[np.float64],
+        directions: NDArray[np.float64],
+        reach: float,
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Pairs of a ray and one of the solids `near` whose upright bounds it meets."""
+        enter, leave = np.zeros((len(directions), len(near))), np.inf
+        for axis, (low, high) in enumerate(self._bounds):
+            start = origin[..., axis].reshape(-1, 1)
+            slope = _nonzero(directions[:, axis, None])
+            one, other = (low[near] - start) / slope, (high[near] - start) / slope
+            enter = np.maximum(enter, np.minimum(one, other))
+            leave = np.minimum(leave, np.maximum(one, other))
+        rays, columns = np.nonzero((enter <= leave) & (enter <= reach))
+        return rays, near[columns]
+
+    def _crossings(
+        self,
+        origin: NDArray[np.float64],
+        directions: NDArray[np.float64],
+        solids: NDArray[np.int64],
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The distances (m) at which each ray enters and leaves the solid that goes with it; the
+        former is the greater if it misses it. The arrays have one row for each pair."""
+        rotations, halves, round_ = (
+            self._rotations[solids],
+            self._halves[solids],
+            self._round[solids],
+        )
+        start = np.einsum("pk,pkj->pj", origin - self._centers[solids], rotations)
+        slope = _nonzero(np.einsum("pk,pkj->pj", directions, rotations))
+        first, second = (-halves - start) / slope, (halves - start) / slope
+        entries, leaves = np.minimum(first, second), np.maximum(first, second)
+        if round_.any():
+            # The round side of a cylinder stands for the slabs across its axis.
+            s, d, radius = start[round_], slope[round_], halves[round_, 0]
+            a = d[:, 0] ** 2 + d[:, 1] ** 2
+            b = d[:, 0] * s[:, 0] + d[:, 1] * s[:, 1]
+            discriminant = b**2 - a * (s[:, 0] ** 2 + s[:, 1] ** 2 - radius**2)
+            root = np.sqrt(np.maximum(discriminant, 0.0))
+            hit = discriminant >= 0
+            entries[round_, :2] = np.where(hit, (-b - root) / a, np.inf)[:, None]
+            leaves[round_, :2] = np.where(hit, (-b + root) / a, -np.inf)[:, None]
+        return entries.max(axis=1), leaves.min(axis=1)
+
+
+def _nonzero(slope: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.where(np.abs(slope) < _TINY, _TINY, slope)

@@ -11,8 +11,7 @@ from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Pose
 from argo_env.files import resources
 from argo_env.site.family import PREFIX, is_family
-from argo_env.site.index import SolidIndex
-from argo_env.site.rays import SolidRays
+from argo_env.site.index import SolidIndex, SolidRays
 from argo_env.site.shapes import Element, Vector
 from argo_env.site.spec import FloorSpec, SiteSpec
 

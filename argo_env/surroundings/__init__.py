@@ -1,7 +1,15 @@
 """What surrounds the robot besides solids: sources of gas, heat and sound, and their fields."""
 
-from argo_env.surroundings.sources import Alarm, GasLeak, HotSpot, PumpFault, PumpSound, Source
-from argo_env.surroundings.surroundings import Surroundings, Weather
+from argo_env.surroundings.surroundings import (
+    Alarm,
+    GasLeak,
+    HotSpot,
+    PumpFault,
+    PumpSound,
+    Source,
+    Surroundings,
+    Weather,
+)
 
 __all__ = [
     "Alarm",

@@ -16,8 +16,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from argo_env.surroundings.sources import GasLeak
-from argo_env.surroundings.surroundings import Release, Weather
+from argo_env.surroundings.surroundings import GasLeak, Release, Weather
 
 DENSITY = 0.668
 """kg/m³, of methane at 20 °C and 1013 hPa"""

@@ -7,7 +7,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from argo_env.formatting import clock, where
-from argo_env.report.waiting import waits
+from argo_env.report.rounds import waits
 from argo_env.run.headline import Tone
 from argo_env.run.record import RunRecord, WindowKept
 

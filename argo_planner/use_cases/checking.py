@@ -20,8 +20,7 @@ from argo_compiler.diagnostics import (
 )
 from argo_compiler.files.reading import FileError
 from argo_env.planning.opening import OpenedSite
-from argo_env.planning.poses_to_read_from import unseen_from_poses
-from argo_env.planning.speeds_to_drive_at import too_fast
+from argo_env.planning.site_warnings import too_fast, unseen_from_poses
 from argo_planner.use_cases.importing import SourceKind, Upload, kind_of, load, refuse_areas
 
 MOST_PLACES = 1_000

@@ -17,9 +17,15 @@ from argo_env.evaluation.plan import EvaluationPlan, Stopping, parse_seeds
 from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.evaluation.pool.backends import make_backend
 from argo_env.evaluation.requirement import parse_requirement
-from argo_env.faults.distribution import NOTHING, FaultDistribution, decode_distribution
 from argo_env.faults.kinds import AnyFault
-from argo_env.faults.reading import MAX_BYTES, FaultText, decode_faults
+from argo_env.faults.reading import (
+    MAX_BYTES,
+    NOTHING,
+    FaultDistribution,
+    FaultText,
+    decode_distribution,
+    decode_faults,
+)
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.robot.spec import load_robot
 from argo_env.run.rig import check_spec

@@ -27,7 +27,7 @@ from argo_compiler.isar import find_definition, from_isar
 from argo_compiler.ros import Received, decode_bag, is_bag_content, read_bag
 from argo_compiler.script.syntax.text.source import Source as Script
 from argo_env.planning.opening import OpenedSite
-from argo_env.planning.speeds_to_drive_at import too_fast
+from argo_env.planning.site_warnings import too_fast
 
 _log = logging.getLogger(__name__)
 

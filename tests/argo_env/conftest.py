@@ -78,6 +78,13 @@ class World:
         pybullet.disconnect(self._client)
 
 
+@pytest.fixture(scope="module")
+def client():
+    client = pybullet.connect(pybullet.DIRECT)
+    yield client
+    pybullet.disconnect(client)
+
+
 @pytest.fixture(scope="session")
 def robot():
     return load_robot()

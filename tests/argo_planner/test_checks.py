@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from argo_compiler.files.mission_file import mission_text
 from argo_env.envs.inspection import InspectEnv
-from argo_env.evaluation.carrying_out import WorkOrder, carry_out
+from argo_env.evaluation.evaluating import WorkOrder, carry_out
 from argo_env.evaluation.evaluation import Evaluation
 from argo_env.planning.opening import open_site
 from argo_env.run.fitting_together import require_site

@@ -7,12 +7,12 @@ from argo_compiler.base.model import Pose
 from argo_compiler.checks import check
 from argo_compiler.il import Action
 from argo_env.drives.drive import DriveStatus
-from argo_env.drives.route import RouteDrive
+from argo_env.drives.timed_drive import RouteDrive
 from argo_env.drives.timetable import Timetable
 from argo_env.planning import open_site
 from argo_env.planning.catalog import make_catalog
-from argo_env.robot.calibration import Calibration, MotionPace
 from argo_env.robot.pose import BodyPose
+from argo_env.robot.spec import Calibration, MotionPace
 from benchmarks.drives import Run, compare, drive_along, random_mission, run
 from benchmarks.fitting import errors, fit
 

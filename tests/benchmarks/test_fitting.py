@@ -8,12 +8,11 @@ from hypothesis import strategies as st
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.base.model import Pose
 from argo_env.drives.drive import DriveStatus
-from argo_env.drives.route import RouteDrive
+from argo_env.drives.timed_drive import RouteDrive
 from argo_env.files import resources
 from argo_env.navigation import Path
 from argo_env.navigation.path import Motion, wrap
-from argo_env.robot.calibration import Calibration, MotionKind, MotionPace
-from argo_env.robot.spec import load_robot
+from argo_env.robot.spec import Calibration, MotionKind, MotionPace, load_robot
 from benchmarks.fitting import TimedDrive, errors, fit
 from tests.conftest import examples
 

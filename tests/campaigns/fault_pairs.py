@@ -28,7 +28,7 @@ import yaml
 from argo_compiler.hfsm import Executor, Resume, lower
 from argo_compiler.il import Afterwards, EventKind, Mission, Reaction, Response
 from argo_env.drives.kinematic import KinematicDrive
-from argo_env.drives.route import RouteDrive
+from argo_env.drives.timed_drive import RouteDrive
 from argo_env.faults.kinds import KINDS, FaultFile, misfits
 from argo_env.planning import open_site
 from argo_env.run.drives_and_sensors import DRIVES

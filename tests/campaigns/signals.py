@@ -30,7 +30,7 @@ from argo_env.sensing.watch import Detection
 from argo_env.site import Site
 from argo_env.site.shapes import Box, Cylinder, Role, Solid, Vector
 from argo_env.surroundings import Alarm, GasLeak, HotSpot, PumpFault, PumpSound, Surroundings
-from argo_env.surroundings.sources import Source
+from argo_env.surroundings.surroundings import Source
 from argo_env.world.world import World
 
 STANDING = 8.0  # s at each checkpoint

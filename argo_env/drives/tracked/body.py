@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from argo_env.drives.flipper_motion import RATE
+from argo_env.drives.drive import RATE
 from argo_env.drives.tracked.belts import Belts, Traction
 from argo_env.drives.tracked.lumped import lumped
-from argo_env.drives.tracked.presses import Presses
-from argo_env.drives.tracked.terrain import Terrain
+from argo_env.drives.tracked.terrain import Presses, Terrain
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec, robot_folder
 from argo_env.site.shapes import Vector

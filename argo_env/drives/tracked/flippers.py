@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from argo_env.drives.flipper_motion import FLAT, RAISED, RATE
+from argo_env.drives.drive import FLAT, RAISED, RATE
 from argo_env.navigation.path import Motion
 from argo_env.robot.pose import BodyPose
 from argo_env.world.world import World

@@ -12,8 +12,7 @@ from distributed import wait as wait_for
 from distributed.client import FutureCancelledError
 
 from argo_compiler.base.errors import Unavailable
-from argo_env.evaluation.pool.addresses import require_listener
-from argo_env.evaluation.pool.backend import WorkerDiedError
+from argo_env.evaluation.pool.backend import WorkerDiedError, require_listener
 
 _LOGGERS = tuple(f"distributed{part}" for part in ("", ".scheduler", ".nanny", ".core", ".worker"))
 _PATIENCE = 10.0  # s until a scheduler has said that it is one

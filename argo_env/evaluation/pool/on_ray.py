@@ -11,8 +11,7 @@ import ray
 from ray.exceptions import GetTimeoutError, RayTaskError, WorkerCrashedError
 
 from argo_compiler.base.errors import Unavailable
-from argo_env.evaluation.pool.addresses import require_listener
-from argo_env.evaluation.pool.backend import WorkerDiedError
+from argo_env.evaluation.pool.backend import WorkerDiedError, require_listener
 
 _STORE = 100_000_000  # bytes that Ray shares between processes; specs and rows are small
 _ANSWERS = 40.0  # s until a cluster has taken a client

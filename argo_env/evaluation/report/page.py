@@ -15,7 +15,6 @@ from markupsafe import Markup
 from argo_compiler.base.version import __version__
 from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.comparison import PlanComparison
-from argo_env.evaluation.durations import duration_curve
 from argo_env.evaluation.folder import COMPARISON, REPORT, write_file
 from argo_env.evaluation.plots import (
     detection_delays,
@@ -25,10 +24,15 @@ from argo_env.evaluation.plots import (
     paired_differences,
     pairs_that_differ,
 )
-from argo_env.evaluation.report.failing import failing_runs, floors_with_failures, reasons
-from argo_env.evaluation.report.making import how_it_was_made
 from argo_env.evaluation.report.picture import picture
-from argo_env.evaluation.report.rates import other_rates, plan_sections
+from argo_env.evaluation.report.sections import (
+    failing_runs,
+    floors_with_failures,
+    how_it_was_made,
+    other_rates,
+    plan_sections,
+    reasons,
+)
 from argo_env.evaluation.report.words import (
     between,
     chance,
@@ -37,7 +41,7 @@ from argo_env.evaluation.report.words import (
     in_percent,
     time_or,
 )
-from argo_env.evaluation.results import EvaluationResults
+from argo_env.evaluation.results import EvaluationResults, duration_curve
 from argo_env.evaluation.row import RunOutcome
 from argo_env.evaluation.worlds import Variation
 from argo_env.files.folders import make_folder

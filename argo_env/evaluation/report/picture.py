@@ -11,18 +11,18 @@ import matplotlib
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from argo_env.evaluation.plots import canvas
+from argo_env.evaluation import plots
 from argo_env.report.svg import clean, markup
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 PALETTE = {
-    "ink": canvas.INK, "soft": canvas.SOFT, "line": canvas.LINE, "paper": canvas.PAPER,
-    "good": canvas.GOOD, "bad": canvas.BAD, "notice": canvas.WARN, "site-ground": canvas.GROUND,
-    "site-deck": canvas.DECK, "site-stair": canvas.STAIR, "site-structure": canvas.STRUCTURE,
-    "site-edge": canvas.EDGE,
-    **{f"series-{k}": ink for k, ink in enumerate(canvas.SERIES)},
+    "ink": plots.INK, "soft": plots.SOFT, "line": plots.LINE, "paper": plots.PAPER,
+    "good": plots.GOOD, "bad": plots.BAD, "notice": plots.WARN, "site-ground": plots.GROUND,
+    "site-deck": plots.DECK, "site-stair": plots.STAIR, "site-structure": plots.STRUCTURE,
+    "site-edge": plots.EDGE,
+    **{f"series-{k}": ink for k, ink in enumerate(plots.SERIES)},
 }  # fmt: skip
 """what the page calls the colours that plots are drawn in"""
 

@@ -7,17 +7,20 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import ImageDraw
 
-from argo_env.pictures.drawing.legend import Shown, draw_headline, draw_legend
-from argo_env.pictures.drawing.sheet import FINER, INK, PAPER, FloorSheet, Pixel, font
-from argo_env.pictures.drawing.spots import Spots
+from argo_env.pictures.drawing.sheet import FINER, FloorSheet, Pixel
+from argo_env.pictures.drawing.spots import Spots, draw_plate
 from argo_env.pictures.drawing.style import (
     POINT,
     STYLES,
+    Shown,
     disc,
+    draw_headline,
+    draw_legend,
     paint_disc,
     paint_point,
     paint_ring,
     paint_robot,
+    paint_station,
 )
 from argo_env.pictures.drawing.way import Moment, draw_crossings, draw_lines, lines
 from argo_env.robot.spec import Footprint
@@ -88,9 +91,8 @@ def draw_plan(sheet: FloorSheet, plan: PlanDrawing) -> NDArray[np.uint8]:
     for line in way:
         spots.pass_by(line.points)
     draw_lines(draw, way)
-    for x, y in stations:
-        r = _STATION * FINER
-        draw.rectangle((x - r, y - r, x + r, y + r), fill=INK, outline=PAPER, width=FINER)
+    for place in stations:
+        paint_station(draw, place, _STATION)
     for marker, place in zip(plan.markers, discs, strict=True):
         _draw_pointer(draw, sheet, marker, place)
     if plan.footprint:
@@ -103,7 +105,7 @@ def draw_plan(sheet: FloorSheet, plan: PlanDrawing) -> NDArray[np.uint8]:
             paint_ring(draw, place, marker.radius)
         paint_disc(draw, place, marker.radius, marker.state, marker.name)
     for station, place in zip(plan.stations, stations, strict=True):
-        _draw_name(draw, spots, station, place)
+        draw_plate(draw, spots, place, station.name, station.floor, large=True)
     draw_headline(draw, plan.headline)
     there = {marker.state for marker in plan.markers}
     states = {state: meaning for state, meaning in plan.legend.items() if state in there}
@@ -128,13 +130,3 @@ def _draw_pointer(
         ink = STYLES[marker.state].rim
         draw.line([true, place], fill=ink, width=2 * FINER)
         disc(draw, true, 3.0 * FINER, ink)
-
-
-def _draw_name(draw: ImageDraw.ImageDraw, spots: Spots, station: StationMark, place: Pixel) -> None:
-    """The name of a station on a plate where it covers nothing."""
-    face = font(12)
-    wide, high = draw.textlength(station.name, font=face) / 2 + 5.0 * FINER, 9.0 * FINER
-    x, y = spots.beside(place, wide, high, station.floor)
-    box = (x - wide, y - high, x + wide, y + high)
-    draw.rounded_rectangle(box, 4 * FINER, fill=PAPER, outline=INK, width=FINER)
-    draw.text((x, y), station.name, fill=INK, font=face, anchor="mm")

@@ -7,7 +7,8 @@ from functools import lru_cache
 
 from PIL import Image, ImageDraw, ImageFont
 
-from argo_env.pictures.drawing.floors import FloorPlan
+from argo_env.pictures.drawing.floors import FloorPlan, plans_of
+from argo_env.planning import open_site
 from argo_env.site.shapes import Role
 
 SIZE = (1280, 720)
@@ -150,3 +151,16 @@ def _draw(image: Image.Image, panel: Panel, scale: float, dim: bool) -> None:
     title = f"floor {panel.plan.number}" + (" (not asked for)" if dim else "")
     place = (panel.left, panel.top - math.ceil(3 * FINER))
     draw.text(place, title, fill=SOFT if dim else INK, font=font(13), anchor="ls")
+
+
+@lru_cache(maxsize=4)  # a sheet takes 11 MB
+def site_sheet(scenario: str, low: int, high: int, asked: tuple[int, ...]) -> FloorSheet:
+    """The floors of a site from `low` to `high`; those that are not asked for are pale."""
+    plans = [plan for plan in _plans(scenario) if low <= plan.number <= high]
+    return make_sheet(plans, [p.number for p in plans if p.number not in asked])
+
+
+# By name, as a navigator would be kept alive for its plans.
+@lru_cache(maxsize=8)
+def _plans(scenario: str) -> tuple[FloorPlan, ...]:
+    return plans_of(open_site(scenario).site)

@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import ImageDraw
 
-from argo_env.pictures.drawing.sheet import FINER, SIZE, FloorSheet, Pixel
+from argo_env.pictures.drawing.sheet import FINER, INK, PAPER, SIZE, SOFT, FloorSheet, Pixel, font
 
 _CELL = 4  # px of the finer picture
 _AROUND = 8  # directions that are tried
@@ -71,6 +72,25 @@ class Spots:
             and panel.top <= y - high
             and y + high <= panel.top + panel.height
         )
+
+
+def draw_plate(
+    draw: ImageDraw.ImageDraw,
+    spots: Spots,
+    place: Pixel,
+    text: str,
+    floor: int,
+    large: bool = False,
+) -> None:
+    """A name on a plate beside a place, where it covers nothing."""
+    size, rim = (12, INK) if large else (11, SOFT)
+    face = font(size)
+    wide = draw.textlength(text, font=face) / 2 + (size - 7.0) * FINER
+    high = (size - 3.0) * FINER
+    x, y = spots.beside(place, wide, high, floor)
+    box = (x - wide, y - high, x + wide, y + high)
+    draw.rounded_rectangle(box, (size - 8) * FINER, fill=PAPER, outline=rim, width=FINER)
+    draw.text((x, y), text, fill=INK, font=face, anchor="mm")
 
 
 def _cells(place: Pixel, wide: float, high: float) -> tuple[slice, slice]:

@@ -1,5 +1,38 @@
-"""Signals: what the robot senses besides checkpoints, and what it makes of that."""
+"""The watches that the robot carries."""
 
-from argo_env.sensing.signals.standard import standard_watches
+from argo_env.seeding import generator
+from argo_env.sensing.signals.alarm_watch import AlarmWatch
+from argo_env.sensing.signals.gas_watch import GasSensor, GasWatch, UltrasonicMicrophone
+from argo_env.sensing.signals.heat_watch import HeatWatch, ThermalCamera
+from argo_env.sensing.signals.microphone import Microphone
+from argo_env.sensing.signals.pump_watch import PumpWatch
+from argo_env.sensing.signals.site_map import SiteMap
+from argo_env.sensing.signals.terrain_watch import TerrainScanner, TerrainWatch
+from argo_env.sensing.watch import Watch
+from argo_env.surroundings import Surroundings
+from argo_env.world.world import World
 
-__all__ = ["standard_watches"]
+
+def standard_watches(world: World, surroundings: Surroundings, seed: int) -> tuple[Watch, ...]:
+    """All watches of the robot, for one run: gas, heat, pumps, the alarm and the way ahead.
+
+    They sense what is in `surroundings` and in `world`, and their map is the site of the
+    `surroundings`, as it was built. The seed draws their noise. They hold what they have sensed, so
+    a new run needs new ones.
+    """
+    site_map = SiteMap(surroundings.site)
+    return (
+        GasWatch(
+            GasSensor(surroundings, generator(seed, "gas sensor")),
+            UltrasonicMicrophone(surroundings, world, generator(seed, "ultrasonic microphone")),
+            site_map,
+        ),
+        HeatWatch(
+            ThermalCamera(surroundings, world, generator(seed, "thermal camera")),
+            site_map,
+            surroundings.weather.temperature,
+        ),
+        PumpWatch(Microphone(surroundings, generator(seed, "pumps")), surroundings.site),
+        AlarmWatch(Microphone(surroundings, generator(seed, "alarm"))),
+        TerrainWatch(TerrainScanner(world, site_map, generator(seed, "terrain scanner"))),
+    )

@@ -1,5 +1,7 @@
-"""What the reader knows of a kind of checkpoint: its drawn face, and its indicator."""
+"""What the reader knows of a kind of checkpoint, its drawn face and its indicator: dial gauges,
+liquid level gauges and quarter-turn valves."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
@@ -9,7 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from argo_compiler.base.catalog import CheckpointKind
-from argo_env.sensing.vision.faces import PIXELS_PER_METRE, FaceShape, face_file
+from argo_env.sensing.vision.faces import FACES, PIXELS_PER_METRE, FaceShape, face_file
 
 Points = NDArray[np.float64]
 
@@ -119,3 +121,71 @@ def turned(points: Points, angles: Points) -> Points:
     return np.stack(
         [np.broadcast_to(x, (len(angles), len(x))), y * cos + z * sin, z * cos - y * sin], axis=-1
     )
+
+
+_NEEDLE = np.linspace(0.010, 0.050, 21)  # m, of the needle that is looked at
+
+DIAL = Instrument(
+    kind=CheckpointKind.PRESSURE_GAUGE,
+    shape=FACES[CheckpointKind.PRESSURE_GAUGE],
+    rolled=True,
+    hidden_radius=0.0,
+    extent=0.08,
+    outlines=((0.065, 0.065), (0.0575, 0.0575)),
+    body=((-0.003, 0.069), (-0.010, 0.075), (-0.026, 0.075), (-0.043, 0.075), (-0.060, 0.075)),
+    indicator=Indicator(
+        body=grid(0.0, np.array([-0.0015, 0.0, 0.0015]), _NEEDLE),
+        beside=grid(0.0, np.array([-0.010, -0.008, 0.008, 0.010]), _NEEDLE),
+        low=math.radians(-135),
+        high=math.radians(135),
+        move=turned,
+    ),
+)
+"""a red needle over a round scale of 270 degrees"""
+
+_FLOAT = np.linspace(-0.012, 0.012, 7)  # m, of the float that is looked at
+
+
+def _lifted(points: NDArray[np.float64], heights: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Points moved up by heights (m), shape (m, n, 3)."""
+    return np.asarray(points[None] + heights[:, None, None] * np.array([0.0, 0.0, 1.0]))
+
+
+LEVEL = Instrument(
+    kind=CheckpointKind.LIQUID_LEVEL_GAUGE,
+    shape=FACES[CheckpointKind.LIQUID_LEVEL_GAUGE],
+    rolled=False,
+    hidden_radius=0.0,
+    extent=0.17,
+    outlines=((0.039, 0.154), (0.019, 0.135), (0.045, 0.160)),
+    body=((-0.005, 0.045), (-0.023, 0.045), (-0.041, 0.045), (-0.060, 0.045)),
+    indicator=Indicator(
+        body=grid(0.0, _FLOAT, np.linspace(-0.006, 0.006, 7)),
+        beside=grid(0.0, _FLOAT, np.array([-0.015, -0.013, 0.013, 0.015])),
+        low=-0.12,
+        high=0.12,
+        move=_lifted,
+    ),
+)
+"""a red float in a glass beside a scale of 240 mm"""
+
+_LEVER = np.linspace(0.025, 0.150, 26)  # m, of the lever that is looked at
+_MIDDLE = -0.004  # m, of its thickness
+
+VALVE = Instrument(
+    kind=CheckpointKind.VALVE,
+    shape=FACES[CheckpointKind.VALVE],
+    rolled=True,
+    hidden_radius=0.052,
+    extent=0.165,
+    outlines=((0.080, 0.080),),
+    body=((-0.013, 0.086), (-0.020, 0.086), (-0.040, 0.050), (-0.060, 0.050)),
+    indicator=Indicator(
+        body=grid(_MIDDLE, np.linspace(-0.008, 0.008, 5), _LEVER),
+        beside=grid(_MIDDLE, np.array([-0.026, -0.022, 0.022, 0.026]), _LEVER),
+        low=0.0,
+        high=math.radians(90),
+        move=turned,
+    ),
+)
+"""a red lever over a plate with a mark for shut and one for open"""

@@ -1,18 +1,218 @@
-"""Finding a face in a picture: first where something like it is, then how it stands exactly."""
+"""Finding a face in a picture: first where bright patches of the right shape and size are, and how
+it is rolled, then how it stands exactly."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env.sensing.vision.align import FacePose, Fit, compare, refine
+from argo_env.sensing.vision.align import FacePose, Fit, compare, refine, sample
 from argo_env.sensing.vision.candidates import find_candidates
-from argo_env.sensing.vision.instrument import Instrument, make_template
-from argo_env.sensing.vision.outlines import find_outlines
+from argo_env.sensing.vision.faces import PIXELS_PER_METRE
+from argo_env.sensing.vision.instrument import (
+    Instrument,
+    Template,
+    blurred_texture,
+    make_template,
+)
 from argo_env.sensing.vision.photo import Photo
-from argo_env.sensing.vision.rolls import likely_rolls, spacing
 from argo_env.world.placement import MAX_OFFSET, MAX_TURN
+
+_THRESHOLDS = 10  # levels of brightness at which patches are cut out
+_SMALLEST = 0.06  # of the area that the face would cover seen from the front
+_UPRIGHT = 0.9  # cosine to the vertical of what may be an upright face
+_FILLED = 0.8  # of an ellipse or rectangle that the hull of a patch must fill, and be filled by
+
+
+def find_outlines(
+    photo: Photo, instrument: Instrument, planned: FacePose
+) -> list[tuple[float, FacePose]]:
+    """The poses, with no roll, of all bright patches that could be the face, with how well the
+    hull of each fills the outline (0 to 1)."""
+    import cv2
+
+    picture = cv2.GaussianBlur(photo.brightness, (0, 0), 1.0)
+    low, high = np.percentile(picture, (2, 99))
+    poses = []
+    for level in np.linspace(low, high, _THRESHOLDS + 2)[1:-1]:
+        patches, _ = cv2.findContours(
+            (picture > level).astype(np.uint8), cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE
+        )
+        for patch in patches:
+            poses += _poses(np.asarray(patch), photo, instrument, planned)
+    return poses
+
+
+def _poses(
+    patch: NDArray[np.int32], photo: Photo, instrument: Instrument, planned: FacePose
+) -> list[tuple[float, FacePose]]:
+    """The poses of a face with this outline, shape (n, 1, 2) in px: turned to either side."""
+    import cv2
+
+    shape, eye, focal = instrument.shape, photo.pose.position, photo.lens.focal
+    distance = float(np.linalg.norm(planned.center - eye))
+    expected = 4 * shape.half_width * shape.half_height * (focal / distance) ** 2
+    if len(patch) < 20:
+        return []
+    hull = np.asarray(cv2.convexHull(patch), dtype=np.int32)
+    area = cv2.contourArea(hull)
+    if not _SMALLEST * expected < area < 2 * expected:
+        return []
+    if shape.round:
+        return _from_ellipse(hull if len(hull) >= 12 else patch, area, photo, instrument)
+    return _from_corners(hull, area, photo, instrument, planned)
+
+
+def _from_ellipse(
+    outline: NDArray[np.int32], area: float, photo: Photo, instrument: Instrument
+) -> list[tuple[float, FacePose]]:
+    """The poses of a disc that is seen as this outline: turned to either side."""
+    import cv2
+
+    eye, focal = photo.pose.position, photo.lens.focal
+    middle, axes, _ = cv2.fitEllipseDirect(outline)
+    large, small = max(axes) / 2, min(axes) / 2
+    if not math.isfinite(large) or small < 2:
+        return []
+    full = math.pi * large * small
+    filled = min(area / full, full / area)
+    if filled < _FILLED:
+        return []
+    centre = (photo.lens.size - 1) / 2
+    column, row = (middle[0] - centre) / focal, (middle[1] - centre) / focal
+    ray = photo.pose.rotation @ np.array([column, row, 1.0])
+    back = -ray / np.linalg.norm(ray)
+    toward, level = math.atan2(back[1], back[0]), math.hypot(back[0], back[1])
+    away = math.acos(min(1.0, small / large / max(level, 1e-6)))
+    found = []
+    for radius, _ in instrument.outlines:
+        x, y, z = (eye + ray * focal * radius / large).tolist()
+        for side in (-1.0, 1.0):
+            found.append((filled, FacePose(x, y, z, toward + side * away, 0.0)))
+    return found
+
+
+def _from_corners(
+    hull: NDArray[np.int32],
+    area: float,
+    photo: Photo,
+    instrument: Instrument,
+    planned: FacePose,
+) -> list[tuple[float, FacePose]]:
+    """The poses of an upright rectangle whose four corners are those of the hull."""
+    import cv2
+
+    corners = cv2.approxPolyDP(hull, 0.03 * cv2.arcLength(hull, True), True)
+    if len(corners) != 4:
+        return []
+    quad = corners[:, 0].astype(np.float64)
+    filled = float(min(area / max(cv2.contourArea(corners), 1.0), 1.0))
+    if filled < _FILLED:
+        return []
+    # Which corner is which: by how the vertical looks in the picture.
+    up = photo.lens.project(
+        planned.center + np.array([[0.0, 0.0, 0.05], [0.0, 0.0, 0.0]]), photo.pose
+    )
+    axis = up[0] - up[1]
+    by_height = quad[np.argsort(-(quad @ axis), kind="stable")]
+    aside = np.array([-axis[1], axis[0]])
+    top, bottom = (
+        pair[np.argsort(pair @ aside, kind="stable")] for pair in (by_height[:2], by_height[2:])
+    )
+    spots = np.array([top[0], top[1], bottom[1], bottom[0]])
+    centre, focal = (photo.lens.size - 1) / 2, photo.lens.focal
+    matrix = np.array([[focal, 0.0, centre], [0.0, focal, centre], [0.0, 0.0, 1.0]])
+    found = []
+    for width, height in instrument.outlines:
+        flat = np.array(
+            [[-width, height, 0], [width, height, 0], [width, -height, 0], [-width, -height, 0]]
+        )
+        for place in (flat, flat[[1, 0, 3, 2]]):
+            _, turns, shifts, _ = cv2.solvePnPGeneric(
+                place, spots, matrix, None, flags=cv2.SOLVEPNP_IPPE
+            )
+            for turn, shift in zip(turns, shifts, strict=True):
+                rotation = photo.pose.rotation @ cv2.Rodrigues(turn)[0]
+                # A rectangle that is not upright is none of a gauge; its front looks to the camera.
+                if abs(rotation[2, 1]) < _UPRIGHT:
+                    continue
+                x, y, z = (photo.pose.position + photo.pose.rotation @ shift.ravel()).tolist()
+                normal = rotation[:, 2]
+                if normal @ (photo.pose.position - np.array([x, y, z])) < 0:
+                    normal = -normal
+                found.append((filled, FacePose(x, y, z, math.atan2(normal[1], normal[0]), 0.0)))
+    return found
+
+
+_ROLLS = np.radians(np.arange(-93, 94, 3))
+_DARKEST = 0.03  # of full scale: white that is darker is not looked at
+
+
+def spacing(instrument: Instrument) -> float:
+    """m between the points of a face that is compared with pictures."""
+    return 0.004 if instrument.shape.round else 0.0045
+
+
+@dataclass(frozen=True)
+class _RolledFaces:
+    """A face at every roll, at the same points: its brightness and weights, (rolls, points)."""
+
+    template: Template
+    brightness: NDArray[np.float32]
+    weights: NDArray[np.float32]
+
+
+@cache
+def _rolled_faces(instrument: Instrument, blur: float) -> _RolledFaces:
+    template = make_template(instrument, 1.5 * spacing(instrument), blur)
+    faces = template.brightness[None]
+    if instrument.rolled:
+        image = blurred_texture(instrument.kind, blur)
+        half = instrument.shape.half_width
+        y, z = template.points[:, 1], template.points[:, 2]
+        cos, sin = np.cos(_ROLLS)[:, None], np.sin(_ROLLS)[:, None]
+        column = ((half + y * cos + z * sin) * PIXELS_PER_METRE).astype(int)
+        row = ((half - z * cos + y * sin) * PIXELS_PER_METRE).astype(int)
+        faces = image[np.clip(row, 0, image.shape[0] - 1), np.clip(column, 0, image.shape[1] - 1)]
+    bright = faces > (faces.min() + faces.max()) / 2
+    weights = np.where(
+        bright,
+        0.5 / bright.sum(axis=1, keepdims=True),
+        0.5 / (~bright).sum(axis=1, keepdims=True),
+    )
+    return _RolledFaces(template, faces.astype(np.float32), weights.astype(np.float32))
+
+
+def likely_rolls(
+    photo: Photo, instrument: Instrument, pose: FacePose, blur: float
+) -> list[tuple[float, FacePose]]:
+    """The pose with the rolls at which the face is most like the picture, and how much so."""
+    faces = _rolled_faces(instrument, blur)
+    spots = photo.lens.project(pose.to_site(faces.template.points), photo.pose)
+    values = sample(photo.brightness, spots)
+    red = sample(photo.redness, spots)
+    seen = np.isfinite(values) & ~(red > 0.35)
+    if seen.sum() < len(seen) / 4:
+        return []
+    values = values[seen].astype(np.float32)
+    # White is most of what is seen; black reflects nearly nothing.
+    white = float(np.percentile(values, 70)) / float(faces.brightness.max())
+    if white < _DARKEST:
+        return []
+    weights = faces.weights[:, seen]
+    difference = (values - white * faces.brightness[:, seen]) / (0.35 * white)
+    likeness = (weights * np.exp(-(difference**2))).sum(axis=1) / weights.sum(axis=1)
+    if not instrument.rolled:
+        return [(float(likeness[0]), replace(pose, roll=0.0))]
+    found = []
+    for _ in range(3):
+        best = int(likeness.argmax())
+        found.append((float(likeness[best]), replace(pose, roll=float(_ROLLS[best]))))
+        likeness = np.where(np.abs(_ROLLS - _ROLLS[best]) > math.radians(12), likeness, -1.0)
+    return found
+
 
 _OUTLINES = 30  # that are looked at more closely
 _FITS = 7  # that are fitted

@@ -1,4 +1,5 @@
-"""From a picture in colours to what the reader looks at: brightness and redness."""
+"""From the world to what the reader looks at: the camera's picture, with the faults of a real one,
+its brightness and its redness."""
 
 from dataclasses import dataclass
 
@@ -6,7 +7,69 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_env.sensing.vision.arm import CameraPose
-from argo_env.sensing.vision.camera import Lens
+from argo_env.world.world import World
+
+NEAR, FAR = 0.05, 30.0  # m
+
+# Of full scale, for one exposure in daylight; in the range of industrial cameras with 8 bits.
+_SHOT_NOISE = 0.012
+_READ_NOISE = 0.008
+_MAX_BLUR = 0.8  # px, of the lens and of what the arm trembles
+
+
+@dataclass(frozen=True)
+class Lens:
+    """A pinhole camera with square pixels and its centre in the middle of the picture."""
+
+    size: int
+    """px, width and height of its pictures"""
+    focal: float
+    """px"""
+
+    def project(self, points: NDArray[np.float64], pose: CameraPose) -> NDArray[np.float64]:
+        """Column and row (px) of points (m, in the site's frame), shape (..., 3) to (..., 2)."""
+        seen = (points - pose.position) @ pose.rotation
+        middle = (self.size - 1) / 2
+        return np.asarray(middle + self.focal * seen[..., :2] / seen[..., 2:])
+
+
+def take_picture(
+    world: World, lens: Lens, pose: CameraPose, rng: np.random.Generator
+) -> NDArray[np.uint8]:
+    """What the camera at `pose` sees: red, green and blue, shape (size, size, 3).
+
+    The light of the world dims it. Lens and sensor add blur, shot noise that grows with the root
+    of the light, and read noise that does not.
+    """
+    import cv2
+
+    picture = world.picture(_view(pose), _projection(lens), (lens.size, lens.size))
+    blurred = cv2.GaussianBlur(
+        picture.astype(np.float32) / 255, (0, 0), 0.3 + rng.uniform(0.0, _MAX_BLUR - 0.3)
+    )
+    light = np.asarray(blurred) * np.float32(world.light)
+    noise = rng.standard_normal(light.shape, dtype=np.float32)
+    noisy = light + noise * np.sqrt(_SHOT_NOISE**2 * light + _READ_NOISE**2)
+    return np.asarray(np.clip(np.rint(noisy * 255), 0, 255).astype(np.uint8))
+
+
+def _view(pose: CameraPose) -> tuple[float, ...]:
+    # OpenGL's camera looks along -z with y up.
+    matrix = np.eye(4)
+    matrix[:3, :3] = (pose.rotation * np.array([1.0, -1.0, -1.0])).T
+    matrix[:3, 3] = -matrix[:3, :3] @ pose.position
+    return tuple(matrix.T.ravel().tolist())
+
+
+def _projection(lens: Lens) -> tuple[float, ...]:
+    scale = 2 * lens.focal / lens.size
+    matrix = np.zeros((4, 4))
+    matrix[0, 0] = matrix[1, 1] = scale
+    matrix[2, 2] = -(FAR + NEAR) / (FAR - NEAR)
+    matrix[2, 3] = -2 * FAR * NEAR / (FAR - NEAR)
+    matrix[3, 2] = -1.0
+    return tuple(matrix.T.ravel().tolist())
+
 
 _DENOISE = 0.7  # px
 

@@ -14,15 +14,15 @@ from argo_env.seeding import generator
 from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError
 from argo_env.sensing.vision.align import FacePose, Fit
 from argo_env.sensing.vision.arm import JOINTS
-from argo_env.sensing.vision.camera import Lens, take_picture
-from argo_env.sensing.vision.confidence import PictureReading, combine_readings, probability
-from argo_env.sensing.vision.dial import DIAL
-from argo_env.sensing.vision.indicator import find_indicator
-from argo_env.sensing.vision.instrument import Instrument
-from argo_env.sensing.vision.level import LEVEL
+from argo_env.sensing.vision.indicator import (
+    PictureReading,
+    combine_readings,
+    find_indicator,
+    probability,
+)
+from argo_env.sensing.vision.instrument import DIAL, LEVEL, VALVE, Instrument
 from argo_env.sensing.vision.locate import find_face, look_closer
-from argo_env.sensing.vision.photo import Photo, make_photo
-from argo_env.sensing.vision.valve import VALVE
+from argo_env.sensing.vision.photo import Lens, Photo, make_photo, take_picture
 from argo_env.sensing.vision.views import ArmView, plan_views, solids_near
 from argo_env.site import SiteCheckpoint
 from argo_env.site.shapes import Solid

@@ -13,9 +13,8 @@ from pydantic import Field, field_validator, model_validator
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Model
 from argo_compiler.il import Mission
-from argo_env.evaluation.carrying_out import WorkOrder, carry_out
 from argo_env.evaluation.case import NO_FAULTS
-from argo_env.evaluation.evaluating import Evaluating
+from argo_env.evaluation.evaluating import Evaluating, WorkOrder, carry_out
 from argo_env.evaluation.evaluation import Evaluation
 from argo_env.evaluation.folder import digest_of, keep_plan, kept_plan, write_failing
 from argo_env.evaluation.plan import EvaluationPlan

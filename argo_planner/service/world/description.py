@@ -14,7 +14,7 @@ from argo_env.planning.code import digest_of_code
 from argo_env.planning.opening import OpenedSite
 from argo_env.robot.spec import RobotSpec
 from argo_env.site import SiteCheckpoint
-from argo_env.site.decks import Deck
+from argo_env.site.build import Deck
 from argo_env.site.shapes import Vector
 from argo_env.site.spec import FloorSpec, Rect
 from argo_planner.service.world.meshes import Detail

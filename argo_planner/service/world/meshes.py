@@ -12,8 +12,8 @@ from argo_env.files import resources
 from argo_env.planning.opening import OpenedSite
 from argo_env.robot.robot_model import Quaternion, RobotModel, Visual, read_model
 from argo_env.robot.spec import robot_folder
-from argo_env.site.railings import THICKNESS, TOE_PLATE
 from argo_env.site.shapes import Box, Element, Role, Solid
+from argo_env.site.stairs import THICKNESS, TOE_PLATE
 from argo_env.site.storeys import storeys
 from argo_env.site.urdf import COLOURS
 from argo_planner.service.world.glb import Colour, DrawnNode, Mesh, to_glb

@@ -11,15 +11,14 @@ from argo_compiler.analysis import analyse
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.base.model import Pose
 from argo_env.drives.drive import DriveStatus
-from argo_env.drives.route import RouteDrive
+from argo_env.drives.timed_drive import RouteDrive
 from argo_env.drives.timetable import Timetable
 from argo_env.navigation import Path
 from argo_env.navigation.path import Motion, wrap
 from argo_env.navigation.views import in_sight
 from argo_env.planning.travel import SiteTravel
-from argo_env.robot.calibration import Calibration, MotionPace
 from argo_env.robot.pose import BodyPose
-from argo_env.robot.spec import load_robot
+from argo_env.robot.spec import Calibration, MotionPace, load_robot
 from argo_env.world.paper_world import PaperWorld
 from benchmarks.drives import random_mission
 from tests import yard

@@ -1,8 +1,12 @@
-"""The sites of the environments' tests: UMAD as the environments keep it, and a small yard."""
+"""What the tests of environments share: UMAD as the environments keep it, a small yard, the ids of
+all environments, and what closes those that a test has made."""
+
+from contextlib import ExitStack
 
 import pytest
 import yaml
 
+from argo_env.envs import ENVIRONMENTS
 from argo_env.planning import open_site
 from tests.yard import SITE
 
@@ -20,3 +24,26 @@ def yard_file(tmp_path_factory):
     site = SITE | {"areas": [{"number": 1, "dock": [2.05, 2.05, 0]}]}
     path.write_text(yaml.safe_dump(site), encoding="utf-8")
     return str(path)
+
+
+@pytest.fixture(params=sorted(ENVIRONMENTS))
+def id(request):
+    return request.param
+
+
+@pytest.fixture
+def small(id, yard_file):
+    """The arguments with which an environment has a small site, where it has one."""
+    return {} if id == "argo/Route-v0" else {"scenario": yard_file}
+
+
+@pytest.fixture
+def closing():
+    """Closes what it is given when the test has ended."""
+    with ExitStack() as stack:
+
+        def one(env):
+            stack.callback(env.close)
+            return env
+
+        yield one

@@ -32,11 +32,6 @@ def pickled(value):
 WAYS = {"copy": copy.copy, "deepcopy": copy.deepcopy, "pickle": pickled}
 
 
-@pytest.fixture(params=IDS)
-def id(request):
-    return request.param
-
-
 @pytest.fixture(params=sorted(WAYS))
 def duplicate(request, closing):
     """Duplicates an environment in one of the ways there are."""
@@ -44,23 +39,8 @@ def duplicate(request, closing):
 
 
 @pytest.fixture
-def closing():
-    """Closes what it was given, in the end."""
-    held = []
-
-    def hold(env):
-        held.append(env)
-        return env
-
-    yield hold
-    for env in held:
-        env.close()
-
-
-@pytest.fixture
-def make(id, yard_file, closing, request):
+def make(id, small, closing, request):
     """Makes environments of one kind as Gymnasium does, on a small site where they have one."""
-    small = {} if id == "argo/Route-v0" else {"scenario": yard_file}
 
     def one(**arguments):
         env = gym.make(id, **small | arguments)

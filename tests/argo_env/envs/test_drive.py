@@ -23,20 +23,11 @@ def env():
 
 
 @pytest.fixture
-def make(yard_file):
+def make(yard_file, closing):
     """Makes environments on the yard."""
-    made = []
-
-    def one(**arguments):
-        env = gym.make(
-            "argo/Drive-v0", **{"scenario": yard_file} | arguments, disable_env_checker=True
-        )
-        made.append(env)
-        return env
-
-    yield one
-    for env in made:
-        env.close()
+    return lambda **arguments: closing(
+        gym.make("argo/Drive-v0", **{"scenario": yard_file} | arguments, disable_env_checker=True)
+    )
 
 
 def follow(observation):

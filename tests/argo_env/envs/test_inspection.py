@@ -7,7 +7,7 @@ import pytest
 import argo_env  # noqa: F401
 from argo_compiler.base.errors import ArgoError
 from argo_env.drives.drive import Incident, Trouble
-from argo_env.drives.route import RouteDrive
+from argo_env.drives.timed_drive import RouteDrive
 from argo_env.envs.inspection import ABNORMAL, DEAD, DOCKED, FINDING, READING
 from argo_env.robot.pose import BodyPose
 from argo_env.run.session import simulate
@@ -17,17 +17,10 @@ CHECKPOINTS = 20  # of the site
 
 
 @pytest.fixture
-def make():
-    made = []
-
-    def one(**arguments):
-        env = gym.make("argo/Inspect-v0", disable_env_checker=True, **arguments).unwrapped
-        made.append(env)
-        return env
-
-    yield one
-    for env in made:
-        env.close()
+def make(closing):
+    return lambda **arguments: closing(
+        gym.make("argo/Inspect-v0", disable_env_checker=True, **arguments).unwrapped
+    )
 
 
 def end_dock(observation):

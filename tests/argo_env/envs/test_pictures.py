@@ -445,7 +445,7 @@ def test_a_window_shows_the_state_after_the_step(monkeypatch):
     monkeypatch.setenv("MPLBACKEND", "agg")  # windows are drawn in memory
     env = RouteEnv(checkpoints=5, render_mode="human")
     shown = []
-    monkeypatch.setattr("argo_env.envs.rendering.FigureWindow.show", lambda _, p: shown.append(p))
+    monkeypatch.setattr("argo_env.envs.episode.FigureWindow.show", lambda _, p: shown.append(p))
     env.reset(seed=0)
     env.step(int(np.flatnonzero(env.action_masks())[-1]))
     env.render_mode = "rgb_array"

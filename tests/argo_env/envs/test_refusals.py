@@ -11,10 +11,8 @@ from gymnasium.error import ResetNeeded
 
 import argo_env  # noqa: F401
 from argo_compiler.base.errors import ArgoError
-from argo_env.envs import ENVIRONMENTS
 from argo_env.envs.drive import DriveEnv
-from argo_env.envs.inspection import InspectEnv
-from argo_env.envs.inspection_options import draw_faults
+from argo_env.envs.inspection import InspectEnv, draw_faults
 from argo_env.envs.route import RouteEnv
 from argo_env.envs.route_batch import RouteVectorEnv
 from argo_env.faults.kinds import settle
@@ -26,17 +24,9 @@ CHOICES = (-1, 999, None, "dock", np.array([0, 1]), 1.5, np.float64(1.0))
 COMMANDS = (np.zeros(2), np.full(3, math.nan), None, "ahead", 1.0, np.full(3, math.inf))
 
 
-@pytest.fixture(params=sorted(ENVIRONMENTS))
-def id(request):
-    return request.param
-
-
 @pytest.fixture
-def env(id, yard_file):
-    small = {} if id == "argo/Route-v0" else {"scenario": yard_file}
-    made = gym.make(id, disable_env_checker=True, **small).unwrapped
-    yield made
-    made.close()
+def env(id, small, closing):
+    return closing(gym.make(id, disable_env_checker=True, **small).unwrapped)
 
 
 def an_action(env, observation):

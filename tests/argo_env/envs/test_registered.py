@@ -25,24 +25,12 @@ RESETS = {"argo/Route-v0": 1000}  # for the others: 30
 PAGE = 4096  # bytes
 
 
-@pytest.fixture(params=IDS)
-def id(request):
-    return request.param
-
-
 @pytest.fixture
-def make(id, yard_file):
+def make(id, small, closing):
     """Makes environments of one kind, on a small site where they have one, and closes them."""
-    made, small = [], {} if id == "argo/Route-v0" else {"scenario": yard_file}
-
-    def one(**arguments):
-        env = gym.make(id, disable_env_checker=True, **small | arguments).unwrapped
-        made.append(env)
-        return env
-
-    yield one
-    for env in made:
-        env.close()
+    return lambda **arguments: closing(
+        gym.make(id, disable_env_checker=True, **small | arguments).unwrapped
+    )
 
 
 @pytest.fixture(scope="module")

@@ -3,10 +3,8 @@
 import pytest
 
 from argo_env.evaluation.case import EvaluationCase
-from argo_env.evaluation.durations import duration_curve
-from argo_env.evaluation.places import failure_places_of
 from argo_env.evaluation.plan import EvaluationPlan
-from argo_env.evaluation.results import EvaluationResults
+from argo_env.evaluation.results import EvaluationResults, duration_curve, failure_places_of
 from argo_env.evaluation.row import RunOutcome, RunRow
 from argo_env.run.spec import RunSpec
 

@@ -2,16 +2,14 @@
 
 import pytest
 
-from argo_env.evaluation.carrying_out import WorkOrder, carry_out
 from argo_env.evaluation.case import EvaluationCase
-from argo_env.evaluation.detection import detections
-from argo_env.evaluation.false_alarms import false_alarms
+from argo_env.evaluation.detection import detections, false_alarms
+from argo_env.evaluation.evaluating import WorkOrder, carry_out
 from argo_env.faults.reading import decode_faults
 from argo_env.files import resources
 from argo_env.planning.opening import open_site
-from argo_env.run.conditions import RunConditions, ValueProfile
 from argo_env.run.session import simulate
-from argo_env.run.spec import RunSpec
+from argo_env.run.spec import RunConditions, RunSpec, ValueProfile
 from argo_planner.use_cases.importing import Upload, import_mission
 from tests.campaigns.fault_causes import causes_of
 from tests.campaigns.fault_pairs import draw

@@ -3,9 +3,9 @@
 import pytest
 
 from argo_compiler.base.errors import Conflict
-from argo_env.evaluation.carrying_out import WorkOrder
 from argo_env.evaluation.case import EvaluationCase
 from argo_env.evaluation.controlled import with_drive
+from argo_env.evaluation.evaluating import WorkOrder
 from argo_env.evaluation.folder import digest_of, kept_plan, open_rows, read_results
 from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.rates import IntervalMethod

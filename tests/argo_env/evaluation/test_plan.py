@@ -9,7 +9,7 @@ from argo_compiler.base.errors import Conflict, Invalid
 from argo_env.evaluation.plan import parse_seeds
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.worlds import Variation
-from argo_env.faults.distribution import FaultDistribution
+from argo_env.faults.reading import FaultDistribution
 from argo_env.run.spec import RunSpec
 
 

@@ -14,7 +14,6 @@ from argo_env.evaluation.case import EvaluationCase
 from argo_env.evaluation.comparison import compare_plans
 from argo_env.evaluation.detection import FaultDetection
 from argo_env.evaluation.plan import EvaluationPlan, Stopping
-from argo_env.evaluation.report.failing import reasons
 from argo_env.evaluation.report.page import (
     comparison_page,
     evaluation_page,
@@ -22,6 +21,7 @@ from argo_env.evaluation.report.page import (
     write_evaluation_report,
 )
 from argo_env.evaluation.report.picture import PALETTE
+from argo_env.evaluation.report.sections import reasons
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome, RunRow

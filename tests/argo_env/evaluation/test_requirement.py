@@ -10,7 +10,7 @@ from argo_env.evaluation.detection import FaultDetection
 from argo_env.evaluation.file import decode_evaluation
 from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.rates import Decision
-from argo_env.evaluation.report.rates import other_rates
+from argo_env.evaluation.report.sections import other_rates
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome, row_without_end

@@ -3,7 +3,7 @@
 import os
 import signal
 
-from argo_env.evaluation.carrying_out import WorkOrder, carry_out
+from argo_env.evaluation.evaluating import WorkOrder, carry_out
 from argo_env.evaluation.row import RunOutcome, RunRow, row_without_end
 
 

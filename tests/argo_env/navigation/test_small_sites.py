@@ -7,8 +7,7 @@ import pytest
 from argo_compiler.base.errors import ArgoError, Unreachable
 from argo_compiler.base.model import Pose
 from argo_env.navigation import Navigator
-from argo_env.robot.calibration import Calibration
-from argo_env.robot.spec import load_robot
+from argo_env.robot.spec import Calibration, load_robot
 from argo_env.site import make_site
 from argo_env.site.spec import SiteSpec
 

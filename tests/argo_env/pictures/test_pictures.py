@@ -1,3 +1,4 @@
+import io
 import math
 import os
 import signal
@@ -5,18 +6,26 @@ import sys
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from PIL import Image
 
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Mission, Task
-from argo_env.pictures import check_film, frames, overview, write_film, write_overview
+from argo_env.files import cache
+from argo_env.pictures import check_film, film, overview, write_film, write_overview
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.chase import ChaseCamera
+from argo_env.pictures.light import shadowed, sun_camera
 from argo_env.pictures.motion import RecordedMotion
+from argo_env.pictures.overview import site_camera, still_view, with_robot
 from argo_env.pictures.scene import Scene
+from argo_env.pictures.site_plan import draw_site
+from argo_env.planning.flaws.flaw import Flaw, Mark
 from argo_env.robot.pose import BodyPose
 from argo_env.run.record import PathSample, Reading, Result, RunRecord
+from argo_env.site import load_site
 from argo_env.site.storeys import storeys
 
 DURATION = 20.0
@@ -170,17 +179,17 @@ def test_a_gif_has_a_frame_for_each_time(record, umad, robot, tmp_path):
 
 @pytest.mark.long
 def test_several_processes_draw_the_same_film(record, umad, robot, tmp_path, monkeypatch):
-    monkeypatch.setattr(frames, "usable_processors", lambda: 2)
+    monkeypatch.setattr(film, "usable_processors", lambda: 2)
     for name, worth_it in (("alone.gif", 10**6), ("together.gif", 2)):
-        monkeypatch.setattr(frames, "_WORTH_IT", worth_it)
+        monkeypatch.setattr(film, "_WORTH_IT", worth_it)
         write_film(record, umad, robot, tmp_path / name, speed=10, fps=4, size=(120, 80))
     assert (tmp_path / "alone.gif").read_bytes() == (tmp_path / "together.gif").read_bytes()
 
 
 def test_a_process_that_draws_and_is_killed_is_told(record, umad, robot, tmp_path, monkeypatch):
-    monkeypatch.setattr(frames, "usable_processors", lambda: 2)
-    monkeypatch.setattr(frames, "_WORTH_IT", 2)
-    monkeypatch.setattr(frames, "_drawn", killed)
+    monkeypatch.setattr(film, "usable_processors", lambda: 2)
+    monkeypatch.setattr(film, "_WORTH_IT", 2)
+    monkeypatch.setattr(film, "_drawn", killed)
     with pytest.raises(ArgoError, match="a process that drew the frames was ended"):
         write_film(record, umad, robot, tmp_path / "film.gif", speed=10, fps=4, size=(120, 80))
     assert list(tmp_path.iterdir()) == []
@@ -235,3 +244,72 @@ def test_a_record_of_another_site_is_refused(record, umad, robot, tmp_path):
         write_film(other, umad, robot, tmp_path / "film.gif")
     with pytest.raises(ArgoError, match="elsewhere"):
         write_overview(other, umad, robot, tmp_path / "site.png")
+
+
+@pytest.mark.parametrize("words", [1, 100])
+def test_a_mark_far_outside_is_drawn_at_the_edge(words):
+    site = load_site("darmstadt")
+    flaw = Flaw("wrong " * words, (Mark(1, -500.0, 900.0),))
+    drawn = Image.open(io.BytesIO(draw_site(site, [flaw])))
+    plain = Image.open(io.BytesIO(draw_site(site)))
+    assert plain.size == (1280, 720)
+    assert drawn.height == 720 + 17 * (2 if words == 1 else 4 + 1)
+    corner = (0, 60, 60, 300)  # the north-west of floor 1
+    assert drawn.crop(corner).tobytes() != plain.crop(corner).tobytes()
+
+
+SIZE, MAP = (480, 360), 320
+
+
+@pytest.fixture(scope="module")
+def whole(umad, robot):
+    with Scene(umad, robot) as scene:
+        yield scene
+
+
+@pytest.fixture(scope="module")
+def alone(robot):
+    with Scene(None, robot) as scene:
+        yield scene
+
+
+@pytest.mark.long
+@settings(max_examples=15)
+@given(
+    st.floats(-3.0, 18.0), st.floats(-4.0, 12.0), st.sampled_from([-0.03, 2.5, 5.0, 12.5]),
+    st.floats(-3.0, 3.0),
+)  # fmt: skip
+def test_both_are_equal_pixel_by_pixel(umad, robot, whole, alone, x, y, z, yaw):
+    camera, sun = site_camera(umad, SIZE), sun_camera(umad, MAP)
+    still = still_view(umad, robot, camera, sun)
+    for scene in (whole, alone):
+        scene.place_robot(BodyPose(x, y, z, yaw), robot.arm_raised)
+    put = with_robot(still, alone, camera, sun)
+    seen, lit = whole.look(camera), whole.look(sun)
+    # Where two surfaces are equally near either may be seen.
+    assert (put.view.colours != seen.colours).any(axis=2).mean() < 1e-3
+    finite = np.isfinite(seen.depth)
+    assert (np.isfinite(put.view.depth) == finite).all()
+    assert put.view.depth[finite] == pytest.approx(seen.depth[finite], abs=1e-3)
+    dark = shadowed(camera, seen.depth, sun, lit.depth)
+    assert (put.dark != dark).mean() < 1e-4
+
+
+def test_it_is_rendered_once(umad, robot, tmp_path, monkeypatch):
+    monkeypatch.setenv(cache.VARIABLE, str(tmp_path))
+    camera, sun = site_camera(umad, (80, 60)), sun_camera(umad, 50)
+    first = still_view(umad, robot, camera, sun)
+    monkeypatch.setattr("argo_env.pictures.overview.Scene", None)  # none can be made any more
+    again = still_view(umad, robot, camera, sun)
+    assert (again.view.colours == first.view.colours).all()
+    assert (again.view.depth == first.view.depth).all()
+    assert (again.dark == first.dark).all()
+
+
+def test_another_site_or_camera_is_another_picture(umad, robot, tmp_path, monkeypatch):
+    monkeypatch.setenv(cache.VARIABLE, str(tmp_path))
+    camera, sun = site_camera(umad, (80, 60)), sun_camera(umad, 50)
+    first = still_view(umad, robot, camera, sun)
+    fewer = umad.with_elements(umad.elements[: len(umad.elements) // 2])
+    assert (still_view(fewer, robot, camera, sun).view.colours != first.view.colours).any()
+    assert still_view(umad, robot, site_camera(umad, (60, 80)), sun).view.depth.shape == (80, 60)

@@ -106,7 +106,7 @@ def open_anew(reference):
 @pytest.mark.long
 @pytest.mark.parametrize("reference", ["darmstadt", "yard"])
 def test_what_is_on_disk_equals_what_is_found_anew(reference, yard_file, folder, monkeypatch):
-    monkeypatch.setattr("argo_env.navigation.landmarks._WORTH_IT", 1000)  # as on large sites
+    monkeypatch.setattr("argo_env.navigation.regions._WORTH_IT", 1000)  # as on large sites
     reference = yard_file if reference == "yard" else reference
     first = open_site(reference)
     plain = Navigator(make_site(first.site.spec), first.robot)

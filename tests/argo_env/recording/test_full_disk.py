@@ -6,8 +6,7 @@ import re
 import pytest
 
 from argo_compiler.base.errors import ArgoError
-from argo_env.recording.best_effort import BestEffort
-from argo_env.recording.files import recording_to
+from argo_env.recording.files import BestEffort, recording_to
 from argo_env.recording.reader import read_recording
 from argo_env.run.observer import Observer
 from argo_env.run.session import simulate

@@ -3,18 +3,30 @@
 import json
 import math
 from collections import Counter, defaultdict
+from io import BytesIO
+from types import SimpleNamespace
 
 import jsonschema
 import numpy as np
 import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
+from PIL import Image
+from scipy.spatial.transform import Rotation
 
 from argo_compiler.il import EventKind
+from argo_env.drives.kinematic import KinematicDrive
+from argo_env.faults.checkpoints import DisplacedCheckpoint
+from argo_env.faults.walkway import Brick
+from argo_env.recording.files import recording_to
 from argo_env.recording.scene import finding_scene
+from argo_env.robot.pose import BodyPose
 from argo_env.run.record import Anomaly
+from argo_env.run.rig import Rig
 from argo_env.site.shapes import Box
 from argo_env.site.urdf import COLOURS
+from argo_env.world.world import World
+from tests.argo_env.recording.conftest import SPEC
 
 FOXGLOVE = {
     "/tf": "FrameTransforms",
@@ -287,3 +299,119 @@ def test_path_begins_where_the_robot_is(said) -> None:
         # The step in which the way was planned is a part of it already.
         here, start = poses[round(t, 6)], way.poses[0].position
         assert math.dist((here.x, here.y), (start.x, start.y)) <= 0.1
+
+
+BRICK = Brick(floor=1, place=(6.2, 2.5), size=(0.3, 0.2, 0.1), yaw=30.0)
+MOVED = DisplacedCheckpoint(checkpoint=3, at=10.0, until=20.0, offset=(0.0, 0.05, 0.02), turn=90.0)
+
+
+@pytest.fixture(scope="module")
+def drawn(record_run, yard_navigator, tmp_path_factory):
+    """The scenes of a run with the faults, with their times (s), and where gauge 3 was planned."""
+    file = tmp_path_factory.mktemp("faults") / "run.mcap"
+    record_run(file, SPEC.model_copy(update={"faults": (BRICK, MOVED)}))
+    with file.open("rb") as stream:
+        reader = make_reader(stream, decoder_factories=[DecoderFactory()])
+        said = [
+            (channel.topic, message.log_time / 1e9, scene)
+            for _, channel, message, scene in reader.iter_decoded_messages(
+                ("/site/floor_1", "/checkpoints")
+            )
+        ]
+    return SimpleNamespace(
+        site=[scene for topic, _, scene in said if topic == "/site/floor_1"],
+        checkpoints=[(t, scene) for topic, t, scene in said if topic == "/checkpoints"],
+        planned=yard_navigator.site.checkpoint(3).position,
+    )
+
+
+def test_a_brick_lies_where_it_is(drawn) -> None:
+    (scene,) = drawn.site
+    (cube,) = next(e for e in scene.entities if e.id == "brick").cubes
+    place, size = cube.pose.position, cube.size
+    assert (place.x, place.y, place.z) == pytest.approx((6.2, 2.5, 0.07))
+    assert (size.x, size.y, size.z) == pytest.approx((0.3, 0.2, 0.1))
+
+
+def test_a_checkpoint_is_drawn_where_it_was_moved_to(drawn) -> None:
+    x, y, z = drawn.planned
+    moved = (x, y + 0.05, z + 0.02)
+    for t, scene in drawn.checkpoints:
+        entity = next(e for e in scene.entities if e.id == "checkpoint 3")
+        place = entity.cylinders[0].pose.position
+        there = moved if 10.05 < t < 19.95 else drawn.planned
+        if min(abs(t - 10.0), abs(t - 20.0)) > 0.2:
+            assert (place.x, place.y, place.z) == pytest.approx(there)
+    times = [t for t, _ in drawn.checkpoints]
+    for change in (10.0, 20.0):
+        assert min(abs(t - change) for t in times) <= 0.2, "it is told at once"
+    assert any(10.05 < t < 19.95 for t in times)
+
+
+pytest.importorskip("cv2")
+
+
+@pytest.fixture(scope="module")
+def taken(yard_navigator, tmp_path_factory):
+    """The middle of gauge 1 (m), and the messages that tell of the pictures taken of it."""
+    from argo_env.sensing.vision.sensor import CameraSensor
+
+    file = tmp_path_factory.mktemp("shots") / "run.mcap"
+    site, robot = yard_navigator.site, yard_navigator.robot
+    start = yard_navigator.snap(site.docks[1])
+    view = yard_navigator.plan_to_view(start, 1).end
+    with World(site, robot) as world:
+        drive = KinematicDrive(world, robot)
+        drive.place(BodyPose(view.x, view.y, view.z, view.yaw))
+        world.show_value(1, 3.0)
+        sensor = CameraSensor(world, 1)
+        with recording_to(file) as recorder:
+            recorder.on_begin(Rig(world, yard_navigator, drive, sensor), SPEC)
+            sensor.measure(1, drive.pose)
+            recorder.on_step(4.2, None)
+    messages = defaultdict(list)
+    with file.open("rb") as stream:
+        reader = make_reader(stream, decoder_factories=[DecoderFactory()])
+        topics = ("/camera/image", "/camera/calibration", "/tf_camera")
+        for _, channel, message, said in reader.iter_decoded_messages(topics):
+            messages[channel.topic].append((message.log_time, said))
+    return np.array(site.checkpoint(1).position), messages
+
+
+def test_pictures_are_recorded_when_they_are_taken(taken) -> None:
+    _, messages = taken
+    assert len(messages["/camera/image"]) >= 1
+    counts = {topic: len(rows) for topic, rows in messages.items()}
+    assert len(set(counts.values())) == 1, counts
+    for time, message in messages["/camera/image"]:
+        stamp = message.timestamp.seconds, message.timestamp.nanos
+        assert (time, *stamp) == (4_200_000_000, 4, 200_000_000)
+        assert (message.format, message.frame_id) == ("jpeg", "camera")
+        with Image.open(BytesIO(message.data)) as picture:
+            assert np.asarray(picture).std() > 20.0, "there is something in it"
+
+
+def test_calibration_and_transform_lead_to_the_gauge_in_the_picture(taken) -> None:
+    gauge, messages = taken
+    for (_, image), (_, calibration), (_, frames) in zip(
+        messages["/camera/image"], messages["/camera/calibration"], messages["/tf_camera"],
+        strict=True,
+    ):  # fmt: skip
+        (transform,) = frames.transforms
+        assert (transform.parent_frame_id, transform.child_frame_id) == ("world", "camera")
+        t, q = transform.translation, transform.rotation
+        rotation = Rotation.from_quat([q.x, q.y, q.z, q.w])
+        assert rotation.apply([0.0, 1.0, 0.0])[2] < 0.2, "y points down, or level"
+        column, row, depth = np.array(calibration.P).reshape(3, 4) @ [
+            *rotation.inv().apply(gauge - [t.x, t.y, t.z]), 1.0
+        ]  # fmt: skip
+        assert depth > 0
+        with Image.open(BytesIO(image.data)) as picture:
+            pixels = np.asarray(picture.convert("L")).astype(float)
+        assert (calibration.height, calibration.width) == pixels.shape
+        column, row = round(column / depth), round(row / depth)
+        radius = round(0.06 * calibration.K[0] / depth)
+        face = pixels[row - radius : row + radius, column - radius : column + radius]
+        # The drawn face has ink on it; the sky around the gauge has not.
+        assert face.size > 0.5 * (2 * radius) ** 2
+        assert face.mean() < np.percentile(pixels, 95) - 5.0

@@ -9,8 +9,8 @@ import pytest
 from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, EventKind, Mission, Task, Transition
 from argo_env.faults.plant import GasLeakFault, PlatformAlarm
-from argo_env.report.charge import charge_curve
 from argo_env.report.html import page
+from argo_env.report.timeline import charge_curve
 from argo_env.report.track import beside
 from argo_env.run.record import Anomaly, Interruption
 

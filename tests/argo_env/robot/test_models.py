@@ -7,21 +7,25 @@ import numpy as np
 import pybullet
 import pytest
 import yourdfpy
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from pydantic import ValidationError
 
 from argo_compiler.base.catalog import CheckpointKind
-from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.errors import ArgoError, Invalid
+from argo_compiler.il import Mission, Task
 from argo_env.files import resources
-from argo_env.robot.spec import load_robot, robot_folder
+from argo_env.planning.opening import open_site
+from argo_env.recording.messages import attitude
+from argo_env.robot.pose import BodyPose
+from argo_env.robot.robot_model import add, from_rpy, multiply, read_model, rotate
+from argo_env.robot.spec import RobotSpec, load_robot, robot_folder
+from argo_env.run.session import simulate
+from argo_env.run.spec import RunSpec
+from tests.conftest import examples
 
 CHECKPOINTS = sorted(p.stem for p in (resources.urdf() / "checkpoints").glob("*.urdf"))
 FLIPPERS = ("left_flipper_joint", "right_flipper_joint")
-
-
-@pytest.fixture(scope="module")
-def client():
-    client = pybullet.connect(pybullet.DIRECT)
-    yield client
-    pybullet.disconnect(client)
 
 
 @pytest.fixture
@@ -197,3 +201,115 @@ def test_checkpoint(client, name):
 def test_indicator_covers_the_scale(client, name, low, high):
     _, joints = load(client, resources.urdf() / "checkpoints" / f"{name}.urdf")
     assert joints["indicator"][8:10] == pytest.approx((low, high), abs=1e-5)
+
+
+def without(joint: str, *poses: str) -> RobotSpec:
+    """The tracker without a joint in some of the arm's poses."""
+    robot = load_robot()
+    left = {
+        pose: {name: angle for name, angle in getattr(robot, pose).items() if name != joint}
+        for pose in poses
+    }
+    return robot.model_copy(update=left)
+
+
+@pytest.mark.parametrize("pose", ["arm_stowed", "arm_raised"])
+def test_a_joint_that_only_one_pose_of_the_arm_has(pose: str):
+    odd = without("arm_yaw", pose)
+    with pytest.raises(ValidationError, match="in only one there are: arm_yaw"):
+        RobotSpec(**dict(odd))
+    with pytest.raises(Invalid, match="in only one there are: arm_yaw"):
+        open_site("darmstadt", odd)
+
+
+def test_a_joint_that_the_model_does_not_have():
+    robot = load_robot()
+    arm = {pose: {**getattr(robot, pose), "tail": 0.0} for pose in ("arm_stowed", "arm_raised")}
+    with pytest.raises(Invalid, match=r"name joints of tracker\.urdf; it has no tail"):
+        open_site("darmstadt", robot.model_copy(update=arm))
+    with pytest.raises(Invalid, match=r"the robot's model rover\.urdf can't be read"):
+        open_site("darmstadt", robot.model_copy(update={"urdf": "rover.urdf"}))
+
+
+def test_an_arm_that_does_not_turn_reads_as_the_ideal_sensor_does_and_aims_no_camera():
+    site = open_site("darmstadt", without("arm_yaw", "arm_stowed", "arm_raised"))
+    mission = Mission(tasks=(Task(name="A", action="MEASURE", object_id="1"),))
+    spec = RunSpec(mission=mission, site="darmstadt")
+    assert simulate(spec, site).result.success
+    with pytest.raises(Invalid, match="robot tracker has no arm_yaw: take the sensor `ideal`"):
+        simulate(spec.model_copy(update={"sensor": "camera"}), site)
+
+
+FILE = robot_folder() / load_robot().urdf
+angles = st.floats(-3.0, 3.0)
+
+
+@pytest.fixture(scope="module")
+def body():
+    client = pybullet.connect(pybullet.DIRECT)
+    body = pybullet.loadURDF(str(FILE), physicsClientId=client)
+    yield client, body
+    pybullet.disconnect(client)
+
+
+@settings(deadline=None, max_examples=examples(30))
+@given(st.data())
+def test_links_are_where_pybullet_has_them(body, data) -> None:
+    client, robot = body
+    model = read_model(FILE)
+    root = pybullet.getBasePositionAndOrientation(robot, physicsClientId=client)
+    inertial = pybullet.getDynamicsInfo(robot, -1, physicsClientId=client)[3:5]
+    # PyBullet's base pose is that of the centre of mass.
+    back = pybullet.invertTransform(*inertial)
+    places = {"base_link": pybullet.multiplyTransforms(*root, *back)}
+    numbers = {
+        pybullet.getJointInfo(robot, k, physicsClientId=client)[1].decode(): k
+        for k in range(pybullet.getNumJoints(robot, physicsClientId=client))
+    }
+    assert numbers.keys() == {joint.name for joint in model.joints}
+    waiting = list(model.joints)
+    while waiting:
+        # URDF may name a link before the one that carries it.
+        joint = next(joint for joint in waiting if joint.parent in places)
+        waiting.remove(joint)
+        value = data.draw(angles) if joint.moves else 0.0
+        pybullet.resetJointState(robot, numbers[joint.name], value, physicsClientId=client)
+        position, rotation = joint.at(value)
+        where, how = places[joint.parent]
+        places[joint.child] = add(where, rotate(how, position)), multiply(how, rotation)
+    for joint in model.joints:
+        state = pybullet.getLinkState(
+            robot, numbers[joint.name], computeForwardKinematics=True, physicsClientId=client
+        )
+        position, rotation = places[joint.child]
+        assert position == pytest.approx(state[4], abs=1e-5)
+        assert abs(sum(a * b for a, b in zip(rotation, state[5], strict=True))) == pytest.approx(
+            1.0, abs=1e-6
+        )
+
+
+@settings(deadline=None, max_examples=examples(50))
+@given(st.tuples(angles, angles, angles))
+def test_rpy_means_what_it_means_to_pybullet(rpy) -> None:
+    mine, theirs = from_rpy(rpy), pybullet.getQuaternionFromEuler(rpy)
+    assert abs(sum(a * b for a, b in zip(mine, theirs, strict=True))) == pytest.approx(1.0)
+
+
+@settings(deadline=None, max_examples=examples(20))
+@given(st.tuples(angles, angles, angles))
+def test_a_body_is_recorded_with_its_roll(rpy) -> None:
+    roll, pitch, yaw = rpy
+    mine = attitude(BodyPose(1.0, 2.0, 3.0, yaw, pitch, roll))
+    theirs = pybullet.getQuaternionFromEuler(rpy)
+    assert abs(sum(a * b for a, b in zip(mine, theirs, strict=True))) == pytest.approx(1.0)
+
+
+def test_looks_are_read(body) -> None:
+    client, robot = body
+    looks = read_model(FILE).looks
+    boxes = [look for parts in looks.values() for look in parts]
+    drawn = pybullet.getVisualShapeData(robot, physicsClientId=client)
+    assert len(boxes) == len(drawn)
+    assert sorted(round(look.colour[0], 3) for look in boxes) == sorted(
+        round(shape[7][0], 3) for shape in drawn
+    )

@@ -6,10 +6,9 @@ from argo_compiler.base.errors import NotFound
 from argo_compiler.il import Action, Group, Mission, Task, Transition
 from argo_env.faults.reading import decode_faults
 from argo_env.planning.opening import open_site
-from argo_env.run.conditions import RunConditions
 from argo_env.run.journal import open_journal
 from argo_env.run.session import resume, simulate
-from argo_env.run.spec import RunSpec
+from argo_env.run.spec import RunConditions, RunSpec
 
 START = open_site("umad").site.docks[1]
 GAUGE = open_site("umad").site.checkpoint(4)

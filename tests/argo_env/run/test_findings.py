@@ -17,6 +17,7 @@ from tests.yard import (
     measure,
     mission,
     opened,
+    run,
     run_with,
     simulation_of,
     waypoint,
@@ -41,10 +42,6 @@ def navigator():
 def quiet(navigator):
     """The record of a run in which nothing happened."""
     return run(navigator, PLAN)
-
-
-def run(navigator, plan, *events, values=None):
-    return run_with(plan, fast_rig(navigator, values), events=logged(*events))
 
 
 def answering(*reactions):

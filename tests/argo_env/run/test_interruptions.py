@@ -14,13 +14,13 @@ from argo_compiler.hfsm import Cancel, Occurred, Outcome, Pause, Resume
 from argo_compiler.il import Afterwards, EventKind, Group, OnFailure, Reaction, Response
 from argo_env.formatting import clock
 from argo_env.report import write_report
-from argo_env.report.waiting import waits
+from argo_env.report.rounds import waits
 from argo_env.run.headline import Tone
 from argo_env.run.record import RunRecord
 from argo_env.run.spec import logged
 from argo_env.sensing.sensor import MeasurementError
 from tests.conftest import examples
-from tests.yard import fast_rig, measure, mission, run_with, simulated, waypoint, yard
+from tests.yard import fast_rig, measure, mission, run, run_with, simulated, waypoint, yard
 
 DOCK = Pose(x=1.05, y=1.05, z=0.02)
 SHELTER = Pose(x=3.05, y=1.55, z=0.02)
@@ -30,10 +30,6 @@ NOWHERE = Pose(x=30.0, y=30.0, z=0.02)
 @pytest.fixture(scope="module")
 def navigator():
     return yard()
-
-
-def run(navigator, plan, *events, values=None):
-    return run_with(plan, fast_rig(navigator, values), events=logged(*events))
 
 
 def react(event, response, **fields):

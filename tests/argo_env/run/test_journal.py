@@ -514,19 +514,20 @@ class TestRefusals:
         with pytest.raises(ArgoError, match="damaged from line 21 on"):
             open_journal(path)
 
-    @pytest.mark.parametrize("more", [b"0 {}\n" * 2, b"0 {}\n" * 40, b"0 {}\n0"])
-    def test_more_damage_at_the_end_than_a_kill_leaves(self, whole, tmp_path, more):
+    @pytest.mark.parametrize(
+        ("line_end", "more", "says"),
+        [
+            (b"\n", b"0 {}\n" * 2, "damaged from line"),
+            (b"\n", b"0 {}\n" * 40, "damaged from line"),
+            (b"\n", b"0 {}\n0", "damaged from line"),
+            (b"\r\n", b"", "CR LF"),
+        ],
+    )
+    def test_more_damage_than_a_kill_leaves(self, whole, tmp_path, line_end, more, says):
         path = tmp_path / "run.journal"
-        path.write_bytes(whole.content + more)
-        with pytest.raises(ArgoError, match="damaged from line"):
-            open_journal(path)
-        assert path.read_bytes() == whole.content + more
-
-    def test_line_ends_of_another_system(self, whole, tmp_path):
-        path = tmp_path / "run.journal"
-        content = whole.content.replace(b"\n", b"\r\n")
+        content = whole.content.replace(b"\n", line_end) + more
         path.write_bytes(content)
-        with pytest.raises(ArgoError, match="CR LF"):
+        with pytest.raises(ArgoError, match=says):
             open_journal(path)
         assert path.read_bytes() == content
 

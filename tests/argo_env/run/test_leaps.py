@@ -20,10 +20,9 @@ from argo_compiler.il import (
 )
 from argo_env.faults.reading import decode_faults
 from argo_env.planning.opening import open_site
-from argo_env.run.conditions import RunConditions
 from argo_env.run.observer import Observer
 from argo_env.run.session import simulate
-from argo_env.run.spec import RunSpec, logged
+from argo_env.run.spec import RunConditions, RunSpec, logged
 from tests.conftest import examples
 
 SITE = open_site("umad")
@@ -137,26 +136,18 @@ def outcome(spec, **options) -> str:
 
 
 EXAMPLES = examples(60)
-
-
-@pytest.mark.parametrize("seed", range(EXAMPLES))
-def test_the_record_and_the_journal_are_those_of_step_by_step(seed, tmp_path):
-    spec = spec_of(seed)
-    slow = outcome(spec, observers=[StepByStep()], journal=tmp_path / "slow")
-    assert outcome(spec) == slow
-    assert outcome(spec, journal=tmp_path / "fast") == slow
-    assert (tmp_path / "fast").read_bytes() == (tmp_path / "slow").read_bytes()
-
-
-IN_A_WORLD = [
-    pytest.param(seed, marks=pytest.mark.long if seed >= 3 else ())
-    for seed in range(max(4, EXAMPLES // 5))
+CASES = [
+    *((seed, "route") for seed in range(EXAMPLES)),
+    *(
+        pytest.param(1000 + seed, "kinematic", marks=pytest.mark.long if seed >= 3 else ())
+        for seed in range(max(4, EXAMPLES // 5))
+    ),
 ]
 
 
-@pytest.mark.parametrize("seed", IN_A_WORLD)
-def test_a_robot_in_a_world_does_what_it_does_step_by_step(seed, tmp_path):
-    spec = spec_of(1000 + seed, "kinematic")
+@pytest.mark.parametrize(("seed", "drive"), CASES)
+def test_the_record_and_the_journal_are_those_of_step_by_step(seed, drive, tmp_path):
+    spec = spec_of(seed, drive)
     slow = outcome(spec, observers=[StepByStep()], journal=tmp_path / "slow")
     assert outcome(spec) == slow
     assert outcome(spec, journal=tmp_path / "fast") == slow

@@ -1,4 +1,4 @@
-"""Runs of missions on UMAD: what the record says, and what the robot did."""
+"""Runs of missions on UMAD: what may be asked for, what the record says, and what the robot did."""
 
 import math
 from itertools import pairwise
@@ -8,17 +8,22 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import argo_env.run.ending
-from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.errors import ArgoError, Invalid
 from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, Condition, ConditionType, Group, Mission, Task, Transition
 from argo_compiler.il.docked import at_dock
+from argo_env.faults.walkway import Brick
 from argo_env.navigation import Path
 from argo_env.navigation.path import Motion
-from argo_env.robot.calibration import MotionKind
 from argo_env.robot.pose import BodyPose
-from argo_env.run.record import RunRecord
+from argo_env.robot.spec import MotionKind
+from argo_env.run.drives_and_sensors import DRIVES
+from argo_env.run.journal import open_journal
+from argo_env.run.record import Anomaly, RunRecord
+from argo_env.run.rig import true_values
+from argo_env.run.session import resume
 from argo_env.run.simulation import SAMPLE_PERIOD
-from tests.yard import simulated
+from tests.yard import Watching, measure, opened, simulated
 
 FRONT = Pose(x=8.05, y=-2.05, z=-0.03, yaw=0.0)
 
@@ -30,10 +35,6 @@ def start(pose=FRONT, **fields):
 def waypoint(name, x, y, z=-0.03, degrees=0.0, **fields):
     pose = Pose(x=x, y=y, z=z, yaw=math.radians(degrees))
     return Task(name=name, action=Action.WAYPOINT, pose=pose, **fields)
-
-
-def measure(id, **fields):
-    return Task(name=f"MEASURE {id}", action=Action.MEASURE, object_id=str(id), **fields)
 
 
 def mission(*tasks, **fields):
@@ -375,3 +376,121 @@ def test_any_order_of_checkpoints_succeeds(navigator, ids):
     assert [r.checkpoint for r in record.readings] == ids
     assert record.contacts == ()
     assert max(abs(s.pitch) for s in record.path) <= math.radians(36)
+
+
+@pytest.fixture(scope="module")
+def two_places():
+    here, there = Pose(x=8.05, y=-2.05, z=-0.03), Pose(x=8.55, y=-2.05, z=-0.03)
+    return Mission(
+        tasks=(
+            Task(
+                name="START", action=Action.START, pose=here, transitions=(Transition(target="A"),)
+            ),
+            Task(name="A", action=Action.WAYPOINT, pose=there),
+        )
+    )
+
+
+def test_record_says_what_it_was_made_with(two_places, navigator):
+    record = simulated(two_places, navigator, seed=11)
+    assert (record.site, record.robot) == ("umad", "tracker")
+    assert (record.drive, record.sensor) == ("kinematic", "ideal")
+    assert record.seed == 11
+    assert record.mission == two_places
+
+
+def test_unknown_drive(two_places, navigator):
+    with pytest.raises(ArgoError, match="no drive `rocket`; there are: route, kinematic, tracked"):
+        simulated(two_places, navigator, drive="rocket")
+    assert set(DRIVES) >= {"kinematic"}
+
+
+def test_unknown_sensor(two_places, navigator):
+    with pytest.raises(ArgoError, match="no sensor `nose`; there are: ideal"):
+        simulated(two_places, navigator, sensor="nose")
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({99: 1.0}, "umad has no checkpoint 99"),
+        ({1: 10.1}, r"checkpoint 1 \(pressure gauge 1\) shows 0 to 10 bar, not 10.1"),
+        ({4: -0.1}, "shows 0 to 90 deg, not -0.1"),
+    ],
+)
+def test_values_that_make_no_sense(two_places, navigator, values, message):
+    with pytest.raises(ArgoError, match=message):
+        simulated(two_places, navigator, values=values)
+
+
+def test_given_values_replace_drawn_ones(umad):
+    drawn, given = true_values(umad, 5, {}), true_values(umad, 5, {1: 0.0, 2: 100.0})
+    assert given == drawn | {1: 0.0, 2: 100.0}
+
+
+def test_window_without_a_display(two_places, navigator, monkeypatch):
+    monkeypatch.delenv("DISPLAY", raising=False)
+    with pytest.raises(ArgoError, match="DISPLAY"):
+        simulated(two_places, navigator, gui=True)
+
+
+@pytest.mark.parametrize("pace", [0.0, -1.0, float("nan")])
+def test_a_pace_that_makes_no_sense(two_places, navigator, pace):
+    with pytest.raises(Invalid, match="more than 0"):
+        simulated(two_places, navigator, pace=pace)
+
+
+def test_pace_changes_nothing_but_the_time_it_takes(two_places, navigator):
+    seen = []
+    paced = simulated(
+        two_places,
+        navigator,
+        pace=1000.0,
+        observers=[Watching(lambda now, task: seen.append((now, task)))],
+    )
+    assert paced == simulated(two_places, navigator)
+    assert seen[-1] == (paced.result.duration, None)
+
+
+BRICK = Brick(floor=2, place=(12.2958, 5.05), yaw=22.05)
+"""on the walkway behind the east tower: before it the robot has no room to turn"""
+
+
+class KilledError(Exception):
+    """The process is gone."""
+
+
+def test_goes_back_along_the_way_that_it_came(navigator, tmp_path):
+    start = Task(
+        name="START",
+        action=Action.START,
+        pose=navigator.site.docks[1],
+        transitions=(Transition(target="MEASURE"),),
+    )
+    plan = Mission(tasks=(start, Task(name="MEASURE", action=Action.MEASURE, object_id="15")))
+    place = tmp_path / "run.journal"
+
+    def die(news):
+        if isinstance(news, Anomaly):
+            raise KilledError
+
+    with pytest.raises(KilledError):
+        simulated(
+            plan,
+            navigator,
+            seed=11,
+            faults=(BRICK,),
+            journal=place,
+            observers=[Watching(announce=die)],
+        )
+    with open_journal(place) as journal:
+        record = resume(journal, opened(navigator))
+    (found,) = record.anomalies
+    assert record.resumed == (found.t,)
+    assert record.result.success
+    assert record.contacts == ()
+    here, *after = [s for s in record.path if found.t <= s.t <= found.t + 5]
+    straight = [s for s in after if abs(s.yaw - here.yaw) < 0.01]
+    back = max((math.dist((s.x, s.y), (here.x, here.y)), s) for s in straight)[1]
+    ahead = (back.x - here.x) * math.cos(here.yaw) + (back.y - here.y) * math.sin(here.yaw)
+    assert ahead < -0.2

@@ -17,8 +17,7 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
-from argo_env.report.rounds import with_readings
-from argo_env.report.waiting import waits
+from argo_env.report.rounds import waits, with_readings
 from argo_env.run.headline import Tone
 from argo_env.run.journal import open_journal
 from argo_env.run.record import RunRecord, WindowKept

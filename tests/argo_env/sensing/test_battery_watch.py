@@ -8,7 +8,7 @@ from argo_compiler.il import Afterwards, EventKind, Reaction, Response
 from argo_env.drives.battery import Battery
 from argo_env.faults.robot import LowBattery
 from argo_env.robot.pose import BodyPose
-from argo_env.run.conditions import RunConditions
+from argo_env.run.spec import RunConditions
 from argo_env.sensing.onboard import BatteryWatch
 from tests.conftest import examples
 from tests.yard import measure, mission, simulated, yard

@@ -8,7 +8,7 @@ from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import Pause, Resume
 from argo_compiler.il import EventKind
 from argo_env.drives.powertrain import Powertrain
-from argo_env.drives.route import RouteDrive
+from argo_env.drives.timed_drive import RouteDrive
 from argo_env.faults.kinds import FaultFile
 from argo_env.robot.pose import BodyPose
 from argo_env.run.journal import open_journal

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_env.site.decks import Deck
+from argo_env.site.build import Deck
 
 FIELD = 0.5
 SIDE = 10  # fields

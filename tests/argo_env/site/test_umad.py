@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from argo_compiler.base.errors import NotFound
-from argo_env.site.equipment import DOCK_DISTANCE
+from argo_env.site.build import DOCK_DISTANCE
 from argo_env.site.shapes import Role
 from argo_env.site.site import site_names
 from argo_env.site.stairs import mouths

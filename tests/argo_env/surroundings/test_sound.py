@@ -9,16 +9,18 @@ from argo_env.site.shapes import Role
 from argo_env.surroundings import GasLeak, PumpFault, Weather
 from argo_env.surroundings.heat import temperatures, warmest
 from argo_env.surroundings.sound import (
+    ABSORPTION,
     ALARM_TONE,
     BEARING_ORDER,
     LENGTH,
     RATE,
     REFERENCE,
+    SHADOW,
     alarm_sound,
+    leak_level,
     pump_sound,
     shaft_rate,
 )
-from argo_env.surroundings.ultrasound import ABSORPTION, SHADOW, leak_level
 from tests.conftest import examples
 
 PUMPS = st.sampled_from(["pump P-301", "pump P-302", "P-9"])

@@ -7,10 +7,10 @@ import pytest
 
 from argo_compiler.base.model import Pose
 from argo_env.drives.drive import DriveStatus, Trouble
-from argo_env.drives.tracked.drive import TrackedDrive
-from argo_env.drives.tracked.stall_watch import WINDOW, StallWatch
+from argo_env.drives.tracked.drive import WINDOW, StallWatch, TrackedDrive
 from argo_env.navigation.path import Motion, Path, wrap
 from argo_env.robot.pose import BodyPose
+from tests.yard import simulated
 
 TOWERS = {"west": ((1.9, 2.8), (1.9, 7.95)), "east": ((12.3, 5.55), (12.3, 5.55))}
 
@@ -250,3 +250,13 @@ def test_twins_drive_the_same_bit_by_bit(drive, ground, robot, navigator):
         assert drive.step() is twin.step()
         assert drive.pose == twin.pose
     twin.body.close()
+
+
+@pytest.mark.long
+def test_mission_1_is_carried_out_without_a_contact(shipped, navigator):
+    mission = shipped("mission_1.txt", start_area=1, end_area=2).mission
+    record = simulated(mission, navigator, seed=3, drive="tracked")
+    assert record.drive == "tracked"
+    assert record.result.success, record.result.verdict
+    assert record.result.docked
+    assert record.contacts == ()

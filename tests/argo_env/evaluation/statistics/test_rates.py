@@ -12,8 +12,13 @@ from hypothesis import strategies as st
 from scipy.stats import binomtest
 
 from argo_compiler.base.errors import Invalid
-from argo_env.evaluation.statistics.rates import clopper_pearson, wilson
-from argo_env.evaluation.statistics.strata import Stratum, allocation, stratified_rate
+from argo_env.evaluation.statistics.rates import (
+    Stratum,
+    allocation,
+    clopper_pearson,
+    stratified_rate,
+    wilson,
+)
 
 EVALUATIONS = 2_000
 COVERAGE = 0.945

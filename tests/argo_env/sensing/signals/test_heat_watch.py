@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
-from argo_env.sensing.signals.heat_watch import HeatWatch, find_spots
-from argo_env.sensing.signals.thermal_camera import HEIGHT, WIDTH, ThermalCamera
+from argo_env.sensing.signals.heat_watch import HEIGHT, WIDTH, HeatWatch, ThermalCamera, find_spots
 from argo_env.surroundings import HotSpot, Surroundings
 from tests.argo_env.sensing.signals.plant import Z, lane, told
 from tests.conftest import examples

@@ -13,8 +13,7 @@ from argo_env.drives.drive import DriveStatus
 from argo_env.drives.kinematic import KinematicDrive
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.signals.site_map import SiteMap
-from argo_env.sensing.signals.terrain_scanner import TerrainScanner
-from argo_env.sensing.signals.terrain_watch import TerrainWatch
+from argo_env.sensing.signals.terrain_watch import TerrainScanner, TerrainWatch
 from argo_env.world.world import World
 from tests.argo_env.sensing.signals.plant import Z, lane, told, with_brick, with_hole
 from tests.conftest import examples

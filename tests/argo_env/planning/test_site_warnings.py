@@ -1,11 +1,12 @@
-"""Poses that a mission measures from: which of them see their checkpoints."""
+"""What of a mission is odd on its site: poses that do not see their checkpoints, and speeds."""
 
 import math
 
 import pytest
 
 from argo_compiler.base.model import Pose
-from argo_env.planning.poses_to_read_from import unseen_from_poses
+from argo_env.planning.site_warnings import too_fast, unseen_from_poses
+from argo_env.robot.spec import load_robot
 from tests.yard import measure, mission, opened, yard
 
 
@@ -38,3 +39,17 @@ def test_one_where_the_robot_can_not_stand_is_not_its_matter(site):
 
 def test_without_poses_nothing_is_looked_at(site):
     assert list(unseen_from_poses(mission(measure(1), measure(2)), site)) == []
+
+
+@pytest.mark.parametrize("speed", [None, 0.1, 0.4])
+def test_a_speed_that_the_robot_drives_at(speed):
+    assert list(too_fast(mission(measure(1, velocity=speed)), load_robot())) == []
+
+
+def test_one_that_it_is_not_known_to_drive_at():
+    (finding,) = too_fast(mission(measure(1, velocity=5.0), measure(2)), load_robot())
+    assert finding.code == "site.faster-than-robot"
+    assert finding.severity == "warning"
+    assert "at 5 m/s" in finding.message
+    assert "0.4 m/s" in finding.message
+    assert finding.subject == "tasks['MEASURE 1'].velocity"

@@ -1,4 +1,5 @@
-"""Whether a mission's checkpoints can be read from the poses that it gives for that."""
+"""What of a mission is odd on its site: poses that checkpoints can't be read from, and speeds that
+the robot is not known to drive at."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -12,6 +13,7 @@ from argo_compiler.il import Action, Mission, Task
 if TYPE_CHECKING:
     from argo_env.navigation import Navigator
     from argo_env.planning.opening import OpenedSite
+    from argo_env.robot.spec import RobotSpec
 
 
 def unseen_from_poses(mission: Mission, site: "OpenedSite") -> Iterator[Diagnostic]:
@@ -52,3 +54,20 @@ def _why_unseen(task: Task, pose: Pose, navigator: "Navigator") -> str | None:
     except Unreachable:
         return None
     return None
+
+
+def too_fast(mission: Mission, robot: "RobotSpec") -> Iterator[Diagnostic]:
+    """A warning for each task whose way is to be driven faster than the robot's own speed, with
+    which all else counts."""
+    for task in mission.tasks:
+        if task.velocity is None or task.velocity <= robot.speed:
+            continue
+        yield Diagnostic(
+            code="site.faster-than-robot",
+            severity=Severity.WARNING,
+            message=f"the way to task '{task.name}' is to be driven at {task.velocity:g} m/s; the "
+            f"robot {robot.name} drives at {robot.speed:g} m/s, and is not known to go any faster",
+            hint=f"ask for at most {robot.speed:g} m/s",
+            subject=subject_of("tasks", task.name, ".velocity"),
+            span=task.source,
+        )

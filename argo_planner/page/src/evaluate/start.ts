@@ -6,7 +6,7 @@ import { parts } from "../run/parts";
 import { broken, mission } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { figure } from "../ui/figures";
 import { icon } from "../ui/icons";
 import { elsewhere, evaluate, evaluation, evaluations } from "./evaluation";
@@ -19,7 +19,6 @@ const SHARES = ["charge", "capacity", "speed"] as const;
 @customElement("argo-evaluate-start")
 export class EvaluateStart extends PageElement {
   static override styles = [
-    look,
     parts,
     css`
       form,

@@ -3,7 +3,7 @@
 
 import { tell } from "../state/notices";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, property, state } from "../ui/element";
+import { css, customElement, html, nothing, PageElement, property, state } from "../ui/element";
 
 export interface Option {
   readonly value: string;
@@ -17,56 +17,53 @@ let count = 0;
 
 @customElement("argo-field")
 export class FormField extends PageElement {
-  static override styles = [
-    look,
-    css`
-      :host {
-        margin-bottom: 8px;
-      }
-      label {
-        display: block;
-        margin-bottom: 2px;
-        color: var(--dim);
-        font-size: 12px;
-      }
-      .line {
-        display: flex;
-        align-items: center;
-        gap: 6px;
-      }
-      input,
-      select,
-      textarea {
-        width: 100%;
-        min-width: 0;
-      }
-      textarea {
-        min-height: 52px;
-        resize: vertical;
-      }
-      :host([kind="check"]) .line {
-        justify-content: start;
-      }
-      :host([kind="check"]) input {
-        width: auto;
-      }
-      :host([kind="check"]) label {
-        margin: 0;
-        color: inherit;
-        font-size: inherit;
-      }
-      .wrong {
-        margin-top: 2px;
-        color: var(--bad);
-        font-size: 12px;
-      }
-      .note {
-        flex: none;
-        color: var(--dim);
-        font-size: 12px;
-      }
-    `,
-  ];
+  static override styles = css`
+    :host {
+      margin-bottom: 8px;
+    }
+    label {
+      display: block;
+      margin-bottom: 2px;
+      color: var(--dim);
+      font-size: 12px;
+    }
+    .line {
+      display: flex;
+      align-items: center;
+      gap: 6px;
+    }
+    input,
+    select,
+    textarea {
+      width: 100%;
+      min-width: 0;
+    }
+    textarea {
+      min-height: 52px;
+      resize: vertical;
+    }
+    :host([kind="check"]) .line {
+      justify-content: start;
+    }
+    :host([kind="check"]) input {
+      width: auto;
+    }
+    :host([kind="check"]) label {
+      margin: 0;
+      color: inherit;
+      font-size: inherit;
+    }
+    .wrong {
+      margin-top: 2px;
+      color: var(--bad);
+      font-size: 12px;
+    }
+    .note {
+      flex: none;
+      color: var(--dim);
+      font-size: 12px;
+    }
+  `;
 
   @property() label = "";
   @property({ reflect: true }) kind: "text" | "long" | "select" | "check" = "text";

@@ -7,7 +7,7 @@ import { isTaskKey, nameOfKey } from "../model/outline";
 import { editHere } from "../state/commands";
 import { mission, planId, selection, tasksByName } from "../state/plan";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import type { FormField } from "./field";
 import { groupForm } from "./group-form";
 import { headerForm } from "./header-form";
@@ -17,62 +17,59 @@ import { taskForm } from "./task-form";
 
 @customElement("argo-properties")
 export class PropertiesPanel extends PageElement {
-  static override styles = [
-    look,
-    css`
-      :host {
-        padding: 12px;
-      }
-      h2,
-      h3 {
-        margin: 4px 0 8px;
-      }
-      h3 {
-        margin-top: 14px;
-      }
-      p {
-        margin-bottom: 8px;
-      }
-      .title {
-        display: flex;
-        align-items: start;
-        justify-content: space-between;
-      }
-      .two,
-      .four {
-        display: grid;
-        grid-template-columns: 1fr 1fr;
-        column-gap: 8px;
-      }
-      fieldset {
-        margin: 0 0 8px;
-        padding: 4px 8px 6px;
-        border: 1px solid var(--line);
-        border-radius: 6px;
-      }
-      legend {
-        padding: 0 4px;
-        color: var(--dim);
-      }
-      .way {
-        margin-bottom: 10px;
-        padding: 8px;
-        border-left: 3px solid var(--accent);
-        background: var(--ground);
-      }
-      details {
-        margin: 8px 0;
-        border-top: 1px solid var(--line);
-      }
-      summary {
-        padding: 6px 0;
-        cursor: pointer;
-      }
-      .error {
-        color: var(--bad);
-      }
-    `,
-  ];
+  static override styles = css`
+    :host {
+      padding: 12px;
+    }
+    h2,
+    h3 {
+      margin: 4px 0 8px;
+    }
+    h3 {
+      margin-top: 14px;
+    }
+    p {
+      margin-bottom: 8px;
+    }
+    .title {
+      display: flex;
+      align-items: start;
+      justify-content: space-between;
+    }
+    .two,
+    .four {
+      display: grid;
+      grid-template-columns: 1fr 1fr;
+      column-gap: 8px;
+    }
+    fieldset {
+      margin: 0 0 8px;
+      padding: 4px 8px 6px;
+      border: 1px solid var(--line);
+      border-radius: 6px;
+    }
+    legend {
+      padding: 0 4px;
+      color: var(--dim);
+    }
+    .way {
+      margin-bottom: 10px;
+      padding: 8px;
+      border-left: 3px solid var(--accent);
+      background: var(--ground);
+    }
+    details {
+      margin: 8px 0;
+      border-top: 1px solid var(--line);
+    }
+    summary {
+      padding: 6px 0;
+      cursor: pointer;
+    }
+    .error {
+      color: var(--bad);
+    }
+  `;
 
   override connectedCallback(): void {
     super.connectedCallback();

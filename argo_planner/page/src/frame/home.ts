@@ -7,7 +7,7 @@ import { tell, tellError } from "../state/notices";
 import { wasGone } from "../state/plan";
 import { mayPlan, service } from "../state/session";
 import { dateLocale, t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { icon } from "../ui/icons";
 import "./import";
 
@@ -15,59 +15,56 @@ const RETRY_MS = 1_000;
 
 @customElement("argo-home")
 export class PageHome extends PageElement {
-  static override styles = [
-    look,
-    css`
-      :host {
-        overflow: auto;
+  static override styles = css`
+    :host {
+      overflow: auto;
+    }
+    .page {
+      max-width: 860px;
+      margin: 24px auto;
+      padding: 0 16px;
+    }
+    .bar {
+      display: flex;
+      flex-wrap: wrap;
+      gap: 8px;
+      margin-bottom: 16px;
+    }
+    table {
+      width: 100%;
+      margin-top: 18px;
+      border-collapse: collapse;
+    }
+    th {
+      text-align: left;
+      font-weight: 500;
+      color: var(--dim);
+    }
+    td,
+    th {
+      padding: 6px 8px;
+      border-bottom: 1px solid var(--line);
+    }
+    td:first-child {
+      overflow-wrap: anywhere;
+    }
+    td.number {
+      white-space: nowrap;
+    }
+    a {
+      color: var(--accent);
+      font-weight: 600;
+    }
+    summary {
+      margin-top: 20px;
+      cursor: pointer;
+    }
+    @media (max-width: 560px) {
+      .wide {
+        display: none;
       }
-      .page {
-        max-width: 860px;
-        margin: 24px auto;
-        padding: 0 16px;
-      }
-      .bar {
-        display: flex;
-        flex-wrap: wrap;
-        gap: 8px;
-        margin-bottom: 16px;
-      }
-      table {
-        width: 100%;
-        margin-top: 18px;
-        border-collapse: collapse;
-      }
-      th {
-        text-align: left;
-        font-weight: 500;
-        color: var(--dim);
-      }
-      td,
-      th {
-        padding: 6px 8px;
-        border-bottom: 1px solid var(--line);
-      }
-      td:first-child {
-        overflow-wrap: anywhere;
-      }
-      td.number {
-        white-space: nowrap;
-      }
-      a {
-        color: var(--accent);
-        font-weight: 600;
-      }
-      summary {
-        margin-top: 20px;
-        cursor: pointer;
-      }
-      @media (max-width: 560px) {
-        .wide {
-          display: none;
-        }
-      }
-    `,
-  ];
+    }
+  `;
 
   @state() private missions: readonly PlanSummary[] | null = null;
   @state() private bin: readonly PlanSummary[] = [];

@@ -5,7 +5,7 @@ import { tell, tellError } from "../state/notices";
 import { mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 
 interface AreaChoice {
   readonly file: File;
@@ -15,36 +15,33 @@ interface AreaChoice {
 
 @customElement("argo-import")
 export class MissionImport extends PageElement {
-  static override styles = [
-    look,
-    css`
-      .drop {
-        display: grid;
-        justify-items: center;
-        gap: 6px;
-        padding: 18px;
-        border: 2px dashed var(--line);
-        border-radius: var(--round);
-        text-align: center;
-      }
-      .drop.over {
-        border-color: var(--accent);
-        background: var(--chosen);
-      }
-      dialog {
-        max-width: min(560px, calc(100vw - 24px));
-        border: 1px solid var(--line);
-        border-radius: 10px;
-        background: var(--raised);
-        color: var(--text);
-      }
-      label {
-        display: grid;
-        gap: 2px;
-        margin: 10px 0;
-      }
-    `,
-  ];
+  static override styles = css`
+    .drop {
+      display: grid;
+      justify-items: center;
+      gap: 6px;
+      padding: 18px;
+      border: 2px dashed var(--line);
+      border-radius: var(--round);
+      text-align: center;
+    }
+    .drop.over {
+      border-color: var(--accent);
+      background: var(--chosen);
+    }
+    dialog {
+      max-width: min(560px, calc(100vw - 24px));
+      border: 1px solid var(--line);
+      border-radius: 10px;
+      background: var(--raised);
+      color: var(--text);
+    }
+    label {
+      display: grid;
+      gap: 2px;
+      margin: 10px 0;
+    }
+  `;
 
   @state() private over = false;
   @state() private choice: AreaChoice | null = null;

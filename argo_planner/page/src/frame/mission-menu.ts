@@ -5,7 +5,7 @@ import { commandId, settled } from "../state/commands";
 import { tell, tellError } from "../state/notices";
 import { planId, planName, revision, take, versions } from "../state/plan";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon } from "../ui/icons";
 import { closed, closeLeft } from "../ui/popover";
 
@@ -13,50 +13,47 @@ const FORMATS = ["script", "json", "scxml", "btcpp", "flexbe", "mermaid", "dot",
 
 @customElement("argo-mission-menu")
 export class MissionMenu extends PageElement {
-  static override styles = [
-    look,
-    css`
-      [popover] {
-        position: fixed;
-        inset: 48px auto auto 12vw;
-        width: 300px;
-        max-height: 80vh;
-        margin: 0;
-        padding: 12px;
-        overflow: auto;
-        border: 1px solid var(--line);
-        border-radius: var(--round);
-        background: var(--raised);
-        color: var(--text);
-        box-shadow: var(--shadow);
-      }
-      h2 {
-        margin: 12px 0 4px;
-      }
-      .formats {
-        display: flex;
-        flex-wrap: wrap;
-        gap: 4px 12px;
-      }
-      a {
-        color: var(--accent);
-      }
-      form {
-        display: flex;
-        gap: 6px;
-      }
-      ul {
-        margin: 6px 0 0;
-        padding: 0;
-        list-style: none;
-      }
-      li {
-        display: flex;
-        align-items: center;
-        gap: 4px;
-      }
-    `,
-  ];
+  static override styles = css`
+    [popover] {
+      position: fixed;
+      inset: 48px auto auto 12vw;
+      width: 300px;
+      max-height: 80vh;
+      margin: 0;
+      padding: 12px;
+      overflow: auto;
+      border: 1px solid var(--line);
+      border-radius: var(--round);
+      background: var(--raised);
+      color: var(--text);
+      box-shadow: var(--shadow);
+    }
+    h2 {
+      margin: 12px 0 4px;
+    }
+    .formats {
+      display: flex;
+      flex-wrap: wrap;
+      gap: 4px 12px;
+    }
+    a {
+      color: var(--accent);
+    }
+    form {
+      display: flex;
+      gap: 6px;
+    }
+    ul {
+      margin: 6px 0 0;
+      padding: 0;
+      list-style: none;
+    }
+    li {
+      display: flex;
+      align-items: center;
+      gap: 4px;
+    }
+  `;
 
   override render() {
     const texts = t().frame;

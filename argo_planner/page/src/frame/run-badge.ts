@@ -8,26 +8,23 @@ import { run, runIsOn } from "../state/run";
 import { mayOperate } from "../state/session";
 import { panel } from "../state/view";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon } from "../ui/icons";
 
 @customElement("argo-run-badge")
 export class RunBadge extends PageElement {
-  static override styles = [
-    look,
-    css`
-      .run {
-        gap: 0;
-        border: 1px solid var(--line);
-        border-left: 4px solid var(--accent);
-        border-radius: 6px;
-        font-size: 13px;
-      }
-      .run.supervised {
-        border-left-color: var(--person);
-      }
-    `,
-  ];
+  static override styles = css`
+    .run {
+      gap: 0;
+      border: 1px solid var(--line);
+      border-left: 4px solid var(--accent);
+      border-radius: 6px;
+      font-size: 13px;
+    }
+    .run.supervised {
+      border-left-color: var(--person);
+    }
+  `;
 
   override render() {
     const state = run.value;

@@ -2,34 +2,31 @@
 
 import { author, service } from "../state/session";
 import { language, t } from "../texts";
-import { css, customElement, html, look, PageElement } from "../ui/element";
+import { css, customElement, html, PageElement } from "../ui/element";
 import { icon } from "../ui/icons";
 import { closed, closeLeft } from "../ui/popover";
 
 @customElement("argo-settings")
 export class PageSettings extends PageElement {
-  static override styles = [
-    look,
-    css`
-      [popover] {
-        position: fixed;
-        inset: 48px 8px auto auto;
-        width: 260px;
-        margin: 0;
-        padding: 12px;
-        border: 1px solid var(--line);
-        border-radius: var(--round);
-        background: var(--raised);
-        color: var(--text);
-        box-shadow: var(--shadow);
-      }
-      label {
-        display: grid;
-        gap: 2px;
-        margin-bottom: 8px;
-      }
-    `,
-  ];
+  static override styles = css`
+    [popover] {
+      position: fixed;
+      inset: 48px 8px auto auto;
+      width: 260px;
+      margin: 0;
+      padding: 12px;
+      border: 1px solid var(--line);
+      border-radius: var(--round);
+      background: var(--raised);
+      color: var(--text);
+      box-shadow: var(--shadow);
+    }
+    label {
+      display: grid;
+      gap: 2px;
+      margin-bottom: 8px;
+    }
+  `;
 
   override render() {
     const texts = t().frame;

@@ -6,7 +6,7 @@ import { redo, undo, waiting } from "../state/commands";
 import { connected, others, planId, planName, redoable, undoable } from "../state/plan";
 import { mayPlan, service, theme } from "../state/session";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { icon } from "../ui/icons";
 import { keysShown } from "./keys";
 import "./mission-menu";
@@ -15,64 +15,61 @@ import "./settings";
 
 @customElement("argo-topbar")
 export class PageTopbar extends PageElement {
-  static override styles = [
-    look,
-    css`
-      header {
-        display: flex;
-        flex-wrap: wrap;
-        align-items: center;
-        gap: 6px;
-        min-height: 46px;
-        padding: 4px 10px;
-        border-bottom: 1px solid var(--line);
-        background: var(--surface);
+  static override styles = css`
+    header {
+      display: flex;
+      flex-wrap: wrap;
+      align-items: center;
+      gap: 6px;
+      min-height: 46px;
+      padding: 4px 10px;
+      border-bottom: 1px solid var(--line);
+      background: var(--surface);
+    }
+    .name {
+      max-width: 36vw;
+      overflow: hidden;
+      text-overflow: ellipsis;
+      white-space: nowrap;
+      font-size: 16px;
+      font-weight: 600;
+    }
+    input.name {
+      width: 320px;
+    }
+    .people {
+      display: flex;
+      gap: 3px;
+      margin: 0;
+      padding: 0;
+      list-style: none;
+    }
+    .people li {
+      display: grid;
+      place-content: center;
+      width: 28px;
+      height: 28px;
+      border-radius: 50%;
+      background: var(--person-ground);
+      color: var(--person);
+      font-weight: 600;
+      font-size: 12px;
+    }
+    .state {
+      padding: 2px 8px;
+      border-radius: 10px;
+      font-size: 12px;
+    }
+    .state.away {
+      background: var(--warn-ground);
+      color: var(--warn);
+    }
+    @media (max-width: 800px) {
+      .planning {
+        display: none;
       }
-      .name {
-        max-width: 36vw;
-        overflow: hidden;
-        text-overflow: ellipsis;
-        white-space: nowrap;
-        font-size: 16px;
-        font-weight: 600;
-      }
-      input.name {
-        width: 320px;
-      }
-      .people {
-        display: flex;
-        gap: 3px;
-        margin: 0;
-        padding: 0;
-        list-style: none;
-      }
-      .people li {
-        display: grid;
-        place-content: center;
-        width: 28px;
-        height: 28px;
-        border-radius: 50%;
-        background: var(--person-ground);
-        color: var(--person);
-        font-weight: 600;
-        font-size: 12px;
-      }
-      .state {
-        padding: 2px 8px;
-        border-radius: 10px;
-        font-size: 12px;
-      }
-      .state.away {
-        background: var(--warn-ground);
-        color: var(--warn);
-      }
-      @media (max-width: 800px) {
-        .planning {
-          display: none;
-        }
-      }
-    `,
-  ];
+    }
+  `;
 
   @state() private renaming = false;
 

@@ -10,7 +10,7 @@ import { planId, select, selection, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { lookAt, tool } from "../state/view";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, query, state } from "../ui/element";
+import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
 import { icon } from "../ui/icons";
 import { styled } from "../ui/styled";
 import { copyChosen, deleteChosen, groupChosen, paste, renameRow } from "./acting";
@@ -30,7 +30,6 @@ const BEYOND = 12;
 @customElement("argo-list")
 export class MissionList extends PageElement {
   static override styles = [
-    look,
     rowStyles,
     css`
       :host {

@@ -8,7 +8,7 @@ import { run, shownTime } from "../state/run";
 import { mayOperate } from "../state/session";
 import { following } from "../state/view";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { parts, SPEEDS, speedName } from "./parts";
 
@@ -26,7 +26,6 @@ const SIGNS: Record<Simple, Icon> = {
 @customElement("argo-run-controls")
 export class RunControls extends PageElement {
   static override styles = [
-    look,
     parts,
     css`
       .buttons {

@@ -3,7 +3,7 @@
 import type { FaultKind } from "../api/types";
 import { t } from "../texts";
 import { run } from "../texts/run";
-import { css, customElement, html, look, PageElement, property } from "../ui/element";
+import { css, customElement, html, PageElement, property } from "../ui/element";
 import { icon } from "../ui/icons";
 import { parts } from "./parts";
 
@@ -14,7 +14,6 @@ export const FAULTS = Object.keys(run.en.fault) as readonly FaultKind[];
 @customElement("argo-faults")
 export class FaultChoice extends PageElement {
   static override styles = [
-    look,
     parts,
     css`
       li {

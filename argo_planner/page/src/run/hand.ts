@@ -11,7 +11,7 @@ import { run } from "../state/run";
 import { mayOperate } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { blocked, drive, wanted } from "./hand-driver";
 import { parts } from "./parts";
@@ -26,7 +26,6 @@ const PAD: readonly (readonly [Direction, Icon, string])[] = [
 @customElement("argo-run-hand")
 export class RunHand extends PageElement {
   static override styles = [
-    look,
     parts,
     css`
       section {

@@ -7,7 +7,7 @@ import { planId } from "../state/plan";
 import { pastRun, run, runIsOn, showRun, shownRunState } from "../state/run";
 import { panel } from "../state/view";
 import { dateLocale, t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { icon } from "../ui/icons";
 import "./band";
 import "./controls";
@@ -22,7 +22,6 @@ import "./time";
 @customElement("argo-run")
 export class RunPanel extends PageElement {
   static override styles = [
-    look,
     parts,
     css`
       :host {

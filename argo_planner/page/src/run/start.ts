@@ -7,7 +7,7 @@ import { broken, mission } from "../state/plan";
 import { startRun } from "../state/asking";
 import { world } from "../state/world";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { icon } from "../ui/icons";
 import { figure } from "../ui/figures";
 import "./faults";
@@ -19,7 +19,6 @@ const SENSORS = ["ideal", "camera"] as const;
 @customElement("argo-run-start")
 export class RunStart extends PageElement {
   static override styles = [
-    look,
     parts,
     css`
       form {

@@ -8,7 +8,7 @@ import { run } from "../state/run";
 import { mayOperate } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { parts } from "./parts";
 import { FAULTS } from "./faults";
 
@@ -17,7 +17,6 @@ const OWN: readonly string[] = ["time_up"]; // that occur by themselves only
 @customElement("argo-run-tell")
 export class RunTell extends PageElement {
   static override styles = [
-    look,
     parts,
     css`
       .inner {

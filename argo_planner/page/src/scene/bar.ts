@@ -4,7 +4,7 @@ import { runIsOn, shownRun } from "../state/run";
 import { mayPlan } from "../state/session";
 import { following, shownFloor, tool, type Tool } from "../state/view";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, property, state } from "../ui/element";
+import { css, customElement, html, nothing, PageElement, property, state } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { floating } from "./panel";
 import { edgesMove, hidden, hide, labelsShown, pathsShown } from "./settings";
@@ -26,7 +26,6 @@ const SIGNS: Readonly<Record<"hand" | "home" | "above" | "plus" | "minus" | "lef
 @customElement("argo-scene-bar")
 export class SceneBar extends PageElement {
   static override styles = [
-    look,
     floating,
     css`
       :host {

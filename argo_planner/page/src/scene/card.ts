@@ -6,7 +6,7 @@ import { mayPlan } from "../state/session";
 import { look as lookSignal } from "../state/view";
 import { removeObstacle, world } from "../state/world";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, property } from "../ui/element";
+import { css, customElement, html, nothing, PageElement, property } from "../ui/element";
 import { figure } from "../ui/figures";
 import { icon } from "../ui/icons";
 import { heed } from "./heed";
@@ -20,7 +20,6 @@ const [WIDTH, BESIDE, MARGIN] = [250, 26, 8];
 @customElement("argo-scene-card")
 export class SceneCard extends PageElement {
   static override styles = [
-    look,
     floating,
     css`
       :host {

@@ -11,7 +11,7 @@ import { mayPlan } from "../state/session";
 import { shownFloor, tool } from "../state/view";
 import { world } from "../state/world";
 import { t } from "../texts";
-import { customElement, html, look, nothing, PageElement, query } from "../ui/element";
+import { customElement, html, nothing, PageElement, query } from "../ui/element";
 import "./bar";
 import { aboveRobot, besideGhost } from "./beside";
 import "./card";
@@ -38,7 +38,7 @@ const MOST_TIMES = 500;
 
 @customElement("argo-scene")
 export class ScenePanel extends PageElement {
-  static override styles = [look, sceneStyle];
+  static override styles = sceneStyle;
 
   @query("canvas") private readonly canvas!: HTMLCanvasElement;
   @query("#labels") private readonly labels!: HTMLElement;

@@ -4,7 +4,7 @@ import { legsOf, type Leg } from "../model/legs";
 import { broken, mission } from "../state/plan";
 import { hoveredLeg, preview, previewRefused } from "../state/preview";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { barStyles, barView, legWords } from "./bar";
 import { legTable, tableStyles } from "./table";
 import "./totals";
@@ -12,7 +12,6 @@ import "./totals";
 @customElement("argo-strip")
 export class StripPanel extends PageElement {
   static override styles = [
-    look,
     barStyles,
     tableStyles,
     css`

@@ -2,14 +2,14 @@
  * which they have read, with the same look of buttons and fields. */
 
 import { SignalWatcher } from "@lit-labs/preact-signals";
-import { css, LitElement } from "lit";
+import { css, type CSSResultGroup, LitElement } from "lit";
 
 import { keepFocus, noteFocus } from "./focus";
 
 export { css, html, nothing } from "lit";
 export { customElement, property, query, state } from "lit/decorators.js";
 
-export const look = css`
+const look = css`
   :host {
     display: block;
     box-sizing: border-box;
@@ -140,9 +140,11 @@ export const look = css`
   }
 `;
 
-/** An element of the page. */
+/** An element of the page; its own styles come behind those that all have. */
 export class PageElement extends SignalWatcher(LitElement) {
-  static override styles = [look];
+  protected static override finalizeStyles(styles: CSSResultGroup = []) {
+    return super.finalizeStyles([look, styles]);
+  }
 
   constructor() {
     super();

@@ -6,6 +6,7 @@ import type { EvaluationJob, EvaluationStanding, FailedRun, RateTold } from "../
 import { rateCurve } from "../model/rate-curve";
 import { mayPlan } from "../state/session";
 import { dateLocale, t } from "../texts";
+import { options, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { figure, percent, seconds } from "../ui/figures";
 import { icon } from "../ui/icons";
@@ -223,12 +224,10 @@ export class EvaluateResult extends PageElement {
     if (all.length < 2) return nothing;
     return html`<label>
       ${texts.which}
-      <select id="which" @change=${(event: Event) => choose((event.target as HTMLSelectElement).value)}>
-        ${all.map(
-          (one) =>
-            html`<option value=${one.id} .selected=${one.id === job.id}>
-              ${texts.begun(moment(one.begun), texts.states[one.id === job.id ? job.state : one.state])}
-            </option>`,
+      <select id="which" @change=${(event: Event) => choose(valueOf(event))}>
+        ${options(
+          all.map(({ id, begun, state }) => [id, texts.begun(moment(begun), texts.states[id === job.id ? job.state : state])]),
+          job.id,
         )}
       </select>
     </label>`;

@@ -6,6 +6,7 @@ import { parts } from "../run/parts";
 import { broken, mission } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
+import { choice } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { figure } from "../ui/figures";
 import { icon } from "../ui/icons";
@@ -91,12 +92,7 @@ export class EvaluateStart extends PageElement {
         <button class="main" id="evaluate" aria-disabled=${reason !== null || this.starting} aria-describedby="why-not">
           ${icon("gauge", 20)} ${texts.begin}
         </button>
-        <label>
-          ${texts.worlds}
-          <select name="worlds">
-            ${WORLDS.map((count) => html`<option value=${count} ?selected=${count === 100}>${figure(count)}</option>`)}
-          </select>
-        </label>
+        ${choice(texts.worlds, "worlds", WORLDS.map((count) => [count, figure(count)]), 100)}
       </div>
       <p class="reason" id="why-not" ?hidden=${reason === null}>
         ${reason}
@@ -114,12 +110,7 @@ export class EvaluateStart extends PageElement {
             ${texts.width}
             <input name="width" type="number" min="1" max="99" step="any" placeholder="5" />
           </label>
-          <label>
-            ${t().run.drive}
-            <select name="drive">
-              ${DRIVES.map((drive) => html`<option value=${drive}>${t().run.drives[drive]}</option>`)}
-            </select>
-          </label>
+          ${choice(t().run.drive, "drive", DRIVES.map((one) => [one, t().run.drives[one]]))}
           <label>
             ${texts.firstSeed}
             <input name="seed" type="number" min="0" max="2147483648" step="1" value="0" required />

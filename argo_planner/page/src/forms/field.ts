@@ -3,6 +3,7 @@
 
 import { tell } from "../state/notices";
 import { t } from "../texts";
+import { options, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, property, state } from "../ui/element";
 
 export interface Option {
@@ -107,14 +108,9 @@ export class FormField extends PageElement {
         id=${this.id_}
         aria-describedby=${described}
         ?disabled=${this.disabled}
-        @change=${(event: Event) => this.take((event.target as HTMLSelectElement).value)}
+        @change=${this.onChange}
       >
-        ${this.options.map(
-          (option) =>
-            html`<option value=${option.value} ?selected=${option.value === shown} .selected=${option.value === shown}>
-              ${option.label}
-            </option>`,
-        )}
+        ${options(this.options.map(({ value, label }) => [value, label]), shown)}
       </select>`;
     else if (this.kind === "long")
       field = html`<textarea
@@ -159,15 +155,15 @@ export class FormField extends PageElement {
   }
 
   private onInput(event: Event): void {
-    this.typed = (event.target as HTMLInputElement).value;
+    this.typed = valueOf(event);
   }
 
   private onChange(event: Event): void {
-    void this.take((event.target as HTMLInputElement).value);
+    void this.take(valueOf(event));
   }
 
   private onKey(event: KeyboardEvent): void {
-    if (event.key === "Enter" && this.kind !== "long") void this.take((event.target as HTMLInputElement).value);
+    if (event.key === "Enter" && this.kind !== "long") void this.take(valueOf(event));
     else if (event.key === "Escape" && this.typed !== null && !this.taking) this.forget();
     else return;
     event.preventDefault();

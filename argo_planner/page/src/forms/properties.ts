@@ -71,22 +71,16 @@ export class PropertiesPanel extends PageElement {
     }
   `;
 
-  override connectedCallback(): void {
-    super.connectedCallback();
-    addEventListener("open-details", this.focusFirst);
-  }
-
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    removeEventListener("open-details", this.focusFirst);
+  constructor() {
+    super();
+    this.listen("open-details", ({ detail }) => this.focusField(detail));
   }
 
   /** Puts the cursor into the field that is named, or the first one. */
-  private readonly focusFirst = (event: Event): void => {
-    const label = (event as CustomEvent<string | undefined>).detail;
+  private focusField(label: string | undefined): void {
     const fields = [...this.renderRoot.querySelectorAll<FormField>("argo-field")];
     (fields.find((field) => field.label === label) ?? fields[0])?.focus();
-  };
+  }
 
   override render() {
     const open = mission.value;

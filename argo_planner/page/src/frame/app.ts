@@ -1,6 +1,6 @@
 /** The page as a whole: which mission is open, and where its parts stand. */
 
-import { effect, signal } from "@preact/signals-core";
+import { signal } from "@preact/signals-core";
 
 import { untilReached, pause } from "../api/trying";
 import "../evaluate/evaluate";
@@ -136,35 +136,24 @@ export class ArgoApp extends PageElement {
     }
   `;
 
-  private readonly stop: (() => void)[] = [];
   /** The mission that the address names, while it is being read. */
   private readonly opening = signal<string | null>(null);
+
+  constructor() {
+    super();
+    this.listen("hashchange", () => void this.followAddress());
+    // The browser asks whether to leave while something has not been sent.
+    this.listen("beforeunload", (event) => waiting.value > 0 && event.preventDefault());
+    this.watch(() => {
+      document.title = planName.value ? `${planName.value} – Argo` : "Argo";
+    });
+  }
 
   override connectedCallback(): void {
     super.connectedCallback();
     beginSession();
-    addEventListener("hashchange", this.addressChanged);
-    addEventListener("beforeunload", this.beforeLeaving);
-
-    const named = effect(() => {
-      document.title = planName.value ? `${planName.value} – Argo` : "Argo";
-    });
-    this.stop.push(named);
     void this.begin();
   }
-
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    removeEventListener("hashchange", this.addressChanged);
-    removeEventListener("beforeunload", this.beforeLeaving);
-
-    for (const one of this.stop) one();
-  }
-
-  /** The browser asks whether to leave while something has not been sent. */
-  private readonly beforeLeaving = (event: Event): void => {
-    if (waiting.value > 0) event.preventDefault();
-  };
 
   /** Reads what does not depend on the mission; tries again until the service is there. */
   private async begin(): Promise<void> {
@@ -176,8 +165,6 @@ export class ArgoApp extends PageElement {
     };
     await untilReached(() => Promise.all([readService(), readWorld()]), isWanted, RETRY_MS).catch(tellError);
   }
-
-  private readonly addressChanged = (): void => void this.followAddress();
 
   /** Opens what the address says. Whatever is opened meanwhile goes before it. */
   private async followAddress(): Promise<void> {

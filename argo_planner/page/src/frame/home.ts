@@ -7,6 +7,7 @@ import { tell, tellError } from "../state/notices";
 import { wasGone } from "../state/plan";
 import { mayPlan, service } from "../state/session";
 import { dateLocale, t } from "../texts";
+import { iconButton } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { icon } from "../ui/icons";
 import "./import";
@@ -70,18 +71,15 @@ export class PageHome extends PageElement {
   @state() private bin: readonly PlanSummary[] = [];
   private reading = false;
 
+  constructor() {
+    super();
+    this.listen("focus", () => void this.read());
+  }
+
   override connectedCallback(): void {
     super.connectedCallback();
     void this.read();
-    addEventListener("focus", this.refresh);
   }
-
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    removeEventListener("focus", this.refresh);
-  }
-
-  private readonly refresh = (): void => void this.read();
 
   private async read(): Promise<void> {
     const both = () =>
@@ -130,6 +128,7 @@ export class PageHome extends PageElement {
 
   private table() {
     const texts = t().frame;
+    const may = mayPlan();
     if (this.missions === null) return html`<p class="dim">…</p>`;
     if (this.missions.length === 0) return html`<p class="dim">${texts.noMissions}</p>`;
     return html`<table>
@@ -153,15 +152,10 @@ export class PageHome extends PageElement {
               <td class="number">${one.problem ? "" : one.tasks}</td>
               <td class="number wide">${when(one.changed)}</td>
               <td>
-                <button
-                  class="bare icon"
-                  aria-label=${texts.deleteOne(one.name)}
-                  title=${texts.delete}
-                  ?disabled=${!mayPlan()}
-                  @click=${() => this.delete(one)}
-                >
-                  ${icon("bin")}
-                </button>
+                ${iconButton("bin", texts.deleteOne(one.name), () => this.delete(one), {
+                  title: texts.delete,
+                  disabled: !may,
+                })}
               </td>
             </tr>`,
         )}

@@ -68,14 +68,9 @@ export class PageKeys extends PageElement {
 
   @query("dialog") private readonly dialog!: HTMLDialogElement;
 
-  override connectedCallback(): void {
-    super.connectedCallback();
-    addEventListener("keydown", this.onKey);
-  }
-
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    removeEventListener("keydown", this.onKey);
+  constructor() {
+    super();
+    this.listen("keydown", this.onKey);
   }
 
   override updated(): void {

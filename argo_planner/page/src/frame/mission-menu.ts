@@ -5,6 +5,7 @@ import { commandId, settled } from "../state/commands";
 import { tell, tellError } from "../state/notices";
 import { planId, planName, revision, take, versions } from "../state/plan";
 import { t } from "../texts";
+import { iconButton } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon } from "../ui/icons";
 import { closed, closeLeft } from "../ui/popover";
@@ -58,14 +59,7 @@ export class MissionMenu extends PageElement {
   override render() {
     const texts = t().frame;
     const id = planId.value ?? "";
-    return html`<button
-        class="bare icon"
-        aria-label=${texts.missionMenu}
-        title=${texts.missionMenu}
-        popovertarget="menu"
-      >
-        ${icon("more")}
-      </button>
+    return html`${iconButton("more", texts.missionMenu, null, { opens: "menu" })}
       <div id="menu" popover @focusout=${closeLeft} @toggle=${closed}>
         <button @click=${this.duplicate}>${icon("copy")} ${texts.duplicate}</button>
         <h2>${texts.exportAs}</h2>

@@ -2,8 +2,8 @@
 
 import { dismiss, notices, type Notice } from "../state/notices";
 import { t } from "../texts";
+import { iconButton } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
-import { icon } from "../ui/icons";
 
 @customElement("argo-notices")
 export class PageNotices extends PageElement {
@@ -83,13 +83,7 @@ export class PageNotices extends PageElement {
             </div>`
           : nothing}
       </div>
-      <button
-        class="bare icon"
-        aria-label=${t().frame.dismiss}
-        @click=${() => dismiss(notice.id)}
-      >
-        ${icon("close", 16)}
-      </button>
+      ${iconButton("close", t().frame.dismiss, () => dismiss(notice.id), { title: nothing, size: 16 })}
     </article>`;
   }
 }

@@ -6,8 +6,8 @@ import { redo, undo, waiting } from "../state/commands";
 import { connected, others, planId, planName, redoable, undoable } from "../state/plan";
 import { mayPlan, service, theme } from "../state/session";
 import { t } from "../texts";
+import { iconButton, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
-import { icon } from "../ui/icons";
 import { keysShown } from "./keys";
 import "./mission-menu";
 import "./run-badge";
@@ -78,34 +78,16 @@ export class PageTopbar extends PageElement {
     const open = planId.value !== null;
     return html`<header>
       ${open
-        ? html`<button
-              class="bare icon"
-              aria-label=${texts.allMissions}
-              title=${texts.allMissions}
-              @click=${() => (location.hash = "")}
-            >
-              ${icon("back")}
-            </button>
-            ${this.name()}
+        ? html`${iconButton("back", texts.allMissions, () => (location.hash = ""))} ${this.name()}
             <span class="row planning">
-              <button
-                class="bare icon"
-                aria-label=${texts.undo}
-                title=${`${texts.undo} (Ctrl+Z)`}
-                ?disabled=${undoable.value.length === 0 || !mayPlan()}
-                @click=${undo}
-              >
-                ${icon("undo")}
-              </button>
-              <button
-                class="bare icon"
-                aria-label=${texts.redo}
-                title=${`${texts.redo} (Ctrl+Y)`}
-                ?disabled=${redoable.value.length === 0 || !mayPlan()}
-                @click=${redo}
-              >
-                ${icon("redo")}
-              </button>
+              ${iconButton("undo", texts.undo, undo, {
+                title: `${texts.undo} (Ctrl+Z)`,
+                disabled: undoable.value.length === 0 || !mayPlan(),
+              })}
+              ${iconButton("redo", texts.redo, redo, {
+                title: `${texts.redo} (Ctrl+Y)`,
+                disabled: redoable.value.length === 0 || !mayPlan(),
+              })}
               <argo-mission-menu></argo-mission-menu>
             </span>
             ${this.saved()}`
@@ -115,22 +97,15 @@ export class PageTopbar extends PageElement {
       <span class="grow"></span>
       <argo-run-badge></argo-run-badge>
       ${others.value.length > 0 ? this.people() : nothing}
-      <button
-        class="bare icon planning"
-        aria-label=${texts.keysTitle}
-        title=${`${texts.keysTitle} (?)`}
-        @click=${() => (keysShown.value = true)}
-      >
-        ${icon("keys")}
-      </button>
-      <button
-        class="bare icon"
-        aria-label=${texts.otherTheme[theme.value]}
-        title=${texts.otherTheme[theme.value]}
-        @click=${() => (theme.value = theme.value === "dark" ? "light" : "dark")}
-      >
-        ${icon(theme.value === "dark" ? "sun" : "moon")}
-      </button>
+      ${iconButton("keys", texts.keysTitle, () => (keysShown.value = true), {
+        title: `${texts.keysTitle} (?)`,
+        look: "bare planning",
+      })}
+      ${iconButton(
+        theme.value === "dark" ? "sun" : "moon",
+        texts.otherTheme[theme.value],
+        () => (theme.value = theme.value === "dark" ? "light" : "dark"),
+      )}
       <argo-settings></argo-settings>
     </header>`;
   }
@@ -181,7 +156,7 @@ export class PageTopbar extends PageElement {
 
   private async rename(event: Event): Promise<void> {
     this.renaming = false;
-    const name = (event.target as HTMLInputElement).value.trim();
+    const name = valueOf(event).trim();
     const id = planId.value;
     if (id === null || name === "" || name === planName.value) return;
     try {

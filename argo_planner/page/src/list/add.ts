@@ -7,6 +7,7 @@ import { mayPlan } from "../state/session";
 import { panel, shownFloor, tool } from "../state/view";
 import { world } from "../state/world";
 import { t } from "../texts";
+import { valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { addMeasure, addPlace, addReaction, addStart, addTask, addWait, isEmpty, lacksStart } from "./adding";
@@ -72,16 +73,10 @@ export class AddTasks extends PageElement {
   /** Where something was placed since the field is open; the mission may not have it yet. */
   private placed: Pose[] = [];
 
-  override connectedCallback(): void {
-    super.connectedCallback();
-    addEventListener("pointerdown", this.onOutside);
-    addEventListener("keydown", this.onEscape, { capture: true });
-  }
-
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    removeEventListener("pointerdown", this.onOutside);
-    removeEventListener("keydown", this.onEscape, { capture: true });
+  constructor() {
+    super();
+    this.listen("pointerdown", this.onOutside);
+    this.listen("keydown", this.onEscape, true);
   }
 
   /** Escape closes it wherever the focus is. */
@@ -220,7 +215,7 @@ export class AddTasks extends PageElement {
   }
 
   private onInput(event: InputEvent): void {
-    this.text = (event.target as HTMLInputElement).value;
+    this.text = valueOf(event);
     this.at = 0;
   }
 

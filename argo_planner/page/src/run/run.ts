@@ -7,6 +7,7 @@ import { planId } from "../state/plan";
 import { pastRun, run, runIsOn, showRun, shownRunState } from "../state/run";
 import { panel } from "../state/view";
 import { dateLocale, t } from "../texts";
+import { options, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { icon } from "../ui/icons";
 import "./band";
@@ -65,26 +66,21 @@ export class RunPanel extends PageElement {
     `,
   ];
 
-  override connectedCallback(): void {
-    super.connectedCallback();
-    addEventListener("open-run", this.focusMain);
-  }
+  @state() private past: readonly RunState[] = [];
+  private listed = "";
 
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    removeEventListener("open-run", this.focusMain);
+  constructor() {
+    super();
+    this.listen("open-run", () => this.focusMain());
   }
 
   /** Puts the focus on what comes next: start, go on, give back, pause. */
-  private readonly focusMain = (): void => {
+  private focusMain(): void {
     for (const part of this.renderRoot.querySelectorAll("argo-run-start, argo-run-controls")) {
       const main = part.shadowRoot?.querySelector<HTMLElement>("button.main:not(:disabled)");
       if (main) return main.focus();
     }
-  };
-
-  @state() private past: readonly RunState[] = [];
-  private listed = "";
+  }
 
   override render() {
     const texts = t().run;
@@ -133,11 +129,7 @@ export class RunPanel extends PageElement {
     return html`<label>
       ${texts.shownRun}
       <select id="past" @change=${this.choose}>
-        <option value="" .selected=${shown === ""}>${texts.robotsRun}</option>
-        ${others.map(
-          (one) =>
-            html`<option value=${one.id} .selected=${one.id === shown}>${this.named(one)}</option>`,
-        )}
+        ${options([["", texts.robotsRun], ...others.map((one) => [one.id, this.named(one)] as const)], shown)}
       </select>
     </label>`;
   }
@@ -172,7 +164,7 @@ export class RunPanel extends PageElement {
   }
 
   private async choose(event: Event): Promise<void> {
-    const id = (event.target as HTMLSelectElement).value;
+    const id = valueOf(event);
     try {
       await showRun(id === "" ? null : id);
     } catch (error) {

@@ -6,6 +6,7 @@ import { mayPlan } from "../state/session";
 import { look as lookSignal } from "../state/view";
 import { removeObstacle, world } from "../state/world";
 import { t } from "../texts";
+import { iconButton } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, property } from "../ui/element";
 import { figure } from "../ui/figures";
 import { icon } from "../ui/icons";
@@ -74,9 +75,7 @@ export class SceneCard extends PageElement {
     return html`<div class="panel" role="group" aria-label=${mark.text} @keydown=${this.onKey}>
       <div class="head">
         <h2 class="grow">${mark.text}</h2>
-        <button class="bare icon" aria-label=${t().scene.close} @click=${() => (opened.value = null)}>
-          ${icon("close", 14)}
-        </button>
+        ${iconButton("close", t().scene.close, () => (opened.value = null), { title: nothing, size: 14 })}
       </div>
       ${this.content(mark)}
     </div>`;

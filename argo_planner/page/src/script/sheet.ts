@@ -15,6 +15,7 @@ import { revision, select, selection, tasksByName } from "../state/plan";
 import { reading } from "../state/reading";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
+import { valueOf } from "../ui/controls";
 import { css, customElement, html, PageElement, query } from "../ui/element";
 import { apply, base, dirty, draft, overtaken, refused, write } from "./draft";
 
@@ -140,7 +141,7 @@ export class ScriptSheet extends PageElement {
         autocapitalize="off"
         ?readonly=${!mayPlan()}
         .value=${text}
-        @input=${(event: Event) => write((event.target as HTMLTextAreaElement).value)}
+        @input=${(event: Event) => write(valueOf(event))}
         @keydown=${this.onKey}
         @click=${this.onClick}
       ></textarea>

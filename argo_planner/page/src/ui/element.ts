@@ -2,6 +2,7 @@
  * which they have read, with the same look of buttons and fields. */
 
 import { SignalWatcher } from "@lit-labs/preact-signals";
+import { effect } from "@preact/signals-core";
 import { css, type CSSResultGroup, LitElement } from "lit";
 
 import { keepFocus, noteFocus } from "./focus";
@@ -140,6 +141,15 @@ const look = css`
   }
 `;
 
+declare global {
+  interface WindowEventMap {
+    "focus-list": CustomEvent;
+    "open-details": CustomEvent<string | undefined>;
+    "open-run": CustomEvent;
+    visibilitychange: Event;
+  }
+}
+
 /** An element of the page; its own styles come behind those that all have. */
 export class PageElement extends SignalWatcher(LitElement) {
   protected static override finalizeStyles(styles: CSSResultGroup = []) {
@@ -155,5 +165,26 @@ export class PageElement extends SignalWatcher(LitElement) {
     const root = super.createRenderRoot();
     root.addEventListener("focusin", noteFocus);
     return root;
+  }
+
+  /** Listens to what the window is told, as long as the element is in the page. */
+  protected listen<Type extends keyof WindowEventMap>(
+    type: Type,
+    heard: (event: WindowEventMap[Type]) => void,
+    capture = false,
+  ): void {
+    this.addController({
+      hostConnected: () => addEventListener(type, heard, capture),
+      hostDisconnected: () => removeEventListener(type, heard, capture),
+    });
+  }
+
+  /** Does something now and whenever a signal changes that it reads, as long as the element is in the page. */
+  protected watch(work: () => void): void {
+    let stop = () => {};
+    this.addController({
+      hostConnected: () => (stop = effect(work)),
+      hostDisconnected: () => stop(),
+    });
   }
 }

@@ -5,10 +5,10 @@ import { svg } from "lit";
 import type { EvaluationJob, EvaluationStanding, FailedRun, RateTold } from "../api/types";
 import { rateCurve } from "../model/rate-curve";
 import { mayPlan } from "../state/session";
-import { dateLocale, t } from "../texts";
+import { t } from "../texts";
 import { options, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
-import { figure, percent, seconds } from "../ui/figures";
+import { dateAndTime, figure, percent, seconds } from "../ui/figures";
 import { icon } from "../ui/icons";
 import { styled } from "../ui/styled";
 import {
@@ -175,9 +175,6 @@ export class EvaluateResult extends PageElement {
       color: var(--warn);
       overflow-wrap: anywhere;
     }
-    a {
-      color: var(--accent);
-    }
   `;
 
   override render() {
@@ -226,7 +223,10 @@ export class EvaluateResult extends PageElement {
       ${texts.which}
       <select id="which" @change=${(event: Event) => choose(valueOf(event))}>
         ${options(
-          all.map(({ id, begun, state }) => [id, texts.begun(moment(begun), texts.states[id === job.id ? job.state : state])]),
+          all.map(({ id, begun, state }) => {
+            const when = dateAndTime(begun, "short", "medium");
+            return [id, texts.begun(when, texts.states[id === job.id ? job.state : state])];
+          }),
           job.id,
         )}
       </select>
@@ -366,8 +366,4 @@ function share(part: number): string {
 /** A number in percent as somebody gave it. */
 function percentOf(part: number): string {
   return percent(part, 4);
-}
-
-function moment(begun: string): string {
-  return new Date(begun).toLocaleString(dateLocale(), { dateStyle: "short", timeStyle: "medium" });
 }

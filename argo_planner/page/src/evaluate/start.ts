@@ -68,9 +68,6 @@ export class EvaluateStart extends PageElement {
       .one {
         grid-template-columns: minmax(0, 1fr) 68px;
       }
-      a {
-        color: var(--accent);
-      }
       .wrong {
         color: var(--bad);
         font-size: 12px;

@@ -3,12 +3,14 @@
 import { answered, client } from "../api/client";
 import { untilReached } from "../api/trying";
 import type { PlanSummary } from "../api/types";
-import { tell, tellError } from "../state/notices";
+import { freeName } from "../model/naming";
+import { tell, tellError, telling } from "../state/notices";
 import { wasGone } from "../state/plan";
 import { mayPlan, service } from "../state/session";
-import { dateLocale, t } from "../texts";
+import { t } from "../texts";
 import { iconButton } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
+import { dateAndTime } from "../ui/figures";
 import { icon } from "../ui/icons";
 import "./import";
 
@@ -53,7 +55,6 @@ export class PageHome extends PageElement {
       white-space: nowrap;
     }
     a {
-      color: var(--accent);
       font-weight: 600;
     }
     summary {
@@ -150,7 +151,7 @@ export class PageHome extends PageElement {
                   : html`<a href=${`#/missions/${one.id}`}>${one.name}</a>`}
               </td>
               <td class="number">${one.problem ? "" : one.tasks}</td>
-              <td class="number wide">${when(one.changed)}</td>
+              <td class="number wide">${one.changed ? dateAndTime(one.changed) : ""}</td>
               <td>
                 ${iconButton("bin", texts.deleteOne(one.name), () => this.delete(one), {
                   title: texts.delete,
@@ -187,49 +188,28 @@ export class PageHome extends PageElement {
   }
 
   private async create(): Promise<void> {
-    try {
-      const name = free(t().frame.untitled, this.missions ?? []);
+    const taken = new Set((this.missions ?? []).map((one) => one.name));
+    const { untitled } = t().frame;
+    const name = freeName(untitled, taken, (number) => `${untitled} ${number}`);
+    await telling(async () => {
       const made = await answered(client.POST("/api/missions", { body: { name } }));
       location.hash = `#/missions/${made.id}`;
-    } catch (error) {
-      tellError(error);
-    }
+    });
   }
 
   private async delete(one: PlanSummary): Promise<void> {
-    try {
+    await telling(async () => {
       await answered(
         client.DELETE("/api/missions/{id}", { params: { path: { id: one.id } } }) as never,
       );
       const back = { label: t().frame.undo, act: () => void this.restore(one) };
       tell("info", t().frame.deletedOne(one.name), { actions: [back] });
-    } catch (error) {
-      tellError(error);
-    }
+    });
     await this.read();
   }
 
   private async restore(one: PlanSummary): Promise<void> {
-    try {
-      await answered(
-        client.POST("/api/bin/{id}/restore", { params: { path: { id: one.id } } }),
-      );
-    } catch (error) {
-      tellError(error);
-    }
+    await telling(() => answered(client.POST("/api/bin/{id}/restore", { params: { path: { id: one.id } } })));
     await this.read();
   }
-}
-
-function free(name: string, known: readonly PlanSummary[]): string {
-  const taken = new Set(known.map((one) => one.name));
-  let tried = name;
-  for (let number = 2; taken.has(tried); number++) tried = `${name} ${number}`;
-  return tried;
-}
-
-function when(time: string | null | undefined): string {
-  if (!time) return "";
-  const form = new Intl.DateTimeFormat(dateLocale(), { dateStyle: "medium", timeStyle: "short" });
-  return form.format(new Date(time));
 }

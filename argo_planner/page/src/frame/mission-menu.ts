@@ -2,7 +2,7 @@
 
 import { answered, client } from "../api/client";
 import { commandId, settled } from "../state/commands";
-import { tell, tellError } from "../state/notices";
+import { tell, telling } from "../state/notices";
 import { planId, planName, revision, take, versions } from "../state/plan";
 import { t } from "../texts";
 import { iconButton } from "../ui/controls";
@@ -16,18 +16,10 @@ const FORMATS = ["script", "json", "scxml", "btcpp", "flexbe", "mermaid", "dot",
 export class MissionMenu extends PageElement {
   static override styles = css`
     [popover] {
-      position: fixed;
       inset: 48px auto auto 12vw;
       width: 300px;
       max-height: 80vh;
-      margin: 0;
-      padding: 12px;
       overflow: auto;
-      border: 1px solid var(--line);
-      border-radius: var(--round);
-      background: var(--raised);
-      color: var(--text);
-      box-shadow: var(--shadow);
     }
     h2 {
       margin: 12px 0 4px;
@@ -36,9 +28,6 @@ export class MissionMenu extends PageElement {
       display: flex;
       flex-wrap: wrap;
       gap: 4px 12px;
-    }
-    a {
-      color: var(--accent);
     }
     form {
       display: flex;
@@ -98,15 +87,13 @@ export class MissionMenu extends PageElement {
     const id = planId.value;
     if (id === null) return;
     await settled();
-    try {
+    await telling(async () => {
       const name = t().frame.copyOf(planName.value).slice(0, 200);
       const made = await answered(
         client.POST("/api/missions/{id}/duplicate", { params: { path: { id } }, body: { name } }),
       );
       location.hash = `#/missions/${made.id}`;
-    } catch (error) {
-      tellError(error);
-    }
+    });
   }
 
   private async keepVersion(event: SubmitEvent): Promise<void> {
@@ -116,7 +103,7 @@ export class MissionMenu extends PageElement {
     const id = planId.value;
     if (id === null || name === "") return;
     await settled();
-    try {
+    await telling(async () => {
       await answered(
         client.POST("/api/missions/{id}/versions", {
           params: { path: { id }, header: { "If-Match": `"${revision.value}"` } },
@@ -125,16 +112,14 @@ export class MissionMenu extends PageElement {
       );
       form.reset();
       tell("info", t().frame.versionKept(name));
-    } catch (error) {
-      tellError(error);
-    }
+    });
   }
 
   private async restore(number: number): Promise<void> {
     const id = planId.value;
     if (id === null) return;
     await settled();
-    try {
+    await telling(async () => {
       const done = await answered(
         client.POST("/api/missions/{id}/versions/{number}/restore", {
           params: { path: { id, number }, header: { "If-Match": `"${revision.value}"` } },
@@ -142,8 +127,6 @@ export class MissionMenu extends PageElement {
         }),
       );
       if (planId.value === id) take(done);
-    } catch (error) {
-      tellError(error);
-    }
+    });
   }
 }

@@ -10,16 +10,8 @@ import { closed, closeLeft } from "../ui/popover";
 export class PageSettings extends PageElement {
   static override styles = css`
     [popover] {
-      position: fixed;
       inset: 48px 8px auto auto;
       width: 260px;
-      margin: 0;
-      padding: 12px;
-      border: 1px solid var(--line);
-      border-radius: var(--round);
-      background: var(--raised);
-      color: var(--text);
-      box-shadow: var(--shadow);
     }
     label {
       display: grid;

@@ -1,7 +1,7 @@
 /** The bar at the top: the mission's name, undo and redo, whoever else is there, what the robot does, settings. */
 
 import { answered, client } from "../api/client";
-import { tellError } from "../state/notices";
+import { telling } from "../state/notices";
 import { redo, undo, waiting } from "../state/commands";
 import { connected, others, planId, planName, redoable, undoable } from "../state/plan";
 import { mayPlan, service, theme } from "../state/session";
@@ -159,14 +159,12 @@ export class PageTopbar extends PageElement {
     const name = valueOf(event).trim();
     const id = planId.value;
     if (id === null || name === "" || name === planName.value) return;
-    try {
+    await telling(async () => {
       await answered(
         client.PUT("/api/missions/{id}/name", { params: { path: { id } }, body: { name } }),
       );
       if (planId.value === id) planName.value = name;
-    } catch (error) {
-      tellError(error);
-    }
+    });
   }
 
   private people() {

@@ -16,14 +16,13 @@ import { styled } from "../ui/styled";
 import { copyChosen, deleteChosen, groupChosen, paste, renameRow } from "./acting";
 import "./add";
 import type { AddTasks } from "./add";
-import { choose } from "./choosing";
 import { RowDrag, rowAt } from "./drag";
 import { onListKey } from "./keys";
 import { marksOf } from "./marks";
 import "./problems";
 import "./reactions";
 import { nameOf, rowView, ROW_HEIGHT, rowStyles } from "./row";
-import { fold, folded, rowOf, shownRows, unfoldAround } from "./rows";
+import { choose, fold, folded, rowOf, shownRows, unfoldAround } from "./rows";
 
 const BEYOND = 12;
 

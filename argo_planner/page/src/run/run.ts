@@ -2,13 +2,14 @@
 
 import { client, answered } from "../api/client";
 import type { FailedRun, RunState } from "../api/types";
-import { tellError } from "../state/notices";
+import { telling } from "../state/notices";
 import { planId } from "../state/plan";
 import { pastRun, run, runIsOn, showRun, shownRunState } from "../state/run";
 import { panel } from "../state/view";
-import { dateLocale, t } from "../texts";
+import { t } from "../texts";
 import { options, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
+import { dateAndTime } from "../ui/figures";
 import { icon } from "../ui/icons";
 import "./band";
 import "./controls";
@@ -39,9 +40,6 @@ export class RunPanel extends PageElement {
         top: -12px; /* the padding above */
         padding: 6px 0;
         background: var(--surface);
-      }
-      a {
-        color: var(--accent);
       }
       .busy {
         padding: 8px 10px;
@@ -135,11 +133,7 @@ export class RunPanel extends PageElement {
   }
 
   private named(one: RunState): string {
-    const when = new Date(one.begun).toLocaleString(dateLocale(), {
-      dateStyle: "medium",
-      timeStyle: "short",
-    });
-    return t().run.pastRunOf(when, one.headline?.word ?? one.status);
+    return t().run.pastRunOf(dateAndTime(one.begun), one.headline?.word ?? one.status);
   }
 
   /** A run of an evaluation says which one it is, and leads back. */
@@ -165,11 +159,7 @@ export class RunPanel extends PageElement {
 
   private async choose(event: Event): Promise<void> {
     const id = valueOf(event);
-    try {
-      await showRun(id === "" ? null : id);
-    } catch (error) {
-      tellError(error);
-    }
+    await telling(() => showRun(id === "" ? null : id));
   }
 
   /** The runs of this mission, asked for again when a run begins or ends. */
@@ -178,11 +168,9 @@ export class RunPanel extends PageElement {
     if (about === this.listed) return;
     this.listed = about;
     const plan = planId.value;
-    try {
+    await telling(async () => {
       const { runs } = await answered(client.GET("/api/runs"));
       this.past = runs.filter((one) => one.plan === plan);
-    } catch (error) {
-      tellError(error);
-    }
+    });
   }
 }

@@ -118,6 +118,19 @@ const look = css`
     outline: 2px solid var(--accent);
     outline-offset: 1px;
   }
+  a {
+    color: var(--accent);
+  }
+  [popover] {
+    position: fixed;
+    margin: 0;
+    padding: 12px;
+    border: 1px solid var(--line);
+    border-radius: var(--round);
+    background: var(--raised);
+    color: var(--text);
+    box-shadow: var(--shadow);
+  }
   .dim {
     color: var(--dim);
   }

@@ -15,110 +15,83 @@ from argo_planner.terminal.output import guard_output
 from argo_planner.terminal.signals import SignalWatch, ignore_signals, raise_interrupted
 from argo_planner.terminal.verbosity import set_verbosity
 
-
-def _command(name: str, module: str, function: str, help: str) -> LazyCommand:
-    return LazyCommand(name, f"argo_planner.commands.{module}", function, help)
+_COMMANDS = {
+    "import": (
+        "import_script.import_script",
+        "Read a mission script, a bag or an isar mission, and write the mission as JSON.",
+    ),
+    "check": (
+        "check.check_mission",
+        "Say all that is wrong or odd about a mission; exits with status 2 if there are errors.",
+    ),
+    "explain": (
+        "explain.explain_mission",
+        "Say back in plain sentences what was understood of a mission, and what was assumed.",
+    ),
+    "compile": (
+        "compile.compile_mission",
+        "Lower a mission to its state machine and write it as JSON.",
+    ),
+    "format": (
+        "format.format_mission",
+        "Write a mission as a script, in one canonical form; importing that gives the same "
+        "mission.",
+    ),
+    "export": (
+        "export.export_mission",
+        "Write a mission in the format of another tool.",
+    ),
+    "route": (
+        "route.suggest_order",
+        "Suggest the best order of a mission's tasks; exits with status 2 if there is none.",
+    ),
+    "run": (
+        "run.run",
+        "Run a mission, or the spec of a run, show what was measured, and write a report.",
+    ),
+    "resume": (
+        "resume.resume_run",
+        "Go on with a run whose process has died, from its journal.",
+    ),
+    "replay": (
+        "replay.replay",
+        "Show what was recorded of a run, and make its report and its film again.",
+    ),
+    "evaluate": (
+        "evaluate.evaluate",
+        "Run missions many times: how sure they work, what breaks them, which is better.",
+    ),
+    "sites": (
+        "sites.show_sites",
+        "List the sites, or check one; exits with status 2 if it can't be driven.",
+    ),
+    "plan": (
+        "plan.plan_mission",
+        "Plan a mission in the browser, on a 3D model of the site, and watch it run.",
+    ),
+    "serve": (
+        "serve.serve_plans",
+        "Serve the missions of a folder to many people at once.",
+    ),
+    "schema": (
+        "schema.show_schema",
+        "Print the JSON Schema of a mission, a machine, its progress, faults or a reading.",
+    ),
+    "doctor": (
+        "doctor.show_health",
+        "Show the version, the cache on disk, and which optional parts are installed.",
+    ),
+}
+"""by their names: the module and the function of each, and the line that lists it"""
 
 
 class ArgoCommands(LazyGroup):
     """The commands in the order in which `argo --help` lists them."""
 
-    lazy_commands = (
-        _command(
-            "import",
-            "import_script",
-            "import_script",
-            "Read a mission script, a bag or an isar mission, and write the mission as JSON.",
-        ),
-        _command(
-            "check",
-            "check",
-            "check_mission",
-            "Say all that is wrong or odd about a mission; exits with status 2 if there are "
-            "errors.",
-        ),
-        _command(
-            "explain",
-            "explain",
-            "explain_mission",
-            "Say back in plain sentences what was understood of a mission, and what was assumed.",
-        ),
-        _command(
-            "compile",
-            "compile",
-            "compile_mission",
-            "Lower a mission to its state machine and write it as JSON.",
-        ),
-        _command(
-            "format",
-            "format",
-            "format_mission",
-            "Write a mission as a script, in one canonical form; importing that gives the same "
-            "mission.",
-        ),
-        _command(
-            "export", "export", "export_mission", "Write a mission in the format of another tool."
-        ),
-        _command(
-            "route",
-            "route",
-            "suggest_order",
-            "Suggest the best order of a mission's tasks; exits with status 2 if there is none.",
-        ),
-        _command(
-            "run",
-            "run",
-            "run",
-            "Run a mission, or the spec of a run, show what was measured, and write a report.",
-        ),
-        _command(
-            "resume",
-            "resume",
-            "resume_run",
-            "Go on with a run whose process has died, from its journal.",
-        ),
-        _command(
-            "replay",
-            "replay",
-            "replay",
-            "Show what was recorded of a run, and make its report and its film again.",
-        ),
-        _command(
-            "evaluate",
-            "evaluate",
-            "evaluate",
-            "Run missions many times: how sure they work, what breaks them, which is better.",
-        ),
-        _command(
-            "sites",
-            "sites",
-            "show_sites",
-            "List the sites, or check one; exits with status 2 if it can't be driven.",
-        ),
-        _command(
-            "plan",
-            "plan",
-            "plan_mission",
-            "Plan a mission in the browser, on a 3D model of the site, and watch it run.",
-        ),
-        _command(
-            "serve",
-            "serve",
-            "serve_plans",
-            "Serve the missions of a folder to many people at once.",
-        ),
-        _command(
-            "schema",
-            "schema",
-            "show_schema",
-            "Print the JSON Schema of a mission, a machine, its progress, faults or a reading.",
-        ),
-        _command(
-            "doctor",
-            "doctor",
-            "show_health",
-            "Show the version, the cache on disk, and which optional parts are installed.",
-        ),
+    lazy_commands = tuple(
+        LazyCommand(name, f"argo_planner.commands.{module}", function, help)
+        for name, (place, help) in _COMMANDS.items()
+        for module, function in [place.split(".")]
     )
 
 

@@ -9,8 +9,8 @@ from argo_compiler.base.errors import ArgoError
 from argo_compiler.diagnostics import Diagnostic, has_errors, summary
 from argo_compiler.diagnostics.codes.code import Severity
 from argo_env.planning.opening import open_site
-from argo_planner.terminal.files import STANDARD_OUTPUT, check_outputs, read_upload, write_text
-from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
+from argo_planner.terminal.files import STANDARD_OUTPUT, check_outputs, read_upload, write_content
+from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea, Strict
 from argo_planner.terminal.words import with_options
 from argo_planner.use_cases.checking import (
     Format,
@@ -26,9 +26,7 @@ def check_mission(
     format: Annotated[
         Format, typer.Option("--format", help="for people, programs or code hosts")
     ] = Format.TEXT,
-    strict: Annotated[
-        bool, typer.Option("--strict", help="exit with status 1 if there are warnings")
-    ] = False,
+    strict: Strict = False,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="a file to write the findings to")
     ] = None,
@@ -41,7 +39,7 @@ def check_mission(
     diagnostics = with_options(_diagnostics(source, site, start_area, end_area))
     written = write_diagnostics(diagnostics, str(source), format)
     if output and output != STANDARD_OUTPUT:
-        write_text(output, written + "\n")
+        write_content(output, written + "\n")
         print(f"{source}: {summary(diagnostics)}")
     else:
         print(written)

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from argo_env.planning.opening import open_site
-from argo_planner.terminal.files import check_outputs, read_upload, say_written, write_text
+from argo_planner.terminal.files import check_outputs, read_upload, say_written, write_content
 from argo_planner.terminal.importing import import_shown
 from argo_planner.terminal.options import EndArea, Force, Optimise, SiteOption, Source, StartArea
 from argo_planner.use_cases.compiling import compile_mission as compile_imported
@@ -33,8 +33,8 @@ def compile_mission(
 
         imported, _ = optimise_shown(imported, opened)
     compiled = compile_imported(imported)
-    write_text(output, compiled.json)
+    write_content(output, compiled.json)
     if mermaid:
-        write_text(mermaid, compiled.mermaid)
+        write_content(mermaid, compiled.mermaid)
     machine = compiled.machine
     say_written(output, f"{len(machine.leaves)} tasks, {len(machine.composites) - 1} groups")

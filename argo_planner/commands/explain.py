@@ -7,8 +7,8 @@ import typer
 
 from argo_compiler.diagnostics.codes.code import Severity
 from argo_env.planning.opening import open_site
-from argo_planner.terminal.files import STANDARD_OUTPUT, check_outputs, read_upload, write_text
-from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
+from argo_planner.terminal.files import STANDARD_OUTPUT, check_outputs, read_upload, write_content
+from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea, Strict
 from argo_planner.use_cases.explaining import ReadingFormat, reading_of, write_reading
 from argo_planner.use_cases.importing import import_mission
 
@@ -19,9 +19,7 @@ def explain_mission(
     format: Annotated[ReadingFormat, typer.Option("--format", help="for people or programs")] = (
         ReadingFormat.TEXT
     ),
-    strict: Annotated[
-        bool, typer.Option("--strict", help="exit with status 1 if there are warnings")
-    ] = False,
+    strict: Strict = False,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="a file to write it to; else it is shown")
     ] = None,
@@ -34,6 +32,6 @@ def explain_mission(
     opened = open_site(site)
     imported = import_mission(read_upload(source), opened, start_area, end_area)
     reading = reading_of(imported, opened)
-    write_text(output or STANDARD_OUTPUT, write_reading(reading, format))
+    write_content(output or STANDARD_OUTPUT, write_reading(reading, format))
     if strict and any(d.severity is Severity.WARNING for d in imported.warnings):
         raise typer.Exit(1)

@@ -14,7 +14,7 @@ from argo_planner.terminal.files import (
     read_upload,
     require_mission_output,
     say_written,
-    write_text,
+    write_content,
 )
 from argo_planner.terminal.importing import import_shown, show_reading
 from argo_planner.terminal.options import EndArea, Force, SiteOption, StartArea
@@ -42,7 +42,7 @@ def import_script(
         require_mission_output(output)
     opened = open_site(site)
     imported = import_shown(upload, opened, start_area, end_area)
-    write_text(output, mission_text(imported.mission))
+    write_content(output, mission_text(imported.mission))
     say_written(output, ", ".join(task.name for task in imported.mission.tasks))
     if output != STANDARD_OUTPUT and not is_quiet():
         show_reading(imported, opened)

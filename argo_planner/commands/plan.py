@@ -51,9 +51,8 @@ def plan_mission(
     """Plan a mission in the browser, on a 3D model of the site, and watch it run."""
     try:
         from argo_planner.service.runs.host import AfterRestart
-        from argo_planner.service.web.access import AccessToken, TokenBook
+        from argo_planner.service.web.access import AccessToken, TokenBook, kept_secret
         from argo_planner.service.web.guard import LOOPBACK, Doors
-        from argo_planner.service.web.kept_secret import kept_secret
         from argo_planner.service.web.serving import ServiceOrder, listen, open_folder, serve
     except ImportError as error:
         raise Unavailable(f"the page needs {error.name}: {install_line('planner')}") from None

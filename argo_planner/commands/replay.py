@@ -17,7 +17,7 @@ from argo_env.robot.spec import load_robot
 from argo_planner.terminal.conclusion import Conclusion
 from argo_planner.terminal.files import check_outputs
 from argo_planner.terminal.kept import Kept, require_no_unfinished
-from argo_planner.terminal.options import Force
+from argo_planner.terminal.options import Force, Render, Report
 from argo_planner.terminal.signals import first_signal_deferred
 from argo_planner.terminal.verbosity import is_quiet
 from argo_planner.use_cases.reporting import REPORT_FILES
@@ -27,12 +27,8 @@ def replay(
     recording: Annotated[
         Path, typer.Argument(metavar="RECORDING", help="the file that `argo run --record` made")
     ],
-    report: Annotated[
-        Path | None, typer.Option("--report", metavar="DIR", help="folder for the report")
-    ] = None,
-    render: Annotated[
-        Path | None, typer.Option("--render", metavar="FILE.mp4|FILE.gif", help="film the run")
-    ] = None,
+    report: Report = None,
+    render: Render = None,
     force: Force = False,
 ) -> None:
     """Show what was recorded of a run, and make its report and its film again."""

@@ -20,7 +20,7 @@ from argo_planner.terminal.conclusion import Conclusion
 from argo_planner.terminal.events import KINDS, READING_FORM, parse_events
 from argo_planner.terminal.files import check_outputs
 from argo_planner.terminal.kept import JOURNAL, Kept, is_reported, require_no_unfinished
-from argo_planner.terminal.options import Force
+from argo_planner.terminal.options import Force, Report
 from argo_planner.terminal.run_display import carry_out_shown
 from argo_planner.terminal.signals import first_signal_deferred
 from argo_planner.terminal.verbosity import is_quiet
@@ -34,9 +34,7 @@ def resume_run(
             metavar="JOURNAL", help="the file that `argo run` kept, such as DIR/run.journal"
         ),
     ],
-    report: Annotated[
-        Path | None, typer.Option("--report", metavar="DIR", help="folder for the report")
-    ] = None,
+    report: Report = None,
     event: Annotated[
         list[str] | None,
         typer.Option(

@@ -31,6 +31,8 @@ from argo_planner.terminal.options import (
     EndArea,
     Force,
     Optimise,
+    Render,
+    Report,
     SiteOption,
     Source,
     StartArea,
@@ -107,9 +109,7 @@ def run(
     source: Source,
     site: SiteOption = "umad",
     seed: Annotated[int, typer.Option(help="draws what the checkpoints show", min=0)] = 0,
-    report: Annotated[
-        Path | None, typer.Option("--report", metavar="DIR", help="folder for the report")
-    ] = None,
+    report: Report = None,
     drive: Annotated[
         str,
         typer.Option(
@@ -158,9 +158,7 @@ def run(
             min=0.1,
         ),
     ] = None,
-    render: Annotated[
-        Path | None, typer.Option("--render", metavar="FILE.mp4|FILE.gif", help="film the run")
-    ] = None,
+    render: Render = None,
     recording: Annotated[
         Path | None,
         typer.Option(

@@ -78,10 +78,10 @@ def serve_plans(
             AccessToken,
             TokenBook,
             checked_secret,
+            kept_secret,
             read_tokens,
         )
         from argo_planner.service.web.guard import LOOPBACK, Doors
-        from argo_planner.service.web.kept_secret import kept_secret
         from argo_planner.service.web.serving import ServiceOrder, listen, open_folder, serve
     except ImportError as error:
         raise Unavailable(f"the service needs {error.name}: {install_line('planner')}") from None

@@ -9,7 +9,7 @@ import typer
 from argo_compiler.base.errors import ArgoError, Invalid, located
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_planner.terminal import completion
-from argo_planner.terminal.files import check_outputs, say_written, write_content, write_text
+from argo_planner.terminal.files import check_outputs, say_written, write_content
 from argo_planner.terminal.options import Force
 from argo_planner.use_cases.sites import (
     check_site,
@@ -82,6 +82,6 @@ def _check_name(output: Path) -> None:
 
 
 def _write(opened: OpenedSite, output: Path) -> None:
-    write_text(output, describe_site(opened, output.stem))
+    write_content(output, describe_site(opened, output.stem))
     use = f"argo check MISSION --site {shlex.quote(str(output))}"
     print(f"{output}: written, site `{output.stem}`; use it with `{use}`")

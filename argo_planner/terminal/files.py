@@ -85,26 +85,20 @@ def require_mission_output(output: Path) -> None:
         raise Invalid(f"{output}: a mission is written as JSON; name a file that ends in .json")
 
 
-def write_text(path: Path, text: str) -> None:
-    """Writes text as UTF-8 with Unix line ends; ArgoError if that is impossible."""
-    write_content(path, text)
-
-
 def write_content(path: Path, content: str | bytes | Mapping[str, bytes]) -> None:
-    """Writes a file, or a folder of files, to their place or to standard output; ArgoError if that
-    is impossible."""
-    if isinstance(content, Mapping):
-        _write_folder(path, content)
-    elif path == STANDARD_OUTPUT:
-        if isinstance(content, str):
-            sys.stdout.write(content)
-        else:
-            sys.stdout.buffer.write(content)
-    else:
-        try:
+    """Writes a file, or a folder of files, to their place or to standard output, text as UTF-8 with
+    Unix line ends; ArgoError if that is impossible."""
+    try:
+        if isinstance(content, Mapping):
+            write_folder(path, content)
+        elif path != STANDARD_OUTPUT:
             write_whole(path, content)
-        except OSError as error:
-            raise Unavailable(f"{path}: can't be written: {error.strerror}") from error
+    except OSError as error:
+        raise Unavailable(f"{path}: can't be written: {error.strerror}") from error
+    if path == STANDARD_OUTPUT and isinstance(content, str):
+        sys.stdout.write(content)
+    elif path == STANDARD_OUTPUT and isinstance(content, bytes):
+        sys.stdout.buffer.write(content)
 
 
 def say_written(path: Path, text: str) -> None:
@@ -113,10 +107,3 @@ def say_written(path: Path, text: str) -> None:
         from rich.console import Console  # slow to import, and most commands show their result
 
         Console(highlight=False).print(f"{path}: {text}", soft_wrap=True, markup=False)
-
-
-def _write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
-    try:
-        write_folder(folder, files)
-    except OSError as error:
-        raise Unavailable(f"{folder}: can't be written: {error.strerror}") from error

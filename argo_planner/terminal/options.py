@@ -32,6 +32,13 @@ StartArea = Annotated[
 EndArea = Annotated[
     int | None, typer.Option("--end-area", help="the area to end in, where the script leaves it")
 ]
+Strict = Annotated[bool, typer.Option("--strict", help="exit with status 1 if there are warnings")]
+Report = Annotated[
+    Path | None, typer.Option("--report", metavar="DIR", help="folder for the report")
+]
+Render = Annotated[
+    Path | None, typer.Option("--render", metavar="FILE.mp4|FILE.gif", help="film the run")
+]
 Force = Annotated[bool, typer.Option("--force", help="replace files that are there already")]
 
 

@@ -13,7 +13,7 @@ from argo_compiler.diagnostics import has_errors
 from argo_compiler.il import Mission
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.planning.site_warnings import unseen_from_poses
-from argo_planner.service.processes.orphans import end_with_parent
+from argo_planner.service.processes.work import end_with_parent
 from argo_planner.use_cases.checking import MOST_PLACES
 
 

@@ -163,13 +163,7 @@ class RunCount:
                     found.value, found.low, found.high, found.runs, lost, group.method
                 )
             requirements = tuple(
-                RequirementTold(
-                    requirement=verdict.requirement,
-                    verdict=verdict.verdict,
-                    low=verdict.low,
-                    high=verdict.high,
-                    worlds=verdict.worlds,
-                )
+                RequirementTold.model_validate(verdict, from_attributes=True)
                 for verdict in results.verdicts
             )
         return EvaluationStanding(

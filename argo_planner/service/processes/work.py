@@ -1,14 +1,17 @@
-"""Work in a process of its own, which tells how far it is and can be ended at any moment."""
+"""Work in a process of its own, which tells how far it is and can be ended at any moment; and which
+ends with the service, even where that is killed."""
 
 import asyncio
 import multiprocessing
+import os
+import signal
+import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from multiprocessing.connection import Connection
+from multiprocessing.connection import Connection, wait
 from typing import Any, Generic, TypeVar
 
 from argo_compiler.base.errors import ArgoError, Unavailable
-from argo_planner.service.processes.orphans import end_with_parent
 
 Result = TypeVar("Result")
 Tell = Callable[[Any], None]
@@ -53,6 +56,20 @@ class JobProcess(Generic[Result]):
         """Ends the process, whatever it does."""
         self._process.kill()
         self._process.join()
+
+
+def end_with_parent() -> None:
+    """From now on this process ends as soon as the one that began it has, and leaves interruptions
+    to it: Ctrl-C is sent to both."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        threading.Thread(target=_end_after, args=(parent.sentinel,), daemon=True).start()
+
+
+def _end_after(sentinel: int) -> None:
+    wait([sentinel])
+    os._exit(1)
 
 
 def _carried_out(pipe: Connection, work: Callable[..., Any], arguments: tuple[Any, ...]) -> None:

@@ -41,13 +41,7 @@ class VersionSummary(Model):
 
     @staticmethod
     def of(version: PlanVersion) -> "VersionSummary":
-        return VersionSummary(
-            number=version.number,
-            name=version.name,
-            revision=version.revision,
-            author=version.author,
-            at=version.at,
-        )
+        return VersionSummary.model_validate(version, from_attributes=True)
 
 
 class Member(Model):

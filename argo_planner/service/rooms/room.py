@@ -3,7 +3,8 @@
 import asyncio
 from collections.abc import Callable, Coroutine
 from datetime import datetime
-from typing import Any, TypeVar
+from functools import wraps
+from typing import Any, ParamSpec, TypeVar
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import Conflict
@@ -38,9 +39,22 @@ from argo_planner.service.rooms.messages import (
 )
 from argo_planner.service.storage.plan_file import PlanFile
 
+P = ParamSpec("P")
 T = TypeVar("T")
 ANALYSED_AFTER = 0.3
 """s without another command"""
+
+
+def _to_the_end(
+    work: Callable[P, Coroutine[Any, Any, T]],
+) -> Callable[P, Coroutine[Any, Any, T]]:
+    """Does the work to its end, even where whoever asked for it does not wait any longer."""
+
+    @wraps(work)
+    async def done(*arguments: P.args, **named: P.kwargs) -> T:
+        return await asyncio.shield(asyncio.create_task(work(*arguments, **named)))
+
+    return done
 
 
 class PlanRoom:
@@ -93,6 +107,7 @@ class PlanRoom:
         known = self.document.plan.repeated(asked, author)
         return None if known is None else self._done(known, author)
 
+    @_to_the_end
     async def carry_out(
         self,
         command: PlanCommand,
@@ -106,15 +121,6 @@ class PlanRoom:
 
         Raises what `MissionPlan.carried_out` raises, or Unavailable where it can't be written.
         """
-        return await _to_the_end(self._carry_out(command, author, made_on, asked))
-
-    async def _carry_out(
-        self,
-        command: PlanCommand,
-        author: str,
-        made_on: int | None,
-        asked: ReplaceFrom | None,
-    ) -> CommandDone:
         async with self._turn:
             self._require_open()
             plan = self.document.plan
@@ -132,22 +138,18 @@ class PlanRoom:
             self._analyse_soon()
             return self._done(record.revision, author)
 
+    @_to_the_end
     async def rename(self, name: str, author: str) -> None:
         """Gives the plan another name. Raises Invalid, Unavailable."""
-        await _to_the_end(self._rename(name, author))
-
-    async def _rename(self, name: str, author: str) -> None:
         async with self._turn:
             self._require_open()
             record = self.document.rename(name, author, self._clock())
             await self._write(self.document.after(record), record)
             self._tell(NameTold(name=name))
 
+    @_to_the_end
     async def keep_version(self, name: str, author: str, made_on: int | None) -> VersionSummary:
         """Keeps the present mission under a name. Raises Invalid, Conflict, Unavailable."""
-        return await _to_the_end(self._keep_version(name, author, made_on))
-
-    async def _keep_version(self, name: str, author: str, made_on: int | None) -> VersionSummary:
         async with self._turn:
             self._require_open()
             if made_on is not None and made_on != self.document.plan.revision:
@@ -157,11 +159,9 @@ class PlanRoom:
             self._tell_versions()
             return VersionSummary.of(record.version)
 
+    @_to_the_end
     async def drop_version(self, number: int) -> None:
         """Keeps a version no longer. Raises NotFound, Unavailable."""
-        await _to_the_end(self._drop_version(number))
-
-    async def _drop_version(self, number: int) -> None:
         async with self._turn:
             self._require_open()
             record = VersionDropped(number=self.document.version(number).number)
@@ -298,8 +298,3 @@ class PlanRoom:
         plan = self.document.plan
         self._analysis = await analyst.analyse(plan.mission, plan.revision)
         self._tell(AnalysisTold.model_construct(analysis=self._analysis))
-
-
-async def _to_the_end(work: Coroutine[Any, Any, T]) -> T:
-    """Does the work to its end, even where whoever asked for it does not wait any longer."""
-    return await asyncio.shield(asyncio.get_running_loop().create_task(work))

@@ -3,17 +3,22 @@
 from collections.abc import Callable, Sequence
 
 from argo_compiler.base.errors import ArgoError, Conflict
+from argo_compiler.base.model import Model
 from argo_compiler.hfsm import Cancel, GiveBack, Occurred, Pause, Resume, TakeOver
 from argo_compiler.hfsm.events import ReadingGiven
 from argo_env.drives.powertrain import Powertrain
+from argo_env.run.log import Entry
+from argo_env.run.machine import Machine
+from argo_env.run.observer import Observer
+from argo_env.run.record import Reading
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
 from argo_env.run.steering import DoByHand, ReachIn, Steering, StopByHand, StopRun
 from argo_planner.service.runs import requests as asked
-from argo_planner.service.runs.pace import Pace
 from argo_planner.service.runs.request_book import RequestBook
 from argo_planner.service.runs.requests import RequestProgress, RequestState, RunRequest
 from argo_planner.service.runs.state import (
+    EntryTold,
     PoseTold,
     RequestTold,
     RunMode,
@@ -23,12 +28,71 @@ from argo_planner.service.runs.state import (
     TaskCount,
 )
 from argo_planner.service.runs.supervised import SupervisedRun
-from argo_planner.service.runs.teller import RunTeller, Tell
 
 POSES = 30.0
 """a second of the clock, at most"""
 STATES = 2.0
 """likewise, of those that tell nothing but how time goes on"""
+LAG = 0.5
+"""s by which a slow machine may be late before it does not make up for it"""
+
+Tell = Callable[[Model], None]
+
+
+class RunTeller(Observer):
+    """Tells the entries of a run, with their numbers. Holds the last readings."""
+
+    def __init__(self, run: str, tell: Tell, past: tuple[Entry, ...] = ()) -> None:
+        self._run, self._tell = run, tell
+        self.count = 0
+        self.readings: dict[int, Reading] = {}
+        self.fresh = True
+        """whether something has been told since this was last set to False"""
+        for entry in past:
+            self._note(entry)
+
+    def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
+        """An entry was made, and the machine has it."""
+        self._note(entry)
+        self._tell(EntryTold.model_construct(run=self._run, number=self.count, entry=entry))
+
+    def _note(self, entry: Entry) -> None:
+        self.count += 1
+        self.fresh = True
+        if entry.reading is not None:
+            self.readings[entry.reading.checkpoint] = entry.reading
+
+
+class Pace:
+    """How fast simulated time goes. Holds where both clocks stood when that changed last."""
+
+    def __init__(self, speed: float | None, simulated: float, now: float) -> None:
+        """`speed`: simulated seconds a second; None: as fast as possible. Both times in s."""
+        self.speed = speed
+        self._waits = False
+        self._simulated, self._now = simulated, now
+
+    def change(self, speed: float | None, simulated: float, now: float) -> None:
+        """From now on time goes at that speed."""
+        self.speed = speed
+        self._simulated, self._now = simulated, now
+
+    def left(self, simulated: float, now: float, waits: bool) -> float:
+        """How long (s) until the next step is due; 0 or less: now. While the run `waits` for a
+        person, time goes no faster than theirs."""
+        if waits is not self._waits:
+            self._waits = waits
+            self._simulated, self._now = simulated, now
+        speed = self.speed
+        if waits:
+            speed = 1.0 if speed is None else min(1.0, speed)
+        if speed is None:
+            return 0.0
+        due = self._now + (simulated - self._simulated) / speed
+        if now - due > LAG:
+            self._simulated, self._now = simulated, now
+            return 0.0
+        return due - now
 
 
 class RunDriver:

@@ -3,21 +3,20 @@
 import asyncio
 import secrets
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 from pathlib import Path
 
-from argo_compiler.base.errors import ArgoError, Conflict
+from argo_compiler.base.errors import ArgoError, Conflict, NotFound
 from argo_compiler.base.model import Model
 from argo_env.run.log import Entry
 from argo_planner.service.rooms.mailbox import Mailbox
 from argo_planner.service.runs.disk import DiskThread
 from argo_planner.service.runs.folder import KeptRun, RunFolder
-from argo_planner.service.runs.left_behind import left_behind
 from argo_planner.service.runs.pipe import BrokenOff, RobotText
 from argo_planner.service.runs.present import PresentRun
 from argo_planner.service.runs.process import RunProcess
-from argo_planner.service.runs.reports import missing_report
 from argo_planner.service.runs.requests import (
     EndRun,
     GoOnWithRun,
@@ -200,7 +199,7 @@ class RunHost:
                 break
             await asyncio.sleep(_REPORT_PAUSE)
         journal = await self._disk.do(self._folder.last_journal, run)
-        raise missing_report(await self.read(run), file, journal, making)
+        raise _missing_report(await self.read(run), file, journal, making)
 
     def follow(self, client: str, since: int | None = None) -> Mailbox:
         """Somebody follows the robot's runs: first how it stands, then the entries after that
@@ -276,7 +275,7 @@ class RunHost:
             self._workers.discard(worker)
 
     async def _lose(self, problem: str, may_stop: bool) -> None:
-        """The run has no process: see `left_behind`."""
+        """The run has no process: see `_left_behind`."""
         present, ended = self._present, False
         run = present.kept.state.id
         damaged = False
@@ -287,7 +286,7 @@ class RunHost:
             damaged = True
             if str(error) not in problem:
                 problem = f"{problem}; {error}"
-        left = left_behind(
+        left = _left_behind(
             present.kept.state,
             present.book.pending,
             problem,
@@ -300,3 +299,61 @@ class RunHost:
         await present.take([StateTold(state=state), *settled])
         if left.stop is not None:
             await self._begin((EndRun(id=left.stop.id), left.stop.by))
+
+
+@dataclass(frozen=True)
+class _LeftBehind:
+    """How a run stands without its process, and what came of what was asked of it."""
+
+    state: RunState
+    settled: tuple[RequestState, ...]
+    stop: RequestState | None
+    """somebody has asked for it to stop, and another process is to do that"""
+
+
+def _left_behind(
+    state: RunState,
+    pending: Sequence[RequestState],
+    problem: str,
+    *,
+    begun: bool,
+    ended: bool,
+    may_stop: bool,
+) -> _LeftBehind:
+    """`problem` is why the process is gone; whether the run had `begun`, and `ended`, is what its
+    journals say. Another process may be begun to stop it, unless that was tried (`may_stop`)."""
+    stop = next((one for one in pending if one.kind == "stop"), None)
+    if ended or state.status is RunStatus.ENDED:
+        status, why = RunStatus.ENDED, state.problem
+    elif not begun or (stop is not None and not may_stop):
+        status, why = RunStatus.ENDED, problem
+    else:
+        status, why = RunStatus.INTERRUPTED, problem
+    over = status is RunStatus.ENDED
+    settled = []
+    for one in pending:
+        if one.kind == "stop" and over:
+            done = {"progress": RequestProgress.CONFIRMED, "reason": why}
+        else:
+            done = {"progress": RequestProgress.FAILED, "reason": why or "the run has ended before"}
+        if over or one is not stop:
+            settled.append(one.model_copy(update=done))
+    update = {"status": status, "problem": why, "moving": False, "task": None, "by_hand": False}
+    return _LeftBehind(state.model_copy(update=update), tuple(settled), None if over else stop)
+
+
+def _missing_report(state: RunState, file: str, journal: Path | None, making: bool) -> NotFound:
+    """Says it. `journal` is the last one of the run; `making`: its process is still there."""
+    entries = f"what has happened is in /api/runs/{state.id}/entries"
+    if state.status is not RunStatus.ENDED:
+        why = f"it is {state.status}, and the report is made when it has ended; {entries} so far"
+    elif making:
+        why = "it has just ended, and the report is being made: ask again in a moment"
+    elif journal is None or state.entries == 0:
+        why = f"it ended before anything had happened ({state.problem}): begin another one"
+    else:
+        why = (
+            f"its process ended before the report was made, or it was deleted; {entries}, and "
+            f"`argo resume {journal} --report FOLDER`, on the machine of the service, makes it"
+        )
+    return NotFound(f"run {state.id} has no {file}: {why}")

@@ -5,10 +5,9 @@ from collections.abc import Iterable, Sequence
 
 from argo_compiler.base.errors import ArgoError, NotFound
 from argo_compiler.base.model import Model
-from argo_planner.service.rooms.mailbox import Mailbox
+from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
 from argo_planner.service.runs.disk import DiskThread
 from argo_planner.service.runs.folder import KeptRun, RunFolder
-from argo_planner.service.runs.followers import RunFollowers
 from argo_planner.service.runs.request_book import RequestBook
 from argo_planner.service.runs.requests import RequestState
 from argo_planner.service.runs.state import (
@@ -33,7 +32,7 @@ class PresentRun:
         self._lasting: tuple[object, ...] = ()
         """of the state that was kept last"""
         self._entries: list[str] = []
-        self._followers = RunFollowers()
+        self._followers: dict[str, Mailbox] = {}
         self.book = RequestBook("")
 
     def become(self, kept: KeptRun, requests: Iterable[RequestState] = ()) -> None:
@@ -71,15 +70,18 @@ class PresentRun:
     def follow(self, client: str, since: int | None) -> Mailbox:
         """Somebody follows: first how it stands, then the entries after that number, then all that
         happens."""
-        return self._followers.add(client, [self._state_text(), *self._entries[since or 0 :]])
+        mailbox = Mailbox([self._state_text(), *self._entries[since or 0 :]])
+        self._followers[client] = mailbox
+        return mailbox
 
     def leave(self, client: str) -> None:
         """Somebody has gone."""
-        self._followers.remove(client)
+        self._followers.pop(client, None)
 
     def close(self, why: str) -> None:
         """Lets all who follow go."""
-        self._followers.close(why)
+        for mailbox in self._followers.values():
+            mailbox.close(MailboxClosed(why))
 
     async def read_entries(self) -> None:
         """What has happened, and until when, is what the journals say: more may be there than the
@@ -91,7 +93,7 @@ class PresentRun:
             for number, entry in enumerate(entries[len(self._entries) :], len(self._entries) + 1)
         ]
         self._entries += news
-        self._followers.post(*news)
+        self._post(*news)
         if entries:
             update = {"entries": len(self._entries), "t": entries[-1].t}
             state = self.kept.state.model_copy(update=update)
@@ -122,11 +124,11 @@ class PresentRun:
                     self._tell_request(request)
                 case EntryTold(number=number) if number > len(self._entries):
                     self._entries.append(text := message.model_dump_json())
-                    self._followers.post(text)
+                    self._post(text)
                 case PoseTold():
-                    self._followers.post_newest("pose", message.model_dump_json())
+                    self._post_newest("pose", message.model_dump_json())
         if stated:
-            self._followers.post_newest("state", self._state_text())
+            self._post_newest("state", self._state_text())
 
     async def _keep(self, messages: Sequence[Model]) -> None:
         """Writes down the last state, if it differs in what a run that goes on needs, and the
@@ -149,7 +151,17 @@ class PresentRun:
         """A request that is over is told behind the state that it has brought about."""
         told = RequestTold.model_construct(run=self.kept.state.id, request=request)
         texts = [self._state_text()] if request.over else []
-        self._followers.post(*texts, told.model_dump_json())
+        self._post(*texts, told.model_dump_json())
+
+    def _post(self, *texts: str) -> None:
+        """Texts that have to arrive, in this order."""
+        for mailbox in self._followers.values():
+            for text in texts:
+                mailbox.post(text)
+
+    def _post_newest(self, kind: str, text: str) -> None:
+        for mailbox in self._followers.values():
+            mailbox.post_newest(kind, text)
 
     def _state_text(self) -> str:
         return StateTold.model_construct(state=self.state).model_dump_json()

@@ -24,13 +24,12 @@ from argo_env.run.record import RunRecord
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
 from argo_env.run.steering import StopRun
-from argo_planner.service.processes.orphans import end_with_parent
-from argo_planner.service.runs.driver import RunDriver
+from argo_planner.service.processes.work import end_with_parent
+from argo_planner.service.runs.driver import RunDriver, RunTeller
 from argo_planner.service.runs.pictures import PictureKeeper
 from argo_planner.service.runs.pipe import BrokenOff, WorkerPipe
 from argo_planner.service.runs.requests import EndRun, RequestState, RunOrder, RunRequest
 from argo_planner.service.runs.state import RunState, StateTold
-from argo_planner.service.runs.teller import RunTeller
 from argo_planner.service.world.obstacles import with_obstacles
 from argo_planner.use_cases.reporting import report_files
 

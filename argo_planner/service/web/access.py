@@ -2,8 +2,10 @@
 
 import hashlib
 import hmac
+import os
 import secrets
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
@@ -16,6 +18,8 @@ SHORTEST_TOKEN = 16
 """characters"""
 AUTHOR_HEADER = "argo-author"
 """the HTTP header in which a client says who is working, percent-encoded"""
+_SECRET = ".token"
+"""the file of a folder that has its token"""
 
 
 class AccessRole(StrEnum):
@@ -146,6 +150,25 @@ def checked_secret(secret: str, where: str) -> str:
     if not secret.isascii() or not all(c.isalnum() or c in "-._~" for c in secret):
         raise Invalid(f"{where}: a token has letters, digits and `-._~` only")
     return secret
+
+
+def kept_secret(folder: Path) -> str:
+    """The token of a folder of missions, made where there is none: a service that begins again has
+    the same, so that open pages go on. Raises Unavailable where it can't be kept, Invalid where it
+    was spoilt."""
+    path = folder / _SECRET
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with suppress(FileExistsError):
+            flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
+            file = os.open(path, flags, 0o600)
+            with open(file, "w", encoding="ascii") as new:
+                new.write(new_secret())
+        file = os.open(path, os.O_RDONLY | os.O_NOFOLLOW)
+        with open(file, encoding="ascii") as kept:
+            return checked_secret(kept.read().strip(), str(path))
+    except (OSError, UnicodeDecodeError) as error:
+        raise Unavailable(f"{path}: can't be kept: {error}; choose another folder") from None
 
 
 def new_secret() -> str:

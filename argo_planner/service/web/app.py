@@ -1,4 +1,4 @@
-"""The app: all routes, behind the guard."""
+"""The app: all routes, which stand behind the guard."""
 
 import json
 from collections.abc import AsyncIterator, Callable
@@ -10,6 +10,8 @@ from fastapi import APIRouter, FastAPI, Response
 
 from argo_compiler.base.model import Model
 from argo_compiler.base.version import __version__
+from argo_planner.service.rooms.messages import RoomMessage
+from argo_planner.service.runs.state import RunMessage
 from argo_planner.service.web import (
     commands,
     evaluations,
@@ -22,11 +24,9 @@ from argo_planner.service.web import (
     versions,
     world,
 )
-from argo_planner.service.web.access import AccessRole, TokenBook
-from argo_planner.service.web.guard import Doors, Guard
+from argo_planner.service.web.access import AccessRole
 from argo_planner.service.web.problems import MEDIA, answer_problems, documented
 from argo_planner.service.web.requests import KEYS, PlanningService, Service, Viewer, said
-from argo_planner.service.web.told import webhooks
 
 Opened = Callable[[], AbstractAsyncContextManager[PlanningService]]
 """opens the service when the app begins, and closes it when it ends"""
@@ -60,6 +60,21 @@ async def read_service(service: Service, visitor: Viewer) -> Response:
             role=visitor.role,
         )
     )
+
+
+webhooks = APIRouter()
+"""what is told over WebSockets, for the OpenAPI document: each socket as a webhook of its own,
+whose answer is one of its messages"""
+
+
+@webhooks.get("mission", operation_id="mission_told", response_model=RoomMessage)
+def mission_told() -> None:
+    """What `/api/missions/{id}/live` sends, message by message."""
+
+
+@webhooks.get("robot", operation_id="robot_told", response_model=RunMessage)
+def robot_told() -> None:
+    """What `/api/robot/live` sends, message by message."""
 
 
 def make_app(opened: Opened) -> FastAPI:
@@ -103,11 +118,6 @@ def _document_of(app: FastAPI) -> dict[str, Any]:
                         told["content"] = {MEDIA: told["content"]["application/json"]}
     assert app.openapi_schema is not None
     return app.openapi_schema
-
-
-def guarded(app: FastAPI, tokens: TokenBook, doors: Doors) -> Guard:
-    """The app behind its guard."""
-    return Guard(app, tokens, doors)
 
 
 def document() -> str:

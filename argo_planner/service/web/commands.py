@@ -3,7 +3,7 @@
 import asyncio
 from typing import Annotated
 
-from fastapi import APIRouter, Response
+from fastapi import Response
 from pydantic import Discriminator, Field
 
 from argo_compiler.base.errors import NotFound
@@ -27,12 +27,12 @@ from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.missions import sound
 from argo_planner.service.web.problems import StaleCommand, documented
 from argo_planner.service.web.requests import (
-    KEYS,
     MadeOn,
     PlanId,
     Planner,
     Service,
     Viewer,
+    routes,
     said,
 )
 from argo_planner.use_cases.explaining import reading_of
@@ -41,12 +41,7 @@ from argo_planner.use_cases.importing import Upload, import_mission
 MOST_SCRIPT = 1_000_000
 """characters"""
 
-router = APIRouter(
-    prefix="/api/missions/{id}",
-    tags=["commands"],
-    dependencies=KEYS,
-    responses=documented(400, 401, 403, 404, 409, 413, 422, 503),
-)
+router = routes("commands", prefix="/api/missions/{id}")
 
 AnyCommand = Annotated[EditPlan | UndoEdit | RedoEdit | ReplacePlan, Discriminator("kind")]
 

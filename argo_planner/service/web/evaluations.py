@@ -2,18 +2,17 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Response
+from fastapi import Path, Response
 
-from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.evaluations.replay import ReplayedRun
 from argo_planner.service.jobs.evaluation import EvaluationAsked, EvaluationOrder
 from argo_planner.service.jobs.job import EvaluationJob
 from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.jobs import JobId
-from argo_planner.service.web.missions import sound
-from argo_planner.service.web.problems import StaleCommand, documented
+from argo_planner.service.web.missions import sound_plan
+from argo_planner.service.web.problems import documented
 from argo_planner.service.web.requests import (
-    KEYS,
+    REPORT_POLICY,
     MadeOn,
     PlanId,
     Planner,
@@ -21,15 +20,11 @@ from argo_planner.service.web.requests import (
     Viewer,
     created,
     link,
+    routes,
     said,
 )
 
-router = APIRouter(
-    prefix="/api",
-    tags=["jobs"],
-    dependencies=KEYS,
-    responses=documented(400, 401, 403, 404, 409, 413, 422, 503),
-)
+router = routes("jobs")
 
 RunKey = Annotated[str, Path(pattern=r"^[0-9a-f]{24}$", description="key of the run")]
 _JOB = {
@@ -39,10 +34,6 @@ _JOB = {
         "forget_evaluation",
     )
 }  # fmt: skip
-# The report is one file, with its styles and pictures in it; it runs nothing and loads nothing.
-_REPORT_POLICY = (
-    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'"
-)
 
 
 @router.post(
@@ -57,11 +48,8 @@ async def evaluate_mission(
 ) -> Response:
     """Begins to run the mission as it stands in many worlds; 409 while another evaluation is under
     way."""
-    document = (await service.rooms.open(id)).document
+    document = await sound_plan(service, id, made_on)
     plan = document.plan
-    if made_on is not None and made_on != plan.revision:
-        raise StaleCommand(StaleRevision(made_on, plan.revision), plan.since(made_on))
-    sound(document, service.site)
     order = EvaluationOrder(
         name=document.name,
         mission=plan.mission,
@@ -113,5 +101,4 @@ async def replay_run(service: Service, _: Viewer, id: JobId, key: RunKey) -> Res
 async def read_evaluation_report(service: Service, _: Viewer, id: JobId) -> Response:
     """The report of an evaluation; of one that was cut short, of what there is."""
     content = await service.evaluations.report(id)
-    headers = {"content-security-policy": _REPORT_POLICY}
-    return Response(content, headers=headers, media_type="text/html")
+    return Response(content, headers=REPORT_POLICY, media_type="text/html")

@@ -2,10 +2,10 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Response
+from fastapi import Path, Response
 from pydantic import Field
 
-from argo_compiler.base.errors import Conflict, Invalid, NotFound
+from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Model
 from argo_compiler.reorder.mission import require_known
 from argo_compiler.reorder.requirements import Requirements
@@ -15,10 +15,9 @@ from argo_planner.service.jobs.job import JOB_ID, AnyJob, OrderJob
 from argo_planner.service.rooms.messages import CommandDone
 from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.commands import carried_out
-from argo_planner.service.web.missions import sound
+from argo_planner.service.web.missions import sound_plan
 from argo_planner.service.web.problems import StaleCommand, documented
 from argo_planner.service.web.requests import (
-    KEYS,
     MadeOn,
     PlanId,
     Planner,
@@ -26,18 +25,14 @@ from argo_planner.service.web.requests import (
     Viewer,
     created,
     link,
+    routes,
     said,
 )
 
 LONGEST_SEARCH = 600.0
 """s"""
 
-router = APIRouter(
-    prefix="/api",
-    tags=["jobs"],
-    dependencies=KEYS,
-    responses=documented(400, 401, 403, 404, 409, 413, 422, 503),
-)
+router = routes("jobs")
 
 JobId = Annotated[str, Path(pattern=f"^{JOB_ID}$", description="id of the job")]
 _JOB = {
@@ -76,9 +71,7 @@ async def suggest_order(
     service: Service, visitor: Planner, id: PlanId, asked: Sent[OrderAsked]
 ) -> Response:
     """Begins to search for the mission's best order."""
-    document = (await service.rooms.open(id)).document
-    sound(document, service.site)
-    plan = document.plan
+    plan = (await sound_plan(service, id)).plan
     try:
         require_known(plan.mission, asked.requirements)
     except NotFound as error:  # the address is right
@@ -122,12 +115,10 @@ async def accept_order(
 ) -> Response:
     """Puts the mission into the order that was found, as a command that can be undone; 412 where
     the mission has changed since the search began."""
-    job = service.orders.of(id)
-    if job.found is None or job.found.mission is None:
-        raise Conflict(f"job {id} is {job.state}, and has found no order")
+    job, mission = service.orders.ordered(id)
     room = await service.rooms.open(job.mission)
     command = ReplacePlan.model_construct(
-        id=accepted.id, mission=job.found.mission, about="a suggested order"
+        id=accepted.id, mission=mission, about="a suggested order"
     )
     plan = room.document.plan
     if plan.repeated(command, visitor.author) is None:

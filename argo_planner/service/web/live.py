@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from argo_compiler.base.errors import ArgoError, Unavailable
 from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
 from argo_planner.service.rooms.messages import SelectTasks
-from argo_planner.service.web.access import Visitor
+from argo_planner.service.web.access import AccessRole, Visitor
 from argo_planner.service.web.problems import answer, problem_of
 from argo_planner.service.web.requests import PlanningService
 
@@ -35,15 +35,11 @@ async def follow(
     """First the whole mission, or what happened `since` a revision, then all that happens."""
     service: PlanningService = socket.app.state.service
     visitor: Visitor = socket.scope["visitor"]
-    try:
-        require_socket(socket)
-        room = await service.rooms.open(id)
-    except ArgoError as error:
-        await socket.send_denial_response(answer(problem_of(error)))
+    if not await admitted(socket, plan=id):
         return
     client = socket_client()
-    await socket.accept()
     try:
+        room = await service.rooms.open(id)
         mailbox = room.join(client, visitor.author, since)
     except ArgoError as error:
         await socket.close(GONE, str(error)[:100])
@@ -63,11 +59,22 @@ def socket_client() -> str:
     return f"c{next(_NUMBERS)}"
 
 
-def require_socket(socket: WebSocket) -> None:
-    """Raises Unavailable if no more connections are taken."""
-    state = socket.app.state
-    if getattr(state, "sockets", 0) >= MOST_SOCKETS:
-        raise Unavailable(f"{MOST_SOCKETS} pages are open already: close some of them")
+async def admitted(
+    socket: WebSocket, role: AccessRole = AccessRole.VIEW, plan: str | None = None
+) -> bool:
+    """Whether a connection is taken, to a plan if one is named; else its client is told why not."""
+    visitor: Visitor = socket.scope["visitor"]
+    try:
+        visitor.require(role)
+        if getattr(socket.app.state, "sockets", 0) >= MOST_SOCKETS:
+            raise Unavailable(f"{MOST_SOCKETS} pages are open already: close some of them")
+        if plan is not None:
+            await socket.app.state.service.rooms.open(plan)
+    except ArgoError as error:
+        await socket.send_denial_response(answer(problem_of(error)))
+        return False
+    await socket.accept()
+    return True
 
 
 async def carry(socket: WebSocket, mailbox: Mailbox, heard: Callable[[str], None]) -> None:

@@ -3,24 +3,26 @@ would be driven, what an import had to say."""
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Response
+from fastapi import Path, Response
 
-from argo_compiler.base.errors import Conflict, NotFound
+from argo_compiler.base.errors import NotFound
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic
 from argo_planner.service.runs.pictures import picture_of
 from argo_planner.service.storage.notes import read_notes
 from argo_planner.service.web.jobs import JobId
-from argo_planner.service.web.problems import documented
-from argo_planner.service.web.requests import KEYS, PlanId, Service, Viewer, said
+from argo_planner.service.web.requests import (
+    PlanId,
+    Service,
+    Viewer,
+    answers_file,
+    routes,
+    said,
+)
 from argo_planner.service.web.runs import RunId
 from argo_planner.service.world.previews import PreviewedMission, preview_mission
 
-router = APIRouter(
-    prefix="/api",
-    dependencies=KEYS,
-    responses=documented(400, 401, 403, 404, 409, 413, 422, 503),
-)
+router = routes()
 
 
 class ImportNotes(Model):
@@ -35,13 +37,7 @@ class ImportNotes(Model):
     "/runs/{run}/pictures/{checkpoint}/{milliseconds}",
     operation_id="read_picture",
     tags=["runs"],
-    response_class=Response,
-    responses={
-        200: {
-            "description": "the picture",
-            "content": {"image/png": {"schema": {"type": "string", "format": "binary"}}},
-        }
-    },
+    **answers_file("the picture", "image/png"),
 )
 async def read_picture(
     service: Service,
@@ -68,11 +64,8 @@ async def read_picture(
 )
 async def preview_job(service: Service, _: Viewer, id: JobId) -> Response:
     """The ways of the mission in the order that a search has found; 409 until there is one."""
-    job = service.orders.of(id)
-    if job.found is None or job.found.mission is None:
-        raise Conflict(f"job {id} is {job.state}, and has found no order")
+    mission = service.orders.ordered(id)[1]
     obstacles = service.obstacles.present.obstacles
-    mission = job.found.mission
     return said(await service.on_site(preview_mission, service.site, mission, obstacles))
 
 

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import Annotated
 from urllib.parse import quote
 
-from fastapi import APIRouter, Path, Query, Request, Response
+from fastapi import Path, Query, Request, Response
 from pydantic import Field
 
 from argo_compiler.base.errors import NotFound
@@ -22,21 +22,23 @@ from argo_planner.service.core.change import difference
 from argo_planner.service.core.commands import Revision
 from argo_planner.service.core.document import PlanDocument
 from argo_planner.service.core.plan_limits import require_fitting
+from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.rooms.messages import PlanState
 from argo_planner.service.storage.folder import summary_of
 from argo_planner.service.storage.notes import drop_notes, keep_notes
 from argo_planner.service.storage.outline import PlanSummary
 from argo_planner.service.web.bodies import Sent
-from argo_planner.service.web.problems import documented
+from argo_planner.service.web.problems import StaleCommand
 from argo_planner.service.web.requests import (
-    KEYS,
     NameGiven,
     PlanId,
     Planner,
     Service,
     Viewer,
+    answers_file,
     created,
     link,
+    routes,
     said,
 )
 from argo_planner.use_cases.exporting import as_script, export_mission
@@ -66,12 +68,7 @@ ETAG = "$response.header.ETag"
 for _name in ("carry_out_command", "keep_version", "write_script", "start_run"):
     OF_MISSION[_name]["parameters"]["If-Match"] = ETAG
 
-router = APIRouter(
-    prefix="/api",
-    tags=["missions"],
-    dependencies=KEYS,
-    responses=documented(400, 401, 403, 404, 409, 413, 422, 503),
-)
+router = routes("missions")
 
 
 class PlanList(Model):
@@ -220,16 +217,11 @@ async def destroy_mission(service: Service, _: Planner, id: PlanId) -> Response:
 @router.get(
     "/missions/{id}/export/{format}",
     operation_id="export_mission",
-    response_class=Response,
-    responses={
-        200: {
-            "description": "the file; of a format that is a folder, a zip of it",
-            "content": {
-                media: {"schema": {"type": "string", "format": "binary"}}
-                for media in ("application/octet-stream", "application/zip")
-            },
-        }
-    },
+    **answers_file(
+        "the file; of a format that is a folder, a zip of it",
+        "application/octet-stream",
+        "application/zip",
+    ),
 )
 async def export_a_mission(
     service: Service,
@@ -268,6 +260,17 @@ async def list_revisions(
 def as_it_is(document: PlanDocument) -> ImportedMission:
     """The mission of a plan, which may have errors."""
     return ImportedMission(document.plan.mission, document.name, (), ())
+
+
+async def sound_plan(service: Service, id: str, made_on: int | None = None) -> PlanDocument:
+    """A plan whose mission has no errors, as it was on the revision `made_on`; None: as it stands.
+    Raises StaleCommand, or DiagnosticError."""
+    document = (await service.rooms.open(id)).document
+    plan = document.plan
+    if made_on is not None and made_on != plan.revision:
+        raise StaleCommand(StaleRevision(made_on, plan.revision), plan.since(made_on))
+    sound(document, service.site)
+    return document
 
 
 def sound(document: PlanDocument, site: OpenedSite) -> ImportedMission:

@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path as FilePath
 from typing import Annotated, Any, TypeVar
 
-from fastapi import Depends, Header, Path, Request, Response
+from fastapi import APIRouter, Depends, Header, Path, Request, Response
 from fastapi.security import APIKeyCookie, HTTPBearer
 from pydantic import Field
 
@@ -24,10 +24,15 @@ from argo_planner.service.rooms.rooms import PlanRooms
 from argo_planner.service.runs.host import RunHost
 from argo_planner.service.storage.folder import PLAN_ID
 from argo_planner.service.web.access import AccessRole, Visitor
-from argo_planner.service.web.problems import RevisionMissing
+from argo_planner.service.web.problems import RevisionMissing, documented
 from argo_planner.service.world.kept import KeptObstacles
 
 JSON = "application/json"
+# A report is one file, with its styles and pictures in it; it runs nothing and loads nothing.
+REPORT_POLICY = {
+    "content-security-policy": "default-src 'none'; style-src 'unsafe-inline'; img-src data:; "
+    "frame-ancestors 'none'"
+}
 T = TypeVar("T")
 
 
@@ -91,6 +96,19 @@ KEYS = [
     Depends(HTTPBearer(auto_error=False, description="a token of the service")),
     Depends(APIKeyCookie(name="argo", auto_error=False, description="set by the page's address")),
 ]
+
+
+def routes(*tags: str, prefix: str = "/api") -> APIRouter:
+    """A router for a part of what the service offers."""
+    problems = documented(400, 401, 403, 404, 409, 413, 422, 503)
+    return APIRouter(prefix=prefix, tags=[*tags], dependencies=KEYS, responses=problems)
+
+
+def answers_file(what: str, *media: str) -> dict[str, Any]:
+    """What the OpenAPI document says of a route that answers with a file."""
+    content = {one: {"schema": {"type": "string", "format": "binary"}} for one in media}
+    told = {200: {"description": what, "content": content}}
+    return {"response_class": Response, "responses": told}
 
 
 def _made_on(

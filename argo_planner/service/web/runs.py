@@ -6,46 +6,37 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query, Response, WebSocket
 from pydantic import Field
 
-from argo_compiler.base.errors import ArgoError, Invalid, NotFound
+from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Model
 from argo_env.faults.kinds import AnyFault
 from argo_env.report.files import PAGE, RECORD
 from argo_env.run.drives_and_sensors import DRIVES, SENSORS
 from argo_env.site import Site
 from argo_planner.service.core.commands import CommandId
-from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.runs.requests import AskedOfRun, GoOnEdited, RequestState, RunOrder, Speed
 from argo_planner.service.runs.state import EntryList, RunState
 from argo_planner.service.runs.worker import REMOTE
-from argo_planner.service.web.access import AccessRole, Visitor
+from argo_planner.service.web.access import AccessRole
 from argo_planner.service.web.bodies import Sent
-from argo_planner.service.web.live import carry, require_socket, socket_client
-from argo_planner.service.web.missions import sound
-from argo_planner.service.web.problems import StaleCommand, answer, documented, problem_of
+from argo_planner.service.web.live import admitted, carry, socket_client
+from argo_planner.service.web.missions import sound_plan
+from argo_planner.service.web.problems import documented
 from argo_planner.service.web.requests import (
-    KEYS,
+    REPORT_POLICY,
     MadeOn,
     Operator,
     PlanId,
     PlanningService,
     Service,
     Viewer,
+    answers_file,
     created,
     link,
+    routes,
     said,
 )
 
-# A report is one file, with its styles in it; it runs nothing and loads nothing.
-_REPORT_POLICY = (
-    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'"
-)
-
-router = APIRouter(
-    prefix="/api",
-    tags=["runs"],
-    dependencies=KEYS,
-    responses=documented(400, 401, 403, 404, 409, 413, 422, 503),
-)
+router = routes("runs")
 
 RunId = Annotated[str, Path(pattern=r"^[0-9]{8}-[0-9]{6}-[0-9a-f]{4}$", description="of the run")]
 _RUN = {
@@ -91,11 +82,8 @@ async def start_run(
     service: Service, visitor: Operator, id: PlanId, run: Sent[RunAsked], made_on: MadeOn
 ) -> Response:
     """Begins a run of the mission as it stands; 409 with who has the robot if there is one."""
-    document = (await service.rooms.open(id)).document
+    document = await sound_plan(service, id, made_on)
     plan = document.plan
-    if made_on is not None and made_on != plan.revision:
-        raise StaleCommand(StaleRevision(made_on, plan.revision), plan.since(made_on))
-    sound(document, service.site)
     _require_known(run, service.site.site)
     order = RunOrder(
         plan=id,
@@ -162,12 +150,7 @@ async def go_on_edited(
     made_on: MadeOn,
 ) -> Response:
     """Gives the robot back, and lets the run go on with its mission as it was edited since."""
-    state = service.runs.of(run)
-    document = (await service.rooms.open(state.plan)).document
-    plan = document.plan
-    if made_on is not None and made_on != plan.revision:
-        raise StaleCommand(StaleRevision(made_on, plan.revision), plan.since(made_on))
-    sound(document, service.site)
+    plan = (await sound_plan(service, service.runs.of(run).plan, made_on)).plan
     request = GoOnEdited(id=given.id, mission=plan.mission, revision=plan.revision)
     asked = await service.runs.ask(run, request, visitor.author)
     return said(asked, 202, location=f"/api/runs/{run}/requests/{asked.id}")
@@ -201,16 +184,7 @@ async def list_entries(
 @router.get(
     "/runs/{run}/report/{file}",
     operation_id="read_report",
-    response_class=Response,
-    responses={
-        200: {
-            "description": "the file",
-            "content": {
-                media: {"schema": {"type": "string", "format": "binary"}}
-                for media in ("text/html", "application/json", "image/png")
-            },
-        }
-    },
+    **answers_file("the file", "text/html", "application/json", "image/png"),
 )
 async def read_report(
     service: Service, _: Viewer, run: RunId, file: Annotated[str, Path(max_length=40)]
@@ -220,7 +194,7 @@ async def read_report(
     if file not in media:
         raise NotFound(f"the report has no file {file!r}; it has: {', '.join(media)}")
     content = await service.runs.report(run, file)
-    headers = {"content-security-policy": _REPORT_POLICY} if file == PAGE else None
+    headers = REPORT_POLICY if file == PAGE else None
     return Response(content, media_type=media[file], headers=headers)
 
 
@@ -231,12 +205,8 @@ socket_router = APIRouter()
 async def follow_robot(socket: WebSocket, since: Annotated[int | None, Query(ge=0)] = None) -> None:
     """How the present run stands, its entries after that number, then all that happens."""
     service: PlanningService = socket.app.state.service
-    try:
-        require_socket(socket)
-    except ArgoError as error:
-        await socket.send_denial_response(answer(problem_of(error)))
+    if not await admitted(socket):
         return
-    await socket.accept()
     client = socket_client()
     mailbox = service.runs.follow(client, since)
     try:
@@ -249,14 +219,8 @@ async def follow_robot(socket: WebSocket, since: Annotated[int | None, Query(ge=
 async def connect_robot(socket: WebSocket) -> None:
     """The line of a robot that is somewhere else: it carries the messages of `argo_env.remote`."""
     service: PlanningService = socket.app.state.service
-    visitor: Visitor = socket.scope["visitor"]
-    try:
-        visitor.require(AccessRole.OPERATE)
-        require_socket(socket)
-    except ArgoError as error:
-        await socket.send_denial_response(answer(problem_of(error)))
+    if not await admitted(socket, AccessRole.OPERATE):
         return
-    await socket.accept()
     line = service.runs.robot.connect()
     try:
         await carry(socket, line, lambda text: service.runs.hear_robot(line, text))

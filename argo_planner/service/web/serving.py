@@ -23,9 +23,9 @@ from argo_planner.service.rooms.rooms import PlanRooms
 from argo_planner.service.runs.host import AfterRestart, RunHost
 from argo_planner.service.storage.folder import PlanFolder
 from argo_planner.service.web.access import TokenBook
-from argo_planner.service.web.app import Opened, guarded, make_app
+from argo_planner.service.web.app import Opened, make_app
 from argo_planner.service.web.connections import raise_file_limit, server_options
-from argo_planner.service.web.guard import Doors
+from argo_planner.service.web.guard import Doors, Guard
 from argo_planner.service.web.requests import PlanningService
 from argo_planner.service.world.kept import KeptObstacles
 
@@ -115,7 +115,7 @@ def serve(order: ServiceOrder, listening: socket.socket) -> None:
     """Serves at a socket until a signal ends it."""
     raise_file_limit()
     app = make_app(opened_service(order.plans, order.site, order.after_restart, order.foxglove))
-    guard = guarded(app, order.tokens, order.doors)
+    guard = Guard(app, order.tokens, order.doors)
     uvicorn.Server(uvicorn.Config(guard, **server_options())).run(sockets=[listening])
 
 

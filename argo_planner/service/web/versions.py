@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Response
+from fastapi import Path, Response
 
 from argo_compiler.base.model import Model
 from argo_planner.service.core.commands import CommandId, ReplaceFrom, ReplacePlan
@@ -13,7 +13,6 @@ from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.commands import carried_out
 from argo_planner.service.web.problems import StaleCommand, documented
 from argo_planner.service.web.requests import (
-    KEYS,
     MadeOn,
     NameGiven,
     PlanId,
@@ -22,15 +21,11 @@ from argo_planner.service.web.requests import (
     Viewer,
     created,
     link,
+    routes,
     said,
 )
 
-router = APIRouter(
-    prefix="/api",
-    tags=["versions"],
-    dependencies=KEYS,
-    responses=documented(400, 401, 403, 404, 409, 413, 422, 503),
-)
+router = routes("versions")
 
 
 class RestoredVersion(Model):

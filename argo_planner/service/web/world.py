@@ -4,7 +4,7 @@ driven."""
 from collections.abc import Callable
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Path, Request, Response
+from fastapi import Path, Request, Response
 from pydantic import Field
 
 from argo_compiler.base.catalog import CheckpointKind
@@ -12,16 +12,17 @@ from argo_compiler.base.errors import Invalid
 from argo_compiler.base.model import Model, Pose
 from argo_compiler.il import Task
 from argo_planner.service.web.bodies import Sent
-from argo_planner.service.web.missions import sound
+from argo_planner.service.web.missions import sound_plan
 from argo_planner.service.web.problems import documented
 from argo_planner.service.web.requests import (
-    KEYS,
     MadeOn,
     PlanId,
     Planner,
     PlanningService,
     Service,
     Viewer,
+    answers_file,
+    routes,
     said,
 )
 from argo_planner.service.world.description import WorldDescription, describe, world_digest
@@ -39,12 +40,7 @@ from argo_planner.service.world.standing import standing_map
 GLB = "model/gltf-binary"
 MAP = "application/octet-stream"
 
-router = APIRouter(
-    prefix="/api",
-    tags=["world"],
-    dependencies=KEYS,
-    responses=documented(400, 401, 403, 404, 409, 413, 422, 503),
-)
+router = routes("world")
 
 Floor = Annotated[int, Path(ge=-1_000, le=1_000, description="number of the floor")]
 
@@ -64,15 +60,9 @@ class WayAsked(Model):
 
 
 def _file(media: str) -> dict[str, Any]:
-    """What the OpenAPI document says of a route that answers with a file."""
-    content = {media: {"schema": {"type": "string", "format": "binary"}}}
-    return {
-        "response_class": Response,
-        "responses": {
-            200: {"description": "the file", "content": content},
-            304: {"description": "as the client has it"},
-        },
-    }
+    told = answers_file("the file", media)
+    told["responses"][304] = {"description": "as the client has it"}
+    return told
 
 
 @router.get("/world", operation_id="read_world", response_model=WorldDescription)
@@ -165,11 +155,10 @@ async def preview_a_way(service: Service, _: Viewer, asked: Sent[WayAsked]) -> R
 )
 async def preview_a_mission(service: Service, _: Viewer, id: PlanId) -> Response:
     """The ways of a mission as they will be driven, with times, climb and energy."""
-    document = (await service.rooms.open(id)).document
-    sound(document, service.site)
+    plan = (await sound_plan(service, id)).plan
     obstacles = service.obstacles.present.obstacles
-    found = await service.on_site(preview_mission, service.site, document.plan.mission, obstacles)
-    return said(found, revision=document.plan.revision)
+    found = await service.on_site(preview_mission, service.site, plan.mission, obstacles)
+    return said(found, revision=plan.revision)
 
 
 async def _kept(

@@ -20,10 +20,13 @@ from argo_env.planning.opening import OpenedSite
 from argo_env.site.shapes import Box, Element, Role
 from argo_env.site.spec import Rect
 from argo_planner.service.core.plan_limits import require_name
-from argo_planner.service.world.bounds import require_on_site
 
 T = TypeVar("T")
 MOST_OBSTACLES = 200
+FARTHEST = 10_000.0
+"""m from the middle of the site's frame"""
+MOST_TURNED = 1_000.0
+"""rad"""
 _SLABS = 32  # rectangles at most that stand for an obstacle which is turned
 _STRAIGHT = 1e-6  # rad
 
@@ -65,6 +68,14 @@ def _required(require: Callable[[T, str], None], value: T, what: str) -> None:
         require(value, what)
     except Invalid as error:
         raise ValueError(str(error)) from None
+
+
+def require_on_site(pose: Pose, what: str) -> None:
+    """Raises Invalid for a pose that is on no site."""
+    if max(abs(pose.x), abs(pose.y), abs(pose.z)) > FARTHEST:
+        raise Invalid(f"{what} stands farther away than {FARTHEST:g} m, on no site")
+    if abs(pose.yaw) > MOST_TURNED:
+        raise Invalid(f"{what} has a yaw of {pose.yaw:g} rad: give it one of a turn")
 
 
 def with_obstacles(site: OpenedSite, obstacles: Sequence[Obstacle]) -> OpenedSite:

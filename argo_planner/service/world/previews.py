@@ -17,8 +17,7 @@ from argo_env.navigation import Path
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.travel import SiteTravel
 from argo_env.robot.spec import RobotSpec
-from argo_planner.service.world.bounds import require_on_site
-from argo_planner.service.world.obstacles import Obstacle, with_obstacles
+from argo_planner.service.world.obstacles import Obstacle, require_on_site, with_obstacles
 
 MOST_WAYS = 20_000
 """of a mission; more are not looked for"""

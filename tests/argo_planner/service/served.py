@@ -14,9 +14,9 @@ from websockets.sync.client import ClientConnection, connect
 
 from argo_env.planning.opening import OpenedSite
 from argo_planner.service.web.access import AccessRole, AccessToken, TokenBook
-from argo_planner.service.web.app import guarded, make_app
+from argo_planner.service.web.app import make_app
 from argo_planner.service.web.connections import server_options
-from argo_planner.service.web.guard import LOOPBACK, Doors
+from argo_planner.service.web.guard import LOOPBACK, Doors, Guard
 from argo_planner.service.web.serving import listen, open_folder, opened_service
 
 ALL = "all-may-be-done-with-this"
@@ -79,7 +79,7 @@ def served(folder: Path, site: OpenedSite) -> Iterator[Served]:
     """A service with the missions of a folder; all its threads end with the context."""
     tokens = [AccessToken(ALL), *(AccessToken(s, role, str(role)) for role, s in SECRETS.items())]
     app = make_app(opened_service(open_folder(folder), site))
-    guard = guarded(app, TokenBook(tokens), Doors(frozenset(LOOPBACK)))
+    guard = Guard(app, TokenBook(tokens), Doors(frozenset(LOOPBACK)))
     listening = listen("127.0.0.1", 0)
     server = uvicorn.Server(uvicorn.Config(guard, **server_options()))
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]}, daemon=True)

@@ -7,7 +7,7 @@ import type { operations } from "../api/schema";
 import type { EvaluationAsked, EvaluationJob, FailedRun } from "../api/types";
 import { heed } from "../scene/heed";
 import { settled } from "../state/commands";
-import { tellError } from "../state/notices";
+import { telling } from "../state/notices";
 import { connected, jobs, planId, revision, takeJob } from "../state/plan";
 import { showReplay } from "../state/run";
 import { panel } from "../state/view";
@@ -83,28 +83,22 @@ export async function lookElsewhere(): Promise<void> {
 export async function choose(job: string): Promise<void> {
   const id = planId.value;
   if (id === null) return;
-  try {
+  await telling(async () => {
     if (!jobs.peek().has(job)) await read(job, id);
     chosen.value = job;
-  } catch (error) {
-    tellError(error);
-  }
+  });
 }
 
 /** Deletes an evaluation that is over, with all that came of it. */
 export async function forget(job: string): Promise<void> {
-  try {
+  await telling(async () => {
     await answered(client.DELETE("/api/evaluations/{id}", { params: { path: { id: job } } }));
     batch(() => {
-      const left = new Map(jobs.value);
-      left.delete(job);
-      jobs.value = left;
+      jobs.value = new Map([...jobs.value].filter(([other]) => other !== job));
       if (chosen.value === job) chosen.value = null;
     });
-    if (planId.value !== null) await ask(planId.value);
-  } catch (error) {
-    tellError(error);
-  }
+    await lookElsewhere();
+  });
 }
 
 /** Begins one of the mission as it is. */
@@ -133,27 +127,21 @@ export async function goOnWithEvaluation(id: string): Promise<void> {
 export async function replay(job: EvaluationJob, run: FailedRun): Promise<void> {
   if (replaying.value !== null) return;
   replaying.value = run.key;
-  try {
+  await telling(async () => {
     const path = { id: job.id, key: run.key };
     const made = await answered(client.GET("/api/jobs/{id}/runs/{key}", { params: { path } }));
     batch(() => {
       showReplay(made, run);
       if (planId.peek() === job.mission) panel.value = "run";
     });
-  } catch (error) {
-    tellError(error);
-  } finally {
-    replaying.value = null;
-  }
+  }).finally(() => (replaying.value = null));
 }
 
 async function taken(ask: () => Parameters<typeof answered>[0]): Promise<void> {
   const id = planId.value;
-  try {
+  const done = await telling(async () => {
     const job = (await answered(ask())) as EvaluationJob;
     if (planId.value === id) takeJob(job);
-  } catch (error) {
-    tellError(error);
-    void lookElsewhere();
-  }
+  });
+  if (!done) void lookElsewhere();
 }

@@ -5,9 +5,10 @@ import { svg } from "lit";
 import type { EvaluationJob, EvaluationStanding, FailedRun, RateTold } from "../api/types";
 import { rateCurve } from "../model/rate-curve";
 import { mayPlan } from "../state/session";
-import { dateLocale, t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
-import { figure, percent, seconds } from "../ui/figures";
+import { t } from "../texts";
+import { options, valueOf } from "../ui/controls";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
+import { dateAndTime, figure, percent, seconds } from "../ui/figures";
 import { icon } from "../ui/icons";
 import { styled } from "../ui/styled";
 import {
@@ -28,159 +29,153 @@ const SERVICE_ENDED = "the service ended before all was run";
 
 @customElement("argo-evaluate-result")
 export class EvaluateResult extends PageElement {
-  static override styles = [
-    look,
-    css`
-      section {
-        display: grid;
-        grid-template-columns: minmax(0, 1fr);
-        gap: 10px;
-      }
-      .rate {
-        font-size: 26px;
-        font-weight: 600;
-        font-variant-numeric: tabular-nums;
-      }
-      .rate span {
-        font-size: 14px;
-        font-weight: 400;
-      }
-      .numbers {
-        font-size: 13px;
-        font-variant-numeric: tabular-nums;
-      }
-      progress {
-        width: 100%;
-        height: 8px;
-        accent-color: var(--accent);
-      }
-      figure {
-        margin: 0;
-      }
-      svg.chart {
-        display: block;
-        width: 100%;
-        height: 110px;
-        border: 1px solid var(--line);
-        border-radius: 6px;
-        background: var(--sunken);
-      }
-      .band {
-        fill: color-mix(in srgb, var(--accent) 25%, transparent);
-      }
-      .line {
-        fill: none;
-        stroke: var(--accent);
-        stroke-width: 2;
-        vector-effect: non-scaling-stroke;
-      }
-      .wanted {
-        stroke: var(--warn);
-        stroke-width: 1;
-        stroke-dasharray: 5 4;
-        vector-effect: non-scaling-stroke;
-      }
-      figcaption,
-      .small {
-        font-size: 12px;
-        color: var(--dim);
-      }
-      .axis {
-        display: flex;
-        justify-content: space-between;
-      }
-      .verdict {
-        padding: 8px;
-        border-radius: var(--round);
-        border-left: 4px solid var(--warn);
-        background: var(--sunken);
-      }
-      .verdict.met {
-        border-left-color: var(--good);
-      }
-      .verdict.missed {
-        border-left-color: var(--bad);
-      }
-      table {
-        width: 100%;
-        border-collapse: collapse;
-        font-size: 13px;
-      }
-      th {
-        text-align: left;
-        font-weight: 400;
-      }
-      caption {
-        text-align: left;
-      }
-      thead th:not(:first-child) {
-        text-align: right;
-      }
-      thead th {
-        color: var(--dim);
-        font-size: 12px;
-      }
-      td {
-        text-align: right;
-        font-variant-numeric: tabular-nums;
-        white-space: nowrap;
-      }
-      tbody th {
-        overflow-wrap: anywhere;
-      }
-      .bar {
-        position: relative;
-        height: 10px;
-        margin-top: 2px;
-        border-radius: 3px;
-        background: var(--sunken);
-      }
-      .bar div {
-        position: absolute;
-        top: 0;
-        bottom: 0;
-      }
-      .bar .span {
-        border-radius: 3px;
-        background: color-mix(in srgb, var(--accent) 45%, transparent);
-      }
-      .bar .mark {
-        width: 3px;
-        margin-left: -1px;
-        background: var(--accent);
-      }
-      ul {
-        margin: 0;
-        padding: 0;
-        list-style: none;
-      }
-      li button {
-        display: grid;
-        justify-content: stretch;
-        width: 100%;
-        padding: 6px 8px;
-        text-align: left;
-      }
-      li .reason {
-        color: var(--dim);
-        font-size: 12px;
-        overflow-wrap: anywhere;
-      }
-      li b {
-        font-weight: 600;
-      }
-      .warn {
-        padding: 8px;
-        border-radius: var(--round);
-        background: var(--warn-ground);
-        color: var(--warn);
-        overflow-wrap: anywhere;
-      }
-      a {
-        color: var(--accent);
-      }
-    `,
-  ];
+  static override styles = css`
+    section {
+      display: grid;
+      grid-template-columns: minmax(0, 1fr);
+      gap: 10px;
+    }
+    .rate {
+      font-size: 26px;
+      font-weight: 600;
+      font-variant-numeric: tabular-nums;
+    }
+    .rate span {
+      font-size: 14px;
+      font-weight: 400;
+    }
+    .numbers {
+      font-size: 13px;
+      font-variant-numeric: tabular-nums;
+    }
+    progress {
+      width: 100%;
+      height: 8px;
+      accent-color: var(--accent);
+    }
+    figure {
+      margin: 0;
+    }
+    svg.chart {
+      display: block;
+      width: 100%;
+      height: 110px;
+      border: 1px solid var(--line);
+      border-radius: 6px;
+      background: var(--sunken);
+    }
+    .band {
+      fill: color-mix(in srgb, var(--accent) 25%, transparent);
+    }
+    .line {
+      fill: none;
+      stroke: var(--accent);
+      stroke-width: 2;
+      vector-effect: non-scaling-stroke;
+    }
+    .wanted {
+      stroke: var(--warn);
+      stroke-width: 1;
+      stroke-dasharray: 5 4;
+      vector-effect: non-scaling-stroke;
+    }
+    figcaption,
+    .small {
+      font-size: 12px;
+      color: var(--dim);
+    }
+    .axis {
+      display: flex;
+      justify-content: space-between;
+    }
+    .verdict {
+      padding: 8px;
+      border-radius: var(--round);
+      border-left: 4px solid var(--warn);
+      background: var(--sunken);
+    }
+    .verdict.met {
+      border-left-color: var(--good);
+    }
+    .verdict.missed {
+      border-left-color: var(--bad);
+    }
+    table {
+      width: 100%;
+      border-collapse: collapse;
+      font-size: 13px;
+    }
+    th {
+      text-align: left;
+      font-weight: 400;
+    }
+    caption {
+      text-align: left;
+    }
+    thead th:not(:first-child) {
+      text-align: right;
+    }
+    thead th {
+      color: var(--dim);
+      font-size: 12px;
+    }
+    td {
+      text-align: right;
+      font-variant-numeric: tabular-nums;
+      white-space: nowrap;
+    }
+    tbody th {
+      overflow-wrap: anywhere;
+    }
+    .bar {
+      position: relative;
+      height: 10px;
+      margin-top: 2px;
+      border-radius: 3px;
+      background: var(--sunken);
+    }
+    .bar div {
+      position: absolute;
+      top: 0;
+      bottom: 0;
+    }
+    .bar .span {
+      border-radius: 3px;
+      background: color-mix(in srgb, var(--accent) 45%, transparent);
+    }
+    .bar .mark {
+      width: 3px;
+      margin-left: -1px;
+      background: var(--accent);
+    }
+    ul {
+      margin: 0;
+      padding: 0;
+      list-style: none;
+    }
+    li button {
+      display: grid;
+      justify-content: stretch;
+      width: 100%;
+      padding: 6px 8px;
+      text-align: left;
+    }
+    li .reason {
+      color: var(--dim);
+      font-size: 12px;
+      overflow-wrap: anywhere;
+    }
+    li b {
+      font-weight: 600;
+    }
+    .warn {
+      padding: 8px;
+      border-radius: var(--round);
+      background: var(--warn-ground);
+      color: var(--warn);
+      overflow-wrap: anywhere;
+    }
+  `;
 
   override render() {
     const job = evaluation.value;
@@ -226,12 +221,13 @@ export class EvaluateResult extends PageElement {
     if (all.length < 2) return nothing;
     return html`<label>
       ${texts.which}
-      <select id="which" @change=${(event: Event) => choose((event.target as HTMLSelectElement).value)}>
-        ${all.map(
-          (one) =>
-            html`<option value=${one.id} .selected=${one.id === job.id}>
-              ${texts.begun(moment(one.begun), texts.states[one.id === job.id ? job.state : one.state])}
-            </option>`,
+      <select id="which" @change=${(event: Event) => choose(valueOf(event))}>
+        ${options(
+          all.map(({ id, begun, state }) => {
+            const when = dateAndTime(begun, "short", "medium");
+            return [id, texts.begun(when, texts.states[id === job.id ? job.state : state])];
+          }),
+          job.id,
         )}
       </select>
     </label>`;
@@ -370,8 +366,4 @@ function share(part: number): string {
 /** A number in percent as somebody gave it. */
 function percentOf(part: number): string {
   return percent(part, 4);
-}
-
-function moment(begun: string): string {
-  return new Date(begun).toLocaleString(dateLocale(), { dateStyle: "short", timeStyle: "medium" });
 }

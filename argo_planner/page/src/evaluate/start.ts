@@ -6,7 +6,8 @@ import { parts } from "../run/parts";
 import { broken, mission } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { choice } from "../ui/controls";
+import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { figure } from "../ui/figures";
 import { icon } from "../ui/icons";
 import { elsewhere, evaluate, evaluation, evaluations } from "./evaluation";
@@ -19,7 +20,6 @@ const SHARES = ["charge", "capacity", "speed"] as const;
 @customElement("argo-evaluate-start")
 export class EvaluateStart extends PageElement {
   static override styles = [
-    look,
     parts,
     css`
       form,
@@ -68,9 +68,6 @@ export class EvaluateStart extends PageElement {
       .one {
         grid-template-columns: minmax(0, 1fr) 68px;
       }
-      a {
-        color: var(--accent);
-      }
       .wrong {
         color: var(--bad);
         font-size: 12px;
@@ -92,12 +89,7 @@ export class EvaluateStart extends PageElement {
         <button class="main" id="evaluate" aria-disabled=${reason !== null || this.starting} aria-describedby="why-not">
           ${icon("gauge", 20)} ${texts.begin}
         </button>
-        <label>
-          ${texts.worlds}
-          <select name="worlds">
-            ${WORLDS.map((count) => html`<option value=${count} ?selected=${count === 100}>${figure(count)}</option>`)}
-          </select>
-        </label>
+        ${choice(texts.worlds, "worlds", WORLDS.map((count) => [count, figure(count)]), 100)}
       </div>
       <p class="reason" id="why-not" ?hidden=${reason === null}>
         ${reason}
@@ -115,12 +107,7 @@ export class EvaluateStart extends PageElement {
             ${texts.width}
             <input name="width" type="number" min="1" max="99" step="any" placeholder="5" />
           </label>
-          <label>
-            ${t().run.drive}
-            <select name="drive">
-              ${DRIVES.map((drive) => html`<option value=${drive}>${t().run.drives[drive]}</option>`)}
-            </select>
-          </label>
+          ${choice(t().run.drive, "drive", DRIVES.map((one) => [one, t().run.drives[one]]))}
           <label>
             ${texts.firstSeed}
             <input name="seed" type="number" min="0" max="2147483648" step="1" value="0" required />

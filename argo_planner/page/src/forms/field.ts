@@ -3,7 +3,8 @@
 
 import { tell } from "../state/notices";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, property, state } from "../ui/element";
+import { options, valueOf } from "../ui/controls";
+import { css, customElement, html, nothing, PageElement, property, state } from "../ui/element";
 
 export interface Option {
   readonly value: string;
@@ -17,56 +18,53 @@ let count = 0;
 
 @customElement("argo-field")
 export class FormField extends PageElement {
-  static override styles = [
-    look,
-    css`
-      :host {
-        margin-bottom: 8px;
-      }
-      label {
-        display: block;
-        margin-bottom: 2px;
-        color: var(--dim);
-        font-size: 12px;
-      }
-      .line {
-        display: flex;
-        align-items: center;
-        gap: 6px;
-      }
-      input,
-      select,
-      textarea {
-        width: 100%;
-        min-width: 0;
-      }
-      textarea {
-        min-height: 52px;
-        resize: vertical;
-      }
-      :host([kind="check"]) .line {
-        justify-content: start;
-      }
-      :host([kind="check"]) input {
-        width: auto;
-      }
-      :host([kind="check"]) label {
-        margin: 0;
-        color: inherit;
-        font-size: inherit;
-      }
-      .wrong {
-        margin-top: 2px;
-        color: var(--bad);
-        font-size: 12px;
-      }
-      .note {
-        flex: none;
-        color: var(--dim);
-        font-size: 12px;
-      }
-    `,
-  ];
+  static override styles = css`
+    :host {
+      margin-bottom: 8px;
+    }
+    label {
+      display: block;
+      margin-bottom: 2px;
+      color: var(--dim);
+      font-size: 12px;
+    }
+    .line {
+      display: flex;
+      align-items: center;
+      gap: 6px;
+    }
+    input,
+    select,
+    textarea {
+      width: 100%;
+      min-width: 0;
+    }
+    textarea {
+      min-height: 52px;
+      resize: vertical;
+    }
+    :host([kind="check"]) .line {
+      justify-content: start;
+    }
+    :host([kind="check"]) input {
+      width: auto;
+    }
+    :host([kind="check"]) label {
+      margin: 0;
+      color: inherit;
+      font-size: inherit;
+    }
+    .wrong {
+      margin-top: 2px;
+      color: var(--bad);
+      font-size: 12px;
+    }
+    .note {
+      flex: none;
+      color: var(--dim);
+      font-size: 12px;
+    }
+  `;
 
   @property() label = "";
   @property({ reflect: true }) kind: "text" | "long" | "select" | "check" = "text";
@@ -110,14 +108,9 @@ export class FormField extends PageElement {
         id=${this.id_}
         aria-describedby=${described}
         ?disabled=${this.disabled}
-        @change=${(event: Event) => this.take((event.target as HTMLSelectElement).value)}
+        @change=${this.onChange}
       >
-        ${this.options.map(
-          (option) =>
-            html`<option value=${option.value} ?selected=${option.value === shown} .selected=${option.value === shown}>
-              ${option.label}
-            </option>`,
-        )}
+        ${options(this.options.map(({ value, label }) => [value, label]), shown)}
       </select>`;
     else if (this.kind === "long")
       field = html`<textarea
@@ -162,15 +155,15 @@ export class FormField extends PageElement {
   }
 
   private onInput(event: Event): void {
-    this.typed = (event.target as HTMLInputElement).value;
+    this.typed = valueOf(event);
   }
 
   private onChange(event: Event): void {
-    void this.take((event.target as HTMLInputElement).value);
+    void this.take(valueOf(event));
   }
 
   private onKey(event: KeyboardEvent): void {
-    if (event.key === "Enter" && this.kind !== "long") void this.take((event.target as HTMLInputElement).value);
+    if (event.key === "Enter" && this.kind !== "long") void this.take(valueOf(event));
     else if (event.key === "Escape" && this.typed !== null && !this.taking) this.forget();
     else return;
     event.preventDefault();

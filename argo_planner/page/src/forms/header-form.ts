@@ -7,6 +7,7 @@ import { mission as open } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
+import { options } from "../ui/controls";
 import { html, nothing } from "../ui/element";
 import { optionsOf, poseFields, selectField, textField, timeField } from "./parts";
 
@@ -64,7 +65,7 @@ function befores(mission: Mission) {
   const names = mission.tasks.filter((task) => task.action !== "START").map((task) => task.name);
   const choice = (name: string, label: string) =>
     html`<select name=${name} aria-label=${label}>
-      ${names.map((one) => html`<option value=${one}>${one}</option>`)}
+      ${options(names.map((one) => [one, one]))}
     </select>`;
   const add = (event: SubmitEvent) => {
     event.preventDefault();

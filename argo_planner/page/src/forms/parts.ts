@@ -5,7 +5,7 @@ import { mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { html } from "../ui/element";
-import type { Commit, Option } from "./field";
+import type { Commit, FormField, Option } from "./field";
 import "./field";
 import { readTime, writeTime } from "./times";
 
@@ -14,24 +14,34 @@ export interface FieldOptions {
   readonly placeholder?: string | undefined;
 }
 
-export function textField(label: string, value: string, commit: Commit, kind: "text" | "long" = "text") {
+const NONE: readonly Option[] = [];
+
+function field(
+  kind: FormField["kind"],
+  label: string,
+  value: string,
+  commit: Commit,
+  { note = "", placeholder = "" }: FieldOptions = {},
+  options = NONE,
+) {
   return html`<argo-field
     .label=${label}
-    .kind=${kind}
+    kind=${kind}
     .value=${value}
+    .note=${note}
+    .placeholder=${placeholder}
+    .options=${options}
     .commit=${commit}
     ?disabled=${!mayPlan()}
   ></argo-field>`;
 }
 
+export function textField(label: string, value: string, commit: Commit, kind: "text" | "long" = "text") {
+  return field(kind, label, value, commit);
+}
+
 export function checkField(label: string, value: boolean, commit: (value: boolean) => ReturnType<Commit>) {
-  return html`<argo-field
-    .label=${label}
-    kind="check"
-    .value=${String(value)}
-    .commit=${(text: string) => commit(text === "true")}
-    ?disabled=${!mayPlan()}
-  ></argo-field>`;
+  return field("check", label, String(value), (text) => commit(text === "true"));
 }
 
 export function selectField(
@@ -42,14 +52,7 @@ export function selectField(
 ) {
   const known = options.some((option) => option.value === value);
   const all = known ? options : [{ value, label: value === "" ? "–" : `${value}?` }, ...options];
-  return html`<argo-field
-    .label=${label}
-    kind="select"
-    .value=${value}
-    .options=${all}
-    .commit=${commit}
-    ?disabled=${!mayPlan()}
-  ></argo-field>`;
+  return field("select", label, value, commit, {}, all);
 }
 
 /** A number; empty is null. */
@@ -64,7 +67,7 @@ export function numberField(
     const number = Number(text.trim().replace(",", "."));
     return Number.isFinite(number) ? commit(number) : t().forms.noNumber;
   };
-  return plain(label, value === null || value === undefined ? "" : String(value), take, options);
+  return field("text", label, value === null || value === undefined ? "" : String(value), take, options);
 }
 
 /** A whole number; empty is null. */
@@ -104,18 +107,7 @@ export function timeField(
     return time === null ? t().forms.noTime : commit(time);
   };
   const shown = value === null || value === undefined ? "" : writeTime(value);
-  return plain(label, shown, take, { placeholder: t().forms.likeTime, ...options });
-}
-
-function plain(label: string, value: string, commit: Commit, options: FieldOptions) {
-  return html`<argo-field
-    .label=${label}
-    .value=${value}
-    .note=${options.note ?? ""}
-    .placeholder=${options.placeholder ?? ""}
-    .commit=${commit}
-    ?disabled=${!mayPlan()}
-  ></argo-field>`;
+  return field("text", label, shown, take, { placeholder: t().forms.likeTime, ...options });
 }
 
 /** Choices out of words of the field. */

@@ -7,7 +7,7 @@ import { isTaskKey, nameOfKey } from "../model/outline";
 import { editHere } from "../state/commands";
 import { mission, planId, selection, tasksByName } from "../state/plan";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import type { FormField } from "./field";
 import { groupForm } from "./group-form";
 import { headerForm } from "./header-form";
@@ -17,79 +17,70 @@ import { taskForm } from "./task-form";
 
 @customElement("argo-properties")
 export class PropertiesPanel extends PageElement {
-  static override styles = [
-    look,
-    css`
-      :host {
-        padding: 12px;
-      }
-      h2,
-      h3 {
-        margin: 4px 0 8px;
-      }
-      h3 {
-        margin-top: 14px;
-      }
-      p {
-        margin-bottom: 8px;
-      }
-      .title {
-        display: flex;
-        align-items: start;
-        justify-content: space-between;
-      }
-      .two,
-      .four {
-        display: grid;
-        grid-template-columns: 1fr 1fr;
-        column-gap: 8px;
-      }
-      fieldset {
-        margin: 0 0 8px;
-        padding: 4px 8px 6px;
-        border: 1px solid var(--line);
-        border-radius: 6px;
-      }
-      legend {
-        padding: 0 4px;
-        color: var(--dim);
-      }
-      .way {
-        margin-bottom: 10px;
-        padding: 8px;
-        border-left: 3px solid var(--accent);
-        background: var(--ground);
-      }
-      details {
-        margin: 8px 0;
-        border-top: 1px solid var(--line);
-      }
-      summary {
-        padding: 6px 0;
-        cursor: pointer;
-      }
-      .error {
-        color: var(--bad);
-      }
-    `,
-  ];
+  static override styles = css`
+    :host {
+      padding: 12px;
+    }
+    h2,
+    h3 {
+      margin: 4px 0 8px;
+    }
+    h3 {
+      margin-top: 14px;
+    }
+    p {
+      margin-bottom: 8px;
+    }
+    .title {
+      display: flex;
+      align-items: start;
+      justify-content: space-between;
+    }
+    .two,
+    .four {
+      display: grid;
+      grid-template-columns: 1fr 1fr;
+      column-gap: 8px;
+    }
+    fieldset {
+      margin: 0 0 8px;
+      padding: 4px 8px 6px;
+      border: 1px solid var(--line);
+      border-radius: 6px;
+    }
+    legend {
+      padding: 0 4px;
+      color: var(--dim);
+    }
+    .way {
+      margin-bottom: 10px;
+      padding: 8px;
+      border-left: 3px solid var(--accent);
+      background: var(--ground);
+    }
+    details {
+      margin: 8px 0;
+      border-top: 1px solid var(--line);
+    }
+    summary {
+      padding: 6px 0;
+      cursor: pointer;
+    }
+    .error {
+      color: var(--bad);
+    }
+  `;
 
-  override connectedCallback(): void {
-    super.connectedCallback();
-    addEventListener("open-details", this.focusFirst);
-  }
-
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    removeEventListener("open-details", this.focusFirst);
+  constructor() {
+    super();
+    this.listen("open-details", ({ detail }) => this.focusField(detail));
   }
 
   /** Puts the cursor into the field that is named, or the first one. */
-  private readonly focusFirst = (event: Event): void => {
-    const label = (event as CustomEvent<string | undefined>).detail;
+  private focusField(label: string | undefined): void {
     const fields = [...this.renderRoot.querySelectorAll<FormField>("argo-field")];
     (fields.find((field) => field.label === label) ?? fields[0])?.focus();
-  };
+  }
 
   override render() {
     const open = mission.value;

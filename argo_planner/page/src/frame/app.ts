@@ -1,6 +1,6 @@
 /** The page as a whole: which mission is open, and where its parts stand. */
 
-import { effect, signal } from "@preact/signals-core";
+import { signal } from "@preact/signals-core";
 
 import { untilReached, pause } from "../api/trying";
 import "../evaluate/evaluate";
@@ -17,7 +17,7 @@ import { beginSession, readService } from "../state/session";
 import { dismiss, tell, tellError } from "../state/notices";
 import { panel, type Panel } from "../state/view";
 import { readWorld } from "../state/world";
-import { css, customElement, html, look, PageElement } from "../ui/element";
+import { css, customElement, html, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { t } from "../texts";
 import "./home";
@@ -37,137 +37,123 @@ const PANELS: readonly (readonly [Panel, Icon])[] = [
 
 @customElement("argo-app")
 export class ArgoApp extends PageElement {
-  static override styles = [
-    look,
-    css`
-      :host {
-        display: grid;
-        grid-template-rows: auto 1fr;
-        height: 100%;
+  static override styles = css`
+    :host {
+      display: grid;
+      grid-template-rows: auto 1fr;
+      height: 100%;
+    }
+    main {
+      display: grid;
+      grid-template-columns: minmax(260px, 340px) minmax(0, 1fr) minmax(300px, 380px);
+      grid-template-rows: minmax(0, 1fr) auto;
+      min-height: 0;
+    }
+    argo-list {
+      grid-row: 1 / 3;
+      min-height: 0;
+      border-right: 1px solid var(--line);
+      background: var(--surface);
+    }
+    argo-scene {
+      min-height: 0;
+      min-width: 0;
+    }
+    argo-strip {
+      grid-column: 2;
+      min-height: 136px; /* as with tasks in it, so that the site does not move under the pointer */
+      min-width: 0;
+      border-top: 1px solid var(--line);
+      background: var(--surface);
+    }
+    aside {
+      grid-column: 3;
+      grid-row: 1 / 3;
+      display: grid;
+      grid-template-columns: minmax(0, 1fr);
+      grid-template-rows: auto minmax(0, 1fr);
+      container-type: inline-size;
+      min-height: 0;
+      border-left: 1px solid var(--line);
+      background: var(--surface);
+    }
+    [role="tablist"] {
+      display: flex;
+      gap: 2px;
+      padding: 6px 6px 0;
+      border-bottom: 1px solid var(--line);
+    }
+    [role="tab"] {
+      flex: auto;
+      min-width: 0;
+      gap: 4px;
+      padding: 3px 4px;
+      font-size: 13px;
+      border: 0;
+      border-bottom: 3px solid transparent;
+      border-radius: 6px 6px 0 0;
+      background: none;
+    }
+    [role="tab"][aria-selected="true"] {
+      border-bottom-color: var(--accent);
+      color: var(--accent);
+      font-weight: 600;
+    }
+    @container (max-width: 350px) {
+      [role="tab"] svg {
+        display: none;
       }
+    }
+    [role="tabpanel"] {
+      min-height: 0;
+      overflow: auto;
+    }
+    .still {
+      display: grid;
+      place-content: center;
+    }
+    @media (max-width: 800px) {
       main {
-        display: grid;
-        grid-template-columns: minmax(260px, 340px) minmax(0, 1fr) minmax(300px, 380px);
-        grid-template-rows: minmax(0, 1fr) auto;
-        min-height: 0;
+        grid-template-columns: minmax(0, 1fr);
+        grid-template-rows: 42vh auto minmax(0, 1fr);
       }
       argo-list {
-        grid-row: 1 / 3;
-        min-height: 0;
-        border-right: 1px solid var(--line);
-        background: var(--surface);
+        display: none;
       }
-      argo-scene {
-        min-height: 0;
-        min-width: 0;
+      argo-scene,
+      argo-strip {
+        grid-column: 1;
       }
       argo-strip {
-        grid-column: 2;
-        min-height: 136px; /* as with tasks in it, so that the site does not move under the pointer */
-        min-width: 0;
-        border-top: 1px solid var(--line);
-        background: var(--surface);
+        min-height: 0;
       }
       aside {
-        grid-column: 3;
-        grid-row: 1 / 3;
-        display: grid;
-        grid-template-columns: minmax(0, 1fr);
-        grid-template-rows: auto minmax(0, 1fr);
-        container-type: inline-size;
-        min-height: 0;
-        border-left: 1px solid var(--line);
-        background: var(--surface);
+        grid-column: 1;
+        grid-row: 3;
+        border-left: 0;
+        border-top: 1px solid var(--line);
       }
-      [role="tablist"] {
-        display: flex;
-        gap: 2px;
-        padding: 6px 6px 0;
-        border-bottom: 1px solid var(--line);
-      }
-      [role="tab"] {
-        flex: auto;
-        min-width: 0;
-        gap: 4px;
-        padding: 3px 4px;
-        font-size: 13px;
-        border: 0;
-        border-bottom: 3px solid transparent;
-        border-radius: 6px 6px 0 0;
-        background: none;
-      }
-      [role="tab"][aria-selected="true"] {
-        border-bottom-color: var(--accent);
-        color: var(--accent);
-        font-weight: 600;
-      }
-      @container (max-width: 350px) {
-        [role="tab"] svg {
-          display: none;
-        }
-      }
-      [role="tabpanel"] {
-        min-height: 0;
-        overflow: auto;
-      }
-      .still {
-        display: grid;
-        place-content: center;
-      }
-      @media (max-width: 800px) {
-        main {
-          grid-template-columns: minmax(0, 1fr);
-          grid-template-rows: 42vh auto minmax(0, 1fr);
-        }
-        argo-list {
-          display: none;
-        }
-        argo-scene,
-        argo-strip {
-          grid-column: 1;
-        }
-        argo-strip {
-          min-height: 0;
-        }
-        aside {
-          grid-column: 1;
-          grid-row: 3;
-          border-left: 0;
-          border-top: 1px solid var(--line);
-        }
-      }
-    `,
-  ];
+    }
+  `;
 
-  private readonly stop: (() => void)[] = [];
   /** The mission that the address names, while it is being read. */
   private readonly opening = signal<string | null>(null);
+
+  constructor() {
+    super();
+    this.listen("hashchange", () => void this.followAddress());
+    // The browser asks whether to leave while something has not been sent.
+    this.listen("beforeunload", (event) => waiting.value > 0 && event.preventDefault());
+    this.watch(() => {
+      document.title = planName.value ? `${planName.value} – Argo` : "Argo";
+    });
+  }
 
   override connectedCallback(): void {
     super.connectedCallback();
     beginSession();
-    addEventListener("hashchange", this.addressChanged);
-    addEventListener("beforeunload", this.beforeLeaving);
-
-    const named = effect(() => {
-      document.title = planName.value ? `${planName.value} – Argo` : "Argo";
-    });
-    this.stop.push(named);
     void this.begin();
   }
-
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    removeEventListener("hashchange", this.addressChanged);
-    removeEventListener("beforeunload", this.beforeLeaving);
-
-    for (const one of this.stop) one();
-  }
-
-  /** The browser asks whether to leave while something has not been sent. */
-  private readonly beforeLeaving = (event: Event): void => {
-    if (waiting.value > 0) event.preventDefault();
-  };
 
   /** Reads what does not depend on the mission; tries again until the service is there. */
   private async begin(): Promise<void> {
@@ -179,8 +165,6 @@ export class ArgoApp extends PageElement {
     };
     await untilReached(() => Promise.all([readService(), readWorld()]), isWanted, RETRY_MS).catch(tellError);
   }
-
-  private readonly addressChanged = (): void => void this.followAddress();
 
   /** Opens what the address says. Whatever is opened meanwhile goes before it. */
   private async followAddress(): Promise<void> {

@@ -3,11 +3,14 @@
 import { answered, client } from "../api/client";
 import { untilReached } from "../api/trying";
 import type { PlanSummary } from "../api/types";
-import { tell, tellError } from "../state/notices";
+import { freeName } from "../model/naming";
+import { tell, tellError, telling } from "../state/notices";
 import { wasGone } from "../state/plan";
 import { mayPlan, service } from "../state/session";
-import { dateLocale, t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { t } from "../texts";
+import { iconButton } from "../ui/controls";
+import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
+import { dateAndTime } from "../ui/figures";
 import { icon } from "../ui/icons";
 import "./import";
 
@@ -15,76 +18,69 @@ const RETRY_MS = 1_000;
 
 @customElement("argo-home")
 export class PageHome extends PageElement {
-  static override styles = [
-    look,
-    css`
-      :host {
-        overflow: auto;
+  static override styles = css`
+    :host {
+      overflow: auto;
+    }
+    .page {
+      max-width: 860px;
+      margin: 24px auto;
+      padding: 0 16px;
+    }
+    .bar {
+      display: flex;
+      flex-wrap: wrap;
+      gap: 8px;
+      margin-bottom: 16px;
+    }
+    table {
+      width: 100%;
+      margin-top: 18px;
+      border-collapse: collapse;
+    }
+    th {
+      text-align: left;
+      font-weight: 500;
+      color: var(--dim);
+    }
+    td,
+    th {
+      padding: 6px 8px;
+      border-bottom: 1px solid var(--line);
+    }
+    td:first-child {
+      overflow-wrap: anywhere;
+    }
+    td.number {
+      white-space: nowrap;
+    }
+    a {
+      font-weight: 600;
+    }
+    summary {
+      margin-top: 20px;
+      cursor: pointer;
+    }
+    @media (max-width: 560px) {
+      .wide {
+        display: none;
       }
-      .page {
-        max-width: 860px;
-        margin: 24px auto;
-        padding: 0 16px;
-      }
-      .bar {
-        display: flex;
-        flex-wrap: wrap;
-        gap: 8px;
-        margin-bottom: 16px;
-      }
-      table {
-        width: 100%;
-        margin-top: 18px;
-        border-collapse: collapse;
-      }
-      th {
-        text-align: left;
-        font-weight: 500;
-        color: var(--dim);
-      }
-      td,
-      th {
-        padding: 6px 8px;
-        border-bottom: 1px solid var(--line);
-      }
-      td:first-child {
-        overflow-wrap: anywhere;
-      }
-      td.number {
-        white-space: nowrap;
-      }
-      a {
-        color: var(--accent);
-        font-weight: 600;
-      }
-      summary {
-        margin-top: 20px;
-        cursor: pointer;
-      }
-      @media (max-width: 560px) {
-        .wide {
-          display: none;
-        }
-      }
-    `,
-  ];
+    }
+  `;
 
   @state() private missions: readonly PlanSummary[] | null = null;
   @state() private bin: readonly PlanSummary[] = [];
   private reading = false;
 
+  constructor() {
+    super();
+    this.listen("focus", () => void this.read());
+  }
+
   override connectedCallback(): void {
     super.connectedCallback();
     void this.read();
-    addEventListener("focus", this.refresh);
   }
-
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    removeEventListener("focus", this.refresh);
-  }
-
-  private readonly refresh = (): void => void this.read();
 
   private async read(): Promise<void> {
     const both = () =>
@@ -133,6 +129,7 @@ export class PageHome extends PageElement {
 
   private table() {
     const texts = t().frame;
+    const may = mayPlan();
     if (this.missions === null) return html`<p class="dim">…</p>`;
     if (this.missions.length === 0) return html`<p class="dim">${texts.noMissions}</p>`;
     return html`<table>
@@ -154,17 +151,12 @@ export class PageHome extends PageElement {
                   : html`<a href=${`#/missions/${one.id}`}>${one.name}</a>`}
               </td>
               <td class="number">${one.problem ? "" : one.tasks}</td>
-              <td class="number wide">${when(one.changed)}</td>
+              <td class="number wide">${one.changed ? dateAndTime(one.changed) : ""}</td>
               <td>
-                <button
-                  class="bare icon"
-                  aria-label=${texts.deleteOne(one.name)}
-                  title=${texts.delete}
-                  ?disabled=${!mayPlan()}
-                  @click=${() => this.delete(one)}
-                >
-                  ${icon("bin")}
-                </button>
+                ${iconButton("bin", texts.deleteOne(one.name), () => this.delete(one), {
+                  title: texts.delete,
+                  disabled: !may,
+                })}
               </td>
             </tr>`,
         )}
@@ -196,49 +188,28 @@ export class PageHome extends PageElement {
   }
 
   private async create(): Promise<void> {
-    try {
-      const name = free(t().frame.untitled, this.missions ?? []);
+    const taken = new Set((this.missions ?? []).map((one) => one.name));
+    const { untitled } = t().frame;
+    const name = freeName(untitled, taken, (number) => `${untitled} ${number}`);
+    await telling(async () => {
       const made = await answered(client.POST("/api/missions", { body: { name } }));
       location.hash = `#/missions/${made.id}`;
-    } catch (error) {
-      tellError(error);
-    }
+    });
   }
 
   private async delete(one: PlanSummary): Promise<void> {
-    try {
+    await telling(async () => {
       await answered(
         client.DELETE("/api/missions/{id}", { params: { path: { id: one.id } } }) as never,
       );
       const back = { label: t().frame.undo, act: () => void this.restore(one) };
       tell("info", t().frame.deletedOne(one.name), { actions: [back] });
-    } catch (error) {
-      tellError(error);
-    }
+    });
     await this.read();
   }
 
   private async restore(one: PlanSummary): Promise<void> {
-    try {
-      await answered(
-        client.POST("/api/bin/{id}/restore", { params: { path: { id: one.id } } }),
-      );
-    } catch (error) {
-      tellError(error);
-    }
+    await telling(() => answered(client.POST("/api/bin/{id}/restore", { params: { path: { id: one.id } } })));
     await this.read();
   }
-}
-
-function free(name: string, known: readonly PlanSummary[]): string {
-  const taken = new Set(known.map((one) => one.name));
-  let tried = name;
-  for (let number = 2; taken.has(tried); number++) tried = `${name} ${number}`;
-  return tried;
-}
-
-function when(time: string | null | undefined): string {
-  if (!time) return "";
-  const form = new Intl.DateTimeFormat(dateLocale(), { dateStyle: "medium", timeStyle: "short" });
-  return form.format(new Date(time));
 }

@@ -5,7 +5,8 @@ import { tell, tellError } from "../state/notices";
 import { mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { choice } from "../ui/controls";
+import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 
 interface AreaChoice {
   readonly file: File;
@@ -15,36 +16,33 @@ interface AreaChoice {
 
 @customElement("argo-import")
 export class MissionImport extends PageElement {
-  static override styles = [
-    look,
-    css`
-      .drop {
-        display: grid;
-        justify-items: center;
-        gap: 6px;
-        padding: 18px;
-        border: 2px dashed var(--line);
-        border-radius: var(--round);
-        text-align: center;
-      }
-      .drop.over {
-        border-color: var(--accent);
-        background: var(--chosen);
-      }
-      dialog {
-        max-width: min(560px, calc(100vw - 24px));
-        border: 1px solid var(--line);
-        border-radius: 10px;
-        background: var(--raised);
-        color: var(--text);
-      }
-      label {
-        display: grid;
-        gap: 2px;
-        margin: 10px 0;
-      }
-    `,
-  ];
+  static override styles = css`
+    .drop {
+      display: grid;
+      justify-items: center;
+      gap: 6px;
+      padding: 18px;
+      border: 2px dashed var(--line);
+      border-radius: var(--round);
+      text-align: center;
+    }
+    .drop.over {
+      border-color: var(--accent);
+      background: var(--chosen);
+    }
+    dialog {
+      max-width: min(560px, calc(100vw - 24px));
+      border: 1px solid var(--line);
+      border-radius: 10px;
+      background: var(--raised);
+      color: var(--text);
+    }
+    label {
+      display: grid;
+      gap: 2px;
+      margin: 10px 0;
+    }
+  `;
 
   @state() private over = false;
   @state() private choice: AreaChoice | null = null;
@@ -87,21 +85,16 @@ export class MissionImport extends PageElement {
 
   /** Asks where a mission begins and ends whose script leaves that open. */
   private areas() {
-    const choice = this.choice;
+    const open = this.choice;
     const texts = t().frame;
-    if (choice === null) return nothing;
-    const field = (name: string, label: string) =>
-      html`<label>
-        ${label}<select name=${name}>
-          ${(world.value?.docks ?? []).map((dock) => html`<option>${dock.area}</option>`)}
-        </select>
-      </label>`;
+    if (open === null) return nothing;
+    const areas = (world.value?.docks ?? []).map(({ area }) => [area, area] as const);
     return html`<dialog aria-labelledby="areas" @close=${() => (this.choice = null)}>
       <form @submit=${this.onAreas}>
-        <h2 id="areas">${choice.file.name}</h2>
+        <h2 id="areas">${open.file.name}</h2>
         <p>${texts.areasLeftOpen}</p>
-        ${choice.start ? field("start_area", texts.startArea) : nothing}
-        ${choice.end ? field("end_area", texts.endArea) : nothing}
+        ${open.start ? choice(texts.startArea, "start_area", areas) : nothing}
+        ${open.end ? choice(texts.endArea, "end_area", areas) : nothing}
         <div class="row">
           <button class="main">${texts.import}</button>
           <button type="button" @click=${() => (this.choice = null)}>${texts.cancel}</button>

@@ -12,73 +12,65 @@ import { run, runIsOn, showRun } from "../state/run";
 import { mayOperate, mayPlan } from "../state/session";
 import { panel, tool } from "../state/view";
 import { t } from "../texts";
-import { css, customElement, html, look, PageElement, query } from "../ui/element";
+import { css, customElement, html, PageElement, query } from "../ui/element";
 
 /** Whether the sheet is open. */
 export const keysShown = signal(false);
 
 @customElement("argo-keys")
 export class PageKeys extends PageElement {
-  static override styles = [
-    look,
-    css`
-      dialog {
-        width: min(760px, calc(100vw - 24px));
-        max-height: calc(100vh - 48px);
-        padding: 16px 20px 20px;
-        border: 1px solid var(--line);
-        border-radius: 10px;
-        background: var(--raised);
-        color: var(--text);
-        box-shadow: var(--shadow);
-      }
-      dialog::backdrop {
-        background: rgb(0 0 0 / 40%);
-      }
+  static override styles = css`
+    dialog {
+      width: min(760px, calc(100vw - 24px));
+      max-height: calc(100vh - 48px);
+      padding: 16px 20px 20px;
+      border: 1px solid var(--line);
+      border-radius: 10px;
+      background: var(--raised);
+      color: var(--text);
+      box-shadow: var(--shadow);
+    }
+    dialog::backdrop {
+      background: rgb(0 0 0 / 40%);
+    }
+    .groups {
+      columns: 2;
+      column-gap: 28px;
+      margin-top: 12px;
+    }
+    section {
+      break-inside: avoid;
+      margin-bottom: 14px;
+    }
+    dl {
+      display: grid;
+      grid-template-columns: max-content 1fr;
+      gap: 4px 12px;
+      margin: 6px 0 0;
+    }
+    dd {
+      margin: 0;
+    }
+    kbd {
+      padding: 1px 5px;
+      border: 1px solid var(--line);
+      border-radius: 4px;
+      background: var(--sunken);
+      font: inherit;
+      font-size: 12px;
+    }
+    @media (max-width: 600px) {
       .groups {
-        columns: 2;
-        column-gap: 28px;
-        margin-top: 12px;
+        columns: 1;
       }
-      section {
-        break-inside: avoid;
-        margin-bottom: 14px;
-      }
-      dl {
-        display: grid;
-        grid-template-columns: max-content 1fr;
-        gap: 4px 12px;
-        margin: 6px 0 0;
-      }
-      dd {
-        margin: 0;
-      }
-      kbd {
-        padding: 1px 5px;
-        border: 1px solid var(--line);
-        border-radius: 4px;
-        background: var(--sunken);
-        font: inherit;
-        font-size: 12px;
-      }
-      @media (max-width: 600px) {
-        .groups {
-          columns: 1;
-        }
-      }
-    `,
-  ];
+    }
+  `;
 
   @query("dialog") private readonly dialog!: HTMLDialogElement;
 
-  override connectedCallback(): void {
-    super.connectedCallback();
-    addEventListener("keydown", this.onKey);
-  }
-
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    removeEventListener("keydown", this.onKey);
+  constructor() {
+    super();
+    this.listen("keydown", this.onKey);
   }
 
   override updated(): void {

@@ -2,10 +2,11 @@
 
 import { answered, client } from "../api/client";
 import { commandId, settled } from "../state/commands";
-import { tell, tellError } from "../state/notices";
+import { tell, telling } from "../state/notices";
 import { planId, planName, revision, take, versions } from "../state/plan";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { iconButton } from "../ui/controls";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon } from "../ui/icons";
 import { closed, closeLeft } from "../ui/popover";
 
@@ -13,62 +14,41 @@ const FORMATS = ["script", "json", "scxml", "btcpp", "flexbe", "mermaid", "dot",
 
 @customElement("argo-mission-menu")
 export class MissionMenu extends PageElement {
-  static override styles = [
-    look,
-    css`
-      [popover] {
-        position: fixed;
-        inset: 48px auto auto 12vw;
-        width: 300px;
-        max-height: 80vh;
-        margin: 0;
-        padding: 12px;
-        overflow: auto;
-        border: 1px solid var(--line);
-        border-radius: var(--round);
-        background: var(--raised);
-        color: var(--text);
-        box-shadow: var(--shadow);
-      }
-      h2 {
-        margin: 12px 0 4px;
-      }
-      .formats {
-        display: flex;
-        flex-wrap: wrap;
-        gap: 4px 12px;
-      }
-      a {
-        color: var(--accent);
-      }
-      form {
-        display: flex;
-        gap: 6px;
-      }
-      ul {
-        margin: 6px 0 0;
-        padding: 0;
-        list-style: none;
-      }
-      li {
-        display: flex;
-        align-items: center;
-        gap: 4px;
-      }
-    `,
-  ];
+  static override styles = css`
+    [popover] {
+      inset: 48px auto auto 12vw;
+      width: 300px;
+      max-height: 80vh;
+      overflow: auto;
+    }
+    h2 {
+      margin: 12px 0 4px;
+    }
+    .formats {
+      display: flex;
+      flex-wrap: wrap;
+      gap: 4px 12px;
+    }
+    form {
+      display: flex;
+      gap: 6px;
+    }
+    ul {
+      margin: 6px 0 0;
+      padding: 0;
+      list-style: none;
+    }
+    li {
+      display: flex;
+      align-items: center;
+      gap: 4px;
+    }
+  `;
 
   override render() {
     const texts = t().frame;
     const id = planId.value ?? "";
-    return html`<button
-        class="bare icon"
-        aria-label=${texts.missionMenu}
-        title=${texts.missionMenu}
-        popovertarget="menu"
-      >
-        ${icon("more")}
-      </button>
+    return html`${iconButton("more", texts.missionMenu, null, { opens: "menu" })}
       <div id="menu" popover @focusout=${closeLeft} @toggle=${closed}>
         <button @click=${this.duplicate}>${icon("copy")} ${texts.duplicate}</button>
         <h2>${texts.exportAs}</h2>
@@ -107,15 +87,13 @@ export class MissionMenu extends PageElement {
     const id = planId.value;
     if (id === null) return;
     await settled();
-    try {
+    await telling(async () => {
       const name = t().frame.copyOf(planName.value).slice(0, 200);
       const made = await answered(
         client.POST("/api/missions/{id}/duplicate", { params: { path: { id } }, body: { name } }),
       );
       location.hash = `#/missions/${made.id}`;
-    } catch (error) {
-      tellError(error);
-    }
+    });
   }
 
   private async keepVersion(event: SubmitEvent): Promise<void> {
@@ -125,7 +103,7 @@ export class MissionMenu extends PageElement {
     const id = planId.value;
     if (id === null || name === "") return;
     await settled();
-    try {
+    await telling(async () => {
       await answered(
         client.POST("/api/missions/{id}/versions", {
           params: { path: { id }, header: { "If-Match": `"${revision.value}"` } },
@@ -134,16 +112,14 @@ export class MissionMenu extends PageElement {
       );
       form.reset();
       tell("info", t().frame.versionKept(name));
-    } catch (error) {
-      tellError(error);
-    }
+    });
   }
 
   private async restore(number: number): Promise<void> {
     const id = planId.value;
     if (id === null) return;
     await settled();
-    try {
+    await telling(async () => {
       const done = await answered(
         client.POST("/api/missions/{id}/versions/{number}/restore", {
           params: { path: { id, number }, header: { "If-Match": `"${revision.value}"` } },
@@ -151,8 +127,6 @@ export class MissionMenu extends PageElement {
         }),
       );
       if (planId.value === id) take(done);
-    } catch (error) {
-      tellError(error);
-    }
+    });
   }
 }

@@ -2,62 +2,59 @@
 
 import { dismiss, notices, type Notice } from "../state/notices";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
-import { icon } from "../ui/icons";
+import { iconButton } from "../ui/controls";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
 
 @customElement("argo-notices")
 export class PageNotices extends PageElement {
-  static override styles = [
-    look,
-    css`
+  static override styles = css`
+    :host {
+      position: fixed;
+      z-index: 30;
+      bottom: 130px;
+      left: 50%;
+      width: min(560px, calc(100vw - 24px));
+      translate: -50% 0;
+      pointer-events: none;
+    }
+    article {
+      display: flex;
+      gap: 10px;
+      align-items: flex-start;
+      margin-top: 8px;
+      padding: 10px 8px 10px 12px;
+      border: 1px solid var(--line);
+      border-left: 4px solid var(--accent);
+      border-radius: var(--round);
+      background: var(--raised);
+      box-shadow: var(--shadow);
+      overflow-wrap: anywhere;
+      pointer-events: auto;
+    }
+    article.warn {
+      border-left-color: var(--warn);
+    }
+    article.bad {
+      border-left-color: var(--bad);
+    }
+    /* On a narrow page the buttons of the panel are at the bottom. */
+    @media (max-width: 800px) {
       :host {
-        position: fixed;
-        z-index: 30;
-        bottom: 130px;
-        left: 50%;
-        width: min(560px, calc(100vw - 24px));
-        translate: -50% 0;
-        pointer-events: none;
+        top: 52px;
+        bottom: auto;
       }
-      article {
-        display: flex;
-        gap: 10px;
-        align-items: flex-start;
-        margin-top: 8px;
-        padding: 10px 8px 10px 12px;
-        border: 1px solid var(--line);
-        border-left: 4px solid var(--accent);
-        border-radius: var(--round);
-        background: var(--raised);
-        box-shadow: var(--shadow);
-        overflow-wrap: anywhere;
-        pointer-events: auto;
-      }
-      article.warn {
-        border-left-color: var(--warn);
-      }
-      article.bad {
-        border-left-color: var(--bad);
-      }
-      /* On a narrow page the buttons of the panel are at the bottom. */
-      @media (max-width: 800px) {
-        :host {
-          top: 52px;
-          bottom: auto;
-        }
-      }
-      ul {
-        margin: 4px 0 0;
-        padding-left: 18px;
-        color: var(--dim);
-      }
-      .actions {
-        display: flex;
-        gap: 6px;
-        margin-top: 6px;
-      }
-    `,
-  ];
+    }
+    ul {
+      margin: 4px 0 0;
+      padding-left: 18px;
+      color: var(--dim);
+    }
+    .actions {
+      display: flex;
+      gap: 6px;
+      margin-top: 6px;
+    }
+  `;
 
   override render() {
     return html`<div role="log" aria-live="polite" aria-label=${t().frame.messages}>
@@ -86,13 +83,7 @@ export class PageNotices extends PageElement {
             </div>`
           : nothing}
       </div>
-      <button
-        class="bare icon"
-        aria-label=${t().frame.dismiss}
-        @click=${() => dismiss(notice.id)}
-      >
-        ${icon("close", 16)}
-      </button>
+      ${iconButton("close", t().frame.dismiss, () => dismiss(notice.id), { title: nothing, size: 16 })}
     </article>`;
   }
 }

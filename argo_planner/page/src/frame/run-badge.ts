@@ -8,26 +8,23 @@ import { run, runIsOn } from "../state/run";
 import { mayOperate } from "../state/session";
 import { panel } from "../state/view";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
-import { icon } from "../ui/icons";
+import { iconButton } from "../ui/controls";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
 
 @customElement("argo-run-badge")
 export class RunBadge extends PageElement {
-  static override styles = [
-    look,
-    css`
-      .run {
-        gap: 0;
-        border: 1px solid var(--line);
-        border-left: 4px solid var(--accent);
-        border-radius: 6px;
-        font-size: 13px;
-      }
-      .run.supervised {
-        border-left-color: var(--person);
-      }
-    `,
-  ];
+  static override styles = css`
+    .run {
+      gap: 0;
+      border: 1px solid var(--line);
+      border-left: 4px solid var(--accent);
+      border-radius: 6px;
+      font-size: 13px;
+    }
+    .run.supervised {
+      border-left-color: var(--person);
+    }
+  `;
 
   override render() {
     const state = run.value;
@@ -42,15 +39,9 @@ export class RunBadge extends PageElement {
     return html`<span class="row run ${mode}">
       <button class="bare" title=${state.name} @click=${show}>${modeWords(state)}</button>
       ${drives && mayOperate()
-        ? html`<button
-            class="bare icon"
-            aria-label=${texts.pauseRobot}
-            title=${texts.pauseRobot}
-            ?disabled=${asking.value.includes("pause") || isUnderWay(state, "pause")}
-            @click=${() => ask({ kind: "pause" })}
-          >
-            ${icon("pause")}
-          </button>`
+        ? iconButton("pause", texts.pauseRobot, () => ask({ kind: "pause" }), {
+            disabled: asking.value.includes("pause") || isUnderWay(state, "pause"),
+          })
         : nothing}
     </span>`;
   }

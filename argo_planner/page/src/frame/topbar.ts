@@ -1,13 +1,13 @@
 /** The bar at the top: the mission's name, undo and redo, whoever else is there, what the robot does, settings. */
 
 import { answered, client } from "../api/client";
-import { tellError } from "../state/notices";
+import { telling } from "../state/notices";
 import { redo, undo, waiting } from "../state/commands";
 import { connected, others, planId, planName, redoable, undoable } from "../state/plan";
 import { mayPlan, service, theme } from "../state/session";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
-import { icon } from "../ui/icons";
+import { iconButton, valueOf } from "../ui/controls";
+import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { keysShown } from "./keys";
 import "./mission-menu";
 import "./run-badge";
@@ -15,64 +15,61 @@ import "./settings";
 
 @customElement("argo-topbar")
 export class PageTopbar extends PageElement {
-  static override styles = [
-    look,
-    css`
-      header {
-        display: flex;
-        flex-wrap: wrap;
-        align-items: center;
-        gap: 6px;
-        min-height: 46px;
-        padding: 4px 10px;
-        border-bottom: 1px solid var(--line);
-        background: var(--surface);
+  static override styles = css`
+    header {
+      display: flex;
+      flex-wrap: wrap;
+      align-items: center;
+      gap: 6px;
+      min-height: 46px;
+      padding: 4px 10px;
+      border-bottom: 1px solid var(--line);
+      background: var(--surface);
+    }
+    .name {
+      max-width: 36vw;
+      overflow: hidden;
+      text-overflow: ellipsis;
+      white-space: nowrap;
+      font-size: 16px;
+      font-weight: 600;
+    }
+    input.name {
+      width: 320px;
+    }
+    .people {
+      display: flex;
+      gap: 3px;
+      margin: 0;
+      padding: 0;
+      list-style: none;
+    }
+    .people li {
+      display: grid;
+      place-content: center;
+      width: 28px;
+      height: 28px;
+      border-radius: 50%;
+      background: var(--person-ground);
+      color: var(--person);
+      font-weight: 600;
+      font-size: 12px;
+    }
+    .state {
+      padding: 2px 8px;
+      border-radius: 10px;
+      font-size: 12px;
+    }
+    .state.away {
+      background: var(--warn-ground);
+      color: var(--warn);
+    }
+    @media (max-width: 800px) {
+      .planning {
+        display: none;
       }
-      .name {
-        max-width: 36vw;
-        overflow: hidden;
-        text-overflow: ellipsis;
-        white-space: nowrap;
-        font-size: 16px;
-        font-weight: 600;
-      }
-      input.name {
-        width: 320px;
-      }
-      .people {
-        display: flex;
-        gap: 3px;
-        margin: 0;
-        padding: 0;
-        list-style: none;
-      }
-      .people li {
-        display: grid;
-        place-content: center;
-        width: 28px;
-        height: 28px;
-        border-radius: 50%;
-        background: var(--person-ground);
-        color: var(--person);
-        font-weight: 600;
-        font-size: 12px;
-      }
-      .state {
-        padding: 2px 8px;
-        border-radius: 10px;
-        font-size: 12px;
-      }
-      .state.away {
-        background: var(--warn-ground);
-        color: var(--warn);
-      }
-      @media (max-width: 800px) {
-        .planning {
-          display: none;
-        }
-      }
-    `,
-  ];
+    }
+  `;
 
   @state() private renaming = false;
 
@@ -81,34 +78,16 @@ export class PageTopbar extends PageElement {
     const open = planId.value !== null;
     return html`<header>
       ${open
-        ? html`<button
-              class="bare icon"
-              aria-label=${texts.allMissions}
-              title=${texts.allMissions}
-              @click=${() => (location.hash = "")}
-            >
-              ${icon("back")}
-            </button>
-            ${this.name()}
+        ? html`${iconButton("back", texts.allMissions, () => (location.hash = ""))} ${this.name()}
             <span class="row planning">
-              <button
-                class="bare icon"
-                aria-label=${texts.undo}
-                title=${`${texts.undo} (Ctrl+Z)`}
-                ?disabled=${undoable.value.length === 0 || !mayPlan()}
-                @click=${undo}
-              >
-                ${icon("undo")}
-              </button>
-              <button
-                class="bare icon"
-                aria-label=${texts.redo}
-                title=${`${texts.redo} (Ctrl+Y)`}
-                ?disabled=${redoable.value.length === 0 || !mayPlan()}
-                @click=${redo}
-              >
-                ${icon("redo")}
-              </button>
+              ${iconButton("undo", texts.undo, undo, {
+                title: `${texts.undo} (Ctrl+Z)`,
+                disabled: undoable.value.length === 0 || !mayPlan(),
+              })}
+              ${iconButton("redo", texts.redo, redo, {
+                title: `${texts.redo} (Ctrl+Y)`,
+                disabled: redoable.value.length === 0 || !mayPlan(),
+              })}
               <argo-mission-menu></argo-mission-menu>
             </span>
             ${this.saved()}`
@@ -118,22 +97,15 @@ export class PageTopbar extends PageElement {
       <span class="grow"></span>
       <argo-run-badge></argo-run-badge>
       ${others.value.length > 0 ? this.people() : nothing}
-      <button
-        class="bare icon planning"
-        aria-label=${texts.keysTitle}
-        title=${`${texts.keysTitle} (?)`}
-        @click=${() => (keysShown.value = true)}
-      >
-        ${icon("keys")}
-      </button>
-      <button
-        class="bare icon"
-        aria-label=${texts.otherTheme[theme.value]}
-        title=${texts.otherTheme[theme.value]}
-        @click=${() => (theme.value = theme.value === "dark" ? "light" : "dark")}
-      >
-        ${icon(theme.value === "dark" ? "sun" : "moon")}
-      </button>
+      ${iconButton("keys", texts.keysTitle, () => (keysShown.value = true), {
+        title: `${texts.keysTitle} (?)`,
+        look: "bare planning",
+      })}
+      ${iconButton(
+        theme.value === "dark" ? "sun" : "moon",
+        texts.otherTheme[theme.value],
+        () => (theme.value = theme.value === "dark" ? "light" : "dark"),
+      )}
       <argo-settings></argo-settings>
     </header>`;
   }
@@ -184,17 +156,15 @@ export class PageTopbar extends PageElement {
 
   private async rename(event: Event): Promise<void> {
     this.renaming = false;
-    const name = (event.target as HTMLInputElement).value.trim();
+    const name = valueOf(event).trim();
     const id = planId.value;
     if (id === null || name === "" || name === planName.value) return;
-    try {
+    await telling(async () => {
       await answered(
         client.PUT("/api/missions/{id}/name", { params: { path: { id } }, body: { name } }),
       );
       if (planId.value === id) planName.value = name;
-    } catch (error) {
-      tellError(error);
-    }
+    });
   }
 
   private people() {

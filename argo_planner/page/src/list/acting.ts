@@ -2,6 +2,7 @@
 
 import type { Group, Mission, Reaction } from "../api/types";
 import { copied, pasting, readCopied } from "../model/clipboard";
+import { freeName } from "../model/naming";
 import { groupKey, nameOfKey, ownName, taskKey, type Row } from "../model/outline";
 import { groupsOf, placeForNew, tasksOf } from "../model/places";
 import { edit, inTurn } from "../state/commands";
@@ -27,12 +28,12 @@ export function groupChosen(): Promise<void> {
     const row = allRows.value.find((one) => one.key === selection.value[0]);
     const inside = row?.inside ? `${row.inside}/` : "";
     const taken = new Set(open.groups.map((group) => group.name));
-    let name = t().list.newGroup;
-    for (let number = 2; taken.has(inside + name); number++)
-      name = `${t().list.newGroup} ${number}`;
+    const wanted = inside + t().list.newGroup;
+    const whole = freeName(wanted, taken, (number) => `${wanted} ${number}`);
+    const name = whole.slice(inside.length);
     const group = { name, start: first.name, end: last.name, max_repeat_count: 1 };
     if (!(await make({ kind: "wrap_tasks", group }))) return;
-    select([groupKey(inside + name)]);
+    select([groupKey(whole)]);
     openDetails(t().forms.duration);
   });
 }

@@ -7,7 +7,8 @@ import { mayPlan } from "../state/session";
 import { panel, shownFloor, tool } from "../state/view";
 import { world } from "../state/world";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, query, state } from "../ui/element";
+import { valueOf } from "../ui/controls";
+import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { addMeasure, addPlace, addReaction, addStart, addTask, addWait, isEmpty, lacksStart } from "./adding";
 import { type Choice, checkpointChoices, matching, placeChoices, typedPlace } from "./choices";
@@ -17,54 +18,51 @@ const MOST = 60;
 
 @customElement("argo-add")
 export class AddTasks extends PageElement {
-  static override styles = [
-    look,
-    css`
-      :host {
-        position: relative;
-      }
-      .menu {
-        position: absolute;
-        z-index: 10;
-        top: 34px;
-        left: 0;
-        display: grid;
-        width: 270px;
-        padding: 4px;
-        border: 1px solid var(--line);
-        border-radius: var(--round);
-        background: var(--raised);
-        box-shadow: var(--shadow);
-      }
-      .menu button {
-        justify-content: start;
-        text-align: left;
-      }
-      .menu kbd {
-        margin-left: auto;
-        color: var(--dim);
-        font: inherit;
-        font-size: 12px;
-      }
-      .added {
-        padding: 4px 8px 0;
-      }
-      [role="listbox"] {
-        max-height: 50vh;
-        margin: 4px 0 0;
-        padding: 0;
-        overflow: auto;
-        list-style: none;
-      }
-      [role="option"] {
-        padding: 4px 8px;
-        border-radius: 4px;
-      }
-      [role="option"][aria-selected="true"] {
-        background: var(--chosen);
-      }
-    `,
-  ];
+  static override styles = css`
+    :host {
+      position: relative;
+    }
+    .menu {
+      position: absolute;
+      z-index: 10;
+      top: 34px;
+      left: 0;
+      display: grid;
+      width: 270px;
+      padding: 4px;
+      border: 1px solid var(--line);
+      border-radius: var(--round);
+      background: var(--raised);
+      box-shadow: var(--shadow);
+    }
+    .menu button {
+      justify-content: start;
+      text-align: left;
+    }
+    .menu kbd {
+      margin-left: auto;
+      color: var(--dim);
+      font: inherit;
+      font-size: 12px;
+    }
+    .added {
+      padding: 4px 8px 0;
+    }
+    [role="listbox"] {
+      max-height: 50vh;
+      margin: 4px 0 0;
+      padding: 0;
+      overflow: auto;
+      list-style: none;
+    }
+    [role="option"] {
+      padding: 4px 8px;
+      border-radius: 4px;
+    }
+    [role="option"][aria-selected="true"] {
+      background: var(--chosen);
+    }
+  `;
 
   @state() private open: "" | "menu" | "measure" | "place" = "";
   @state() private text = "";
@@ -75,16 +73,10 @@ export class AddTasks extends PageElement {
   /** Where something was placed since the field is open; the mission may not have it yet. */
   private placed: Pose[] = [];
 
-  override connectedCallback(): void {
-    super.connectedCallback();
-    addEventListener("pointerdown", this.onOutside);
-    addEventListener("keydown", this.onEscape, { capture: true });
-  }
-
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    removeEventListener("pointerdown", this.onOutside);
-    removeEventListener("keydown", this.onEscape, { capture: true });
+  constructor() {
+    super();
+    this.listen("pointerdown", this.onOutside);
+    this.listen("keydown", this.onEscape, true);
   }
 
   /** Escape closes it wherever the focus is. */
@@ -223,7 +215,7 @@ export class AddTasks extends PageElement {
   }
 
   private onInput(event: InputEvent): void {
-    this.text = (event.target as HTMLInputElement).value;
+    this.text = valueOf(event);
     this.at = 0;
   }
 

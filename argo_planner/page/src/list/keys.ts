@@ -4,9 +4,8 @@ import { groupKey } from "../model/outline";
 import { select, selection } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { deleteChosen, openDetails } from "./acting";
-import { choose } from "./choosing";
 import { enterGroup, leaveGroup, moveByStep } from "./moving";
-import { fold, folded, shownRows } from "./rows";
+import { choose, fold, folded, shownRows } from "./rows";
 
 /** Does what a key means in the list; `page` is how many rows show. Whether it means anything. */
 export function onListKey(event: KeyboardEvent, page: number): boolean {

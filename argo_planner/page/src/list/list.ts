@@ -1,7 +1,7 @@
 /** The mission as a list: nested groups that fold, reordered by hand or by keys. Only the rows that
  * are in view are in the page, so that thousands of tasks open and scroll as fast as ten. */
 
-import { effect, untracked } from "@preact/signals-core";
+import { untracked } from "@preact/signals-core";
 import { repeat } from "lit/directives/repeat.js";
 
 import { isTyping } from "../frame/keys";
@@ -10,27 +10,25 @@ import { planId, select, selection, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { lookAt, tool } from "../state/view";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, query, state } from "../ui/element";
-import { icon } from "../ui/icons";
+import { iconButton } from "../ui/controls";
+import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
 import { styled } from "../ui/styled";
 import { copyChosen, deleteChosen, groupChosen, paste, renameRow } from "./acting";
 import "./add";
 import type { AddTasks } from "./add";
-import { choose } from "./choosing";
 import { RowDrag, rowAt } from "./drag";
 import { onListKey } from "./keys";
 import { marksOf } from "./marks";
 import "./problems";
 import "./reactions";
 import { nameOf, rowView, ROW_HEIGHT, rowStyles } from "./row";
-import { fold, folded, rowOf, shownRows, unfoldAround } from "./rows";
+import { choose, fold, folded, rowOf, shownRows, unfoldAround } from "./rows";
 
 const BEYOND = 12;
 
 @customElement("argo-list")
 export class MissionList extends PageElement {
   static override styles = [
-    look,
     rowStyles,
     css`
       :host {
@@ -78,32 +76,25 @@ export class MissionList extends PageElement {
   /** The row whose name is being typed, and what is in the field at first. */
   @state() private naming: { readonly key: string; readonly text: string } | null = null;
   private readonly drag: RowDrag = new RowDrag(this);
-  private readonly stop: (() => void)[] = [];
   private resized = new ResizeObserver(([entry]) => {
     if (entry) this.height = entry.contentRect.height;
   });
 
-  override connectedCallback(): void {
-    super.connectedCallback();
-    addEventListener("keydown", this.onGlobalKey);
-    addEventListener("focus-list", this.focusTree);
-    addEventListener("paste", this.onPaste);
-    addEventListener("copy", this.onCopy);
-    const shown = effect(() => {
+  constructor() {
+    super();
+    this.listen("keydown", this.onGlobalKey);
+    this.listen("focus-list", this.focusTree);
+    this.listen("paste", this.onPaste);
+    this.listen("copy", this.onCopy);
+    this.watch(() => {
       const key = selection.value.at(-1);
       untracked(() => this.reveal(key)); // not again when the groups are folded
     });
-    this.stop.push(shown);
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    removeEventListener("keydown", this.onGlobalKey);
-    removeEventListener("focus-list", this.focusTree);
-    removeEventListener("paste", this.onPaste);
-    removeEventListener("copy", this.onCopy);
     this.resized.disconnect();
-    for (const one of this.stop.splice(0)) one();
   }
 
   private readonly focusTree = (): void => this.tree.focus();
@@ -130,24 +121,14 @@ export class MissionList extends PageElement {
       <div class="tools" role="toolbar" aria-label=${texts.tasks}>
         <argo-add @focus-list=${this.focusTree}></argo-add>
         <span class="grow"></span>
-        <button
-          class="bare icon"
-          aria-label=${texts.group}
-          title=${`${texts.group} (g)`}
-          ?disabled=${!may || chosen.size === 0}
-          @click=${groupChosen}
-        >
-          ${icon("group")}
-        </button>
-        <button
-          class="bare icon"
-          aria-label=${texts.delete}
-          title=${`${texts.delete} (Del)`}
-          ?disabled=${!may || chosen.size === 0}
-          @click=${deleteChosen}
-        >
-          ${icon("bin")}
-        </button>
+        ${iconButton("group", texts.group, groupChosen, {
+          title: `${texts.group} (g)`,
+          disabled: !may || chosen.size === 0,
+        })}
+        ${iconButton("bin", texts.delete, deleteChosen, {
+          title: `${texts.delete} (Del)`,
+          disabled: !may || chosen.size === 0,
+        })}
       </div>
       <argo-problems></argo-problems>
       <div

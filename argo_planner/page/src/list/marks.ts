@@ -3,7 +3,7 @@
 
 import { computed, effect, signal } from "@preact/signals-core";
 
-import type { Diagnostic } from "../api/types";
+import type { Diagnostic, Group, Task, World } from "../api/types";
 import { touched } from "../model/change";
 import { groupKey, taskKey, type Row } from "../model/outline";
 import { analysis, broken, findings, lastRevision, others, planId, tasksByName } from "../state/plan";
@@ -12,7 +12,7 @@ import { run, shownRun } from "../state/run";
 import { isOwn } from "../state/commands";
 import { isMe } from "../state/session";
 import { world } from "../state/world";
-import { describeGroup, describeTask } from "./describe";
+import { t } from "../texts";
 
 export interface Marks {
   readonly problem: Diagnostic | null;
@@ -133,6 +133,43 @@ const sentences = computed(() => {
 export function sentenceOf(row: Row): string {
   const own = row.kind === "task" ? describeTask(row.task, world.value) : describeGroup(row.group);
   return sentences.value.get(row.key) ?? own;
+}
+
+/** What a task does. */
+function describeTask(task: Task, world: World | null): string {
+  const texts = t().list;
+  if (task.action === "MEASURE") {
+    const checkpoint = world?.checkpoints.find((one) => String(one.id) === task.object_id);
+    const name = checkpoint ? `#${checkpoint.id} ${checkpoint.name}` : `#${task.object_id ?? "?"}`;
+    return texts.measures(name, checkpoint ? checkpoint.floor : null);
+  }
+  if (task.action === "WAIT") {
+    const wait = task.wait;
+    if (typeof wait?.duration === "number") return texts.waits(t().words.seconds(wait.duration));
+    return wait?.event ? texts.waitsFor(t().words.event[wait.event]) : texts.waitsUntil;
+  }
+  if (!task.pose) return t().words.action[task.action];
+  const floor = floorAt(task.pose.z, world);
+  const at = `${task.pose.x.toFixed(1)}, ${task.pose.y.toFixed(1)}`;
+  return task.action === "START" ? texts.startsAt(at, floor) : texts.drivesTo(at, floor);
+}
+
+/** How often a group is done. */
+function describeGroup(group: Group): string {
+  const texts = t().list;
+  const parts: string[] = [];
+  if (group.max_repeat_count > 0) parts.push(texts.times(group.max_repeat_count));
+  if (group.max_repeat_duration > 0) parts.push(texts.during(t().words.seconds(group.max_repeat_duration)));
+  if (group.every > 0) parts.push(texts.every(t().words.seconds(group.every)));
+  if (group.until.length > 0) parts.push(texts.until);
+  return parts.length > 0 ? parts.join(", ") : texts.endless;
+}
+
+/** Number of the floor at a height (m). */
+function floorAt(z: number, world: World | null): number | null {
+  let found: number | null = null;
+  for (const floor of world?.floors ?? []) if (floor.z <= z + 0.5) found = floor.number;
+  return found;
 }
 
 /** The key of what a diagnostic is about, such as `tasks['valve'].transitions`; null: the whole. */

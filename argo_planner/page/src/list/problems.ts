@@ -7,7 +7,7 @@ import { select } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { panel } from "../state/view";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon } from "../ui/icons";
 import { fixOf } from "./fixes";
 import { keyOfSubject, problems } from "./marks";
@@ -16,57 +16,54 @@ const MOST = 50;
 
 @customElement("argo-problems")
 export class MissionProblems extends PageElement {
-  static override styles = [
-    look,
-    css`
-      details {
-        border-bottom: 1px solid var(--line);
-      }
-      summary {
-        padding: 5px 10px;
-        cursor: pointer;
-      }
-      summary.error {
-        background: var(--bad-ground);
-        color: var(--bad);
-      }
-      summary.warning {
-        background: var(--warn-ground);
-        color: var(--warn);
-      }
-      ul {
-        max-height: 32vh;
-        margin: 0;
-        padding: 0 6px 6px;
-        overflow: auto;
-        list-style: none;
-      }
-      li {
-        display: grid;
-        grid-template-columns: 20px 1fr;
-        gap: 4px;
-        padding: 5px 2px;
-        border-top: 1px solid var(--sunken);
-      }
-      .error {
-        color: var(--bad);
-      }
-      .warning {
-        color: var(--warn);
-      }
-      .to {
-        display: inline;
-        min-height: 0;
-        padding: 0;
-        border: 0;
-        background: none;
-        text-align: left;
-      }
-      .to:hover {
-        text-decoration: underline;
-      }
-    `,
-  ];
+  static override styles = css`
+    details {
+      border-bottom: 1px solid var(--line);
+    }
+    summary {
+      padding: 5px 10px;
+      cursor: pointer;
+    }
+    summary.error {
+      background: var(--bad-ground);
+      color: var(--bad);
+    }
+    summary.warning {
+      background: var(--warn-ground);
+      color: var(--warn);
+    }
+    ul {
+      max-height: 32vh;
+      margin: 0;
+      padding: 0 6px 6px;
+      overflow: auto;
+      list-style: none;
+    }
+    li {
+      display: grid;
+      grid-template-columns: 20px 1fr;
+      gap: 4px;
+      padding: 5px 2px;
+      border-top: 1px solid var(--sunken);
+    }
+    .error {
+      color: var(--bad);
+    }
+    .warning {
+      color: var(--warn);
+    }
+    .to {
+      display: inline;
+      min-height: 0;
+      padding: 0;
+      border: 0;
+      background: none;
+      text-align: left;
+    }
+    .to:hover {
+      text-decoration: underline;
+    }
+  `;
 
   override render() {
     const found = problems.value;

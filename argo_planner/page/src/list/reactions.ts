@@ -4,29 +4,26 @@ import { reactionKey } from "../model/outline";
 import { mission, select, selection } from "../state/plan";
 import { panel } from "../state/view";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon } from "../ui/icons";
 
 @customElement("argo-reactions")
 export class MissionReactions extends PageElement {
-  static override styles = [
-    look,
-    css`
-      section {
-        max-height: 26vh;
-        overflow: auto;
-        border-top: 1px solid var(--line);
-      }
-      h2 {
-        padding: 6px 10px 2px;
-      }
-      button {
-        justify-content: start;
-        width: 100%;
-        text-align: left;
-      }
-    `,
-  ];
+  static override styles = css`
+    section {
+      max-height: 26vh;
+      overflow: auto;
+      border-top: 1px solid var(--line);
+    }
+    h2 {
+      padding: 6px 10px 2px;
+    }
+    button {
+      justify-content: start;
+      width: 100%;
+      text-align: left;
+    }
+  `;
 
   override render() {
     const found = mission.value?.reactions ?? [];

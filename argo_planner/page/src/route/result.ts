@@ -9,7 +9,7 @@ import { taskKey } from "../model/outline";
 import { select, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { percent, seconds } from "../ui/figures";
 import { icon } from "../ui/icons";
 import { accept, cancel, job, jobIsStale, leave } from "./search";
@@ -18,124 +18,121 @@ const [WIDTH, HEIGHT] = [300, 90];
 
 @customElement("argo-route-result")
 export class RouteResult extends PageElement {
-  static override styles = [
-    look,
-    css`
-      section {
-        display: grid;
-        gap: 10px;
-      }
-      figure {
-        margin: 0;
-      }
-      svg.chart {
-        display: block;
-        width: 100%;
-        height: 90px;
-        border: 1px solid var(--line);
-        border-radius: 6px;
-        background: var(--sunken);
-      }
-      .chart path {
-        fill: none;
-        stroke-width: 2;
-        vector-effect: non-scaling-stroke;
-      }
-      .best {
-        stroke: var(--accent);
-      }
-      .bound {
-        stroke: var(--good);
-        stroke-dasharray: 5 4;
-      }
-      figcaption {
-        display: flex;
-        flex-wrap: wrap;
-        gap: 2px 12px;
-        font-size: 12px;
-        font-variant-numeric: tabular-nums;
-      }
-      .key::before {
-        content: "";
-        display: inline-block;
-        width: 16px;
-        margin-right: 4px;
-        border-top: 2px solid var(--accent);
-        vertical-align: middle;
-      }
-      .key.low::before {
-        border-top: 2px dashed var(--good);
-      }
-      .saving {
-        font-size: 16px;
-        font-weight: 600;
-        color: var(--good);
-      }
-      .both {
-        display: grid;
-        grid-template-columns: 1fr 1fr;
-        gap: 8px;
-      }
-      h3 span {
-        display: block;
-        font-size: 16px;
-        font-variant-numeric: tabular-nums;
-      }
-      ol {
-        margin: 4px 0 0;
-        padding: 0;
-        list-style: none;
-        counter-reset: place;
-      }
-      li button {
-        justify-content: start;
-        width: 100%;
-        min-height: 26px;
-        padding: 0 6px;
-        overflow: hidden;
-        text-align: left;
-        text-overflow: ellipsis;
-        font-size: 13px;
-      }
-      .both li {
-        counter-increment: place;
-        border-left: 3px solid transparent;
-      }
-      .both li button::before {
-        content: counter(place);
-        color: var(--dim);
-        font-size: 11px;
-      }
-      .both li.moved {
-        border-left-color: var(--accent);
-        background: var(--chosen);
-      }
-      .both li.out {
-        border-left-color: var(--bad);
-        text-decoration: line-through;
-        color: var(--bad);
-      }
-      .warn {
-        padding: 8px;
-        border-radius: var(--round);
-        background: var(--warn-ground);
-        color: var(--warn);
-      }
-      .decide {
-        display: grid;
-        grid-template-columns: 1fr 1fr;
-        gap: 8px;
-      }
-      .decide button {
-        min-height: 40px;
-      }
-      ul {
-        margin: 4px 0 0;
-        padding-left: 18px;
-        font-size: 13px;
-      }
-    `,
-  ];
+  static override styles = css`
+    section {
+      display: grid;
+      gap: 10px;
+    }
+    figure {
+      margin: 0;
+    }
+    svg.chart {
+      display: block;
+      width: 100%;
+      height: 90px;
+      border: 1px solid var(--line);
+      border-radius: 6px;
+      background: var(--sunken);
+    }
+    .chart path {
+      fill: none;
+      stroke-width: 2;
+      vector-effect: non-scaling-stroke;
+    }
+    .best {
+      stroke: var(--accent);
+    }
+    .bound {
+      stroke: var(--good);
+      stroke-dasharray: 5 4;
+    }
+    figcaption {
+      display: flex;
+      flex-wrap: wrap;
+      gap: 2px 12px;
+      font-size: 12px;
+      font-variant-numeric: tabular-nums;
+    }
+    .key::before {
+      content: "";
+      display: inline-block;
+      width: 16px;
+      margin-right: 4px;
+      border-top: 2px solid var(--accent);
+      vertical-align: middle;
+    }
+    .key.low::before {
+      border-top: 2px dashed var(--good);
+    }
+    .saving {
+      font-size: 16px;
+      font-weight: 600;
+      color: var(--good);
+    }
+    .both {
+      display: grid;
+      grid-template-columns: 1fr 1fr;
+      gap: 8px;
+    }
+    h3 span {
+      display: block;
+      font-size: 16px;
+      font-variant-numeric: tabular-nums;
+    }
+    ol {
+      margin: 4px 0 0;
+      padding: 0;
+      list-style: none;
+      counter-reset: place;
+    }
+    li button {
+      justify-content: start;
+      width: 100%;
+      min-height: 26px;
+      padding: 0 6px;
+      overflow: hidden;
+      text-align: left;
+      text-overflow: ellipsis;
+      font-size: 13px;
+    }
+    .both li {
+      counter-increment: place;
+      border-left: 3px solid transparent;
+    }
+    .both li button::before {
+      content: counter(place);
+      color: var(--dim);
+      font-size: 11px;
+    }
+    .both li.moved {
+      border-left-color: var(--accent);
+      background: var(--chosen);
+    }
+    .both li.out {
+      border-left-color: var(--bad);
+      text-decoration: line-through;
+      color: var(--bad);
+    }
+    .warn {
+      padding: 8px;
+      border-radius: var(--round);
+      background: var(--warn-ground);
+      color: var(--warn);
+    }
+    .decide {
+      display: grid;
+      grid-template-columns: 1fr 1fr;
+      gap: 8px;
+    }
+    .decide button {
+      min-height: 40px;
+    }
+    ul {
+      margin: 4px 0 0;
+      padding-left: 18px;
+      font-size: 13px;
+    }
+  `;
 
   override render() {
     const now = job.value;

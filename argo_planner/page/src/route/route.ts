@@ -5,7 +5,8 @@ import { edit } from "../state/commands";
 import { broken, mission } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { choice, iconButton, options } from "../ui/controls";
+import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { icon } from "../ui/icons";
 import "./result";
 import { job, search, type Asked } from "./search";
@@ -14,81 +15,78 @@ const LIMITS = [5, 10, 30, 120, 600] as const; // s
 
 @customElement("argo-route")
 export class RoutePanel extends PageElement {
-  static override styles = [
-    look,
-    css`
-      :host {
-        padding: 12px;
-      }
-      .all,
-      .inner {
-        display: grid;
-        gap: 12px;
-      }
-      .begin {
-        display: grid;
-        grid-template-columns: 1fr auto;
-        align-items: end;
-        gap: 8px;
-      }
-      .begin button {
-        min-height: 44px;
-        font-weight: 600;
-      }
-      .begin select {
-        min-height: 44px;
-      }
-      label {
-        display: grid;
-        gap: 2px;
-        font-size: 12px;
-        color: var(--dim);
-      }
-      label > * {
-        color: var(--text);
-        font-size: 14px;
-      }
-      .inner {
-        padding: 6px 0 0 10px;
-        border-left: 2px solid var(--line);
-      }
-      .line {
-        display: grid;
-        gap: 6px;
-      }
-      .pair {
-        grid-template-columns: minmax(0, 1fr) auto minmax(0, 1fr) auto;
-        align-items: center;
-      }
-      .window {
-        grid-template-columns: minmax(0, 1fr) 82px 82px auto;
-      }
-      .window input,
-      .line select {
-        min-width: 0;
-      }
-      ul {
-        margin: 0;
-        padding: 0;
-        list-style: none;
-      }
-      li {
-        display: flex;
-        align-items: center;
-        gap: 6px;
-      }
-      .reason {
-        color: var(--dim);
-        font-size: 12px;
-      }
-      h3 {
-        margin-bottom: 4px;
-      }
-      summary {
-        cursor: pointer;
-      }
-    `,
-  ];
+  static override styles = css`
+    :host {
+      padding: 12px;
+    }
+    .all,
+    .inner {
+      display: grid;
+      gap: 12px;
+    }
+    .begin {
+      display: grid;
+      grid-template-columns: 1fr auto;
+      align-items: end;
+      gap: 8px;
+    }
+    .begin button {
+      min-height: 44px;
+      font-weight: 600;
+    }
+    .begin select {
+      min-height: 44px;
+    }
+    label {
+      display: grid;
+      gap: 2px;
+      font-size: 12px;
+      color: var(--dim);
+    }
+    label > * {
+      color: var(--text);
+      font-size: 14px;
+    }
+    .inner {
+      padding: 6px 0 0 10px;
+      border-left: 2px solid var(--line);
+    }
+    .line {
+      display: grid;
+      gap: 6px;
+    }
+    .pair {
+      grid-template-columns: minmax(0, 1fr) auto minmax(0, 1fr) auto;
+      align-items: center;
+    }
+    .window {
+      grid-template-columns: minmax(0, 1fr) 82px 82px auto;
+    }
+    .window input,
+    .line select {
+      min-width: 0;
+    }
+    ul {
+      margin: 0;
+      padding: 0;
+      list-style: none;
+    }
+    li {
+      display: flex;
+      align-items: center;
+      gap: 6px;
+    }
+    .reason {
+      color: var(--dim);
+      font-size: 12px;
+    }
+    h3 {
+      margin-bottom: 4px;
+    }
+    summary {
+      cursor: pointer;
+    }
+  `;
 
   @state() private pairsAsked: Asked["before"] = [];
   @state() private windows: Asked["windows"] = [];
@@ -103,12 +101,7 @@ export class RoutePanel extends PageElement {
           <button class="main" id="search" ?disabled=${why !== null || running}>
             ${icon("route", 20)} ${texts.search}
           </button>
-          <label>
-            ${texts.timeLimit}
-            <select name="limit">
-              ${LIMITS.map((s) => html`<option value=${s} ?selected=${s === 10}>${texts.seconds(s)}</option>`)}
-            </select>
-          </label>
+          ${choice(texts.timeLimit, "limit", LIMITS.map((s) => [s, texts.seconds(s)]), 10)}
         </div>
         ${why === null ? nothing : html`<p class="reason">${why}</p>`} ${this.fixed()}
         <details>
@@ -156,7 +149,7 @@ export class RoutePanel extends PageElement {
       </ul>
       <div class="line pair">
         ${this.choice("first", texts.first)} <span>${texts.isBefore}</span>
-        ${this.choice("second", texts.second)} ${this.addButton(this.addPair)}
+        ${this.choice("second", texts.second)} ${iconButton("add", texts.add, this.addPair, { look: "" })}
       </div>
     </section>`;
   }
@@ -179,32 +172,22 @@ export class RoutePanel extends PageElement {
         ${this.choice("what", texts.what)}
         <input id="earliest" aria-label=${texts.earliest} placeholder=${texts.earliest} @change=${this.tidy} />
         <input id="latest" aria-label=${texts.latest} placeholder=${texts.latest} @change=${this.tidy} />
-        ${this.addButton(this.addWindow)}
+        ${iconButton("add", texts.add, this.addWindow, { look: "" })}
       </div>
     </section>`;
   }
 
   private item(said: string, drop: () => void) {
-    const label = t().route.remove(said);
     return html`<li>
       <span class="grow">${said}</span>
-      <button type="button" class="bare icon" aria-label=${label} title=${label} @click=${drop}>
-        ${icon("close", 16)}
-      </button>
+      ${iconButton("close", t().route.remove(said), drop, { size: 16 })}
     </li>`;
   }
 
   private choice(id: string, label: string) {
     return html`<select id=${id} aria-label=${label}>
-      ${this.names().map((name) => html`<option value=${name}>${name}</option>`)}
+      ${options(this.names().map((name) => [name, name]))}
     </select>`;
-  }
-
-  private addButton(act: () => void) {
-    const label = t().route.add;
-    return html`<button type="button" class="icon" aria-label=${label} title=${label} @click=${act}>
-      ${icon("add")}
-    </button>`;
   }
 
   private names(): string[] {

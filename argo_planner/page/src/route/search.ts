@@ -6,7 +6,7 @@ import { answered, client, Refusal, Unreached } from "../api/client";
 import type { operations } from "../api/schema";
 import type { OrderJob } from "../api/types";
 import { commandId, settled } from "../state/commands";
-import { tell, tellError } from "../state/notices";
+import { tell, tellError, telling } from "../state/notices";
 import { connected, jobs, planId, revision, take, takeJob } from "../state/plan";
 import { comparedPreview } from "../state/preview";
 import { t } from "../texts";
@@ -81,30 +81,21 @@ export async function search(seconds: number, asked: Asked): Promise<void> {
   const id = planId.value;
   if (id === null) return;
   await settled();
-  try {
-    const body = { time_limit: seconds, requirements: asked };
-    const begun = await answered(
-      client.POST("/api/missions/{id}/orders", {
-        params: { path: { id } },
-        body: body as unknown as SearchAsked,
-      }),
-    );
+  await telling(async () => {
+    const body = { time_limit: seconds, requirements: asked } as unknown as SearchAsked;
+    const begun = await answered(client.POST("/api/missions/{id}/orders", { params: { path: { id } }, body }));
     if (planId.value !== id) return;
     leave();
     shown.value = begun;
-  } catch (error) {
-    tellError(error);
-  }
+  });
 }
 
 export async function cancel(): Promise<void> {
   const id = job.value?.id;
   if (id === undefined) return;
-  try {
+  await telling(async () => {
     takeJob(await answered(client.DELETE("/api/jobs/{id}", { params: { path: { id } } })));
-  } catch (error) {
-    tellError(error);
-  }
+  });
 }
 
 export async function accept(): Promise<void> {

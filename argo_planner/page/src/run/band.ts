@@ -5,7 +5,7 @@ import { shownMode, type ShownMode } from "../model/run-mode";
 import { mission, planId, revision } from "../state/plan";
 import { robotConnected, shownRun, shownRunState, shownTime } from "../state/run";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { styled } from "../ui/styled";
 import { percent } from "../ui/figures";
@@ -30,7 +30,6 @@ const LOW_CHARGE = 0.2;
 @customElement("argo-run-band")
 export class RunBand extends PageElement {
   static override styles = [
-    look,
     parts,
     css`
       /* Who has the robot stays in sight, however far down somebody looks. */

@@ -5,12 +5,14 @@ import { isOver, isUnderWay, shownRequests } from "../model/run-mode";
 import { planId, revision } from "../state/plan";
 import { ask, asking, giveBackEdited } from "../state/asking";
 import { run, shownTime } from "../state/run";
+import { chooseFollowing, waysToFollow } from "../scene/following";
 import { mayOperate } from "../state/session";
 import { following } from "../state/view";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { options, valueOf } from "../ui/controls";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
-import { parts, SPEEDS, speedName } from "./parts";
+import { parts, readSpeed, SPEEDS, speedName } from "./parts";
 
 const PAST_REQUESTS = 3;
 type Simple = "pause" | "go_on" | "stop" | "cancel" | "take_over" | "give_back";
@@ -26,7 +28,6 @@ const SIGNS: Record<Simple, Icon> = {
 @customElement("argo-run-controls")
 export class RunControls extends PageElement {
   static override styles = [
-    look,
     parts,
     css`
       .buttons {
@@ -141,17 +142,9 @@ export class RunControls extends PageElement {
       <select
         id="speed"
         ?disabled=${!mayOperate()}
-        @change=${(event: Event) => {
-          const { value } = event.target as HTMLSelectElement;
-          void ask({ kind: "speed", speed: value === "null" ? null : Number(value) });
-        }}
+        @change=${(event: Event) => ask({ kind: "speed", speed: readSpeed(valueOf(event)) })}
       >
-        ${known.map(
-          (speed) =>
-            html`<option value=${String(speed)} .selected=${speed === now}>
-              ${t().run.speed}: ${speedName(speed)}
-            </option>`,
-        )}
+        ${options(known.map((speed) => [speed, `${t().run.speed}: ${speedName(speed)}`]), now)}
       </select>
     </label>`;
   }
@@ -161,17 +154,8 @@ export class RunControls extends PageElement {
     const texts = t().scene;
     return html`<label class="wide">
       <span class="unseen">${texts.follow}</span>
-      <select
-        id="follow"
-        @change=${(event: Event) =>
-          (following.value = (event.target as HTMLSelectElement).value as typeof following.value)}
-      >
-        ${(["off", "behind", "above"] as const).map(
-          (how) =>
-            html`<option value=${how} .selected=${how === following.value}>
-              ${texts.follow}: ${{ off: texts.followOff, behind: texts.followBehind, above: texts.followAbove }[how]}
-            </option>`,
-        )}
+      <select id="follow" @change=${chooseFollowing}>
+        ${options(waysToFollow(`${texts.follow}: `), following.value)}
       </select>
     </label>`;
   }

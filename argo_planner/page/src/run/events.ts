@@ -5,7 +5,7 @@ import { computed } from "@preact/signals-core";
 import { happenings, type Happening, type Told } from "../model/happenings";
 import { shownEntries, shownRun, shownTime } from "../state/run";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { figure } from "../ui/figures";
 import { parts } from "./parts";
@@ -55,7 +55,6 @@ const toldNow = computed(() => happenings(shownEntries.value, 0, count.value));
 @customElement("argo-run-events")
 export class RunEvents extends PageElement {
   static override styles = [
-    look,
     parts,
     css`
       li button {

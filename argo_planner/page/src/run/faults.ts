@@ -3,8 +3,8 @@
 import type { FaultKind } from "../api/types";
 import { t } from "../texts";
 import { run } from "../texts/run";
-import { css, customElement, html, look, PageElement, property } from "../ui/element";
-import { icon } from "../ui/icons";
+import { iconButton, options } from "../ui/controls";
+import { css, customElement, html, PageElement, property } from "../ui/element";
 import { parts } from "./parts";
 
 /** All kinds of faults, in the order of the texts. */
@@ -14,7 +14,6 @@ export const FAULTS = Object.keys(run.en.fault) as readonly FaultKind[];
 @customElement("argo-faults")
 export class FaultChoice extends PageElement {
   static override styles = [
-    look,
     parts,
     css`
       li {
@@ -35,24 +34,16 @@ export class FaultChoice extends PageElement {
     return html`<h2>${texts.faults}</h2>
       <ul>
         ${this.chosen.map((kind, at) => {
-          const said = texts.remove(texts.fault[kind]);
+          const drop = () => this.tell(this.chosen.filter((_, other) => other !== at));
           return html`<li>
             <span class="grow">${texts.fault[kind]}</span>
-            <button
-              type="button"
-              class="bare icon"
-              aria-label=${said}
-              title=${said}
-              @click=${() => this.tell(this.chosen.filter((_, other) => other !== at))}
-            >
-              ${icon("close", 16)}
-            </button>
+            ${iconButton("close", texts.remove(texts.fault[kind]), drop, { size: 16 })}
           </li>`;
         })}
       </ul>
       <select aria-label=${texts.addFault} @change=${this.add}>
         <option value="">${texts.addFault}…</option>
-        ${FAULTS.map((kind) => html`<option value=${kind}>${texts.fault[kind]}</option>`)}
+        ${options(FAULTS.map((kind) => [kind, texts.fault[kind]]))}
       </select>`;
   }
 

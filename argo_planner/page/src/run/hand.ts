@@ -1,9 +1,7 @@
 /** A person has the robot: what they let it do. */
 
-import { effect } from "@preact/signals-core";
-
 import { isTyping } from "../frame/keys";
-import { choiceOf, chosenCheckpoint } from "../model/checkpoint-choice";
+import { chosenCheckpoint } from "../model/checkpoint-choice";
 import { directionOf, type Direction } from "../model/hand-driving";
 import { chosenTask, mission, planId } from "../state/plan";
 import { ask } from "../state/asking";
@@ -11,10 +9,11 @@ import { run } from "../state/run";
 import { mayOperate } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { options, valueOf } from "../ui/controls";
+import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { blocked, drive, wanted } from "./hand-driver";
-import { parts } from "./parts";
+import { checkpointList, parts } from "./parts";
 
 const PAD: readonly (readonly [Direction, Icon, string])[] = [
   ["left", "turn-left", "left"],
@@ -26,7 +25,6 @@ const PAD: readonly (readonly [Direction, Icon, string])[] = [
 @customElement("argo-run-hand")
 export class RunHand extends PageElement {
   static override styles = [
-    look,
     parts,
     css`
       section {
@@ -75,27 +73,21 @@ export class RunHand extends PageElement {
   @state() private withKeys = false;
   /** The task that was chosen here, or is selected in the list. */
   @state() private task = "";
-  private stopFollowing: (() => void) | undefined;
   private speedBefore: number | null | undefined;
 
-  override connectedCallback(): void {
-    super.connectedCallback();
-    addEventListener("keydown", this.onKey, { capture: true });
-    addEventListener("keyup", this.onKeyUp, { capture: true });
-    addEventListener("blur", this.halt);
-    addEventListener("visibilitychange", this.halt);
-    this.stopFollowing = effect(() => {
+  constructor() {
+    super();
+    this.listen("keydown", this.onKey, true);
+    this.listen("keyup", this.onKeyUp, true);
+    this.listen("blur", this.halt);
+    this.listen("visibilitychange", this.halt);
+    this.watch(() => {
       if (chosenTask.value !== null) this.task = chosenTask.value.name;
     });
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    removeEventListener("keydown", this.onKey, { capture: true });
-    removeEventListener("keyup", this.onKeyUp, { capture: true });
-    removeEventListener("blur", this.halt);
-    removeEventListener("visibilitychange", this.halt);
-    this.stopFollowing?.();
     if (this.withKeys) this.driveWithKeys(false);
     else this.halt();
   }
@@ -132,9 +124,7 @@ export class RunHand extends PageElement {
           placeholder=${texts.measureWhat}
           autocomplete="off"
         />
-        <datalist id="to-measure">
-          ${(world.value?.checkpoints ?? []).map((one) => html`<option value=${choiceOf(one)}></option>`)}
-        </datalist>
+        ${checkpointList("to-measure")}
         <button id="measure" ?disabled=${busy}>${icon("gauge", 16)} ${texts.measureHere}</button>
       </form>
       ${state.plan === planId.value ? this.ofTasks(off, busy) : nothing}
@@ -149,12 +139,8 @@ export class RunHand extends PageElement {
     const tasks = this.tasks();
     const chosen = tasks.includes(this.task) ? this.task : (tasks[0] ?? "");
     return html`<div class="line">
-      <select
-        id="task"
-        aria-label=${texts.whichTask}
-        @change=${(event: Event) => (this.task = (event.target as HTMLSelectElement).value)}
-      >
-        ${tasks.map((name) => html`<option value=${name} .selected=${name === chosen}>${name}</option>`)}
+      <select id="task" aria-label=${texts.whichTask} @change=${(event: Event) => (this.task = valueOf(event))}>
+        ${options(tasks.map((name) => [name, name]), chosen)}
       </select>
       <button id="do" ?disabled=${busy || chosen === ""} @click=${() => ask({ kind: "do_task", task: chosen })}>
         ${texts.doTask}

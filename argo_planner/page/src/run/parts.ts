@@ -1,13 +1,27 @@
-/** What the parts of the run panel share: their look, and speeds. */
+/** What the parts of the run panel share: their look, speeds, and the checkpoints to choose from. */
 
-import { css } from "../ui/element";
+import { choiceOf } from "../model/checkpoint-choice";
+import { world } from "../state/world";
 import { t } from "../texts";
+import { css, html } from "../ui/element";
 
 /** Simulated seconds a second. */
 export const SPEEDS: readonly (number | null)[] = [0.5, 1, 2, 5, 10, 30, null];
 
 export function speedName(speed: number | null): string {
   return speed === null ? t().run.fullSpeed : t().run.times(speed);
+}
+
+/** The speed that an option stands for. */
+export function readSpeed(value: string): number | null {
+  return value === "null" ? null : Number(value);
+}
+
+/** The checkpoints as a list that a field offers. */
+export function checkpointList(id: string) {
+  return html`<datalist id=${id}>
+    ${(world.value?.checkpoints ?? []).map((one) => html`<option value=${choiceOf(one)}></option>`)}
+  </datalist>`;
 }
 
 export const parts = css`

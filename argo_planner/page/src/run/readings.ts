@@ -9,7 +9,7 @@ import { pastRun, shownRun, shownRunState } from "../state/run";
 import { look as lookAt } from "../state/view";
 import { world } from "../state/world";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon } from "../ui/icons";
 import { figure, percent } from "../ui/figures";
 import { parts } from "./parts";
@@ -22,7 +22,6 @@ const readingsNow = computed(() => shownRun.value?.readings ?? null);
 @customElement("argo-run-readings")
 export class RunReadings extends PageElement {
   static override styles = [
-    look,
     parts,
     css`
       li {

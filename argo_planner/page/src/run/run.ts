@@ -2,12 +2,14 @@
 
 import { client, answered } from "../api/client";
 import type { FailedRun, RunState } from "../api/types";
-import { tellError } from "../state/notices";
+import { telling } from "../state/notices";
 import { planId } from "../state/plan";
 import { pastRun, run, runIsOn, showRun, shownRunState } from "../state/run";
 import { panel } from "../state/view";
-import { dateLocale, t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { t } from "../texts";
+import { options, valueOf } from "../ui/controls";
+import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
+import { dateAndTime } from "../ui/figures";
 import { icon } from "../ui/icons";
 import "./band";
 import "./controls";
@@ -22,7 +24,6 @@ import "./time";
 @customElement("argo-run")
 export class RunPanel extends PageElement {
   static override styles = [
-    look,
     parts,
     css`
       :host {
@@ -39,9 +40,6 @@ export class RunPanel extends PageElement {
         top: -12px; /* the padding above */
         padding: 6px 0;
         background: var(--surface);
-      }
-      a {
-        color: var(--accent);
       }
       .busy {
         padding: 8px 10px;
@@ -66,26 +64,21 @@ export class RunPanel extends PageElement {
     `,
   ];
 
-  override connectedCallback(): void {
-    super.connectedCallback();
-    addEventListener("open-run", this.focusMain);
-  }
+  @state() private past: readonly RunState[] = [];
+  private listed = "";
 
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    removeEventListener("open-run", this.focusMain);
+  constructor() {
+    super();
+    this.listen("open-run", () => this.focusMain());
   }
 
   /** Puts the focus on what comes next: start, go on, give back, pause. */
-  private readonly focusMain = (): void => {
+  private focusMain(): void {
     for (const part of this.renderRoot.querySelectorAll("argo-run-start, argo-run-controls")) {
       const main = part.shadowRoot?.querySelector<HTMLElement>("button.main:not(:disabled)");
       if (main) return main.focus();
     }
-  };
-
-  @state() private past: readonly RunState[] = [];
-  private listed = "";
+  }
 
   override render() {
     const texts = t().run;
@@ -134,21 +127,13 @@ export class RunPanel extends PageElement {
     return html`<label>
       ${texts.shownRun}
       <select id="past" @change=${this.choose}>
-        <option value="" .selected=${shown === ""}>${texts.robotsRun}</option>
-        ${others.map(
-          (one) =>
-            html`<option value=${one.id} .selected=${one.id === shown}>${this.named(one)}</option>`,
-        )}
+        ${options([["", texts.robotsRun], ...others.map((one) => [one.id, this.named(one)] as const)], shown)}
       </select>
     </label>`;
   }
 
   private named(one: RunState): string {
-    const when = new Date(one.begun).toLocaleString(dateLocale(), {
-      dateStyle: "medium",
-      timeStyle: "short",
-    });
-    return t().run.pastRunOf(when, one.headline?.word ?? one.status);
+    return t().run.pastRunOf(dateAndTime(one.begun), one.headline?.word ?? one.status);
   }
 
   /** A run of an evaluation says which one it is, and leads back. */
@@ -173,12 +158,8 @@ export class RunPanel extends PageElement {
   }
 
   private async choose(event: Event): Promise<void> {
-    const id = (event.target as HTMLSelectElement).value;
-    try {
-      await showRun(id === "" ? null : id);
-    } catch (error) {
-      tellError(error);
-    }
+    const id = valueOf(event);
+    await telling(() => showRun(id === "" ? null : id));
   }
 
   /** The runs of this mission, asked for again when a run begins or ends. */
@@ -187,11 +168,9 @@ export class RunPanel extends PageElement {
     if (about === this.listed) return;
     this.listed = about;
     const plan = planId.value;
-    try {
+    await telling(async () => {
       const { runs } = await answered(client.GET("/api/runs"));
       this.past = runs.filter((one) => one.plan === plan);
-    } catch (error) {
-      tellError(error);
-    }
+    });
   }
 }

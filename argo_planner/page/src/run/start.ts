@@ -7,11 +7,12 @@ import { broken, mission } from "../state/plan";
 import { startRun } from "../state/asking";
 import { world } from "../state/world";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { choice, iconButton } from "../ui/controls";
+import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { icon } from "../ui/icons";
 import { figure } from "../ui/figures";
 import "./faults";
-import { parts, SPEEDS, speedName } from "./parts";
+import { checkpointList, parts, readSpeed, SPEEDS, speedName } from "./parts";
 
 const DRIVES = ["kinematic", "tracked", "route", "remote"] as const;
 const SENSORS = ["ideal", "camera"] as const;
@@ -19,7 +20,6 @@ const SENSORS = ["ideal", "camera"] as const;
 @customElement("argo-run-start")
 export class RunStart extends PageElement {
   static override styles = [
-    look,
     parts,
     css`
       form {
@@ -76,35 +76,15 @@ export class RunStart extends PageElement {
         >
           ${icon("play", 20)} ${this.starting ? texts.starting : texts.start}
         </button>
-        <label>
-          ${texts.speed}
-          <select name="speed">
-            ${SPEEDS.map(
-              (speed) =>
-                html`<option value=${String(speed)} ?selected=${String(speed) === (kept("speed") ?? "1")}>
-                  ${speedName(speed)}
-                </option>`,
-            )}
-          </select>
-        </label>
+        ${choice(texts.speed, "speed", SPEEDS.map((speed) => [speed, speedName(speed)]), readSpeed(kept("speed") ?? "1"))}
       </div>
       ${reason === null ? nothing : html`<p class="reason" id="reason">${reason}</p>`}
       <details>
         <summary>${texts.how}</summary>
         <div class="inner">
-          <label>
-            ${texts.drive}
-            <select name="drive">
-              ${DRIVES.map((drive) => html`<option value=${drive}>${texts.drives[drive]}</option>`)}
-            </select>
-          </label>
+          ${choice(texts.drive, "drive", DRIVES.map((one) => [one, texts.drives[one]]))}
           <div class="pair">
-            <label>
-              ${texts.sensor}
-              <select name="sensor">
-                ${SENSORS.map((one) => html`<option value=${one}>${texts.sensors[one]}</option>`)}
-              </select>
-            </label>
+            ${choice(texts.sensor, "sensor", SENSORS.map((one) => [one, texts.sensors[one]]))}
             <label>
               ${texts.seed}
               <input name="seed" type="number" min="0" max="2147483648" step="1" value="0" required />
@@ -128,11 +108,7 @@ export class RunStart extends PageElement {
           const name = checkpoint === undefined ? `#${id}` : choiceOf(checkpoint);
           return html`<li>
             <span class="grow">${name}: ${figure(value)} ${checkpoint?.unit ?? ""}</span>
-            ${this.removeButton(name, () => {
-              const left = new Map(this.values);
-              left.delete(id);
-              this.values = left;
-            })}
+            ${iconButton("close", texts.remove(name), () => this.dropValue(id), { size: 16 })}
           </li>`;
         })}
       </ul>
@@ -152,21 +128,14 @@ export class RunStart extends PageElement {
           placeholder=${texts.value}
           @keydown=${this.onValueKey}
         />
-        <button type="button" class="icon" aria-label=${texts.addValue} title=${texts.addValue} @click=${this.addValue}>
-          ${icon("add")}
-        </button>
+        ${iconButton("add", texts.addValue, this.addValue, { look: "" })}
       </div>
-      <datalist id="checkpoints">
-        ${checkpoints.map((one) => html`<option value=${choiceOf(one)}></option>`)}
-      </datalist>
+      ${checkpointList("checkpoints")}
     </section>`;
   }
 
-  private removeButton(what: string, act: () => void) {
-    const said = t().run.remove(what);
-    return html`<button type="button" class="bare icon" aria-label=${said} title=${said} @click=${act}>
-      ${icon("close", 16)}
-    </button>`;
+  private dropValue(id: number): void {
+    this.values = new Map([...this.values].filter(([other]) => other !== id));
   }
 
   /** Why no run can be started now. The button can have the focus nevertheless: the keys lead to it before all
@@ -207,7 +176,7 @@ export class RunStart extends PageElement {
     const speed = form.get("speed") as string;
     keep("speed", speed);
     const asked: Partial<RunAsked> = {
-      speed: speed === "null" ? null : Number(speed),
+      speed: readSpeed(speed),
       drive: form.get("drive") as string,
       sensor: form.get("sensor") as string,
       seed: Number(form.get("seed")),

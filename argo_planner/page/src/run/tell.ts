@@ -2,14 +2,15 @@
  * go wrong in the simulation. */
 
 import type { EventKind, FaultKind } from "../api/types";
-import { choiceOf, chosenCheckpoint } from "../model/checkpoint-choice";
+import { chosenCheckpoint } from "../model/checkpoint-choice";
 import { ask, type Question } from "../state/asking";
 import { run } from "../state/run";
 import { mayOperate } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
-import { parts } from "./parts";
+import { options } from "../ui/controls";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
+import { checkpointList, parts } from "./parts";
 import { FAULTS } from "./faults";
 
 const OWN: readonly string[] = ["time_up"]; // that occur by themselves only
@@ -17,7 +18,6 @@ const OWN: readonly string[] = ["time_up"]; // that occur by themselves only
 @customElement("argo-run-tell")
 export class RunTell extends PageElement {
   static override styles = [
-    look,
     parts,
     css`
       .inner {
@@ -46,21 +46,19 @@ export class RunTell extends PageElement {
       <div class="inner">
         <form @submit=${this.tellEvent}>
           <select name="event" aria-label=${texts.event}>
-            ${events.map(([kind, name]) => html`<option value=${kind}>${name}</option>`)}
+            ${options(events)}
           </select>
           <button id="tell-event" ?disabled=${off}>${texts.tellEvent}</button>
         </form>
         <form class="reading" @submit=${this.tellReading}>
           <input name="of" list="known" aria-label=${texts.checkpoint} placeholder=${texts.checkpoint} />
-          <datalist id="known">
-            ${(world.value?.checkpoints ?? []).map((one) => html`<option value=${choiceOf(one)}></option>`)}
-          </datalist>
+          ${checkpointList("known")}
           <input name="value" type="number" step="any" required aria-label=${texts.value} placeholder=${texts.value} />
           <button ?disabled=${off}>${texts.tellEvent}</button>
         </form>
         <form @submit=${this.beginFault}>
           <select name="fault" aria-label=${texts.beginFault}>
-            ${FAULTS.map((kind) => html`<option value=${kind}>${texts.fault[kind]}</option>`)}
+            ${options(FAULTS.map((kind) => [kind, texts.fault[kind]]))}
           </select>
           <button id="begin-fault" ?disabled=${off || state.drive === "remote"}>${texts.begin}</button>
         </form>

@@ -6,7 +6,7 @@ import { svg } from "lit";
 import { happenings } from "../model/happenings";
 import { pastRun, shownEntries, shownRunState, shownTime } from "../state/run";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { parts } from "./parts";
 
 const STEP = 0.5; // s, as often as a run keeps where the robot was
@@ -17,7 +17,6 @@ const all = computed(() => happenings(shownEntries.value));
 @customElement("argo-run-time")
 export class RunTime extends PageElement {
   static override styles = [
-    look,
     parts,
     css`
       .line {

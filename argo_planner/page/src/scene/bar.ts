@@ -4,8 +4,10 @@ import { runIsOn, shownRun } from "../state/run";
 import { mayPlan } from "../state/session";
 import { following, shownFloor, tool, type Tool } from "../state/view";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, property, state } from "../ui/element";
-import { icon, type Icon } from "../ui/icons";
+import { iconButton, options } from "../ui/controls";
+import { css, customElement, html, nothing, PageElement, property, state } from "../ui/element";
+import type { Icon } from "../ui/icons";
+import { chooseFollowing, waysToFollow } from "./following";
 import { floating } from "./panel";
 import { edgesMove, hidden, hide, labelsShown, pathsShown } from "./settings";
 import { HIDEABLE } from "./site";
@@ -13,20 +15,10 @@ import type { SceneView } from "./view";
 import type { Signal } from "@preact/signals-core";
 
 const TURN = 0.6;
-const SIGNS: Readonly<Record<"hand" | "home" | "above" | "plus" | "minus" | "left" | "right", string>> = {
-  hand: "M6 3l12 9-6 1-3 6z",
-  home: "M4 9V4h5M15 4h5v5M20 15v5h-5M9 20H4v-5",
-  above: "M12 4v12M7 11l5 5 5-5M5 20h14",
-  plus: "M12 5v14M5 12h14",
-  minus: "M5 12h14",
-  left: "M5 12a7 7 0 1 0 3-6M8 2v4h4",
-  right: "M19 12a7 7 0 1 1-3-6M16 2v4h-4",
-};
 
 @customElement("argo-scene-bar")
 export class SceneBar extends PageElement {
   static override styles = [
-    look,
     floating,
     css`
       :host {
@@ -67,19 +59,12 @@ export class SceneBar extends PageElement {
   @property({ attribute: false }) view: SceneView | null = null;
   @state() private open = false;
 
-  override connectedCallback(): void {
-    super.connectedCallback();
-    addEventListener("pointerdown", this.onOutside);
+  constructor() {
+    super();
+    this.listen("pointerdown", (event) => {
+      if (!event.composedPath().includes(this)) this.open = false;
+    });
   }
-
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    removeEventListener("pointerdown", this.onOutside);
-  }
-
-  private readonly onOutside = (event: Event): void => {
-    if (!event.composedPath().includes(this)) this.open = false;
-  };
 
   override render() {
     const texts = t().scene;
@@ -88,49 +73,30 @@ export class SceneBar extends PageElement {
     const { camera } = view;
     return html`
       <div class="panel tools" role="toolbar" aria-label=${texts.tools}>
-        ${this.tool("select", "hand", texts.toolSelect, "Esc")}
+        ${this.tool("select", "arrow", texts.toolSelect, "Esc")}
         ${this.tool("navigate", "drive", texts.toolNavigate, "n")}
         ${this.tool("obstacle", "obstacle", texts.toolObstacle, "o")}
       </div>
       <div class="panel" role="toolbar" aria-label=${texts.view}>
-        ${this.button("home", texts.showAll, () => void camera.showAll(shownFloor.value))}
-        ${this.button("above", texts.fromAbove, () => camera.topView())}
-        ${this.button("left", texts.turnLeft, () => camera.turn(-TURN))}
-        ${this.button("right", texts.turnRight, () => camera.turn(TURN))}
-        ${this.button("plus", texts.nearer, () => camera.zoom(1))}
-        ${this.button("minus", texts.farther, () => camera.zoom(-1))}
-        <button
-          class="bare icon"
-          aria-label=${texts.settings}
-          title=${texts.settings}
-          aria-expanded=${this.open}
-          @click=${() => (this.open = !this.open)}
-        >
-          ${icon("settings")}
-        </button>
+        ${iconButton("whole", texts.showAll, () => void camera.showAll(shownFloor.value))}
+        ${iconButton("above", texts.fromAbove, () => camera.topView())}
+        ${iconButton("circle-left", texts.turnLeft, () => camera.turn(-TURN))}
+        ${iconButton("circle-right", texts.turnRight, () => camera.turn(TURN))}
+        ${iconButton("add", texts.nearer, () => camera.zoom(1))}
+        ${iconButton("minus", texts.farther, () => camera.zoom(-1))}
+        ${iconButton("settings", texts.settings, () => (this.open = !this.open), { expanded: this.open })}
       </div>
       ${this.open ? this.settings() : nothing}
     `;
   }
 
-  private tool(which: Tool, sign: Icon | "hand", label: string, key: string) {
+  private tool(which: Tool, sign: Icon, label: string, key: string) {
     const may = which === "select" || mayPlan();
-    return html`<button
-      class="bare icon"
-      aria-label=${label}
-      title=${may ? `${label} (${key})` : t().scene.mayNot}
-      aria-pressed=${tool.value === which}
-      ?disabled=${!may}
-      @click=${() => (tool.value = which)}
-    >
-      ${sign === "hand" ? lines(SIGNS.hand) : icon(sign)}
-    </button>`;
-  }
-
-  private button(sign: keyof typeof SIGNS, label: string, act: () => void) {
-    return html`<button class="bare icon" aria-label=${label} title=${label} @click=${act}>
-      ${lines(SIGNS[sign])}
-    </button>`;
+    return iconButton(sign, label, () => (tool.value = which), {
+      title: may ? `${label} (${key})` : t().scene.mayNot,
+      pressed: tool.value === which,
+      disabled: !may,
+    });
   }
 
   private settings() {
@@ -160,32 +126,10 @@ export class SceneBar extends PageElement {
       ${box(texts.edges, edgesMove.value, kept(edgesMove))}
       <label>
         ${texts.follow}
-        <select
-          ?disabled=${!canFollow}
-          @change=${(event: Event) =>
-            (following.value = (event.target as HTMLSelectElement).value as typeof following.value)}
-        >
-          <option value="off" .selected=${following.value === "off"}>${texts.followOff}</option>
-          <option value="behind" .selected=${following.value === "behind"}>${texts.followBehind}</option>
-          <option value="above" .selected=${following.value === "above"}>${texts.followAbove}</option>
+        <select ?disabled=${!canFollow} @change=${chooseFollowing}>
+          ${options(waysToFollow(), following.value)}
         </select>
       </label>
     </div>`;
   }
-}
-
-function lines(path: string) {
-  return html`<svg
-    viewBox="0 0 24 24"
-    width="18"
-    height="18"
-    fill="none"
-    stroke="currentColor"
-    stroke-width="2"
-    stroke-linecap="round"
-    stroke-linejoin="round"
-    aria-hidden="true"
-  >
-    <path d=${path} />
-  </svg>`;
 }

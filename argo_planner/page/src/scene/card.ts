@@ -6,7 +6,8 @@ import { mayPlan } from "../state/session";
 import { look as lookSignal } from "../state/view";
 import { removeObstacle, world } from "../state/world";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, property } from "../ui/element";
+import { iconButton } from "../ui/controls";
+import { css, customElement, html, nothing, PageElement, property } from "../ui/element";
 import { figure } from "../ui/figures";
 import { icon } from "../ui/icons";
 import { heed } from "./heed";
@@ -20,7 +21,6 @@ const [WIDTH, BESIDE, MARGIN] = [250, 26, 8];
 @customElement("argo-scene-card")
 export class SceneCard extends PageElement {
   static override styles = [
-    look,
     floating,
     css`
       :host {
@@ -75,9 +75,7 @@ export class SceneCard extends PageElement {
     return html`<div class="panel" role="group" aria-label=${mark.text} @keydown=${this.onKey}>
       <div class="head">
         <h2 class="grow">${mark.text}</h2>
-        <button class="bare icon" aria-label=${t().scene.close} @click=${() => (opened.value = null)}>
-          ${icon("close", 14)}
-        </button>
+        ${iconButton("close", t().scene.close, () => (opened.value = null), { title: nothing, size: 14 })}
       </div>
       ${this.content(mark)}
     </div>`;

@@ -3,7 +3,7 @@
 import { Vector3 } from "three";
 
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, property } from "../ui/element";
+import { css, customElement, html, nothing, PageElement, property } from "../ui/element";
 import { world } from "../state/world";
 import { styled } from "../ui/styled";
 import { heed } from "./heed";
@@ -16,7 +16,6 @@ const LONGEST_PX = 110;
 @customElement("argo-scene-compass")
 export class SceneCompass extends PageElement {
   static override styles = [
-    look,
     floating,
     css`
       :host {

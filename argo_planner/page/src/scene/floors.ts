@@ -8,7 +8,7 @@ import { shownRun } from "../state/run";
 import { shownFloor } from "../state/view";
 import { checkpointsById, world } from "../state/world";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, property } from "../ui/element";
+import { css, customElement, html, nothing, PageElement, property } from "../ui/element";
 import { measuring } from "./marks";
 import { floating } from "./panel";
 import type { SceneView } from "./view";
@@ -18,7 +18,6 @@ const MANY = 8;
 @customElement("argo-scene-floors")
 export class SceneFloors extends PageElement {
   static override styles = [
-    look,
     floating,
     css`
       :host {

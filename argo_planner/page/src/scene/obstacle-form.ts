@@ -2,7 +2,7 @@
 
 import { tool } from "../state/view";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, query, state } from "../ui/element";
+import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
 import { height, hideCorners, putUp, spanned, corners } from "./obstacle-tool";
 import { figure } from "../ui/figures";
 import { floating } from "./panel";
@@ -10,7 +10,6 @@ import { floating } from "./panel";
 @customElement("argo-obstacle-form")
 export class ObstacleForm extends PageElement {
   static override styles = [
-    look,
     floating,
     css`
       :host {

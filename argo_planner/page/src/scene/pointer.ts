@@ -18,29 +18,25 @@ const NOTCH_PX = 50;
 export class PointerWatch {
   private press: Press | null = null;
   private turned = 0;
+  private readonly over = new AbortController();
 
   constructor(
     private readonly element: HTMLElement,
     private readonly told: PointerTold,
   ) {
-    element.addEventListener("pointerdown", this.down);
-    element.addEventListener("pointerleave", this.leave);
-    element.addEventListener("contextmenu", this.noMenu);
-    element.addEventListener("wheel", this.wheel, { passive: false });
+    const { signal } = this.over;
+    element.addEventListener("pointerdown", this.down, { signal });
+    element.addEventListener("pointerleave", () => this.press === null && told.left(), { signal });
+    element.addEventListener("contextmenu", (event) => event.preventDefault(), { signal });
+    element.addEventListener("wheel", this.wheel, { signal, passive: false });
     // Before the camera hears of it: what is still a click does not turn it.
-    window.addEventListener("pointermove", this.move, true);
-    window.addEventListener("pointerup", this.up, true);
-    window.addEventListener("pointercancel", this.cancel, true);
+    window.addEventListener("pointermove", this.move, { signal, capture: true });
+    window.addEventListener("pointerup", this.up, { signal, capture: true });
+    window.addEventListener("pointercancel", () => (this.press = null), { signal, capture: true });
   }
 
   dispose(): void {
-    this.element.removeEventListener("pointerdown", this.down);
-    this.element.removeEventListener("pointerleave", this.leave);
-    this.element.removeEventListener("contextmenu", this.noMenu);
-    this.element.removeEventListener("wheel", this.wheel);
-    window.removeEventListener("pointermove", this.move, true);
-    window.removeEventListener("pointerup", this.up, true);
-    window.removeEventListener("pointercancel", this.cancel, true);
+    this.over.abort();
   }
 
   private place(event: MouseEvent): [number, number] {
@@ -73,16 +69,6 @@ export class PointerWatch {
     if (press.button === 0) this.told.clicked(...place, event.ctrlKey || event.metaKey);
     else if (press.button === 2) this.told.clickedRight(...place);
   };
-
-  private readonly cancel = (): void => {
-    this.press = null;
-  };
-
-  private readonly leave = (): void => {
-    if (this.press === null) this.told.left();
-  };
-
-  private readonly noMenu = (event: Event): void => event.preventDefault();
 
   /** Wheels turn in notches; touchpads tell small parts of them. */
   private readonly wheel = (event: WheelEvent): void => {

@@ -11,7 +11,7 @@ import { mayPlan } from "../state/session";
 import { shownFloor, tool } from "../state/view";
 import { world } from "../state/world";
 import { t } from "../texts";
-import { customElement, html, look, nothing, PageElement, query } from "../ui/element";
+import { customElement, html, nothing, PageElement, query } from "../ui/element";
 import "./bar";
 import { aboveRobot, besideGhost } from "./beside";
 import "./card";
@@ -38,7 +38,7 @@ const MOST_TIMES = 500;
 
 @customElement("argo-scene")
 export class ScenePanel extends PageElement {
-  static override styles = [look, sceneStyle];
+  static override styles = sceneStyle;
 
   @query("canvas") private readonly canvas!: HTMLCanvasElement;
   @query("#labels") private readonly labels!: HTMLElement;
@@ -57,12 +57,16 @@ export class ScenePanel extends PageElement {
   /** The way at which the pointer is; whoever else points at one is not disturbed. */
   private pointed: number | null = null;
 
+  constructor() {
+    super();
+    this.listen("contextmenu", this.onMenu);
+    this.listen("pointerdown", this.onElsewhere);
+    this.listen("keydown", this.onEscape, true);
+  }
+
   override connectedCallback(): void {
     super.connectedCallback();
     if (this.hasUpdated) this.begin();
-    addEventListener("contextmenu", this.onMenu);
-    addEventListener("pointerdown", this.onElsewhere);
-    addEventListener("keydown", this.onEscape, { capture: true });
   }
 
   override firstUpdated(): void {
@@ -71,9 +75,6 @@ export class ScenePanel extends PageElement {
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    removeEventListener("contextmenu", this.onMenu);
-    removeEventListener("pointerdown", this.onElsewhere);
-    removeEventListener("keydown", this.onEscape, { capture: true });
     clearTimeout(this.saying);
     for (const stop of this.stops) stop();
     for (const part of this.parts.reverse()) part.dispose();

@@ -3,7 +3,7 @@
 import { broken } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, query } from "../ui/element";
+import { css, customElement, html, nothing, PageElement, query } from "../ui/element";
 import { icon } from "../ui/icons";
 import {
   apply,
@@ -23,51 +23,48 @@ import type { ScriptSheet } from "./sheet";
 
 @customElement("argo-script")
 export class ScriptPanel extends PageElement {
-  static override styles = [
-    look,
-    css`
-      :host {
-        display: flex;
-        flex-direction: column;
-        gap: 8px;
-        height: 100%;
-        padding: 10px;
-      }
-      .told {
-        max-height: 34%;
-        overflow: auto;
-        padding: 8px;
-        border-radius: var(--round);
-        border: 1px solid var(--line);
-        font-size: 13px;
-      }
-      .told.bad {
-        border-color: var(--bad);
-      }
-      .told.warn {
-        border-color: var(--warn);
-      }
-      ul {
-        margin: 4px 0 0;
-        padding: 0;
-        list-style: none;
-      }
-      li {
-        padding: 3px 0;
-        overflow-wrap: anywhere;
-      }
-      li button {
-        min-height: 24px;
-        font-size: 12px;
-      }
-      .error-said {
-        color: var(--bad);
-      }
-      .state {
-        font-size: 12px;
-      }
-    `,
-  ];
+  static override styles = css`
+    :host {
+      display: flex;
+      flex-direction: column;
+      gap: 8px;
+      height: 100%;
+      padding: 10px;
+    }
+    .told {
+      max-height: 34%;
+      overflow: auto;
+      padding: 8px;
+      border-radius: var(--round);
+      border: 1px solid var(--line);
+      font-size: 13px;
+    }
+    .told.bad {
+      border-color: var(--bad);
+    }
+    .told.warn {
+      border-color: var(--warn);
+    }
+    ul {
+      margin: 4px 0 0;
+      padding: 0;
+      list-style: none;
+    }
+    li {
+      padding: 3px 0;
+      overflow-wrap: anywhere;
+    }
+    li button {
+      min-height: 24px;
+      font-size: 12px;
+    }
+    .error-said {
+      color: var(--bad);
+    }
+    .state {
+      font-size: 12px;
+    }
+  `;
 
   @query("argo-script-sheet") private readonly sheet!: ScriptSheet | null;
 

@@ -15,107 +15,105 @@ import { revision, select, selection, tasksByName } from "../state/plan";
 import { reading } from "../state/reading";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
-import { css, customElement, html, look, PageElement, query } from "../ui/element";
+import { valueOf } from "../ui/controls";
+import { css, customElement, html, PageElement, query } from "../ui/element";
 import { apply, base, dirty, draft, overtaken, refused, write } from "./draft";
 
 @customElement("argo-script-sheet")
 export class ScriptSheet extends PageElement {
-  static override styles = [
-    look,
-    css`
-      :host {
-        display: flex;
-        flex: 1;
-        flex-direction: column;
-        min-height: 160px;
-      }
-      .paper {
-        flex: 1;
-        min-height: 0;
-        overflow: auto;
-        border: 1px solid var(--line);
-        border-radius: var(--round);
-        background: var(--surface);
-      }
-      .paper:focus-within {
-        outline: 2px solid var(--accent);
-      }
-      /* The text lies over a mirror of itself, which has the numbers and the marks. */
-      .sheet {
-        display: grid;
-        min-height: 100%;
-      }
-      .mirror,
-      textarea {
-        grid-area: 1 / 1;
-        margin: 0;
-        padding: 6px 8px 6px 42px;
-        border: 0;
-        font: 13px/1.5 ui-monospace, "DejaVu Sans Mono", monospace;
-        white-space: pre-wrap;
-        overflow-wrap: anywhere;
-        tab-size: 4;
-      }
-      .mirror {
-        white-space: normal;
-      }
-      .mirror div {
-        white-space: pre-wrap;
-      }
-      textarea {
-        position: relative;
-        z-index: 1;
-        width: 100%;
-        height: 100%;
-        overflow: hidden;
-        resize: none;
-        border-radius: 0;
-        background: none;
-        color: var(--text);
-        outline: 0;
-      }
-      .mirror {
-        color: transparent;
-        counter-reset: line;
-        user-select: none;
-        pointer-events: none;
-      }
-      .mirror div {
-        position: relative;
-        min-height: 1.5em;
-        margin: 0 -8px 0 -42px;
-        padding: 0 8px 0 42px;
-        counter-increment: line;
-      }
-      .mirror div::before {
-        content: counter(line);
-        position: absolute;
-        top: 0;
-        left: 0;
-        width: 32px;
-        color: var(--dim);
-        font-size: 11px;
-        text-align: right;
-      }
-      .mirror .chosen {
-        background: var(--chosen);
-      }
-      .mirror .error {
-        background: var(--bad-ground);
-      }
-      .mirror .warning {
-        background: var(--warn-ground);
-      }
-      .mirror .error::before {
-        color: var(--bad);
-        font-weight: 700;
-      }
-      .mirror .warning::before {
-        color: var(--warn);
-        font-weight: 700;
-      }
-    `,
-  ];
+  static override styles = css`
+    :host {
+      display: flex;
+      flex: 1;
+      flex-direction: column;
+      min-height: 160px;
+    }
+    .paper {
+      flex: 1;
+      min-height: 0;
+      overflow: auto;
+      border: 1px solid var(--line);
+      border-radius: var(--round);
+      background: var(--surface);
+    }
+    .paper:focus-within {
+      outline: 2px solid var(--accent);
+    }
+    /* The text lies over a mirror of itself, which has the numbers and the marks. */
+    .sheet {
+      display: grid;
+      min-height: 100%;
+    }
+    .mirror,
+    textarea {
+      grid-area: 1 / 1;
+      margin: 0;
+      padding: 6px 8px 6px 42px;
+      border: 0;
+      font: 13px/1.5 ui-monospace, "DejaVu Sans Mono", monospace;
+      white-space: pre-wrap;
+      overflow-wrap: anywhere;
+      tab-size: 4;
+    }
+    .mirror {
+      white-space: normal;
+    }
+    .mirror div {
+      white-space: pre-wrap;
+    }
+    textarea {
+      position: relative;
+      z-index: 1;
+      width: 100%;
+      height: 100%;
+      overflow: hidden;
+      resize: none;
+      border-radius: 0;
+      background: none;
+      color: var(--text);
+      outline: 0;
+    }
+    .mirror {
+      color: transparent;
+      counter-reset: line;
+      user-select: none;
+      pointer-events: none;
+    }
+    .mirror div {
+      position: relative;
+      min-height: 1.5em;
+      margin: 0 -8px 0 -42px;
+      padding: 0 8px 0 42px;
+      counter-increment: line;
+    }
+    .mirror div::before {
+      content: counter(line);
+      position: absolute;
+      top: 0;
+      left: 0;
+      width: 32px;
+      color: var(--dim);
+      font-size: 11px;
+      text-align: right;
+    }
+    .mirror .chosen {
+      background: var(--chosen);
+    }
+    .mirror .error {
+      background: var(--bad-ground);
+    }
+    .mirror .warning {
+      background: var(--warn-ground);
+    }
+    .mirror .error::before {
+      color: var(--bad);
+      font-weight: 700;
+    }
+    .mirror .warning::before {
+      color: var(--warn);
+      font-weight: 700;
+    }
+  `;
 
   @query("textarea") private readonly field!: HTMLTextAreaElement | null;
   @query(".chosen") private readonly chosen!: HTMLElement | null;
@@ -143,7 +141,7 @@ export class ScriptSheet extends PageElement {
         autocapitalize="off"
         ?readonly=${!mayPlan()}
         .value=${text}
-        @input=${(event: Event) => write((event.target as HTMLTextAreaElement).value)}
+        @input=${(event: Event) => write(valueOf(event))}
         @keydown=${this.onKey}
         @click=${this.onClick}
       ></textarea>

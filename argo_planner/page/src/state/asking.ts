@@ -6,7 +6,7 @@ import { answered, client, newId, Refusal } from "../api/client";
 import { untilReached } from "../api/trying";
 import type { RequestState, RunAsked, RunQuestion } from "../api/types";
 import { settled } from "./commands";
-import { tellError } from "./notices";
+import { tellError, telling } from "./notices";
 import { planId, revision } from "./plan";
 import { quiet, run, takeState } from "./run";
 
@@ -22,7 +22,7 @@ export async function startRun(asked: Partial<RunAsked>): Promise<boolean> {
   const id = planId.value;
   if (id === null) return false;
   await settled();
-  try {
+  return telling(async () => {
     const begun = await answered(
       client.POST("/api/missions/{id}/runs", {
         params: { path: { id }, header: { "If-Match": `"${revision.value}"` } },
@@ -30,11 +30,7 @@ export async function startRun(asked: Partial<RunAsked>): Promise<boolean> {
       }),
     );
     takeState(begun);
-    return true;
-  } catch (error) {
-    tellError(error);
-    return false;
-  }
+  });
 }
 
 /** A question without its id, which is given to it when it is asked. */

@@ -58,6 +58,17 @@ export function tellError(error: unknown): void {
   } else throw error;
 }
 
+/** Does what the service is asked for; a notice says why not. Whether it was done. */
+export async function telling(work: () => Promise<unknown>): Promise<boolean> {
+  try {
+    await work();
+    return true;
+  } catch (error) {
+    tellError(error);
+    return false;
+  }
+}
+
 /** Why something was refused, in a sentence. */
 export function messageOf(refusal: Refusal): string {
   const errors = refusal.problem.diagnostics.filter((one) => one.severity === "error");

@@ -4,7 +4,7 @@ import { batch, computed, signal } from "@preact/signals-core";
 
 import { answered, client, newId, Unreached } from "../api/client";
 import type { Obstacle, World } from "../api/types";
-import { tellError } from "./notices";
+import { tellError, telling } from "./notices";
 
 export const world = signal<World | null>(null);
 /** How often the obstacles have changed; what depends on them is asked for again. */
@@ -51,7 +51,7 @@ export function removeObstacle(id: string): Promise<boolean> {
 }
 
 async function putObstacles(obstacles: readonly Obstacle[]): Promise<boolean> {
-  try {
+  const done = await telling(async () => {
     await answered(
       client.PUT("/api/world/obstacles", {
         params: { header: { "If-Match": `"${obstacleRevision.value}"` } },
@@ -59,10 +59,7 @@ async function putObstacles(obstacles: readonly Obstacle[]): Promise<boolean> {
       }),
     );
     await readWorld();
-    return true;
-  } catch (error) {
-    tellError(error);
-    await readWorld().catch(tellError);
-    return false;
-  }
+  });
+  if (!done) await telling(readWorld);
+  return done;
 }

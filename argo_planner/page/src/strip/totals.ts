@@ -8,65 +8,62 @@ import { analysis, broken, mission, revision, select } from "../state/plan";
 import { previewIsNew } from "../state/preview";
 import { world } from "../state/world";
 import { t } from "../texts";
-import { css, customElement, html, look, nothing, PageElement, property, state } from "../ui/element";
+import { css, customElement, html, nothing, PageElement, property, state } from "../ui/element";
 import { metres, seconds, share } from "../ui/figures";
 import { icon } from "../ui/icons";
 
 @customElement("argo-totals")
 export class StripTotals extends PageElement {
-  static override styles = [
-    look,
-    css`
-      .totals {
-        display: flex;
-        flex-wrap: wrap;
-        align-items: baseline;
-        gap: 2px 18px;
-      }
-      .total b {
-        font-size: 15px;
-      }
-      .bad,
-      .bad b {
-        color: var(--bad);
-      }
-      .warn {
-        color: var(--warn);
-      }
-      .bounds {
-        display: flex;
-        gap: 14px;
-        min-height: 20px; /* also while nothing is known: what is below does not move */
-        overflow: hidden;
-        white-space: nowrap;
-        font-size: 12px;
-      }
-      .bounds button {
-        min-height: 0;
-        padding: 0;
-        border: 0;
-        font-size: 12px;
-        text-decoration: underline dotted;
-        text-underline-offset: 3px;
-      }
-      .old {
-        opacity: 0.6;
-      }
-      ol {
-        display: flex;
-        flex-wrap: wrap;
-        gap: 4px;
-        margin: 4px 0;
-        padding: 0;
-        list-style: none;
-      }
-      li button {
-        min-height: 24px;
-        padding: 0 8px;
-        font-size: 12px;
-      }
-    `,
-  ];
+  static override styles = css`
+    .totals {
+      display: flex;
+      flex-wrap: wrap;
+      align-items: baseline;
+      gap: 2px 18px;
+    }
+    .total b {
+      font-size: 15px;
+    }
+    .bad,
+    .bad b {
+      color: var(--bad);
+    }
+    .warn {
+      color: var(--warn);
+    }
+    .bounds {
+      display: flex;
+      gap: 14px;
+      min-height: 20px; /* also while nothing is known: what is below does not move */
+      overflow: hidden;
+      white-space: nowrap;
+      font-size: 12px;
+    }
+    .bounds button {
+      min-height: 0;
+      padding: 0;
+      border: 0;
+      font-size: 12px;
+      text-decoration: underline dotted;
+      text-underline-offset: 3px;
+    }
+    .old {
+      opacity: 0.6;
+    }
+    ol {
+      display: flex;
+      flex-wrap: wrap;
+      gap: 4px;
+      margin: 4px 0;
+      padding: 0;
+      list-style: none;
+    }
+    li button {
+      min-height: 24px;
+      padding: 0 8px;
+      font-size: 12px;
+    }
+  `;
 
   @property({ attribute: false }) found: PreviewedMission | null = null;
   @state() private path: BoundShown["kind"] | null = null;

@@ -2,14 +2,15 @@
  * which they have read, with the same look of buttons and fields. */
 
 import { SignalWatcher } from "@lit-labs/preact-signals";
-import { css, LitElement } from "lit";
+import { effect } from "@preact/signals-core";
+import { css, type CSSResultGroup, LitElement } from "lit";
 
 import { keepFocus, noteFocus } from "./focus";
 
 export { css, html, nothing } from "lit";
 export { customElement, property, query, state } from "lit/decorators.js";
 
-export const look = css`
+const look = css`
   :host {
     display: block;
     box-sizing: border-box;
@@ -117,6 +118,19 @@ export const look = css`
     outline: 2px solid var(--accent);
     outline-offset: 1px;
   }
+  a {
+    color: var(--accent);
+  }
+  [popover] {
+    position: fixed;
+    margin: 0;
+    padding: 12px;
+    border: 1px solid var(--line);
+    border-radius: var(--round);
+    background: var(--raised);
+    color: var(--text);
+    box-shadow: var(--shadow);
+  }
   .dim {
     color: var(--dim);
   }
@@ -140,9 +154,20 @@ export const look = css`
   }
 `;
 
-/** An element of the page. */
+declare global {
+  interface WindowEventMap {
+    "focus-list": CustomEvent;
+    "open-details": CustomEvent<string | undefined>;
+    "open-run": CustomEvent;
+    visibilitychange: Event;
+  }
+}
+
+/** An element of the page; its own styles come behind those that all have. */
 export class PageElement extends SignalWatcher(LitElement) {
-  static override styles = [look];
+  protected static override finalizeStyles(styles: CSSResultGroup = []) {
+    return super.finalizeStyles([look, styles]);
+  }
 
   constructor() {
     super();
@@ -153,5 +178,26 @@ export class PageElement extends SignalWatcher(LitElement) {
     const root = super.createRenderRoot();
     root.addEventListener("focusin", noteFocus);
     return root;
+  }
+
+  /** Listens to what the window is told, as long as the element is in the page. */
+  protected listen<Type extends keyof WindowEventMap>(
+    type: Type,
+    heard: (event: WindowEventMap[Type]) => void,
+    capture = false,
+  ): void {
+    this.addController({
+      hostConnected: () => addEventListener(type, heard, capture),
+      hostDisconnected: () => removeEventListener(type, heard, capture),
+    });
+  }
+
+  /** Does something now and whenever a signal changes that it reads, as long as the element is in the page. */
+  protected watch(work: () => void): void {
+    let stop = () => {};
+    this.addController({
+      hostConnected: () => (stop = effect(work)),
+      hostDisconnected: () => stop(),
+    });
   }
 }

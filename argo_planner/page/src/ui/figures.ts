@@ -1,6 +1,6 @@
 /** Numbers as people write them, in the language of the page. */
 
-import { language, t } from "../texts";
+import { dateLocale, language, t } from "../texts";
 
 /** A number with at most so many digits behind the point. */
 export function figure(value: number, digits = 2): string {
@@ -18,6 +18,11 @@ export function seconds(s: number): string {
 
 export function metres(m: number): string {
   return `${figure(m, m < 10 ? 1 : 0)} m`;
+}
+
+/** When something was, with seconds where it is told apart from what was just before. */
+export function dateAndTime(time: string, dateStyle: "short" | "medium" = "medium", timeStyle: "short" | "medium" = "short") {
+  return new Date(time).toLocaleString(dateLocale(), { dateStyle, timeStyle });
 }
 
 /** Wh as a share of what the battery gives, which says more; of an unknown battery as they are. */

@@ -4,11 +4,15 @@ import { svg } from "lit";
 import { html } from "./element";
 
 const PATHS = {
+  above: "M12 4v12M7 11l5 5 5-5M5 20h14",
   add: "M12 5v14M5 12h14",
+  arrow: "M6 3l12 9-6 1-3 6z",
   back: "M15 5l-7 7 7 7",
   bin: "M4 7h16M9 7V4h6v3M6 7l1 13h10l1-13M10 11v6M14 11v6",
   camera: "M4 8h3l2-3h6l2 3h3v11H4zM12 10a3.5 3.5 0 1 0 .01 0",
   check: "M5 13l4 4L19 7",
+  "circle-left": "M5 12a7 7 0 1 0 3-6M8 2v4h4",
+  "circle-right": "M19 12a7 7 0 1 1-3-6M16 2v4h-4",
   clock: "M12 3a9 9 0 1 0 .01 0M12 7v5l3.5 2",
   close: "M6 6l12 12M18 6L6 18",
   copy: "M9 9h11v11H9zM5 15H4V4h11v1",
@@ -21,6 +25,7 @@ const PATHS = {
   hand: "M8 12V6a1.5 1.5 0 0 1 3 0v5V4.500a1.500 1.500 0 0 1 3 0V11V6a1.500 1.500 0 0 1 3 0v8c0 4-2 7-6 7s-5-2-7-6l-1-2c1-1 3-1 5 1",
   keys: "M3 7h18v10H3zM7 11h.01M11 11h.01M15 11h.01M8 14h8",
   menu: "M4 7h16M4 12h16M4 17h16",
+  minus: "M5 12h14",
   moon: "M20 14A8 8 0 0 1 10 4a8 8 0 1 0 10 10z",
   more: "M5 12h.01M12 12h.01M19 12h.01",
   obstacle: "M4 20l4-12h8l4 12zM6.500 13h11",
@@ -41,6 +46,7 @@ const PATHS = {
   undo: "M5 9h9a5 5 0 0 1 0 10h-4M9 5L5 9l4 4",
   wait: "M7 3h10M7 21h10M8 3c0 5 8 5 8 9s-8 4-8 9M16 3c0 5-8 5-8 9s8 4 8 9",
   warning: "M12 4l9 16H3zM12 10v4M12 17h.01",
+  whole: "M4 9V4h5M15 4h5v5M20 15v5h-5M9 20H4v-5",
 } as const;
 
 export type Icon = keyof typeof PATHS;

@@ -35,8 +35,9 @@ from argo_compiler.il import (
     Reaction,
     Response,
     Task,
+    Transition,
 )
-from tests.mission_parts import HERE, OBJECTS, groups_over, starts, transitions, wait_rules, windows
+from tests.mission_parts import HERE, OBJECTS, groups_over, transitions, wait_rules, windows
 
 STEPS = 80
 SHELTER = Pose(x=-1, y=0, z=0)
@@ -135,10 +136,13 @@ def missions(draw, least=1, most=8):
         draw(tasks_named(name, names, i, None if kinds[i] in "WT" else kinds[i]))
         for i, name in enumerate(names)
     ]
-    tasks = (*draw(starts(names)), *tasks)
+    if draw(st.booleans()):
+        way = draw(st.lists(st.sampled_from(names), max_size=1))
+        ways = tuple(Transition(target=w) for w in way)
+        tasks.insert(0, Task(name="S", action=Action.START, transitions=ways))
     until = conditions_of_all_kinds() if draw(st.booleans()) else None
     return Mission(
-        tasks=tasks,
+        tasks=tuple(tasks),
         groups=draw(groups_over(names, interruptions=False, plans=True, until=until)),
         dock=HERE,
         reactions=draw(reactions()),

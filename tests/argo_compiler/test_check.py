@@ -9,6 +9,7 @@ from argo_compiler.checks import check
 from argo_compiler.diagnostics import Severity, Span
 from argo_compiler.il import (
     Action,
+    Afterwards,
     Condition,
     ConditionType,
     EventKind,
@@ -16,6 +17,7 @@ from argo_compiler.il import (
     JointState,
     Mission,
     Reaction,
+    Response,
     Stop,
     Task,
     Transition,
@@ -237,14 +239,22 @@ class TestReactions:
     @pytest.mark.parametrize(
         ("code", "field", "reactions"),
         [
-            ("il.duplicate-reaction", "[1].event", [react(GAS, "pause"), react(GAS, "abort")]),
-            ("il.safe-area-without-pose", "['gas_leak'].response", [react(GAS, "safe_area")]),
-            ("il.no-dock", "['low_battery'].response", [react(LOW, "return")]),
-            ("il.until-itself", "['gas_leak'].until", [react(GAS, "pause", until=GAS)]),
+            (
+                "il.duplicate-reaction",
+                "[1].event",
+                [react(GAS, Response.PAUSE), react(GAS, Response.ABORT)],
+            ),
+            (
+                "il.safe-area-without-pose",
+                "['gas_leak'].response",
+                [react(GAS, Response.SAFE_AREA)],
+            ),
+            ("il.no-dock", "['low_battery'].response", [react(LOW, Response.RETURN)]),
+            ("il.until-itself", "['gas_leak'].until", [react(GAS, Response.PAUSE, until=GAS)]),
             (
                 "il.battery-level",
                 "['gas_leak'].battery_below",
-                [react(GAS, "pause", battery_below=0.3)],
+                [react(GAS, Response.PAUSE, battery_below=0.3)],
             ),
         ],
     )
@@ -256,31 +266,39 @@ class TestReactions:
 
     @pytest.mark.rule("R11")
     def test_a_level_of_the_battery_is_a_share_of_its_charge(self):
-        low = react(LOW, "pause", battery_below=0.3)
+        low = react(LOW, Response.PAUSE, battery_below=0.3)
         assert check(Mission(tasks=CHAIN, reactions=[low])) == ()
         for level in (0.0, 1.0, -0.1, 30.0):
             with pytest.raises(ValidationError):
-                react(LOW, "pause", battery_below=level)
+                react(LOW, Response.PAUSE, battery_below=level)
 
     def test_a_pause_may_say_that_the_mission_goes_on(self):
-        pause = react(GAS, "pause", afterwards="resume")
+        pause = react(GAS, Response.PAUSE, afterwards=Afterwards.RESUME)
         assert check(Mission(tasks=CHAIN, reactions=[pause])) == ()
 
     @pytest.mark.parametrize(
         ("code", "field", "reactions"),
         [
-            ("il.unused-field", "pose", [react(GAS, "pause", pose=DOCK)]),
-            ("il.unused-field", "pose", [react(GAS, "abort", pose=DOCK)]),
-            ("il.unused-field", "until", [react(GAS, "report", until=CLEAR)]),
-            ("il.unused-field", "until", [react(GAS, "abort", until=GAS)]),
-            ("il.unused-field", "afterwards", [react(GAS, "pause", afterwards="wait")]),
-            ("il.unused-field", "afterwards", [react(GAS, "report", afterwards="wait")]),
-            ("il.time-up-without-limit", "event", [react(TIME_UP, "report")]),
-            ("il.time-up-without-limit", "until", [react(GAS, "pause", until=TIME_UP)]),
+            ("il.unused-field", "pose", [react(GAS, Response.PAUSE, pose=DOCK)]),
+            ("il.unused-field", "pose", [react(GAS, Response.ABORT, pose=DOCK)]),
+            ("il.unused-field", "until", [react(GAS, Response.REPORT, until=CLEAR)]),
+            ("il.unused-field", "until", [react(GAS, Response.ABORT, until=GAS)]),
+            (
+                "il.unused-field",
+                "afterwards",
+                [react(GAS, Response.PAUSE, afterwards=Afterwards.WAIT)],
+            ),
+            (
+                "il.unused-field",
+                "afterwards",
+                [react(GAS, Response.REPORT, afterwards=Afterwards.WAIT)],
+            ),
+            ("il.time-up-without-limit", "event", [react(TIME_UP, Response.REPORT)]),
+            ("il.time-up-without-limit", "until", [react(GAS, Response.PAUSE, until=TIME_UP)]),
             (
                 "il.until-answered",
                 "until",
-                [react(GAS, "pause", until=LOW), react(LOW, "abort", priority=1)],
+                [react(GAS, Response.PAUSE, until=LOW), react(LOW, Response.ABORT, priority=1)],
             ),
         ],
     )
@@ -292,12 +310,12 @@ class TestReactions:
     @pytest.mark.parametrize(
         "reactions",
         [
-            [react(GAS, "safe_area", pose=DOCK, until=CLEAR, afterwards="resume")],
-            [react(LOW, "return", until=EventKind.BATTERY_CHARGED)],
-            [react(GAS, "pause", until=CLEAR), react(CLEAR, "report", priority=9)],
-            [react(GAS, "pause", until=CLEAR), react(CLEAR, "pause")],
-            [react(GAS, "abort"), react(LOW, "pause")],
-            [react(TIME_UP, "return")],
+            [react(GAS, Response.SAFE_AREA, pose=DOCK, until=CLEAR, afterwards=Afterwards.RESUME)],
+            [react(LOW, Response.RETURN, until=EventKind.BATTERY_CHARGED)],
+            [react(GAS, Response.PAUSE, until=CLEAR), react(CLEAR, Response.REPORT, priority=9)],
+            [react(GAS, Response.PAUSE, until=CLEAR), react(CLEAR, Response.PAUSE)],
+            [react(GAS, Response.ABORT), react(LOW, Response.PAUSE)],
+            [react(TIME_UP, Response.RETURN)],
         ],
     )
     def test_sound_reactions(self, reactions):

@@ -9,12 +9,14 @@ from hypothesis import strategies as st
 
 from argo_compiler.analysis import Verdict, analyse, unproved
 from argo_compiler.analysis.verification import Verifier
+from argo_compiler.checks import check
+from argo_compiler.diagnostics import has_errors
 from argo_compiler.il import Action, ConditionType, Group, Mission, OnFailure, Task
 from tests.argo_compiler.analysis.building import CATALOG, mission, task, way
 from tests.argo_compiler.analysis.worlds import conditions
 from tests.argo_compiler.hfsm.random_missions import missions
 from tests.conftest import examples
-from tests.mission_parts import assume_sound, groups_over, transitions
+from tests.mission_parts import groups_over, transitions
 
 SLOW = [HealthCheck.filter_too_much, HealthCheck.too_slow]
 PLACES = ("tasks", "rounds", "cuts")
@@ -23,7 +25,7 @@ PLACES = ("tasks", "rounds", "cuts")
 @settings(max_examples=examples(25), deadline=None, suppress_health_check=SLOW)
 @given(missions())
 def test_all_claims_about_missions_of_the_whole_language_are_proved(plan):
-    assume_sound(plan)
+    assume(not has_errors(check(plan)))
     analysis = analyse(plan)
     assert analysis.witnesses is not None
     assert unproved(plan, None, analysis) == ()
@@ -37,16 +39,15 @@ def test_all_claims_about_missions_of_the_whole_language_are_proved(plan):
 @st.composite
 def plain_tasks(draw, name, names, index, object_id):
     objects = ("1", "2") if object_id is None else (object_id, "1", "2")
-    ageless = conditions(objects).map(lambda c: c.model_copy(update={"max_age": None}))
-    policy = draw(st.sampled_from([OnFailure.CONTINUE, OnFailure.BRANCH, OnFailure.ABORT]))
+    ways = transitions(names, index, lambda: conditions(objects))
     return Task(
         name=name,
         action=Action.WAYPOINT if object_id is None else Action.MEASURE,
         object_id=object_id,
         pose={"x": 0, "y": 0, "z": 0} if object_id is None else None,
-        on_failure=policy,
-        failure_target=draw(st.sampled_from(names)) if policy is OnFailure.BRANCH else None,
-        transitions=draw(transitions(names, index, lambda: ageless)),
+        on_failure=draw(st.sampled_from([OnFailure.CONTINUE, OnFailure.BRANCH, OnFailure.ABORT])),
+        failure_target=draw(st.sampled_from(names)),
+        transitions=draw(ways),
     )
 
 
@@ -60,7 +61,31 @@ def timeless_missions(draw):
         group.model_copy(update={"max_repeat_duration": 0.0, "every": 0.0})
         for group in draw(groups_over(names, interruptions=False))
     )
-    return Mission(tasks=tasks, groups=groups)
+    plan = Mission(tasks=tasks, groups=groups)
+    return plan.model_copy(
+        update={
+            "tasks": tuple(
+                one.model_copy(
+                    update={
+                        "failure_target": one.failure_target
+                        if one.on_failure is OnFailure.BRANCH
+                        else None,
+                        "transitions": tuple(
+                            t.model_copy(
+                                update={
+                                    "conditions": tuple(
+                                        c.model_copy(update={"max_age": None}) for c in t.conditions
+                                    )
+                                }
+                            )
+                            for t in one.transitions
+                        ),
+                    }
+                )
+                for one in tasks
+            )
+        }
+    )
 
 
 VALUES = [v / 2 for v in range(-3, 17)]
@@ -144,7 +169,7 @@ class Explorer:
 @settings(max_examples=examples(20), deadline=None, suppress_health_check=SLOW)
 @given(timeless_missions())
 def test_what_can_be_found_by_trying_everything_is_not_called_impossible(plan):
-    assume_sound(plan)
+    assume(not has_errors(check(plan)))
     analysis = analyse(plan)
     for failures in (False, True):
         found = Explorer(plan, failures)
@@ -160,7 +185,7 @@ def test_what_can_be_found_by_trying_everything_is_not_called_impossible(plan):
 @settings(max_examples=examples(25), deadline=None, suppress_health_check=SLOW)
 @given(timeless_missions(), st.data())
 def test_a_witness_that_leaves_out_what_happens_is_not_taken(plan, data):
-    assume_sound(plan)
+    assume(not has_errors(check(plan)))
     analysis = analyse(plan)
     failures = data.draw(st.booleans())
     witness = analysis.witnesses.all if failures else analysis.witnesses.nominal

@@ -204,15 +204,6 @@ class MadeUpTravel:
         return Leg(distance / (velocity or 1) + action, energy, place, action)
 
 
-def travels():
-    return st.builds(
-        MadeUpTravel,
-        st.integers(0, 10**6),
-        st.sampled_from([0.0, 0.5, 2.0]),
-        standing_power=st.sampled_from([0.0, 3600.0]),
-    )
-
-
 @dataclass
 class Run:
     """What happened in a run."""

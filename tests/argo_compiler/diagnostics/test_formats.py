@@ -26,79 +26,131 @@ FINDINGS = st.lists(
     max_size=5,
 )
 
-
-def record(required, **properties):
-    """The schema of an object with these properties, those in `required` at least, and no other."""
-    return {
-        "type": "object",
-        "required": required.split(),
-        "properties": properties,
-        "additionalProperties": False,
-    }
-
-
-def many(items, **more):
-    return {"type": "array", "items": items, **more}
-
-
-STRING = {"type": "string"}
-TEXT = record("text", text=STRING, markdown=STRING)
+TEXT = {
+    "type": "object",
+    "required": ["text"],
+    "properties": {"text": {"type": "string"}, "markdown": {"type": "string"}},
+    "additionalProperties": False,
+}
 LEVEL = {"enum": ["none", "note", "warning", "error"]}
 COUNT = {"type": "integer", "minimum": 1}
-RULE = record(
-    "id shortDescription fullDescription help defaultConfiguration",
-    id=STRING,
-    name={"type": "string", "maxLength": 255},
-    shortDescription=TEXT,
-    fullDescription=TEXT,
-    help={**TEXT, "required": ["text", "markdown"]},
-    defaultConfiguration=record("", level=LEVEL),
-)
-REGION = record(
-    "startLine", startLine=COUNT, startColumn=COUNT, endLine=COUNT, endColumn=COUNT, snippet=TEXT
-)
-PLACE = record(
-    "artifactLocation region",
-    artifactLocation=record("uri", uri={"type": "string", "minLength": 1}),
-    region=REGION,
-)
-LOCATION = record(
-    "physicalLocation",
-    physicalLocation=PLACE,
-    logicalLocations=many(record("", fullyQualifiedName=STRING)),
-)
-RESULT = record(
-    "ruleId level message locations partialFingerprints",
-    ruleId=STRING,
-    ruleIndex={"type": "integer", "minimum": 0},
-    level=LEVEL,
-    message=TEXT,
-    locations=many(LOCATION, minItems=1),
-    partialFingerprints={
-        "type": "object",
-        "required": ["primaryLocationLineHash"],
-        "additionalProperties": STRING,
+RULE = {
+    "type": "object",
+    "required": ["id", "shortDescription", "fullDescription", "help", "defaultConfiguration"],
+    "properties": {
+        "id": {"type": "string"},
+        "name": {"type": "string", "maxLength": 255},
+        "shortDescription": TEXT,
+        "fullDescription": TEXT,
+        "help": {**TEXT, "required": ["text", "markdown"]},
+        "defaultConfiguration": {
+            "type": "object",
+            "properties": {"level": LEVEL},
+            "additionalProperties": False,
+        },
     },
-)
-DRIVER = record(
-    "name semanticVersion rules",
-    name=STRING,
-    version=STRING,
-    semanticVersion={"pattern": r"^\d+\.\d+\.\d+"},
-    rules=many(RULE, uniqueItems=True),
-)
-RUN = record(
-    "tool results",
-    tool=record("driver", driver=DRIVER) | {"additionalProperties": True},
-    columnKind={"enum": ["utf16CodeUnits", "unicodeCodePoints"]},
-    results=many(RESULT),
-)
-SARIF = record(
-    "$schema version runs",
-    **{"$schema": {"type": "string", "pattern": "sarif-2.1.0"}},
-    version={"const": "2.1.0"},
-    runs=many(RUN, minItems=1),
-)
+    "additionalProperties": False,
+}
+REGION = {
+    "type": "object",
+    "required": ["startLine"],
+    "properties": {
+        "startLine": COUNT,
+        "startColumn": COUNT,
+        "endLine": COUNT,
+        "endColumn": COUNT,
+        "snippet": TEXT,
+    },
+    "additionalProperties": False,
+}
+RESULT = {
+    "type": "object",
+    "required": ["ruleId", "level", "message", "locations", "partialFingerprints"],
+    "properties": {
+        "ruleId": {"type": "string"},
+        "ruleIndex": {"type": "integer", "minimum": 0},
+        "level": LEVEL,
+        "message": TEXT,
+        "locations": {
+            "type": "array",
+            "minItems": 1,
+            "items": {
+                "type": "object",
+                "required": ["physicalLocation"],
+                "properties": {
+                    "physicalLocation": {
+                        "type": "object",
+                        "required": ["artifactLocation", "region"],
+                        "properties": {
+                            "artifactLocation": {
+                                "type": "object",
+                                "required": ["uri"],
+                                "properties": {"uri": {"type": "string", "minLength": 1}},
+                                "additionalProperties": False,
+                            },
+                            "region": REGION,
+                        },
+                        "additionalProperties": False,
+                    },
+                    "logicalLocations": {
+                        "type": "array",
+                        "items": {
+                            "type": "object",
+                            "properties": {"fullyQualifiedName": {"type": "string"}},
+                            "additionalProperties": False,
+                        },
+                    },
+                },
+                "additionalProperties": False,
+            },
+        },
+        "partialFingerprints": {
+            "type": "object",
+            "required": ["primaryLocationLineHash"],
+            "additionalProperties": {"type": "string"},
+        },
+    },
+    "additionalProperties": False,
+}
+SARIF = {
+    "type": "object",
+    "required": ["$schema", "version", "runs"],
+    "properties": {
+        "$schema": {"type": "string", "pattern": "sarif-2.1.0"},
+        "version": {"const": "2.1.0"},
+        "runs": {
+            "type": "array",
+            "minItems": 1,
+            "items": {
+                "type": "object",
+                "required": ["tool", "results"],
+                "properties": {
+                    "tool": {
+                        "type": "object",
+                        "required": ["driver"],
+                        "properties": {
+                            "driver": {
+                                "type": "object",
+                                "required": ["name", "semanticVersion", "rules"],
+                                "properties": {
+                                    "name": {"type": "string"},
+                                    "version": {"type": "string"},
+                                    "semanticVersion": {"pattern": r"^\d+\.\d+\.\d+"},
+                                    "rules": {"type": "array", "uniqueItems": True, "items": RULE},
+                                },
+                                "additionalProperties": False,
+                            }
+                        },
+                    },
+                    "columnKind": {"enum": ["utf16CodeUnits", "unicodeCodePoints"]},
+                    "results": {"type": "array", "items": RESULT},
+                },
+                "additionalProperties": False,
+            },
+        },
+    },
+    "additionalProperties": False,
+}
 """What of the SARIF 2.1.0 standard Argo writes, with what GitHub's code scanning requires of it."""
 
 

@@ -1,7 +1,6 @@
 """Single edits: what becomes of a mission, what else changes, and what is refused."""
 
 import inspect
-from functools import partial
 
 import pytest
 
@@ -177,61 +176,76 @@ def test_ways_conditions_reactions_and_header():
     assert editing.set_header(changed, max_duration=None).mission.max_duration is None
 
 
-def call(name, *arguments, **fields):
-    """An edit of the mission, to be made."""
-    return partial(getattr(editing, name), MISSION, *arguments, **fields)
-
-
 REFUSALS = [
-    (EditNotFound, "edit.unknown-task", call("remove_task", "Q")),
-    (EditNotFound, "edit.unknown-task", call("set_target", "D", 0, "Q")),
-    (EditNotFound, "edit.unknown-task", call("set_header", current="Q")),
-    (EditNotFound, "edit.unknown-group", call("dissolve_group", "Beta")),
-    (EditNotFound, "edit.unknown-transition", call("remove_transition", "E", 0)),
-    (EditNotFound, "edit.unknown-condition", call("remove_condition", "D", 1, 0)),
-    (EditNotFound, "edit.unknown-reaction", call("remove_reaction", "gas_leak")),
-    (EditConflict, "edit.name-taken", call("rename_task", "A", "B")),
-    (EditConflict, "edit.name-taken", call("wrap_tasks", group("Alpha", "E", "E"))),
-    (EditConflict, "edit.group-overlap", call("wrap_tasks", group("X", "A", "B"))),
-    (EditConflict, "edit.group-overlap", call("change_group", "Alpha/Beta", end="D")),
-    (EditConflict, "edit.start-in-group", call("wrap_tasks", group("X", "START", "A"))),
-    (EditConflict, "edit.second-default", call("add_transition", "A", way("C"))),
-    (EditConflict, "edit.second-default", call("set_conditions", "D", 0, ())),
+    (EditNotFound, "edit.unknown-task", lambda: editing.remove_task(MISSION, "Q")),
+    (EditNotFound, "edit.unknown-task", lambda: editing.set_target(MISSION, "D", 0, "Q")),
+    (EditNotFound, "edit.unknown-task", lambda: editing.set_header(MISSION, current="Q")),
+    (EditNotFound, "edit.unknown-group", lambda: editing.dissolve_group(MISSION, "Beta")),
+    (EditNotFound, "edit.unknown-transition", lambda: editing.remove_transition(MISSION, "E", 0)),
+    (EditNotFound, "edit.unknown-condition", lambda: editing.remove_condition(MISSION, "D", 1, 0)),
+    (EditNotFound, "edit.unknown-reaction", lambda: editing.remove_reaction(MISSION, "gas_leak")),
+    (EditConflict, "edit.name-taken", lambda: editing.rename_task(MISSION, "A", "B")),
+    (
+        EditConflict,
+        "edit.name-taken",
+        lambda: editing.wrap_tasks(MISSION, group("Alpha", "E", "E")),
+    ),
+    (EditConflict, "edit.group-overlap", lambda: editing.wrap_tasks(MISSION, group("X", "A", "B"))),
+    (
+        EditConflict,
+        "edit.group-overlap",
+        lambda: editing.change_group(MISSION, "Alpha/Beta", end="D"),
+    ),
+    (
+        EditConflict,
+        "edit.start-in-group",
+        lambda: editing.wrap_tasks(MISSION, group("X", "START", "A")),
+    ),
+    (EditConflict, "edit.second-default", lambda: editing.add_transition(MISSION, "A", way("C"))),
+    (EditConflict, "edit.second-default", lambda: editing.set_conditions(MISSION, "D", 0, ())),
     (
         EditConflict,
         "edit.second-reaction",
-        call("add_reaction", Reaction(event="low_battery", response="abort")),
+        lambda: editing.add_reaction(MISSION, Reaction(event="low_battery", response="abort")),
     ),
-    (EditConflict, "edit.not-beside-group", call("add_task", task("new"), after="D", into="Alpha")),
+    (
+        EditConflict,
+        "edit.not-beside-group",
+        lambda: editing.add_task(MISSION, task("new"), after="D", into="Alpha"),
+    ),
     (EditConflict, "edit.last-task", lambda: editing.remove_task(Mission(tasks=(START,)), "START")),
     (
         EditConflict,
         "edit.ambiguous-task",
         lambda: editing.remove_task(Mission(tasks=(task("A"), task("A"))), "A"),
     ),
-    (EditConflict, "il.no-dock", call("set_header", dock=None)),
-    (EditConflict, "il.endless-group", call("change_group", "Alpha/Beta", max_repeat_count=0)),
-    (EditConflict, "il.start-as-target", call("set_target", "D", 0, "START")),
-    (EditInvalid, "edit.place", call("move_task", "A", after="A")),
-    (EditInvalid, "edit.place", call("move_task", "A", after="B", first=True)),
-    (EditInvalid, "edit.value", call("rename_task", "A", "")),
-    (EditInvalid, "edit.value", call("set_header", max_duration=-1)),
+    (EditConflict, "il.no-dock", lambda: editing.set_header(MISSION, dock=None)),
+    (
+        EditConflict,
+        "il.endless-group",
+        lambda: editing.change_group(MISSION, "Alpha/Beta", max_repeat_count=0),
+    ),
+    (EditConflict, "il.start-as-target", lambda: editing.set_target(MISSION, "D", 0, "START")),
+    (EditInvalid, "edit.place", lambda: editing.move_task(MISSION, "A", after="A")),
+    (EditInvalid, "edit.place", lambda: editing.move_task(MISSION, "A", after="B", first=True)),
+    (EditInvalid, "edit.value", lambda: editing.rename_task(MISSION, "A", "")),
+    (EditInvalid, "edit.value", lambda: editing.set_header(MISSION, max_duration=-1)),
     (EditInvalid, "edit.value", lambda: read_edit('{"kind": "remove_task", "name": 3}')),
-    (EditInvalid, "edit.value", call("rename_task", "A", "\ud800")),
-    (EditInvalid, "edit.value", call("rename_task", "A", 5)),
-    (EditInvalid, "edit.value", call("rename_group", "Alpha", None)),
-    (EditInvalid, "edit.value", call("set_header", tasks=())),
-    (EditInvalid, "edit.value", call("change_group", "Alpha", source=None)),
-    (EditInvalid, "edit.value", call("add_task", {"name": "new"})),
-    (EditInvalid, "edit.value", call("replace_task", "A", None)),
-    (EditInvalid, "edit.value", call("wrap_tasks", "Alpha")),
-    (EditInvalid, "edit.value", call("add_reaction", "low_battery")),
-    (EditInvalid, "edit.value", call("change_reaction", "low_battery", "pause")),
-    (EditInvalid, "edit.value", call("add_transition", "D", way("A"), at="0")),
-    (EditInvalid, "edit.value", call("set_target", "D", "0", "A")),
-    (EditInvalid, "edit.value", call("set_transitions", "D", ("A",))),
-    (EditInvalid, "edit.value", call("set_conditions", "D", 0, ("x",))),
-    (EditInvalid, "edit.value", call("remove_condition", "D", 0, "0")),
+    (EditInvalid, "edit.value", lambda: editing.rename_task(MISSION, "A", "\ud800")),
+    (EditInvalid, "edit.value", lambda: editing.rename_task(MISSION, "A", 5)),
+    (EditInvalid, "edit.value", lambda: editing.rename_group(MISSION, "Alpha", None)),
+    (EditInvalid, "edit.value", lambda: editing.set_header(MISSION, tasks=())),
+    (EditInvalid, "edit.value", lambda: editing.change_group(MISSION, "Alpha", source=None)),
+    (EditInvalid, "edit.value", lambda: editing.add_task(MISSION, {"name": "new"})),
+    (EditInvalid, "edit.value", lambda: editing.replace_task(MISSION, "A", None)),
+    (EditInvalid, "edit.value", lambda: editing.wrap_tasks(MISSION, "Alpha")),
+    (EditInvalid, "edit.value", lambda: editing.add_reaction(MISSION, "low_battery")),
+    (EditInvalid, "edit.value", lambda: editing.change_reaction(MISSION, "low_battery", "pause")),
+    (EditInvalid, "edit.value", lambda: editing.add_transition(MISSION, "D", way("A"), at="0")),
+    (EditInvalid, "edit.value", lambda: editing.set_target(MISSION, "D", "0", "A")),
+    (EditInvalid, "edit.value", lambda: editing.set_transitions(MISSION, "D", ("A",))),
+    (EditInvalid, "edit.value", lambda: editing.set_conditions(MISSION, "D", 0, ("x",))),
+    (EditInvalid, "edit.value", lambda: editing.remove_condition(MISSION, "D", 0, "0")),
     (EditInvalid, "edit.value", lambda: apply(None, commands.RemoveTask(name="A"))),
     (EditInvalid, "edit.value", lambda: apply(MISSION, {"kind": "remove_task", "name": "A"})),
     (EditInvalid, "edit.value", lambda: read_edit("")),
@@ -241,13 +255,17 @@ REFUSALS = [
         "edit.value",
         lambda: read_edit('{"kind": "remove_task", "name": "A", "name": "B"}'),
     ),
-    (EditConflict, "edit.name-taken", call("wrap_tasks", group("Alpha", "B", "C"))),
-    (EditInvalid, "edit.group-order", call("wrap_tasks", group("X", "E", "D"))),
-    (EditInvalid, "edit.group-name", call("rename_group", "Alpha", "a/b")),
+    (
+        EditConflict,
+        "edit.name-taken",
+        lambda: editing.wrap_tasks(MISSION, group("Alpha", "B", "C")),
+    ),
+    (EditInvalid, "edit.group-order", lambda: editing.wrap_tasks(MISSION, group("X", "E", "D"))),
+    (EditInvalid, "edit.group-name", lambda: editing.rename_group(MISSION, "Alpha", "a/b")),
     (
         EditInvalid,
         "il.waypoint-without-pose",
-        call("add_task", Task(name="new", action=Action.WAYPOINT)),
+        lambda: editing.add_task(MISSION, Task(name="new", action=Action.WAYPOINT)),
     ),
 ]
 ELSEWHERE = {

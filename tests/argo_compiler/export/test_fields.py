@@ -45,21 +45,39 @@ def mission(a=(), b=(), w=(), group=(), reactions=(), condition=HIGH, last="C", 
     """A measurement, a drive and a wait in a group, another measurement, and what is given."""
     way = Transition(target=last, conditions=(condition,))
     tasks = (
-        made("S", Action.START, "A"),
-        made("A", Action.MEASURE, way, "B", given=a, object_id="1"),
-        made("B", Action.WAYPOINT, "W", given=b, pose=HERE),
-        made("W", Action.WAIT, last, given=w, wait=WaitRule(duration=5)),
-        made(last, Action.MEASURE, object_id="2"),
+        Task(name="S", action=Action.START, transitions=(Transition(target="A"),)),
+        Task(
+            **{
+                "name": "A",
+                "action": Action.MEASURE,
+                "object_id": "1",
+                "transitions": (way, Transition(target="B")),
+                **dict(a),
+            }
+        ),
+        Task(
+            **{
+                "name": "B",
+                "action": Action.WAYPOINT,
+                "pose": HERE,
+                "transitions": (Transition(target="W"),),
+                **dict(b),
+            }
+        ),
+        Task(
+            **{
+                "name": "W",
+                "action": Action.WAIT,
+                "wait": WaitRule(duration=5),
+                "transitions": (Transition(target=last),),
+                **dict(w),
+            }
+        ),
+        Task(name=last, action=Action.MEASURE, object_id="2"),
     )
     around = {"name": "G", "start": "B", "end": "W", "max_repeat_count": 2, **dict(group)}
     given = {"dock": HERE, "reactions": reactions, **fields}
     return Mission(**{"tasks": tasks, "groups": (Group(**around),), **given})
-
-
-def made(name, action, *ways, given=(), **fields):
-    leads = tuple(Transition(target=w) if isinstance(w, str) else w for w in ways)
-    usual = {"name": name, "action": action, "transitions": leads, **fields}
-    return Task(**{**usual, **dict(given)})
 
 
 def task(base=(), **fields):

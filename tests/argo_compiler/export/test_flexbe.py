@@ -8,17 +8,18 @@ import xml.etree.ElementTree as ET
 from itertools import cycle
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.checks import check
+from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.export.flexbe import to_flexbe
 from argo_compiler.hfsm import lower
-from argo_compiler.il import EventKind, Mission, Reaction, Response, Task
+from argo_compiler.il import EventKind, Group, Mission, Reaction, Response, Task
 from tests.argo_compiler.export import missions as m
 from tests.argo_compiler.export.carried import carried_missions, executed
+from tests.argo_compiler.export.test_btcpp import sound
 from tests.conftest import examples
-from tests.mission_parts import assume_sound
 
 STEPS = 40
 
@@ -186,7 +187,7 @@ def run(package, mission, outcomes):
 @settings(max_examples=examples(60), deadline=None)
 @given(mission=st.one_of(m.missions(), carried_missions(windows=False)), outcomes=m.outcome_lists)
 def test_behaviour_does_what_the_executor_does(package, mission, outcomes):
-    assume_sound(mission)
+    sound(mission)
     log, outcome = run(package, mission, outcomes)
     expected = executed(mission, outcomes, STEPS)
     assert log == expected[0]
@@ -195,7 +196,10 @@ def test_behaviour_does_what_the_executor_does(package, mission, outcomes):
 
 @given(st.text(min_size=1))
 def test_names_are_data(package, name):
-    mission = m.repeated(Task(name=name, action="MEASURE", object_id=name))
+    group = Group(name="G" + name.replace("/", ""), start=name, end=name, max_repeat_count=2)
+    task = Task(name=name, action="MEASURE", object_id=name)
+    mission = Mission(tasks=(task,), groups=(group,), designation=name)
+    assume(not any(f.severity is Severity.ERROR for f in check(mission)))
     assert run(package, mission, [(1, 2, False)]) == ([(0, name), (1, name)], "completed")
 
 

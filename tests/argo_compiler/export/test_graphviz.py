@@ -1,8 +1,10 @@
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from lark import Lark, Transformer
 
+from argo_compiler.checks import check
+from argo_compiler.diagnostics import Severity
 from argo_compiler.export import to_dot
 from argo_compiler.hfsm import lower
 from argo_compiler.il import (
@@ -125,7 +127,10 @@ def test_edges_say_why(mission):
 
 @given(st.text(min_size=1))
 def test_any_name_is_a_label(name):
-    mission = m.repeated(Task(name=name, action="MEASURE", object_id="1"))
+    group = Group(name="G" + name.replace("/", ""), start=name, end=name, max_repeat_count=2)
+    task = Task(name=name, action="MEASURE", object_id="1")
+    mission = Mission(tasks=(task,), groups=(group,), designation=name)
+    assume(not any(f.severity is Severity.ERROR for f in check(mission)))
     graph = PARSER.parse(to_dot(lower(mission)))
     cluster = next(item for item in graph if item[0] == "cluster")
     assert len([item for item in graph if item[0] in ("node", "cluster")]) == 6

@@ -12,7 +12,6 @@ from argo_compiler.files.mission_file import decode_mission
 from argo_compiler.il import Action, Group, Mission, Stop, Task, Transition
 from argo_compiler.il.velocities import BEGINNING, of_ways_on, of_ways_there, ways
 
-LOW = {"type": "MEASURED_VALUE_LESS", "object_id": "1", "param1": 1}
 DOCK = {"x": 0.0, "y": 0.0, "z": 0.0, "yaw": 0.0}
 
 
@@ -77,7 +76,21 @@ def test_the_next_round_is_a_way_too():
         ({"mode": "supervisory", "tasks": [task("A")]}, "begins paused"),
         ({"tasks": [task("A", pose=DOCK)]}, "was never used"),
         (
-            {"tasks": [task("A", transitions=[{"target": "A", "conditions": [LOW]}])]},
+            {
+                "tasks": [
+                    task("A")
+                    | {
+                        "transitions": [
+                            {
+                                "target": "A",
+                                "conditions": [
+                                    {"type": "MEASURED_VALUE_LESS", "object_id": "1", "param1": 1}
+                                ],
+                            }
+                        ]
+                    }
+                ]
+            },
             "earlier measurement",
         ),
         (
@@ -109,7 +122,10 @@ def test_what_does_not_mean_the_same_is_said(data, said):
         ({"tasks": [task("A", window={"latest": 9})]}, "tasks[0].window"),
         ({"tasks": [task("A"), task("W", action="WAIT")]}, "tasks[1].action"),
         (
-            {"tasks": [task("A")], "groups": [{"name": "G", "start": "A", "end": "A", "every": 9}]},
+            {
+                "tasks": [task("A")],
+                "groups": [{"name": "G", "start": "A", "end": "A", "every": 9}],
+            },
             "groups[0].every",
         ),
     ],

@@ -4,9 +4,11 @@ from dataclasses import replace
 from itertools import tee
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from argo_compiler.checks import check
+from argo_compiler.diagnostics import has_errors
 from argo_compiler.hfsm import (
     ActionStopped,
     Executor,
@@ -22,11 +24,10 @@ from argo_compiler.il import Action
 from tests.argo_compiler.hfsm.random_missions import busy_cases, cases, missions
 from tests.argo_compiler.hfsm.world import STEPS, Hears, World, compare
 from tests.conftest import examples
-from tests.mission_parts import assume_sound
 
 
 def machine(mission):
-    assume_sound(mission)
+    assume(not has_errors(check(mission)))
     return lower(mission)
 
 

@@ -3,11 +3,12 @@
 from collections import Counter, defaultdict
 
 import pytest
-from hypothesis import given, reject, settings
+from hypothesis import assume, given, reject, settings
 from hypothesis import strategies as st
 
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.base.model import Pose
+from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.diagnostics.codes import CODES
 from argo_compiler.hfsm import (
@@ -42,13 +43,13 @@ from argo_compiler.il import (
     Reaction,
     Response,
     Task,
+    Transition,
 )
-from tests.argo_compiler.hfsm.play import task
 from tests.argo_compiler.hfsm.random_missions import missions, outcome_lists
 from tests.conftest import examples
-from tests.mission_parts import assume_sound
 
 VISITS = 40
+PAUSE = Pause()
 
 
 class Site:
@@ -105,7 +106,7 @@ class Site:
         self.executions[name] += 1
         self.spent = 0
 
-    def pause(self, executor, now, by):
+    def pause(self, executor, now, by=PAUSE):
         self.interrupted = executor.running and executor.running.name
         for cancel in executor.handle(by, now):
             executor.handle(ActionStopped(cancel.task), now)
@@ -137,9 +138,17 @@ def order(*executors):
 @settings(max_examples=examples(200), deadline=None)
 @given(missions(events=False), outcome_lists, st.integers(0, 60), st.data())
 def test_before_by_hand_and_after_are_the_whole_mission(mission, outcomes, at, data):
-    assume_sound(mission)
-    whole, once = carried_out(mission, outcomes)
-    first, site, _ = interrupted(mission, outcomes, at, Pause())
+    assume(not has_errors(check(mission)))
+    whole, once = Executor(lower(mission)), Site(outcomes)
+    whole.start(0)
+    once.run(whole, 0, VISITS)
+
+    first, site = Executor(lower(mission)), Site(outcomes)
+    first.start(0)
+    now = 0
+    while not first.finished and now < at and visits_of(first.progress()) < VISITS:
+        now = site.step(first, now, until=at)
+    site.pause(first, now)
     before = first.progress()
     by_hand = list(done_by_hand(data, site, once.log))
     text = hand_over(before, by_hand).model_dump_json()
@@ -166,9 +175,17 @@ def test_before_by_hand_and_after_are_the_whole_mission(mission, outcomes, at, d
 @given(missions(events=False), outcome_lists, st.integers(0, 60), st.integers(0, 30), st.data())
 def test_giving_back_is_a_progress_handed_over_and_gone_on_from(mission, outcomes, at, more, data):
     """A machine that was taken over and given back stands like one restored meanwhile."""
-    assume_sound(mission)
-    _, once = carried_out(mission, outcomes)
-    live, site, now = interrupted(mission, outcomes, at, TakeOver())
+    assume(not has_errors(check(mission)))
+    whole, once = Executor(lower(mission)), Site(outcomes)
+    whole.start(0)
+    once.run(whole, 0, VISITS)
+
+    live, site = Executor(lower(mission)), Site(outcomes)
+    live.start(0)
+    now = 0
+    while not live.finished and now < at and visits_of(live.progress()) < VISITS:
+        now = site.step(live, now, until=at)
+    site.pause(live, now, TakeOver())
     before = live.progress()
     by_hand = tuple(done_by_hand(data, site, once.log))
     away = sum(done.duration for done in by_hand) + more
@@ -181,24 +198,6 @@ def test_giving_back_is_a_progress_handed_over_and_gone_on_from(mission, outcome
     assert live.progress().by_hand == restored.progress().by_hand
     assert live.progress().elapsed == pytest.approx(restored.progress().elapsed)
     assert live.next_deadline == restored.next_deadline
-
-
-def carried_out(mission, outcomes):
-    """A machine that no person interrupts, and its site."""
-    machine, site = Executor(lower(mission)), Site(outcomes)
-    machine.start(0)
-    site.run(machine, 0, VISITS)
-    return machine, site
-
-
-def interrupted(mission, outcomes, at, by):
-    """A machine that a person interrupts, its site, and when that was."""
-    machine, site, now = Executor(lower(mission)), Site(outcomes), 0
-    machine.start(0)
-    while not machine.finished and now < at and visits_of(machine.progress()) < VISITS:
-        now = site.step(machine, now, until=at)
-    site.pause(machine, now, by)
-    return machine, site, now
 
 
 def whole_time(executor):
@@ -219,6 +218,11 @@ def done_by_hand(data, site, log):
                 left, site.spent, site.interrupted = seconds - site.spent, 0, None
             yield ByHand(task=name, value=value, duration=left, skipped=skipped)
             site.executions[name] += 1
+
+
+def task(name, *targets, **fields):
+    ways = tuple(Transition(target=target) for target in targets)
+    return Task(name=name, action=Action.MEASURE, object_id=name, transitions=ways, **fields)
 
 
 def line(*groups, **fields):

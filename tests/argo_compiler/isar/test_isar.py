@@ -21,6 +21,7 @@ from argo_compiler.il import (
     JointState,
     Mission,
     Mode,
+    OnFailure,
     Reaction,
     Response,
     Task,
@@ -30,7 +31,6 @@ from argo_compiler.il import (
 )
 from argo_compiler.isar import InspectionView, from_isar, read_isar, to_isar
 from tests.argo_compiler.isar.conftest import assert_isar_takes
-from tests.argo_compiler.test_check import measure as measuring
 
 VIEWS = {
     "1": InspectionView(
@@ -57,8 +57,11 @@ CATALOG = Catalog(
 )
 
 
-def measure(name, object_id, *ways, **fields):
-    return measuring(name, *ways, object_id=object_id, **fields)
+def measure(name, object_id, *targets, **fields):
+    transitions = tuple(Transition(target=target) for target in targets)
+    return Task(
+        name=name, action=Action.MEASURE, object_id=object_id, transitions=transitions, **fields
+    )
 
 
 def export(mission, views=VIEWS):
@@ -160,52 +163,96 @@ GAS = Reaction(event=EventKind.GAS_LEAK, response=Response.ABORT)
 LOW = Condition(type=ConditionType.LESS, object_id="1", param1=1)
 
 
-ONE = Mission(tasks=(measure("A", "1"),))
-
-
-def alone(*targets, object_id="1", **fields):
-    """A mission of one measurement."""
-    return Mission(tasks=(measure("A", object_id, *targets, **fields),))
-
-
-def repeated(**limits):
-    group = Group(name="G", start="A", end="A", **limits)
-    return ONE.model_copy(update={"groups": (group,)})
-
-
 @pytest.mark.parametrize(
     ("mission", "code", "said"),
     [
-        (alone(retries=1), "isar-task", "'A' has retries"),
-        (alone(velocity=1), "isar-task", "'A' has a velocity"),
-        (alone(on_failure="abort"), "isar-task", "'A' has a failure policy"),
+        (Mission(tasks=(measure("A", "1", retries=1),)), "isar-task", "'A' has retries"),
+        (Mission(tasks=(measure("A", "1", velocity=1),)), "isar-task", "'A' has a velocity"),
         (
-            alone(joint_states=JointState(names=("arm",), positions=(1.0,))),
+            Mission(tasks=(measure("A", "1", on_failure=OnFailure.ABORT),)),
+            "isar-task",
+            "'A' has a failure policy",
+        ),
+        (
+            Mission(
+                tasks=(
+                    measure("A", "1", joint_states=JointState(names=("arm",), positions=(1.0,))),
+                )
+            ),
             "isar-task",
             "'A' has joint states",
         ),
-        (alone(time_limit=9), "isar-task", "'A' has a limit of time"),
-        (alone(reading_limit=9), "isar-task", "'A' has a limit for its reading"),
-        (alone(window=TimeWindow(latest=9)), "isar-task", "'A' has a window"),
+        (Mission(tasks=(measure("A", "1", time_limit=9),)), "isar-task", "'A' has a limit of time"),
+        (
+            Mission(tasks=(measure("A", "1", reading_limit=9),)),
+            "isar-task",
+            "'A' has a limit for its reading",
+        ),
+        (
+            Mission(tasks=(measure("A", "1", window=TimeWindow(latest=9)),)),
+            "isar-task",
+            "'A' has a window",
+        ),
         (
             Mission(tasks=(Task(name="W", action=Action.WAIT, wait=WaitRule(duration=9)),)),
             "isar-task",
             "'W' has a wait",
         ),
-        (repeated(max_repeat_count=2, every=9), "isar-group", "'G' is repeated at set times"),
-        (repeated(until=(LOW,)), "isar-group", "'G' is repeated until"),
-        (alone(Transition(target="A", conditions=(LOW,))), "isar-task", "'A' has conditions"),
-        (ONE.model_copy(update={"reactions": (GAS,)}), "isar-reaction", "gas_leak"),
-        (ONE.model_copy(update={"mode": Mode.SUPERVISORY}), "isar-mode", "supervisory"),
-        (repeated(max_repeat_duration=9), "isar-group", "'G' is repeated for a time"),
+        (
+            Mission(
+                tasks=(measure("A", "1"),),
+                groups=(Group(name="G", start="A", end="A", max_repeat_count=2, every=9),),
+            ),
+            "isar-group",
+            "'G' is repeated at set times",
+        ),
+        (
+            Mission(
+                tasks=(measure("A", "1"),),
+                groups=(Group(name="G", start="A", end="A", until=(LOW,)),),
+            ),
+            "isar-group",
+            "'G' is repeated until",
+        ),
+        (
+            Mission(
+                tasks=(
+                    Task(
+                        name="A",
+                        action=Action.MEASURE,
+                        object_id="1",
+                        transitions=(Transition(target="A", conditions=(LOW,)),),
+                    ),
+                )
+            ),
+            "isar-task",
+            "'A' has conditions",
+        ),
+        (Mission(tasks=(measure("A", "1"),), reactions=(GAS,)), "isar-reaction", "gas_leak"),
+        (Mission(tasks=(measure("A", "1"),), mode=Mode.SUPERVISORY), "isar-mode", "supervisory"),
+        (
+            Mission(
+                tasks=(measure("A", "1"),),
+                groups=(Group(name="G", start="A", end="A", max_repeat_duration=9),),
+            ),
+            "isar-group",
+            "'G' is repeated for a time",
+        ),
         (
             Mission(tasks=(Task(name="W", action=Action.WAYPOINT, pose=Pose(x=0, y=0, z=0)),)),
             "isar-waypoint",
             "'W' only drives",
         ),
-        (alone(object_id="3"), "isar-no-target", "checkpoint '3' of task 'A'"),
-        (alone("A"), "isar-endless", "more than 10000 tasks"),
-        (repeated(max_repeat_count=10**9), "isar-endless", "more than 10000 tasks"),
+        (Mission(tasks=(measure("A", "3"),)), "isar-no-target", "checkpoint '3' of task 'A'"),
+        (Mission(tasks=(measure("A", "1", "A"),)), "isar-endless", "more than 10000 tasks"),
+        (
+            Mission(
+                tasks=(measure("A", "1"),),
+                groups=(Group(name="G", start="A", end="A", max_repeat_count=10**9),),
+            ),
+            "isar-endless",
+            "more than 10000 tasks",
+        ),
         (Mission(tasks=(Task(name="S", action=Action.START),)), "isar-empty", "without tasks"),
     ],
 )

@@ -1,5 +1,7 @@
 """Every finding of `check`, on a mission that is sound but for one thing."""
 
+from functools import partial
+
 import pytest
 from pydantic import ValidationError
 
@@ -22,14 +24,9 @@ from argo_compiler.il import (
     Task,
     Transition,
 )
+from tests.mission_writing import measure as at_its_name
 
-
-def measure(name, *ways, object_id="1", **fields):
-    """A MEASURE task. A way is the name of the next task, or a whole transition."""
-    transitions = tuple(Transition(target=w) if isinstance(w, str) else w for w in ways)
-    return Task(
-        name=name, action=Action.MEASURE, object_id=object_id, transitions=transitions, **fields
-    )
+measure = partial(at_its_name, object_id="1")
 
 
 def when(target, type=ConditionType.LESS, object_id="1", low=0.0, high=None):

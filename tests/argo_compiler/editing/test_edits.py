@@ -1,6 +1,7 @@
 """Single edits: what becomes of a mission, what else changes, and what is refused."""
 
 import inspect
+from functools import partial
 
 import pytest
 
@@ -24,18 +25,13 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
+from tests.mission_writing import measure, way
 
 HIGH = Condition(type="MEASURED_VALUE_GREATER", object_id="1", param1=5)
 DOCK = Pose(x=0, y=0, z=0)
 
 
-def way(target, *conditions):
-    return Transition(target=target, conditions=conditions)
-
-
-def task(name, *ways, **fields):
-    ways = tuple(way(w) if isinstance(w, str) else w for w in ways)
-    return Task(name=name, action=Action.MEASURE, object_id="1", transitions=ways, **fields)
+task = partial(measure, object_id="1")
 
 
 def group(name, start, end, **fields):

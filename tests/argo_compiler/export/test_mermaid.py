@@ -20,6 +20,7 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
+from tests.mission_writing import measure
 
 STATE = re.compile(r'state "((?:[\w ,().-]|#\d+;)*)" as (\w+)( \{)?')
 CHOICE = re.compile(r"state (\w+) <<choice>>")
@@ -51,19 +52,15 @@ def read(text):
     return parents, labels, arrows
 
 
-def measuring(name, *ways, **fields):
-    return Task(name=name, action=Action.MEASURE, object_id=name, transitions=ways, **fields)
-
-
 @pytest.fixture
 def mission():
     hot = Condition(type=ConditionType.GREATER, object_id="B", param1=7.5, max_age=60)
     return Mission(
         tasks=(
-            measuring("A", Transition(target="B")),
-            measuring("B", Transition(target="C"), Transition(target="D", conditions=(hot,))),
-            measuring("C", Transition(target="D")),
-            measuring("D"),
+            measure("A", "B"),
+            measure("B", "C", Transition(target="D", conditions=(hot,))),
+            measure("C", "D"),
+            measure("D"),
         ),
         groups=(
             Group(name="G", start="A", end="C", max_repeat_duration=60),
@@ -134,8 +131,8 @@ def test_mission_of_start_only():
 
 def test_failures_and_reactions():
     tasks = (
-        measuring("A", Transition(target="B"), on_failure=OnFailure.RETURN),
-        measuring("B", on_failure=OnFailure.ABORT),
+        measure("A", "B", on_failure=OnFailure.RETURN),
+        measure("B", on_failure=OnFailure.ABORT),
     )
     reaction = Reaction(
         event=EventKind.GAS_LEAK,
@@ -158,10 +155,10 @@ def test_version_3_is_on_the_boxes_and_arrows():
     window = TimeWindow(earliest=60, latest=90, missed_target="D")
     mission = Mission(
         tasks=(
-            measuring("A", Transition(target="B"), velocity=0.3, time_limit=50, optional=True),
-            measuring(
+            measure("A", "B", velocity=0.3, time_limit=50, optional=True),
+            measure(
                 "B",
-                Transition(target="C"),
+                "C",
                 window=window,
                 on_failure=OnFailure.BRANCH,
                 failure_target="C",

@@ -39,6 +39,7 @@ from tests.argo_compiler.export.executing import Both, play
 from tests.argo_compiler.hfsm.random_missions import busy_cases, cases
 from tests.conftest import examples
 from tests.mission_parts import HERE
+from tests.mission_writing import measure as a
 
 
 def valid(mission):
@@ -57,10 +58,6 @@ def test_chart_does_what_the_executor_does(case):
 def test_chart_is_interrupted_as_the_executor_is(case):
     assume(valid(case.mission))
     play(case.mission, case.doings, case.script)
-
-
-def a(name, **fields):
-    return Task(name=name, action="MEASURE", object_id=name, **fields)
 
 
 def reaction(event, response, **fields):
@@ -157,8 +154,8 @@ def test_window_that_is_over_before_its_round_begins(target):
         Group(name="G/H", start="A", end="A", max_repeat_count=2, every=4, max_repeat_duration=9),
     )
     tasks = (
-        a("A", window=window, transitions=(Transition(target="B"),)),
-        a("B", transitions=(Transition(target="C"),)),
+        a("A", "B", window=window),
+        a("B", "C"),
         a("C"),
     )
     both = Both(Mission(tasks=tasks, groups=groups))

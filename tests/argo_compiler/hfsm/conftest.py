@@ -16,7 +16,8 @@ from argo_compiler.hfsm import (
     Tick,
     lower,
 )
-from argo_compiler.il import Action, Group, Mission, Task, Transition
+from argo_compiler.il import Group, Mission, Transition
+from tests.mission_writing import measure
 
 Ways = Mapping[str, Iterable[str | Transition]]
 
@@ -32,19 +33,7 @@ def build() -> Callable[..., Mission]:
         order = names.split()
         leads_to = {a: [b] for a, b in pairwise(order)} | dict(ways or {})
         return Mission(
-            tasks=tuple(
-                Task(
-                    name=name,
-                    action=Action.MEASURE,
-                    object_id=name,
-                    transitions=tuple(
-                        Transition(target=way) if isinstance(way, str) else way
-                        for way in leads_to.get(name, ())
-                    ),
-                )
-                for name in order
-            ),
-            groups=groups,
+            tasks=tuple(measure(name, *leads_to.get(name, ())) for name in order), groups=groups
         )
 
     return build

@@ -8,7 +8,6 @@ from argo_compiler.hfsm import (
     Executor,
     lower,
 )
-from argo_compiler.il import Action, Task, Transition
 
 
 class Play:
@@ -40,8 +39,3 @@ def well(name, value=None):
 
 def badly(name):
     return ActionFailed(name, "stuck")
-
-
-def task(name, *targets, **fields):
-    ways = tuple(Transition(target=target) for target in targets)
-    return Task(name=name, action=Action.MEASURE, object_id=name, transitions=ways, **fields)

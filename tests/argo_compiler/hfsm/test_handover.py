@@ -43,10 +43,10 @@ from argo_compiler.il import (
     Reaction,
     Response,
     Task,
-    Transition,
 )
 from tests.argo_compiler.hfsm.random_missions import missions, outcome_lists
 from tests.conftest import examples
+from tests.mission_writing import measure as task
 
 VISITS = 40
 PAUSE = Pause()
@@ -218,11 +218,6 @@ def done_by_hand(data, site, log):
                 left, site.spent, site.interrupted = seconds - site.spent, 0, None
             yield ByHand(task=name, value=value, duration=left, skipped=skipped)
             site.executions[name] += 1
-
-
-def task(name, *targets, **fields):
-    ways = tuple(Transition(target=target) for target in targets)
-    return Task(name=name, action=Action.MEASURE, object_id=name, transitions=ways, **fields)
 
 
 def line(*groups, **fields):

@@ -15,14 +15,11 @@ from argo_compiler.il import (
     TimeWindow,
     Transition,
 )
+from tests.mission_writing import way as when
 
 
 def greater(object_id: str, limit: float, max_age: float | None = None) -> Condition:
     return Condition(type=ConditionType.GREATER, object_id=object_id, param1=limit, max_age=max_age)
-
-
-def when(target: str, *conditions: Condition) -> Transition:
-    return Transition(target=target, conditions=conditions)
 
 
 class TestTasks:

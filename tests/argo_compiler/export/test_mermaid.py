@@ -5,7 +5,6 @@ import pytest
 from argo_compiler.export import to_mermaid
 from argo_compiler.hfsm import lower
 from argo_compiler.il import (
-    Action,
     Condition,
     ConditionType,
     EventKind,
@@ -18,9 +17,8 @@ from argo_compiler.il import (
     Task,
     TimeWindow,
     Transition,
-    WaitRule,
 )
-from tests.mission_writing import measure
+from tests.mission_writing import measure, wait
 
 STATE = re.compile(r'state "((?:[\w ,().-]|#\d+;)*)" as (\w+)( \{)?')
 CHOICE = re.compile(r"state (\w+) <<choice>>")
@@ -164,13 +162,8 @@ def test_version_3_is_on_the_boxes_and_arrows():
                 failure_target="C",
                 priority=3,
             ),
-            Task(
-                name="C",
-                action=Action.WAIT,
-                wait=WaitRule(event=EventKind.ALL_CLEAR, conditions=(unreadable,), limit=20),
-                transitions=(Transition(target="D"),),
-            ),
-            Task(name="D", action=Action.WAIT, wait=WaitRule(duration=5)),
+            wait("C", "D", event=EventKind.ALL_CLEAR, conditions=(unreadable,), limit=20),
+            wait("D", duration=5),
         ),
         groups=(Group(name="G", start="A", end="C", max_repeat_count=4, every=600, until=(hot,)),),
     )

@@ -4,10 +4,10 @@ import json
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
-from argo_compiler.base.catalog import Catalog, CheckpointInfo, CheckpointKind, Interval
+from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.model import Pose
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, Severity
@@ -30,7 +30,7 @@ from argo_compiler.il import (
 )
 from argo_compiler.isar import InspectionView, from_isar, read_isar, to_isar
 from tests.argo_compiler.isar.conftest import assert_isar_takes
-from tests.mission_writing import measure, wait, way
+from tests.mission_writing import checkpoint, drive, measure, wait, way
 
 VIEWS = {
     "1": InspectionView(
@@ -40,18 +40,7 @@ VIEWS = {
 }
 CATALOG = Catalog(
     site="plant",
-    checkpoints=tuple(
-        CheckpointInfo(
-            id=id,
-            kind=CheckpointKind.VALVE,
-            name=f"valve R{id}",
-            floor=1,
-            unit="deg",
-            range=Interval(low=0, high=90),
-            nominal=Interval(low=85, high=90),
-        )
-        for id in (1, 2)
-    ),
+    checkpoints=tuple(checkpoint(id, 0, 90, 85, 90) for id in (1, 2)),
     areas=(),
     floors=(),
 )
@@ -60,7 +49,6 @@ CATALOG = Catalog(
 GAS = Reaction(event=EventKind.GAS_LEAK, response=Response.ABORT)
 LOW = Condition(type=ConditionType.LESS, object_id="1", param1=1)
 JOINTS = JointState(names=("arm",), positions=(1.0,))
-DRIVE = Task(name="W", action=Action.WAYPOINT, pose=Pose(x=0, y=0, z=0))
 
 
 def alone(task, **fields):
@@ -191,7 +179,7 @@ def test_the_last_way_to_the_dock_is_the_way_home():
         ("reaction", alone(at_1(), reactions=(GAS,)), "gas_leak"),
         ("mode", alone(at_1(), mode=Mode.SUPERVISORY), "supervisory"),
         ("group", repeated(max_repeat_duration=9), "'G' is repeated for a time"),
-        ("waypoint", alone(DRIVE), "'W' only drives"),
+        ("waypoint", alone(drive("W")), "'W' only drives"),
         ("no-target", alone(measure("A", object_id="3")), "checkpoint '3' of task 'A'"),
         ("endless", alone(at_1("A")), "more than 10000 tasks"),
         ("endless", repeated(max_repeat_count=10**9), "more than 10000 tasks"),
@@ -213,7 +201,6 @@ POSES = st.builds(
 )
 
 
-@settings(deadline=None)
 @given(
     stops=st.lists(st.tuples(st.sampled_from("12"), POSES), min_size=1, max_size=5),
     start=st.none() | POSES,

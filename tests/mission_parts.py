@@ -5,11 +5,14 @@ from hypothesis import strategies as st
 from argo_compiler.base.model import Pose
 from argo_compiler.il import (
     Action,
+    Afterwards,
     Condition,
     ConditionType,
     EventKind,
     Group,
     OnFailure,
+    Reaction,
+    Response,
     Stop,
     Task,
     TimeWindow,
@@ -129,34 +132,63 @@ def starts(draw, names):
 
 
 @st.composite
+def reactions_to(draw, event, responses, untils, limits, priorities, afterwards, shelter=HERE):
+    """Reactions of which each field is drawn from what is given, where it has an effect."""
+    response = draw(st.sampled_from(responses))
+    until = draw(st.sampled_from(untils))
+    drives = response in (Response.RETURN, Response.SAFE_AREA)
+    holds = response is Response.PAUSE or (drives and until is not None)
+    limit = draw(st.sampled_from(limits)) if holds else None
+    return Reaction(
+        event=event,
+        response=response,
+        pose=shelter if response is Response.SAFE_AREA else None,
+        until=until if holds else None,
+        afterwards=draw(st.sampled_from(afterwards)),
+        hold_limit=limit,
+        on_limit=draw(st.sampled_from(Afterwards)) if limit else Afterwards.WAIT,
+        priority=draw(st.sampled_from(priorities)),
+    )
+
+
+def nested(ranges, own):
+    """Yield those of the ranges that lie in each other or apart, the outer ones first, each after
+    the path of its name, whose last part `own` gives by the range and its place among them."""
+    kept, around, paths = [], [], set()
+    for first, last in map(sorted, ranges):
+        if not any(f < first <= e < last or first < f <= last < e for f, e in kept):
+            kept.append((first, last))
+    for i, (first, last) in enumerate(sorted(kept, key=lambda r: (r[0], -r[1]))):
+        while around and around[-1][1] < first:
+            around.pop()
+        name = own(i, first, last)
+        path = f"{around[-1][0]}/{name}" if around else name
+        path += f" {i}" if path in paths else ""
+        around.append((path, last))
+        paths.add(path)
+        yield path, first, last
+
+
+@st.composite
 def groups_over(draw, names, interruptions=True, plans=False, until=None):
-    """Ranges that lie in each other or apart, named by their nesting.
+    """Groups over some of the tasks, in each other or apart.
 
     With `plans`, rounds may be due at times; `until` draws the conditions for no other round.
     """
     ends = st.integers(0, len(names) - 1)
-    kept = []
-    for a, b in draw(st.lists(st.tuples(ends, ends), max_size=5)):
-        first, last = min(a, b), max(a, b)
-        if not any(f < first <= e < last or first < f <= last < e for f, e in kept):
-            kept.append((first, last))
-    around, groups = [], []
-    for i, (first, last) in enumerate(sorted(kept, key=lambda r: (r[0], -r[1]))):
-        while around and around[-1][1] < first:
-            around.pop()
-        name = f"{around[-1][0]}/{i}" if around else str(i)
-        around.append((name, last))
-        groups.append(
-            Group(
-                name=name,
-                start=names[first],
-                end=names[last],
-                max_repeat_count=draw(st.integers(0, 3)),
-                max_repeat_duration=draw(st.sampled_from([0, 0, 1, 2, 3, 5, 8, 13])),
-                count_interruptions=interruptions and draw(st.booleans()),
-                stop=draw(st.sampled_from(Stop)),
-                every=draw(st.sampled_from([0, 0, 2, 4, 7])) if plans else 0,
-                until=() if until is None else tuple(draw(st.lists(until, max_size=2))),
-            )
+    ranges = draw(st.lists(st.tuples(ends, ends), max_size=5))
+    groups = [
+        Group(
+            name=name,
+            start=names[first],
+            end=names[last],
+            max_repeat_count=draw(st.integers(0, 3)),
+            max_repeat_duration=draw(st.sampled_from([0, 0, 1, 2, 3, 5, 8, 13])),
+            count_interruptions=interruptions and draw(st.booleans()),
+            stop=draw(st.sampled_from(Stop)),
+            every=draw(st.sampled_from([0, 0, 2, 4, 7])) if plans else 0,
+            until=() if until is None else tuple(draw(st.lists(until, max_size=2))),
         )
+        for name, first, last in nested(ranges, lambda i, *_: str(i))
+    ]
     return tuple(draw(st.permutations(groups)))

@@ -3,7 +3,9 @@
 Made from the models themselves, so that a new field is among them without being named here.
 """
 
+import operator
 from enum import Enum
+from functools import partial, reduce
 from types import NoneType, UnionType
 from typing import Any, Literal, Union, get_args, get_origin
 
@@ -65,45 +67,20 @@ def _values(annotation: Any, limits: tuple[Any, ...]) -> st.SearchStrategy[Any]:
     if isinstance(annotation, type) and issubclass(annotation, Model):
         return _models(annotation)
     plain = {bool: st.booleans(), int: INTEGERS, float: FLOATS, str: TEXTS}[annotation]
-    return plain.map(_mended(limits)).filter(lambda value: _kept(value, limits))
+    return reduce(_limited, limits, plain)
 
 
-def _mended(limits: tuple[Any, ...]) -> Any:
-    """Turns most values into allowed ones, so that few have to be thrown away."""
-
-    def mend(value: Any) -> Any:
-        if any(isinstance(limit, annotated_types.MinLen) for limit in limits):
-            return value or "x"
-        least, most = _least(limits), _most(limits)
-        if least is not None and value < least:
-            value = -value
-        if any(isinstance(limit, annotated_types.Lt) for limit in limits) and value >= most:
-            return most / 2
-        return value if most is None or value <= most else most
-
-    return mend
-
-
-def _least(limits: tuple[Any, ...]) -> Any:
-    for limit in limits:
-        if isinstance(limit, annotated_types.Ge):
-            return limit.ge
-        if isinstance(limit, annotated_types.Gt):
-            return limit.gt
-    return None
-
-
-def _most(limits: tuple[Any, ...]) -> Any:
-    for limit in limits:
-        if isinstance(limit, annotated_types.Le):
-            return limit.le
-        if isinstance(limit, annotated_types.Lt):
-            return limit.lt
-    return None
-
-
-def _kept(value: Any, limits: tuple[Any, ...]) -> bool:
-    least, most = _least(limits), _most(limits)
-    if any(isinstance(limit, annotated_types.Gt) and value <= limit.gt for limit in limits):
-        return False
-    return (least is None or value >= least) and (most is None or value <= most)
+def _limited(values: st.SearchStrategy[Any], limit: Any) -> st.SearchStrategy[Any]:
+    """Those of the values that keep to the limit; Hypothesis does not draw numbers beyond it."""
+    match limit:
+        case annotated_types.Ge(least):
+            return values.filter(partial(operator.le, least))
+        case annotated_types.Gt(least):
+            return values.filter(partial(operator.lt, least))
+        case annotated_types.Le(most):
+            return values.filter(partial(operator.ge, most))
+        case annotated_types.Lt(most):
+            return values.filter(partial(operator.gt, most))
+        case annotated_types.MinLen():
+            return values.filter(bool)
+    return values

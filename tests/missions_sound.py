@@ -27,6 +27,7 @@ from argo_compiler.il import (
     Transition,
 )
 from argo_compiler.il.reserved import RESERVED_NAMES
+from tests.mission_parts import nested
 
 # Signs that text recognition, JSON, the script language or a terminal could trip over.
 ODD = "\"'\\*`\t\n\r\0\x1b#:;.,/()[]-+ äßİﬁ’“–\u00ad\u200b\u2028\ufeff²٣😀and"
@@ -209,8 +210,6 @@ def _starts(draw: st.DrawFn, catalog: Catalog, names: list[str]) -> Task:
 def _groups(draw: st.DrawFn, names: list[str], drafts: list[Task], catalog: Catalog) -> list[Group]:
     """Ranges that lie in each other or apart, named by their nesting."""
     ends = st.integers(0, len(names) - 1)
-    kept: list[tuple[int, int]] = []
-    wanted = draw(st.lists(st.tuples(ends, ends), max_size=4))
     patrols = {floor.patrol: floor.number for floor in catalog.floors}
     length = len(catalog.floors[0].patrol)
     found = {
@@ -218,35 +217,25 @@ def _groups(draw: st.DrawFn, names: list[str], drafts: list[Task], catalog: Cata
         for i in range(len(drafts) - length + 1)
         if (poses := tuple(d.pose for d in drafts[i : i + length])) in patrols
     }
-    wanted = [(i, i + length - 1) for i in found] + wanted
-    for a, b in wanted:
-        first, last = min(a, b), max(a, b)
-        if not any(f < first <= e < last or first < f <= last < e for f, e in kept):
-            kept.append((first, last))
-    around: list[tuple[str, int]] = []
-    groups: list[Group] = []
-    for i, (first, last) in enumerate(sorted(kept, key=lambda r: (r[0], -r[1]))):
-        while around and around[-1][1] < first:
-            around.pop()
+
+    def own(i: int, first: int, last: int) -> str:
         is_patrol = first in found and last == first + length - 1
         usual = f"Patrol floor {found[first]}" if is_patrol else f"Repeat {first + 1} to {last + 1}"
-        own = draw(st.sampled_from([usual, usual, f"Alpha {i}", f'{i}*"\\']))
-        path = f"{around[-1][0]}/{own}" if around else own
-        if any(g.name == path for g in groups):
-            path += f" {i}"
-        around.append((path, last))
-        groups.append(
-            Group(
-                name=path,
-                start=names[first],
-                end=names[last],
-                max_repeat_count=draw(st.integers(0, 4) | st.just(10**6 + 1)),
-                max_repeat_duration=draw(st.just(0.0) | lengths),
-                count_interruptions=draw(st.booleans()),
-                stop=draw(st.sampled_from(Stop)),
-            )
+        return draw(st.sampled_from([usual, usual, f"Alpha {i}", f'{i}*"\\']))
+
+    ranges = draw(st.lists(st.tuples(ends, ends), max_size=4))
+    return [
+        Group(
+            name=path,
+            start=names[first],
+            end=names[last],
+            max_repeat_count=draw(st.integers(0, 4) | st.just(10**6 + 1)),
+            max_repeat_duration=draw(st.just(0.0) | lengths),
+            count_interruptions=draw(st.booleans()),
+            stop=draw(st.sampled_from(Stop)),
         )
-    return groups
+        for path, first, last in nested([*((i, i + length - 1) for i in found), *ranges], own)
+    ]
 
 
 def _inner(names: list[str], i: int, groups: list[Group]) -> str:

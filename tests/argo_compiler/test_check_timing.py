@@ -6,7 +6,6 @@ from argo_compiler.base.model import Pose
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import Severity
 from argo_compiler.il import (
-    Action,
     Condition,
     ConditionType,
     JointState,
@@ -14,20 +13,12 @@ from argo_compiler.il import (
     Reaction,
     Task,
     TimeWindow,
-    Transition,
     WaitRule,
 )
 from tests.argo_compiler.test_check import CHAIN, chain, codes, group, measure, when
+from tests.mission_writing import wait
 
 HERE = Pose(x=0, y=0, z=0, yaw=0)
-
-
-SECOND = WaitRule(duration=1)
-
-
-def wait(name, *targets, rule=SECOND, **fields):
-    ways = tuple(Transition(target=target) for target in targets)
-    return Task(name=name, action=Action.WAIT, wait=rule, transitions=ways, **fields)
 
 
 def one(*tasks, **fields):
@@ -47,21 +38,21 @@ def one(*tasks, **fields):
     ],
 )
 def test_a_wait_says_how_long_in_one_way(rule):
-    findings = check(Mission(tasks=(measure("A", "W"), wait("W", rule=rule))))
+    findings = check(Mission(tasks=(measure("A", "W"), wait("W", wait=rule))))
     assert "il.wait-rule" in [finding.code for finding in findings]
 
 
 def test_a_wait_without_a_limit_is_named():
-    finding = one(wait("W", rule=WaitRule(event="all_clear")))
+    finding = one(wait("W", event="all_clear"))
     assert (finding.code, finding.severity) == ("il.wait-without-limit", Severity.WARNING)
 
 
 @pytest.mark.parametrize(
     ("task", "field"),
     [
-        (wait("A", object_id="1"), "object_id"),
-        (wait("A", retries=2), "retries"),
-        (wait("A", rule=WaitRule(duration=3, limit=5)), "wait.limit"),
+        (wait("A", duration=1, object_id="1"), "object_id"),
+        (wait("A", duration=1, retries=2), "retries"),
+        (wait("A", duration=3, limit=5), "wait.limit"),
         (measure("A", wait=WaitRule(duration=3)), "wait"),
         (measure("A", failure_target="A"), "failure_target"),
         (measure("A", window=TimeWindow(latest=9, hard=False, missed_target="A")), "window.missed"),
@@ -105,23 +96,22 @@ def test_joint_states_may_give_any_of_the_three():
 
 
 LATE = TimeWindow(latest=60)
-ZERO = WaitRule(duration=0)
 
 
 @pytest.mark.rule("W7")
 @pytest.mark.parametrize(
     ("tasks", "groups", "circle"),
     [
-        ((wait("A", "A", rule=ZERO),), (), True),
-        ((wait("A", "B", rule=ZERO), wait("B", "A", rule=ZERO)), (), True),
-        ((wait("A", "B", rule=ZERO), wait("B", "A")), (), False),
-        ((wait("A", "A", rule=WaitRule(event="all_clear", limit=1e-9)),), (), True),
-        ((wait("A", "A", rule=WaitRule(event="all_clear", limit=1)),), (), False),
-        ((wait("A", "B", rule=ZERO), measure("B", "A")), (), False),
-        ((wait("A", "B", rule=ZERO), measure("B", "A", window=LATE)), (), True),
+        ((wait("A", "A", duration=0),), (), True),
+        ((wait("A", "B", duration=0), wait("B", "A", duration=0)), (), True),
+        ((wait("A", "B", duration=0), wait("B", "A", duration=1)), (), False),
+        ((wait("A", "A", event="all_clear", limit=1e-9),), (), True),
+        ((wait("A", "A", event="all_clear", limit=1),), (), False),
+        ((wait("A", "B", duration=0), measure("B", "A")), (), False),
+        ((wait("A", "B", duration=0), measure("B", "A", window=LATE)), (), True),
         (
             (
-                wait("A", "B", rule=ZERO),
+                wait("A", "B", duration=0),
                 measure("B", "A", window=TimeWindow(latest=60, missed_target="C")),
                 measure("C"),
             ),

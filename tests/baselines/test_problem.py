@@ -39,7 +39,7 @@ def routes_of(env_instance):
     return found
 
 
-@settings(max_examples=examples(25), deadline=None)
+@settings(max_examples=examples(25))
 @given(NUMBERS, st.integers(1, 6), st.sampled_from([200.0, 500.0, 900.0]), st.floats(0.0, 1.0))
 def test_optimum_is_that_of_brute_force(number, checkpoints, budget, precedence):
     instance = RandomRoutes(checkpoints, 3, budget, precedence=precedence).draw(number)
@@ -67,7 +67,7 @@ def test_optimum_is_that_of_brute_force(number, checkpoints, budget, precedence)
     assert sum(found.problem.visits[v].prize for v in mended) <= best <= free.prize
 
 
-@settings(max_examples=examples(30), deadline=None)
+@settings(max_examples=examples(30))
 @given(NUMBERS, st.integers(1, 20), st.floats(0.0, 0.8), st.integers(0, 2**32))
 def test_a_state_on_the_way_is_seen_without_loss(number, checkpoints, failing, seed):
     noise = RouteNoise(failing=failing, blocked=2)
@@ -97,7 +97,7 @@ def test_a_state_on_the_way_is_seen_without_loss(number, checkpoints, failing, s
             done.append(node)
 
 
-@settings(max_examples=examples(25), deadline=None)
+@settings(max_examples=examples(25))
 @given(NUMBERS, st.integers(1, 5), st.integers(0, 2**32))
 def test_nobody_beats_hindsight(number, checkpoints, seed):
     source = RandomRoutes(checkpoints, 3, 500.0, RouteNoise(failing=0.4, blocked=1))

@@ -15,8 +15,69 @@ import hypothesis
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from tests import plain_strategies
-from tests.argo_compiler.hfsm.counted import Counted
+from tests.argo_compiler.hfsm.reference import Reference
 from tests.argo_compiler.hfsm.world import Hears, compare
+
+
+def counts(what, method):
+    """Return the method of the reference, counting how often it says that something happens."""
+
+    def counting(self):
+        return self.counted(what, method(self))
+
+    return counting
+
+
+class Counted(Reference):
+    """A reference that counts what happens to it."""
+
+    def __init__(self, mission):
+        super().__init__(mission)
+        self.happened = Counter()
+
+    def counted(self, what, happens):
+        self.happened[what] += bool(happens)
+        return happens
+
+    hold_limit_over = counts("a hold's limit", Reference.hold_limit_over)
+    window_over = counts("a hard window is missed", Reference.window_over)
+    round_begins = counts("a round that waited begins", Reference.round_begins)
+    group_over = counts("a group's time is up", Reference.group_over)
+    done_by_hand = counts("done by hand", Reference.done_by_hand)
+    time_over = counts("TIME_UP", Reference.time_over)
+
+    def start(self, now):
+        commands = super().start(now)
+        self.counted("begins paused", self.paused)
+        return commands
+
+    def wait_over(self):
+        wait, occurred = self.wait(), self.occurred
+        if wait is None:
+            return False
+        why = "duration" if wait.duration is not None else "event" if occurred else "conditions"
+        return self.counted(f"a wait ends by {why}", super().wait_over())
+
+    def limit_over(self):
+        what = "a wait's limit" if self.wait() else "an action's limit"
+        return self.counted(what, super().limit_over())
+
+    def failed_for_good(self, kind="failed", missed=None):
+        self.counted("missed_target", missed is not None)
+        self.counted("a failure branches", self.tasks[self.current].on_failure == "branch")
+        super().failed_for_good(kind, missed)
+
+    def action_succeeded(self, run, event):
+        self.counted("late success", run.dropped)
+        super().action_succeeded(run, event)
+
+    def measured(self, object_id, reading):
+        self.counted("unreadable", reading.kind == "unreadable")
+        super().measured(object_id, reading)
+
+    def over(self, outcome):
+        self.counted(outcome, True)
+        super().over(outcome)
 
 
 def main():

@@ -12,10 +12,7 @@ COMMANDS = {
     "fault_pairs --runs 1 --drive route": r"of \d findings 0 without a cause; 0 missions given up",
     "faults --clean 1 --drive route --site darmstadt": r"0 false alarms, 0 missions without succ",
     "faults --bricks 1 --seed 1": r"found in 1, touched in 0, the mission done all the same in 1",
-    "fuzz.__main__ --runs 20 --jobs 1": r"20 runs in ",
-    "fuzz.__main__ --sentences --runs 5 --jobs 1": r"5 runs in ",
     "hostile --only zeros": r"zeros .* refused\nworst: ",
-    "odd_routes --count 5": r"5 problems in \d+ s: 0 disagree {}, 0 not proven",
     "perception --trials 1 --jobs 1": r"wrong readings: 0 of 1 \(0.0 %\) of all readings",
     "route_missions --sizes 3 --sheets 1 --drive route": r"predicted and driven differ by 0.00%",
 }

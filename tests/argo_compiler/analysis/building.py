@@ -5,8 +5,8 @@ import itertools
 from argo_compiler.analysis import Leg, NoWay
 from argo_compiler.base.catalog import Area, Catalog
 from argo_compiler.base.model import Pose
-from argo_compiler.il import Action, Condition, ConditionType, Mission, Task, Transition
-from tests.argo_compiler.analysis.worlds import checkpoint
+from argo_compiler.il import Condition, ConditionType, Mission, Transition
+from tests.mission_writing import checkpoint, drive, measure
 
 DOCK = Pose(x=5, y=0, z=0)
 CATALOG = Catalog(
@@ -46,15 +46,9 @@ def task(name, *ways, **more):
     """A task that measures the checkpoint whose number its name ends with after an `m`, as in
     `Am1`; any other drives."""
     head, m, number = name.rpartition("m")
-    measures = m == "m" and number.isdigit() and head != ""
-    return Task(
-        name=name,
-        action=Action.MEASURE if measures else Action.WAYPOINT,
-        object_id=number if measures else None,
-        pose=None if measures else Pose(x=0, y=0, z=0),
-        transitions=tuple(Transition(target=w) if isinstance(w, str) else w for w in ways),
-        **more,
-    )
+    if m == "m" and number.isdigit() and head != "":
+        return measure(name, *ways, object_id=number, **more)
+    return drive(name, *ways, **more)
 
 
 def mission(*tasks, groups=(), **more):

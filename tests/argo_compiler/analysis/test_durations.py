@@ -4,7 +4,6 @@ import pytest
 
 from argo_compiler.analysis import Leg, analyse
 from argo_compiler.il import (
-    Action,
     Afterwards,
     EventKind,
     Group,
@@ -14,7 +13,6 @@ from argo_compiler.il import (
     Response,
     Stop,
     TimeWindow,
-    WaitRule,
 )
 from tests.argo_compiler.analysis.building import (
     CATALOG,
@@ -25,6 +23,7 @@ from tests.argo_compiler.analysis.building import (
     task,
     way,
 )
+from tests.mission_writing import wait
 
 
 def bounds(*tasks, **more):
@@ -144,14 +143,6 @@ def test_the_path_says_how():
     assert found.energy.most.value == 7
 
 
-def wait(name, *ways, **rule):
-    """A WAIT; fields of the task are given as `more`."""
-    more = rule.pop("more", {})
-    return task(name, *ways, **more).model_copy(
-        update={"action": Action.WAIT, "pose": None, "wait": WaitRule(**rule)}
-    )
-
-
 def test_a_wait_lasts_its_time_or_up_to_its_limit():
     assert bounds("A", wait("W", "B", duration=5), "B") == (25, 25)
     event = EventKind.ALL_CLEAR
@@ -161,7 +152,7 @@ def test_a_wait_lasts_its_time_or_up_to_its_limit():
 
 def test_a_wait_that_fails_may_lead_elsewhere():
     branch = {"on_failure": OnFailure.BRANCH, "failure_target": "C"}
-    gives_up = wait("W", "End", event=EventKind.ALL_CLEAR, limit=7, more=branch)
+    gives_up = wait("W", "End", event=EventKind.ALL_CLEAR, limit=7, **branch)
     assert bounds("A", gives_up, task("C", "End"), "End") == (20, 37)
 
 

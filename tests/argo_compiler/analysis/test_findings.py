@@ -14,9 +14,9 @@ from argo_compiler.il import (
     Stop,
     Task,
     TimeWindow,
-    WaitRule,
 )
 from tests.argo_compiler.analysis.building import CATALOG, DOCK, Steady, mission, task, way
+from tests.mission_writing import drive, wait
 
 FAR = Pose(x=-1, y=0, z=0)
 
@@ -75,7 +75,7 @@ def test_what_follows_a_round_whose_time_is_up_is_looked_at_without_travel_times
 
 
 def test_where_the_mission_ends():
-    home = Task(name="Home", action=Action.WAYPOINT, pose=DOCK)
+    home = drive("Home", pose=DOCK)
     early = task("Am1", way("B", "1 < 5"), "Home")
     found = findings(mission(early, home, "B", end_area=1))
     assert set(found) == {"end-elsewhere"}
@@ -87,10 +87,7 @@ def test_where_the_mission_ends():
 
 
 def test_after_a_wait_the_robot_is_where_it_was():
-    home = Task(
-        name="Home", action=Action.WAYPOINT, pose=DOCK, transitions=task("x", "J").transitions
-    )
-    join = Task(name="J", action=Action.WAIT, wait=WaitRule(duration=0))
+    home, join = drive("Home", "J", pose=DOCK), wait("J", duration=0)
     assert findings(mission(task("A", "Home"), home, join, end_area=1)) == {}
     away = mission(task("Am1", way("J", "1 < 5"), "Home"), home, join, end_area=1)
     assert "after task 'J'" in findings(away)["end-elsewhere"].message
@@ -249,10 +246,5 @@ def test_the_way_back_with_a_reserve():
 def test_a_robot_that_may_charge_meanwhile_may_go_farther():
     travel = Steady()
     travel.battery = 1.5
-    home = Task(
-        name="W",
-        action=Action.WAIT,
-        wait=WaitRule(duration=3600),
-        transitions=task("x", "B").transitions,
-    )
-    assert set(findings(mission(task("A", "W"), home, "B"), travel)) == {"battery-maybe-exceeded"}
+    stays = wait("W", "B", duration=3600)
+    assert set(findings(mission(task("A", "W"), stays, "B"), travel)) == {"battery-maybe-exceeded"}

@@ -32,7 +32,7 @@ def witnessed(plan, catalog, travel):
     return make_least_witness(steps), steps
 
 
-@settings(max_examples=examples(30), deadline=None, suppress_health_check=SLOW)
+@settings(max_examples=examples(30), suppress_health_check=SLOW)
 @given(
     missions(),
     catalogs(),
@@ -67,52 +67,23 @@ def test_no_run_takes_less_than_what_is_accepted(plan, catalog, seed, clean_up, 
 # Why a task is left when it has ended, by itself and in time.
 ENDS = {Cause.CONDITION, Cause.REPEAT, Cause.DEFAULT, Cause.FAILURE, Cause.MISSED}
 
-COUNTED = mission(
-    "A",
-    "Bm1",
-    "Cm2",
-    "D",
-    groups=[Group(name="G", start="Bm1", end="Cm2", max_repeat_count=4)],
-    max_duration=60,
-)
+
+def rounds(**limits):
+    """A, two measurements in a group, and D."""
+    group = Group(name="G", start="Bm1", end="Cm2", **limits)
+    return mission("A", "Bm1", "Cm2", "D", groups=[group], max_duration=60)
+
+
+COUNTED = rounds(max_repeat_count=4)
+OUTER = Group(name="G", start="A", end="D", max_repeat_count=3)
 USUAL = {
     "rounds by count": COUNTED,
-    "a patrol by duration": mission(
-        "A",
-        "Bm1",
-        "Cm2",
-        "D",
-        groups=[
-            Group(name="G", start="Bm1", end="Cm2", max_repeat_duration=600, stop=Stop.SOFT),
-        ],
-        max_duration=60,
-    ),
-    "a patrol until its time is up": mission(
-        "A",
-        "Bm1",
-        "Cm2",
-        "D",
-        groups=[Group(name="G", start="Bm1", end="Cm2", max_repeat_duration=600)],
-        max_duration=60,
-    ),
-    "rounds by a plan": mission(
-        "A",
-        "Bm1",
-        "Cm2",
-        "D",
-        groups=[Group(name="G", start="Bm1", end="Cm2", max_repeat_count=4, every=100)],
-        max_duration=60,
-    ),
+    "a patrol by duration": rounds(max_repeat_duration=600, stop=Stop.SOFT),
+    "a patrol until its time is up": rounds(max_repeat_duration=600),
+    "rounds by a plan": rounds(max_repeat_count=4, every=100),
     "rounds in rounds": mission(
-        "A",
-        "Bm1",
-        "Cm2",
-        "D",
-        "E",
-        groups=[
-            Group(name="G", start="A", end="D", max_repeat_count=3),
-            Group(name="G/H", start="Bm1", end="Cm2", max_repeat_count=4),
-        ],
+        *["A", "Bm1", "Cm2", "D", "E"],
+        groups=[OUTER, Group(name="G/H", start="Bm1", end="Cm2", max_repeat_count=4)],
         max_duration=60,
     ),
     "a branch that leaves out a task": mission(

@@ -10,17 +10,17 @@ from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.hfsm import Cause, lower
 from argo_compiler.hfsm.conditions import words
-from argo_compiler.il import Action, Group, Stop
+from argo_compiler.il import Group, Stop
 from tests.argo_compiler.analysis.building import mission, task, way
 from tests.argo_compiler.analysis.worlds import (
     MadeUpTravel,
     catalogs,
-    checkpoint,
     missions,
     run,
 )
 from tests.conftest import examples
 from tests.mission_parts import HERE
+from tests.mission_writing import checkpoint, measure
 
 SOON = 1e-6
 STEPS = (
@@ -119,7 +119,6 @@ def require_within_worst(analysis, done):
 
 @settings(
     max_examples=examples(40),
-    deadline=None,
     suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow],
 )
 @given(
@@ -147,19 +146,13 @@ def test_nothing_impossible_happens(mission, catalog, seed, clean_up, standing_p
         require_allowed(mission, analysis, done, failures=True)
 
 
-def measurement(name, *ways):
-    return task(name, *ways).model_copy(
-        update={"action": Action.MEASURE, "object_id": "1", "pose": None}
-    )
-
-
 def test_a_loop_whose_way_out_always_comes_too_late_is_never_over():
     """From W3 the way back to the group takes longer than the group lasts, so that the value which
     would lead out of it is not measured any more."""
     group = Group(name="0", start="M1x0", end="M1x1", max_repeat_duration=1, stop=Stop.HARD)
     plan = mission(
-        measurement("M1x0", "M1x1"),
-        measurement("M1x1", "W2", way("M1x0", "1 < 0"), way("W4", "1 > 0")),
+        measure("M1x0", "M1x1", object_id="1"),
+        measure("M1x1", "W2", way("M1x0", "1 < 0"), way("W4", "1 > 0"), object_id="1"),
         task("W2", "W3"),
         task("W3", "M1x0"),
         task("W4", "W5"),

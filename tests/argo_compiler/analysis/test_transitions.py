@@ -4,17 +4,15 @@ import pytest
 
 from argo_compiler.analysis import Verdict, analyse
 from argo_compiler.il import (
-    Action,
     Condition,
     ConditionType,
     Group,
     OnFailure,
     TimeWindow,
     Transition,
-    WaitRule,
 )
 from tests.argo_compiler.analysis.building import CATALOG, mission, task, way
-from tests.argo_compiler.analysis.worlds import checkpoint
+from tests.mission_writing import checkpoint, wait
 
 NEVER, AFTER, POSSIBLE, ALWAYS = (
     Verdict.NEVER,
@@ -260,8 +258,7 @@ def test_a_value_that_was_just_read_is_not_stale():
 
 @pytest.mark.rule("W2", "C8")
 def test_a_value_that_is_waited_for_may_come_at_any_time():
-    rule = WaitRule(conditions=way("x", "2 > 5").conditions)
-    stand = task("W", "B").model_copy(update={"action": Action.WAIT, "pose": None, "wait": rule})
+    stand = wait("W", "B", conditions=way("x", "2 > 5").conditions)
     plan = mission(task("Am1", way("B", "2 < 3"), "W"), stand, task("B", way("C", "2 < 3")), "C")
     analysis = analyse(plan, CATALOG)
     assert verdicts(analysis, "Am1") == [POSSIBLE, POSSIBLE]
@@ -283,9 +280,7 @@ def test_a_value_that_no_task_measures_may_be_told_at_any_time():
 @pytest.mark.rule("I3")
 def test_a_value_may_come_late_while_a_wait_is_already_over():
     """The action that is cancelled may still succeed after the WAIT has looked at the value."""
-    join = task("J", way("Low", "1 < 3"), "High").model_copy(
-        update={"action": Action.WAIT, "pose": None, "wait": WaitRule(duration=0)}
-    )
+    join = wait("J", way("Low", "1 < 3"), "High", duration=0)
     late = task("Bm1", "End", window=TimeWindow(latest=5, missed_target="J"))
     plan = mission("Am1", late, join, task("Low", way("High", "1 > 6")), "High", "End")
     assert verdicts(analyse(plan, CATALOG), "Low") == [POSSIBLE]

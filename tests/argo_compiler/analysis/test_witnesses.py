@@ -16,13 +16,13 @@ from tests.argo_compiler.analysis.building import CATALOG, mission, task, way
 from tests.argo_compiler.analysis.worlds import conditions
 from tests.argo_compiler.hfsm.random_missions import missions
 from tests.conftest import examples
-from tests.mission_parts import groups_over, transitions
+from tests.mission_parts import HERE, groups_over, transitions
 
 SLOW = [HealthCheck.filter_too_much, HealthCheck.too_slow]
 PLACES = ("tasks", "rounds", "cuts")
 
 
-@settings(max_examples=examples(25), deadline=None, suppress_health_check=SLOW)
+@settings(max_examples=examples(25), suppress_health_check=SLOW)
 @given(missions())
 def test_all_claims_about_missions_of_the_whole_language_are_proved(plan):
     assume(not has_errors(check(plan)))
@@ -39,15 +39,16 @@ def test_all_claims_about_missions_of_the_whole_language_are_proved(plan):
 @st.composite
 def plain_tasks(draw, name, names, index, object_id):
     objects = ("1", "2") if object_id is None else (object_id, "1", "2")
-    ways = transitions(names, index, lambda: conditions(objects))
+    ageless = conditions(objects).map(lambda c: c.model_copy(update={"max_age": None}))
+    policy = draw(st.sampled_from([OnFailure.CONTINUE, OnFailure.BRANCH, OnFailure.ABORT]))
     return Task(
         name=name,
         action=Action.WAYPOINT if object_id is None else Action.MEASURE,
         object_id=object_id,
-        pose={"x": 0, "y": 0, "z": 0} if object_id is None else None,
-        on_failure=draw(st.sampled_from([OnFailure.CONTINUE, OnFailure.BRANCH, OnFailure.ABORT])),
-        failure_target=draw(st.sampled_from(names)),
-        transitions=draw(ways),
+        pose=HERE if object_id is None else None,
+        on_failure=policy,
+        failure_target=draw(st.sampled_from(names)) if policy is OnFailure.BRANCH else None,
+        transitions=draw(transitions(names, index, lambda: ageless)),
     )
 
 
@@ -56,36 +57,12 @@ def timeless_missions(draw):
     size = draw(st.integers(1, 6))
     objects = [draw(st.sampled_from([None, "1", "2"])) for _ in range(size)]
     names = [f"T{i}" for i in range(size)]
-    tasks = tuple(draw(plain_tasks(n, names, i, objects[i])) for i, n in enumerate(names))
     groups = tuple(
         group.model_copy(update={"max_repeat_duration": 0.0, "every": 0.0})
         for group in draw(groups_over(names, interruptions=False))
     )
-    plan = Mission(tasks=tasks, groups=groups)
-    return plan.model_copy(
-        update={
-            "tasks": tuple(
-                one.model_copy(
-                    update={
-                        "failure_target": one.failure_target
-                        if one.on_failure is OnFailure.BRANCH
-                        else None,
-                        "transitions": tuple(
-                            t.model_copy(
-                                update={
-                                    "conditions": tuple(
-                                        c.model_copy(update={"max_age": None}) for c in t.conditions
-                                    )
-                                }
-                            )
-                            for t in one.transitions
-                        ),
-                    }
-                )
-                for one in tasks
-            )
-        }
-    )
+    tasks = tuple(draw(plain_tasks(n, names, i, objects[i])) for i, n in enumerate(names))
+    return Mission(tasks=tasks, groups=groups)
 
 
 VALUES = [v / 2 for v in range(-3, 17)]
@@ -166,7 +143,7 @@ class Explorer:
         return [*found, one.transitions[last].target]
 
 
-@settings(max_examples=examples(20), deadline=None, suppress_health_check=SLOW)
+@settings(max_examples=examples(20), suppress_health_check=SLOW)
 @given(timeless_missions())
 def test_what_can_be_found_by_trying_everything_is_not_called_impossible(plan):
     assume(not has_errors(check(plan)))
@@ -182,7 +159,7 @@ def test_what_can_be_found_by_trying_everything_is_not_called_impossible(plan):
         assert not (found.ended and analysis.ends in excluded)
 
 
-@settings(max_examples=examples(25), deadline=None, suppress_health_check=SLOW)
+@settings(max_examples=examples(25), suppress_health_check=SLOW)
 @given(timeless_missions(), st.data())
 def test_a_witness_that_leaves_out_what_happens_is_not_taken(plan, data):
     assume(not has_errors(check(plan)))

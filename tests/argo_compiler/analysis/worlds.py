@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from argo_compiler.analysis import Leg, NoWay
 from argo_compiler.analysis.flow import Flow
 from argo_compiler.analysis.values import told_by_others
-from argo_compiler.base.catalog import Area, Catalog, CheckpointInfo, CheckpointKind, Interval
+from argo_compiler.base.catalog import Area, Catalog
 from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import (
     ActionFailed,
@@ -32,12 +32,20 @@ from argo_compiler.il import (
     EventKind,
     Mission,
     OnFailure,
-    Reaction,
     Response,
     Task,
     Transition,
 )
-from tests.mission_parts import HERE, OBJECTS, groups_over, transitions, wait_rules, windows
+from tests.mission_parts import (
+    HERE,
+    OBJECTS,
+    groups_over,
+    reactions_to,
+    transitions,
+    wait_rules,
+    windows,
+)
+from tests.mission_writing import checkpoint
 
 STEPS = 80
 SHELTER = Pose(x=-1, y=0, z=0)
@@ -104,27 +112,10 @@ def reactions(draw):
     events = [EventKind.TIME_UP] if draw(st.booleans()) else []
     others = (EventKind.GAS_LEAK, EventKind.LOW_BATTERY)
     events += draw(st.sampled_from([(), (), others[:1], others]))
-    found = []
-    for event in events:
-        response = draw(st.sampled_from([*Response, Response.RETURN]))
-        drives = response in (Response.RETURN, Response.SAFE_AREA)
-        until = EventKind.BATTERY_CHARGED if draw(st.integers(0, 3)) == 0 else None
-        holds = response is Response.PAUSE or (drives and until is not None)
-        limit = draw(st.sampled_from([None, 1, 4])) if holds else None
-        afterwards = draw(st.sampled_from([Afterwards.END, Afterwards.END, *Afterwards]))
-        found.append(
-            Reaction(
-                event=event,
-                response=response,
-                pose=SHELTER if response is Response.SAFE_AREA else None,
-                until=until if holds else None,
-                afterwards=afterwards if drives else Afterwards.END,
-                hold_limit=limit,
-                on_limit=draw(st.sampled_from(Afterwards)) if limit else Afterwards.WAIT,
-                priority=draw(st.sampled_from([None, None, 40])),
-            )
-        )
-    return tuple(found)
+    responses, untils = [*Response, Response.RETURN], [EventKind.BATTERY_CHARGED, *[None] * 3]
+    afterwards = [Afterwards.END, Afterwards.END, *Afterwards]
+    drawn = (responses, untils, [None, 1, 4], [None, None, 40], afterwards, SHELTER)
+    return tuple(draw(reactions_to(event, *drawn)) for event in events)
 
 
 @st.composite
@@ -164,20 +155,6 @@ def catalogs(draw):
 def ranges(draw):
     low = draw(st.integers(0, 4))
     return low, draw(st.integers(low, 6))
-
-
-def checkpoint(number, low, high, normal_low=None, normal_high=None):
-    normal_low = low if normal_low is None else normal_low
-    normal_high = high if normal_high is None else normal_high
-    return CheckpointInfo(
-        id=number,
-        kind=CheckpointKind.VALVE,
-        name=f"valve R{number}",
-        floor=1,
-        unit="deg",
-        range=Interval(low=low, high=high),
-        nominal=Interval(low=normal_low, high=normal_high),
-    )
 
 
 class MadeUpTravel:

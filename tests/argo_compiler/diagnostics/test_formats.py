@@ -26,135 +26,86 @@ FINDINGS = st.lists(
     max_size=5,
 )
 
-TEXT = {
-    "type": "object",
-    "required": ["text"],
-    "properties": {"text": {"type": "string"}, "markdown": {"type": "string"}},
-    "additionalProperties": False,
-}
+
+def record(required="", **properties):
+    """An object with these properties and no others."""
+    return {
+        "type": "object",
+        "required": required.split(),
+        "properties": properties,
+        "additionalProperties": False,
+    }
+
+
+def listed(items, **more):
+    return {"type": "array", "items": items, **more}
+
+
+STRING, COUNT = {"type": "string"}, {"type": "integer", "minimum": 1}
+TEXT = record("text", text=STRING, markdown=STRING)
 LEVEL = {"enum": ["none", "note", "warning", "error"]}
-COUNT = {"type": "integer", "minimum": 1}
-RULE = {
-    "type": "object",
-    "required": ["id", "shortDescription", "fullDescription", "help", "defaultConfiguration"],
-    "properties": {
-        "id": {"type": "string"},
-        "name": {"type": "string", "maxLength": 255},
-        "shortDescription": TEXT,
-        "fullDescription": TEXT,
-        "help": {**TEXT, "required": ["text", "markdown"]},
-        "defaultConfiguration": {
-            "type": "object",
-            "properties": {"level": LEVEL},
-            "additionalProperties": False,
-        },
+RULE = record(
+    "id shortDescription fullDescription help defaultConfiguration",
+    id=STRING,
+    name={**STRING, "maxLength": 255},
+    shortDescription=TEXT,
+    fullDescription=TEXT,
+    help={**TEXT, "required": ["text", "markdown"]},
+    defaultConfiguration=record(level=LEVEL),
+)
+PHYSICAL = record(
+    "artifactLocation region",
+    artifactLocation=record("uri", uri={**STRING, "minLength": 1}),
+    region=record(
+        "startLine",
+        startLine=COUNT,
+        startColumn=COUNT,
+        endLine=COUNT,
+        endColumn=COUNT,
+        snippet=TEXT,
+    ),
+)
+LOCATION = record(
+    "physicalLocation",
+    physicalLocation=PHYSICAL,
+    logicalLocations=listed(record(fullyQualifiedName=STRING)),
+)
+RESULT = record(
+    "ruleId level message locations partialFingerprints",
+    ruleId=STRING,
+    ruleIndex={"type": "integer", "minimum": 0},
+    level=LEVEL,
+    message=TEXT,
+    locations=listed(LOCATION, minItems=1),
+    partialFingerprints={
+        "type": "object",
+        "required": ["primaryLocationLineHash"],
+        "additionalProperties": STRING,
     },
-    "additionalProperties": False,
-}
-REGION = {
-    "type": "object",
-    "required": ["startLine"],
-    "properties": {
-        "startLine": COUNT,
-        "startColumn": COUNT,
-        "endLine": COUNT,
-        "endColumn": COUNT,
-        "snippet": TEXT,
-    },
-    "additionalProperties": False,
-}
-RESULT = {
-    "type": "object",
-    "required": ["ruleId", "level", "message", "locations", "partialFingerprints"],
-    "properties": {
-        "ruleId": {"type": "string"},
-        "ruleIndex": {"type": "integer", "minimum": 0},
-        "level": LEVEL,
-        "message": TEXT,
-        "locations": {
-            "type": "array",
-            "minItems": 1,
-            "items": {
-                "type": "object",
-                "required": ["physicalLocation"],
-                "properties": {
-                    "physicalLocation": {
-                        "type": "object",
-                        "required": ["artifactLocation", "region"],
-                        "properties": {
-                            "artifactLocation": {
-                                "type": "object",
-                                "required": ["uri"],
-                                "properties": {"uri": {"type": "string", "minLength": 1}},
-                                "additionalProperties": False,
-                            },
-                            "region": REGION,
-                        },
-                        "additionalProperties": False,
-                    },
-                    "logicalLocations": {
-                        "type": "array",
-                        "items": {
-                            "type": "object",
-                            "properties": {"fullyQualifiedName": {"type": "string"}},
-                            "additionalProperties": False,
-                        },
-                    },
-                },
-                "additionalProperties": False,
-            },
-        },
-        "partialFingerprints": {
-            "type": "object",
-            "required": ["primaryLocationLineHash"],
-            "additionalProperties": {"type": "string"},
-        },
-    },
-    "additionalProperties": False,
-}
-SARIF = {
-    "type": "object",
-    "required": ["$schema", "version", "runs"],
-    "properties": {
-        "$schema": {"type": "string", "pattern": "sarif-2.1.0"},
-        "version": {"const": "2.1.0"},
-        "runs": {
-            "type": "array",
-            "minItems": 1,
-            "items": {
-                "type": "object",
-                "required": ["tool", "results"],
-                "properties": {
-                    "tool": {
-                        "type": "object",
-                        "required": ["driver"],
-                        "properties": {
-                            "driver": {
-                                "type": "object",
-                                "required": ["name", "semanticVersion", "rules"],
-                                "properties": {
-                                    "name": {"type": "string"},
-                                    "version": {"type": "string"},
-                                    "semanticVersion": {"pattern": r"^\d+\.\d+\.\d+"},
-                                    "rules": {"type": "array", "uniqueItems": True, "items": RULE},
-                                },
-                                "additionalProperties": False,
-                            }
-                        },
-                    },
-                    "columnKind": {"enum": ["utf16CodeUnits", "unicodeCodePoints"]},
-                    "results": {"type": "array", "items": RESULT},
-                },
-                "additionalProperties": False,
-            },
-        },
-    },
-    "additionalProperties": False,
-}
+)
+DRIVER = record(
+    "name semanticVersion rules",
+    name=STRING,
+    version=STRING,
+    semanticVersion={"pattern": r"^\d+\.\d+\.\d+"},
+    rules=listed(RULE, uniqueItems=True),
+)
+RUN = record(
+    "tool results",
+    tool=record("driver", driver=DRIVER),
+    columnKind={"enum": ["utf16CodeUnits", "unicodeCodePoints"]},
+    results=listed(RESULT),
+)
+SARIF = record(
+    "$schema version runs",
+    **{"$schema": {**STRING, "pattern": "sarif-2.1.0"}},
+    version={"const": "2.1.0"},
+    runs=listed(RUN, minItems=1),
+)
 """What of the SARIF 2.1.0 standard Argo writes, with what GitHub's code scanning requires of it."""
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(FINDINGS)
 def test_sarif_has_the_shape_that_code_hosts_ask_for(findings):
     log = json.loads(to_sarif(findings, "missions/plan.json"))
@@ -204,7 +155,7 @@ def test_a_fingerprint_outlives_lines_before_it():
     assert fingerprint(3) == fingerprint(30)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(FINDINGS)
 def test_json_holds_all_of_every_finding(findings):
     data = json.loads(to_json(findings, "plan.json"))

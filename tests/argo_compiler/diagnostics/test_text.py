@@ -38,7 +38,7 @@ def test_place_message_line_mark_and_hint():
     ]
 
 
-@settings(deadline=None, max_examples=200)
+@settings(max_examples=200)
 @given(st.text("ab \t測é\u0301ﾊ🛢", min_size=1, max_size=12), st.data())
 def test_the_mark_is_below_what_it_means(line, data):
     start = data.draw(st.integers(0, len(line) - 1))

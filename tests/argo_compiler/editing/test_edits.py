@@ -1,6 +1,7 @@
 """Single edits: what becomes of a mission, what else changes, and what is refused."""
 
 import inspect
+from functools import partial
 
 import pytest
 
@@ -21,21 +22,14 @@ from argo_compiler.il import (
     Response,
     Task,
     TimeWindow,
-    Transition,
-    WaitRule,
 )
+from tests.mission_writing import drive, measure, wait, way
 
 HIGH = Condition(type="MEASURED_VALUE_GREATER", object_id="1", param1=5)
 DOCK = Pose(x=0, y=0, z=0)
 
 
-def way(target, *conditions):
-    return Transition(target=target, conditions=conditions)
-
-
-def task(name, *ways, **fields):
-    ways = tuple(way(w) if isinstance(w, str) else w for w in ways)
-    return Task(name=name, action=Action.MEASURE, object_id="1", transitions=ways, **fields)
+task = partial(measure, object_id="1")
 
 
 def group(name, start, end, **fields):
@@ -176,98 +170,80 @@ def test_ways_conditions_reactions_and_header():
     assert editing.set_header(changed, max_duration=None).mission.max_duration is None
 
 
-REFUSALS = [
-    (EditNotFound, "edit.unknown-task", lambda: editing.remove_task(MISSION, "Q")),
-    (EditNotFound, "edit.unknown-task", lambda: editing.set_target(MISSION, "D", 0, "Q")),
-    (EditNotFound, "edit.unknown-task", lambda: editing.set_header(MISSION, current="Q")),
-    (EditNotFound, "edit.unknown-group", lambda: editing.dissolve_group(MISSION, "Beta")),
-    (EditNotFound, "edit.unknown-transition", lambda: editing.remove_transition(MISSION, "E", 0)),
-    (EditNotFound, "edit.unknown-condition", lambda: editing.remove_condition(MISSION, "D", 1, 0)),
-    (EditNotFound, "edit.unknown-reaction", lambda: editing.remove_reaction(MISSION, "gas_leak")),
-    (EditConflict, "edit.name-taken", lambda: editing.rename_task(MISSION, "A", "B")),
-    (
-        EditConflict,
-        "edit.name-taken",
-        lambda: editing.wrap_tasks(MISSION, group("Alpha", "E", "E")),
-    ),
-    (EditConflict, "edit.group-overlap", lambda: editing.wrap_tasks(MISSION, group("X", "A", "B"))),
-    (
-        EditConflict,
-        "edit.group-overlap",
-        lambda: editing.change_group(MISSION, "Alpha/Beta", end="D"),
-    ),
-    (
-        EditConflict,
-        "edit.start-in-group",
-        lambda: editing.wrap_tasks(MISSION, group("X", "START", "A")),
-    ),
-    (EditConflict, "edit.second-default", lambda: editing.add_transition(MISSION, "A", way("C"))),
-    (EditConflict, "edit.second-default", lambda: editing.set_conditions(MISSION, "D", 0, ())),
-    (
-        EditConflict,
-        "edit.second-reaction",
-        lambda: editing.add_reaction(MISSION, Reaction(event="low_battery", response="abort")),
-    ),
-    (
-        EditConflict,
-        "edit.not-beside-group",
-        lambda: editing.add_task(MISSION, task("new"), after="D", into="Alpha"),
-    ),
-    (EditConflict, "edit.last-task", lambda: editing.remove_task(Mission(tasks=(START,)), "START")),
-    (
-        EditConflict,
-        "edit.ambiguous-task",
-        lambda: editing.remove_task(Mission(tasks=(task("A"), task("A"))), "A"),
-    ),
-    (EditConflict, "il.no-dock", lambda: editing.set_header(MISSION, dock=None)),
-    (
-        EditConflict,
-        "il.endless-group",
-        lambda: editing.change_group(MISSION, "Alpha/Beta", max_repeat_count=0),
-    ),
-    (EditConflict, "il.start-as-target", lambda: editing.set_target(MISSION, "D", 0, "START")),
-    (EditInvalid, "edit.place", lambda: editing.move_task(MISSION, "A", after="A")),
-    (EditInvalid, "edit.place", lambda: editing.move_task(MISSION, "A", after="B", first=True)),
-    (EditInvalid, "edit.value", lambda: editing.rename_task(MISSION, "A", "")),
-    (EditInvalid, "edit.value", lambda: editing.set_header(MISSION, max_duration=-1)),
-    (EditInvalid, "edit.value", lambda: read_edit('{"kind": "remove_task", "name": 3}')),
-    (EditInvalid, "edit.value", lambda: editing.rename_task(MISSION, "A", "\ud800")),
-    (EditInvalid, "edit.value", lambda: editing.rename_task(MISSION, "A", 5)),
-    (EditInvalid, "edit.value", lambda: editing.rename_group(MISSION, "Alpha", None)),
-    (EditInvalid, "edit.value", lambda: editing.set_header(MISSION, tasks=())),
-    (EditInvalid, "edit.value", lambda: editing.change_group(MISSION, "Alpha", source=None)),
-    (EditInvalid, "edit.value", lambda: editing.add_task(MISSION, {"name": "new"})),
-    (EditInvalid, "edit.value", lambda: editing.replace_task(MISSION, "A", None)),
-    (EditInvalid, "edit.value", lambda: editing.wrap_tasks(MISSION, "Alpha")),
-    (EditInvalid, "edit.value", lambda: editing.add_reaction(MISSION, "low_battery")),
-    (EditInvalid, "edit.value", lambda: editing.change_reaction(MISSION, "low_battery", "pause")),
-    (EditInvalid, "edit.value", lambda: editing.add_transition(MISSION, "D", way("A"), at="0")),
-    (EditInvalid, "edit.value", lambda: editing.set_target(MISSION, "D", "0", "A")),
-    (EditInvalid, "edit.value", lambda: editing.set_transitions(MISSION, "D", ("A",))),
-    (EditInvalid, "edit.value", lambda: editing.set_conditions(MISSION, "D", 0, ("x",))),
-    (EditInvalid, "edit.value", lambda: editing.remove_condition(MISSION, "D", 0, "0")),
-    (EditInvalid, "edit.value", lambda: apply(None, commands.RemoveTask(name="A"))),
-    (EditInvalid, "edit.value", lambda: apply(MISSION, {"kind": "remove_task", "name": "A"})),
-    (EditInvalid, "edit.value", lambda: read_edit("")),
-    (EditInvalid, "edit.value", lambda: read_edit(5)),
-    (
-        EditInvalid,
-        "edit.value",
-        lambda: read_edit('{"kind": "remove_task", "name": "A", "name": "B"}'),
-    ),
-    (
-        EditConflict,
-        "edit.name-taken",
-        lambda: editing.wrap_tasks(MISSION, group("Alpha", "B", "C")),
-    ),
-    (EditInvalid, "edit.group-order", lambda: editing.wrap_tasks(MISSION, group("X", "E", "D"))),
-    (EditInvalid, "edit.group-name", lambda: editing.rename_group(MISSION, "Alpha", "a/b")),
-    (
-        EditInvalid,
-        "il.waypoint-without-pose",
-        lambda: editing.add_task(MISSION, Task(name="new", action=Action.WAYPOINT)),
-    ),
-]
+REFUSED = {
+    EditNotFound: [
+        ("edit.unknown-task", lambda: editing.remove_task(MISSION, "Q")),
+        ("edit.unknown-task", lambda: editing.set_target(MISSION, "D", 0, "Q")),
+        ("edit.unknown-task", lambda: editing.set_header(MISSION, current="Q")),
+        ("edit.unknown-group", lambda: editing.dissolve_group(MISSION, "Beta")),
+        ("edit.unknown-transition", lambda: editing.remove_transition(MISSION, "E", 0)),
+        ("edit.unknown-condition", lambda: editing.remove_condition(MISSION, "D", 1, 0)),
+        ("edit.unknown-reaction", lambda: editing.remove_reaction(MISSION, "gas_leak")),
+    ],
+    EditConflict: [
+        ("edit.name-taken", lambda: editing.rename_task(MISSION, "A", "B")),
+        ("edit.name-taken", lambda: editing.wrap_tasks(MISSION, group("Alpha", "E", "E"))),
+        ("edit.name-taken", lambda: editing.wrap_tasks(MISSION, group("Alpha", "B", "C"))),
+        ("edit.group-overlap", lambda: editing.wrap_tasks(MISSION, group("X", "A", "B"))),
+        ("edit.group-overlap", lambda: editing.change_group(MISSION, "Alpha/Beta", end="D")),
+        ("edit.start-in-group", lambda: editing.wrap_tasks(MISSION, group("X", "START", "A"))),
+        ("edit.second-default", lambda: editing.add_transition(MISSION, "A", way("C"))),
+        ("edit.second-default", lambda: editing.set_conditions(MISSION, "D", 0, ())),
+        (
+            "edit.second-reaction",
+            lambda: editing.add_reaction(MISSION, Reaction(event="low_battery", response="abort")),
+        ),
+        (
+            "edit.not-beside-group",
+            lambda: editing.add_task(MISSION, task("new"), after="D", into="Alpha"),
+        ),
+        ("edit.last-task", lambda: editing.remove_task(Mission(tasks=(START,)), "START")),
+        (
+            "edit.ambiguous-task",
+            lambda: editing.remove_task(Mission(tasks=(task("A"), task("A"))), "A"),
+        ),
+        ("il.no-dock", lambda: editing.set_header(MISSION)),
+        (
+            "il.endless-group",
+            lambda: editing.change_group(MISSION, "Alpha/Beta", max_repeat_count=0),
+        ),
+        ("il.start-as-target", lambda: editing.set_target(MISSION, "D", 0, "START")),
+    ],
+    EditInvalid: [
+        ("edit.place", lambda: editing.move_task(MISSION, "A", after="A")),
+        ("edit.place", lambda: editing.move_task(MISSION, "A", after="B", first=True)),
+        ("edit.value", lambda: editing.rename_task(MISSION, "A", "")),
+        ("edit.value", lambda: editing.set_header(MISSION, max_duration=-1)),
+        ("edit.value", lambda: read_edit('{"kind": "remove_task", "name": 3}')),
+        ("edit.value", lambda: editing.rename_task(MISSION, "A", "\ud800")),
+        ("edit.value", lambda: editing.rename_task(MISSION, "A", 5)),
+        ("edit.value", lambda: editing.rename_group(MISSION, "Alpha", None)),
+        ("edit.value", lambda: editing.set_header(MISSION, tasks=())),
+        ("edit.value", lambda: editing.change_group(MISSION, "Alpha", source=None)),
+        ("edit.value", lambda: editing.add_task(MISSION, {"name": "new"})),
+        ("edit.value", lambda: editing.replace_task(MISSION, "A", None)),
+        ("edit.value", lambda: editing.wrap_tasks(MISSION, "Alpha")),
+        ("edit.value", lambda: editing.add_reaction(MISSION, "low_battery")),
+        ("edit.value", lambda: editing.change_reaction(MISSION, "low_battery", "pause")),
+        ("edit.value", lambda: editing.add_transition(MISSION, "D", way("A"), at="0")),
+        ("edit.value", lambda: editing.set_target(MISSION, "D", "0", "A")),
+        ("edit.value", lambda: editing.set_transitions(MISSION, "D", ("A",))),
+        ("edit.value", lambda: editing.set_conditions(MISSION, "D", 0, ("x",))),
+        ("edit.value", lambda: editing.remove_condition(MISSION, "D", 0, "0")),
+        ("edit.value", lambda: apply(None, commands.RemoveTask(name="A"))),
+        ("edit.value", lambda: apply(MISSION, {"kind": "remove_task", "name": "A"})),
+        ("edit.value", lambda: read_edit("")),
+        ("edit.value", lambda: read_edit(5)),
+        ("edit.value", lambda: read_edit('{"kind": "remove_task", "name": "A", "name": "B"}')),
+        ("edit.group-order", lambda: editing.wrap_tasks(MISSION, group("X", "E", "D"))),
+        ("edit.group-name", lambda: editing.rename_group(MISSION, "Alpha", "a/b")),
+        (
+            "il.waypoint-without-pose",
+            lambda: editing.add_task(MISSION, Task(name="new", action=Action.WAYPOINT)),
+        ),
+    ],
+}
+REFUSALS = [(kind, *case) for kind, cases in REFUSED.items() for case in cases]
 ELSEWHERE = {
     "edit.beginning",
     "edit.ends-by-condition",
@@ -365,23 +341,11 @@ def test_without_a_task_that_led_to_itself_a_run_goes_on_and_that_is_told():
 # ---- what version 3 has
 
 
-def failing(name, target):
-    return Task(
-        name=name,
-        action=Action.WAYPOINT,
-        pose=DOCK,
-        on_failure=OnFailure.BRANCH,
-        failure_target=target,
-        window=TimeWindow(latest=60, missed_target=target),
-        transitions=(Transition(target="b"),) if name == "a" else (),
-    )
-
-
 def chain():
     """a, b, c; a goes on with b when it has failed, or missed its window."""
-    last = Task(name="c", action=Action.WAYPOINT, pose=DOCK)
-    middle = last.model_copy(update={"name": "b", "transitions": (Transition(target="c"),)})
-    return Mission(tasks=(failing("a", "b"), middle, last))
+    window = TimeWindow(latest=60, missed_target="b")
+    first = drive("a", "b", on_failure=OnFailure.BRANCH, failure_target="b", window=window)
+    return Mission(tasks=(first, drive("b", "c"), drive("c")))
 
 
 @pytest.mark.rule("T8", "W5")
@@ -459,7 +423,7 @@ def test_fields_that_a_task_cannot_have_are_refused(fields, error, message):
 
 def test_a_place_is_added_at_the_end_of_a_round_and_rounds_are_planned():
     around = editing.wrap_tasks(chain(), group("G", "a", "b")).mission
-    place = Task(name="end of 'G'", action=Action.WAIT, wait=WaitRule(duration=0))
+    place = wait("end of 'G'", duration=0)
     made = editing.add_task(around, place, after="b", into="G").mission
     assert made.groups[0].end == "end of 'G'"
     held = Condition(type=ConditionType.UNREADABLE, object_id="1")

@@ -4,6 +4,7 @@ list: the rounds stay, shown by comparing runs with those of a mission that is b
 import random
 from collections import Counter
 from dataclasses import dataclass, field
+from functools import partial
 
 import pytest
 from hypothesis import given, settings
@@ -12,14 +13,12 @@ from hypothesis import strategies as st
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.editing import EditConflict, add_task, change_group, move_task, set_target
-from argo_compiler.il import Action, Group, Mission, Task, Transition
+from argo_compiler.il import Group, Mission
 from tests.argo_compiler.editing.test_runs import run, tried
 from tests.conftest import examples
+from tests.mission_writing import measure
 
-
-def task(name, *targets):
-    ways = tuple(Transition(target=target) for target in targets)
-    return Task(name=name, action=Action.MEASURE, object_id="1", transitions=ways)
+task = partial(measure, object_id="1")
 
 
 def rounds(name, start, end, count):

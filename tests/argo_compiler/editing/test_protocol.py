@@ -22,6 +22,7 @@ from argo_compiler.il import Action, EventKind, Group, Mission, Reaction, Respon
 from argo_compiler.script import format_script, import_script
 from tests.argo_compiler.script.conftest import make_catalog
 from tests.conftest import examples
+from tests.mission_writing import unplaced
 from tests.missions_sound import sound_missions
 
 CATALOG = make_catalog()
@@ -61,17 +62,14 @@ def plain(mission: Mission) -> Mission:
     """The mission without the places in the script that it is from. The unconditional transition
     of a task stands last: where it stands has no meaning (T3), and a mission does not keep where it
     stood while the task was the last one."""
-    bare = {
-        field: tuple(x.model_copy(update={"source": None}) for x in getattr(mission, field))
-        for field in ("tasks", "groups", "reactions")
-    }
-    bare["tasks"] = tuple(
+    bare = unplaced(mission)
+    tasks = tuple(
         t.model_copy(
             update={"transitions": tuple(sorted(t.transitions, key=lambda w: not w.conditions))}
         )
-        for t in bare["tasks"]
+        for t in bare.tasks
     )
-    return mission.model_copy(update=bare)
+    return bare.model_copy(update={"tasks": tasks})
 
 
 def following(mission):

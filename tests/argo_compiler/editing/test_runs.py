@@ -32,6 +32,8 @@ from argo_compiler.il import (
     WaitRule,
 )
 from tests.conftest import examples
+from tests.mission_parts import nested
+from tests.mission_writing import drive
 
 STEPS = 120
 
@@ -102,21 +104,11 @@ def random_task(names, i, rng, plain):
 
 
 def random_groups(names, rng):
-    """Ranges that lie in each other or apart, named by their nesting."""
-    kept = []
-    for _ in range(rng.randint(0, 3)):
-        first, last = sorted(rng.randrange(len(names)) for _ in range(2))
-        if not any(f < first <= e < last or first < f <= last < e for f, e in kept):
-            kept.append((first, last))
-    groups, around = [], []
-    for i, (first, last) in enumerate(sorted(kept, key=lambda r: (r[0], -r[1]))):
-        while around and around[-1][1] < first:
-            around.pop()
-        name = f"{around[-1][0]}/G{i}" if around else f"G{i}"
-        around.append((name, last))
-        count = rng.randint(1, 3)
-        groups.append(Group(name=name, start=names[first], end=names[last], max_repeat_count=count))
-    return tuple(groups)
+    ranges = ([rng.randrange(len(names)) for _ in range(2)] for _ in range(rng.randint(0, 3)))
+    return tuple(
+        Group(name=n, start=names[a], end=names[b], max_repeat_count=rng.randint(1, 3))
+        for n, a, b in nested(ranges, lambda i, *_: f"G{i}")
+    )
 
 
 def silent(mission, name):
@@ -191,8 +183,7 @@ def test_a_task_that_is_added_is_carried_out_between_what_was_there(seed, plain)
     place |= {"first": True} if where == "first" else {}
     if mission.groups and rng.random() < 0.5:
         place["into"] = rng.choice([g.name for g in mission.groups])
-    new = Task(name="new", action=Action.WAYPOINT, pose=Pose(x=0, y=0, z=0))
-    made, codes = tried(lambda: add_task(mission, new, **place))
+    made, codes = tried(lambda: add_task(mission, drive("new"), **place))
     assert codes <= {"edit.not-beside-group", "il.start-in-group"}
     if made is None:
         return

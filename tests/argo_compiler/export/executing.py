@@ -1,7 +1,5 @@
 """Argo's executor and an exported state chart, side by side on one virtual clock."""
 
-from itertools import cycle
-
 from argo_compiler.export.scxml import to_scxml
 from argo_compiler.hfsm import (
     ActionFailed,
@@ -39,25 +37,37 @@ class Both:
         self.executor = Executor(hfsm)
         self.chart = Chart(to_scxml(mission, hfsm))
         self.stopping = False
-        self.started = 0
         self.now = 0
-        self.note(self.executor.start(0))
+        self.begun = self.executor.start(0)
+        self.note(self.begun)
         self.chart.start()
         self.agree("start")
+
+    def start(self, now):
+        """What both began with when they were made."""
+        assert now == 0
+        return self.begun
 
     def note(self, commands):
         for command in commands:
             self.stopping = isinstance(command, CancelAction)
-            self.started = command.id
 
-    def at(self, now, event):
+    def handle(self, event, now):
+        over = self.executor.finished
+        commands = self.executor.handle(event, now)
+        if over:  # a chart that has ended hears nothing any more
+            return commands
+        self.now = now
         if isinstance(event, (ActionFailed, ActionStopped, ActionSucceeded)):
             self.stopping = False
-        self.now = now
-        self.note(self.executor.handle(event, now))
+        self.note(commands)
         name, data = told(event, self.chart)
         self.chart.handle(name, now, **data)
         self.agree(event)
+        return commands
+
+    def at(self, now, event):
+        self.handle(event, now)
 
     def agree(self, event):
         assert self.chart.seen() == self.seen(), (self.now, event)
@@ -81,7 +91,11 @@ class Both:
         }
 
     @property
-    def deadline(self):
+    def paused(self):
+        return self.executor.paused
+
+    @property
+    def next_deadline(self):
         due = [self.executor.next_deadline, self.chart.deadline]
         return min((at for at in due if at is not None), default=None)
 
@@ -103,53 +117,3 @@ def told(event, chart):
         case ActionStopped():
             return "action.stopped", {}
     return PLAIN[type(event)], {}
-
-
-def play(mission, doings, script, steps=40):
-    """Drives both machines through a mission; returns them. `doings` and `script` are those of
-    `random_missions`."""
-    both = Both(mission)
-    doings = cycle(doings)
-    script = list(script)
-    at, doing, ends, token, stops = 0, None, None, None, False
-    upcoming = []
-    for delay, event in script:
-        at += delay
-        upcoming.append((at, GiveBack() if isinstance(event, GiveBack) else event))
-    for _ in range(steps):
-        executor = both.executor
-        if executor.finished:
-            break
-        running = executor.running
-        if running is None:
-            ends, token = None, None
-        elif both.started != token:
-            doing, token, stops = next(doings), both.started, False
-            ends = both.now + doing.seconds
-        if running is not None and both.stopping and not stops:
-            stops, ends = True, both.now + doing.clean_up
-        due = [(ends, 0)] if ends is not None else []
-        if upcoming:
-            due.append((upcoming[0][0], 1))
-        if both.deadline is not None:
-            due.append((max(both.deadline, both.now), 2))
-        if not due:
-            break
-        now, what = min(due)
-        if what == 0:
-            event = end_of(running, doing, stops)
-            ends = None
-        else:
-            event = upcoming.pop(0)[1] if what == 1 else Tick()
-        both.at(now, event)
-    return both
-
-
-def end_of(task, doing, stopped):
-    if stopped and not doing.late:
-        return ActionStopped(task.name)
-    if doing.failed:
-        return ActionFailed(task.name, "failed", unreadable=doing.unreadable)
-    measures = task.object_id is not None
-    value = doing.value if measures else None
-    return ActionSucceeded(task.name, value, abnormal=doing.abnormal and value is not None)

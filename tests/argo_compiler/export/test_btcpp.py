@@ -7,7 +7,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from argo_compiler.checks import check
-from argo_compiler.diagnostics import DiagnosticError, Severity
+from argo_compiler.diagnostics import DiagnosticError, has_errors
 from argo_compiler.export.btcpp import to_btcpp
 from argo_compiler.il import (
     EventKind,
@@ -18,22 +18,22 @@ from argo_compiler.il import (
     Reaction,
     Response,
     Task,
-    Transition,
 )
 from tests.argo_compiler.export import missions as m
 from tests.argo_compiler.export.behaviour_tree import Interpreter, validate
 from tests.argo_compiler.export.carried import OUTCOMES, carried_missions, executed
 from tests.conftest import examples
+from tests.mission_writing import drive as task
 
 STEPS = 40
 
 
 def sound(mission):
-    assume(not any(f.severity is Severity.ERROR for f in check(mission)))
+    assume(not has_errors(check(mission)))
     return mission
 
 
-@settings(max_examples=examples(80), deadline=None)
+@settings(max_examples=examples(80))
 @given(st.one_of(m.structured_missions(), carried_missions(), carried_missions()), m.outcome_lists)
 def test_tree_does_what_the_executor_does(mission, outcomes):
     sound(mission)
@@ -44,7 +44,7 @@ def test_tree_does_what_the_executor_does(mission, outcomes):
         assert OUTCOMES[outcome - 1] == expected[1]
 
 
-@settings(max_examples=examples(40), deadline=None)
+@settings(max_examples=examples(40))
 @given(m.missions(), m.outcome_lists)
 def test_any_mission_is_refused_or_said_right(mission, outcomes):
     sound(mission)
@@ -57,11 +57,6 @@ def test_any_mission_is_refused_or_said_right(mission, outcomes):
             assert any(name in diagnostic.message for name in back)
         return
     assert Interpreter(text, cycle(outcomes)).run(STEPS)[0] == executed(mission, outcomes, STEPS)[0]
-
-
-def task(name, *targets, **fields):
-    ways = tuple(Transition(target=target) for target in targets)
-    return Task(name=name, action="WAYPOINT", pose=m.HERE, transitions=ways, **fields)
 
 
 def codes(mission):
@@ -98,7 +93,7 @@ def test_durations_that_a_timeout_node_does_not_take():
 def test_any_name_is_text(name):
     group = Group(name="G" + name.replace("/", ""), start=name, end=name, max_repeat_count=2)
     mission = Mission(tasks=(task(name),), groups=(group,), designation=name)
-    assume(not any(f.severity is Severity.ERROR for f in check(mission)))
+    assume(not has_errors(check(mission)))
     root = validate(to_btcpp(mission))
     shown = root.find(".//DriveTo").attrib["name"]
     printable = all(c in "\t\n\r" or " " <= c < "\x7f" for c in name)

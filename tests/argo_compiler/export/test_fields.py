@@ -28,6 +28,7 @@ from argo_compiler.il import (
     WaitRule,
 )
 from argo_compiler.ros import ros2_types, to_message
+from tests.mission_writing import drive, measure, wait, way
 
 HERE, THERE = Pose(x=0, y=0, z=0), Pose(x=1, y=2, z=3, yaw=1)
 HIGH = Condition(type=ConditionType.GREATER, object_id="1", param1=5.0)
@@ -43,37 +44,12 @@ RETURN = Reaction(event=EventKind.GAS_LEAK, response=Response.RETURN)
 
 def mission(a=(), b=(), w=(), group=(), reactions=(), condition=HIGH, last="C", **fields):
     """A measurement, a drive and a wait in a group, another measurement, and what is given."""
-    way = Transition(target=last, conditions=(condition,))
     tasks = (
-        Task(name="S", action=Action.START, transitions=(Transition(target="A"),)),
-        Task(
-            **{
-                "name": "A",
-                "action": Action.MEASURE,
-                "object_id": "1",
-                "transitions": (way, Transition(target="B")),
-                **dict(a),
-            }
-        ),
-        Task(
-            **{
-                "name": "B",
-                "action": Action.WAYPOINT,
-                "pose": HERE,
-                "transitions": (Transition(target="W"),),
-                **dict(b),
-            }
-        ),
-        Task(
-            **{
-                "name": "W",
-                "action": Action.WAIT,
-                "wait": WaitRule(duration=5),
-                "transitions": (Transition(target=last),),
-                **dict(w),
-            }
-        ),
-        Task(name=last, action=Action.MEASURE, object_id="2"),
+        Task(name="S", action=Action.START, transitions=(way("A"),)),
+        measure("A", way(last, condition), "B", **{"object_id": "1", **dict(a)}),
+        drive("B", "W", **dict(b)),
+        wait("W", last, **{"duration": 5, **dict(w)}),
+        measure(last, object_id="2"),
     )
     around = {"name": "G", "start": "B", "end": "W", "max_repeat_count": 2, **dict(group)}
     given = {"dock": HERE, "reactions": reactions, **fields}

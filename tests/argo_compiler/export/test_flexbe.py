@@ -12,7 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from argo_compiler.checks import check
-from argo_compiler.diagnostics import DiagnosticError, Severity
+from argo_compiler.diagnostics import DiagnosticError, has_errors
 from argo_compiler.export.flexbe import to_flexbe
 from argo_compiler.hfsm import lower
 from argo_compiler.il import EventKind, Group, Mission, Reaction, Response, Task
@@ -184,7 +184,7 @@ def run(package, mission, outcomes):
     return robot.log, outcome
 
 
-@settings(max_examples=examples(60), deadline=None)
+@settings(max_examples=examples(60))
 @given(mission=st.one_of(m.missions(), carried_missions(windows=False)), outcomes=m.outcome_lists)
 def test_behaviour_does_what_the_executor_does(package, mission, outcomes):
     sound(mission)
@@ -199,7 +199,7 @@ def test_names_are_data(package, name):
     group = Group(name="G" + name.replace("/", ""), start=name, end=name, max_repeat_count=2)
     task = Task(name=name, action="MEASURE", object_id=name)
     mission = Mission(tasks=(task,), groups=(group,), designation=name)
-    assume(not any(f.severity is Severity.ERROR for f in check(mission)))
+    assume(not has_errors(check(mission)))
     assert run(package, mission, [(1, 2, False)]) == ([(0, name), (1, name)], "completed")
 
 

@@ -4,20 +4,21 @@ from hypothesis import strategies as st
 from lark import Lark, Transformer
 
 from argo_compiler.checks import check
-from argo_compiler.diagnostics import Severity
+from argo_compiler.diagnostics import has_errors
 from argo_compiler.export import to_dot
 from argo_compiler.hfsm import lower
 from argo_compiler.il import (
+    Condition,
+    ConditionType,
     EventKind,
     Group,
     Mission,
     OnFailure,
     Reaction,
     Response,
-    Task,
-    Transition,
 )
-from tests.argo_compiler.export import missions as m
+from tests.mission_parts import HERE
+from tests.mission_writing import drive, measure, way
 
 # From the grammar in Graphviz' documentation, for the part of the language that is used.
 GRAMMAR = r"""
@@ -76,28 +77,17 @@ def shown(label):
     return out.replace("&amp;", "&")
 
 
+LOW = Condition(type=ConditionType.LESS, object_id="1", param1=2)
+
+
 @pytest.fixture
 def mission():
-    tasks = (
-        Task(name="A", action="WAYPOINT", pose=m.HERE, transitions=(Transition(target="B"),)),
-        Task(
-            name="B",
-            action="MEASURE",
-            object_id="1",
-            on_failure=OnFailure.RETURN,
-            transitions=(
-                Transition(
-                    target="A",
-                    conditions=({"type": "MEASURED_VALUE_LESS", "object_id": "1", "param1": 2},),
-                ),
-            ),
-        ),
-    )
+    measured = measure("B", way("A", LOW), object_id="1", on_failure=OnFailure.RETURN)
     return Mission(
-        tasks=tasks,
+        tasks=(drive("A", "B"), measured),
         groups=(Group(name="G", start="A", end="B", max_repeat_duration=60),),
         reactions=(Reaction(event=EventKind.GAS_LEAK, response=Response.ABORT),),
-        dock=m.HERE,
+        dock=HERE,
     )
 
 
@@ -128,9 +118,8 @@ def test_edges_say_why(mission):
 @given(st.text(min_size=1))
 def test_any_name_is_a_label(name):
     group = Group(name="G" + name.replace("/", ""), start=name, end=name, max_repeat_count=2)
-    task = Task(name=name, action="MEASURE", object_id="1")
-    mission = Mission(tasks=(task,), groups=(group,), designation=name)
-    assume(not any(f.severity is Severity.ERROR for f in check(mission)))
+    mission = Mission(tasks=(measure(name, object_id="1"),), groups=(group,), designation=name)
+    assume(not has_errors(check(mission)))
     graph = PARSER.parse(to_dot(lower(mission)))
     cluster = next(item for item in graph if item[0] == "cluster")
     assert len([item for item in graph if item[0] in ("node", "cluster")]) == 6

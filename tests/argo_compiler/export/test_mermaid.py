@@ -5,7 +5,6 @@ import pytest
 from argo_compiler.export import to_mermaid
 from argo_compiler.hfsm import lower
 from argo_compiler.il import (
-    Action,
     Condition,
     ConditionType,
     EventKind,
@@ -18,8 +17,8 @@ from argo_compiler.il import (
     Task,
     TimeWindow,
     Transition,
-    WaitRule,
 )
+from tests.mission_writing import measure, wait
 
 STATE = re.compile(r'state "((?:[\w ,().-]|#\d+;)*)" as (\w+)( \{)?')
 CHOICE = re.compile(r"state (\w+) <<choice>>")
@@ -51,19 +50,15 @@ def read(text):
     return parents, labels, arrows
 
 
-def measuring(name, *ways, **fields):
-    return Task(name=name, action=Action.MEASURE, object_id=name, transitions=ways, **fields)
-
-
 @pytest.fixture
 def mission():
     hot = Condition(type=ConditionType.GREATER, object_id="B", param1=7.5, max_age=60)
     return Mission(
         tasks=(
-            measuring("A", Transition(target="B")),
-            measuring("B", Transition(target="C"), Transition(target="D", conditions=(hot,))),
-            measuring("C", Transition(target="D")),
-            measuring("D"),
+            measure("A", "B"),
+            measure("B", "C", Transition(target="D", conditions=(hot,))),
+            measure("C", "D"),
+            measure("D"),
         ),
         groups=(
             Group(name="G", start="A", end="C", max_repeat_duration=60),
@@ -134,8 +129,8 @@ def test_mission_of_start_only():
 
 def test_failures_and_reactions():
     tasks = (
-        measuring("A", Transition(target="B"), on_failure=OnFailure.RETURN),
-        measuring("B", on_failure=OnFailure.ABORT),
+        measure("A", "B", on_failure=OnFailure.RETURN),
+        measure("B", on_failure=OnFailure.ABORT),
     )
     reaction = Reaction(
         event=EventKind.GAS_LEAK,
@@ -158,22 +153,17 @@ def test_version_3_is_on_the_boxes_and_arrows():
     window = TimeWindow(earliest=60, latest=90, missed_target="D")
     mission = Mission(
         tasks=(
-            measuring("A", Transition(target="B"), velocity=0.3, time_limit=50, optional=True),
-            measuring(
+            measure("A", "B", velocity=0.3, time_limit=50, optional=True),
+            measure(
                 "B",
-                Transition(target="C"),
+                "C",
                 window=window,
                 on_failure=OnFailure.BRANCH,
                 failure_target="C",
                 priority=3,
             ),
-            Task(
-                name="C",
-                action=Action.WAIT,
-                wait=WaitRule(event=EventKind.ALL_CLEAR, conditions=(unreadable,), limit=20),
-                transitions=(Transition(target="D"),),
-            ),
-            Task(name="D", action=Action.WAIT, wait=WaitRule(duration=5)),
+            wait("C", "D", event=EventKind.ALL_CLEAR, conditions=(unreadable,), limit=20),
+            wait("D", duration=5),
         ),
         groups=(Group(name="G", start="A", end="C", max_repeat_count=4, every=600, until=(hot,)),),
     )

@@ -1,13 +1,14 @@
 """The exported state chart in an engine of its own, beside the executor."""
 
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 
 import pytest
 from hypothesis import assume, given, settings
 
 from argo_compiler.base.model import Pose
 from argo_compiler.checks import check
-from argo_compiler.diagnostics import Severity
+from argo_compiler.diagnostics import has_errors
 from argo_compiler.export.scxml import to_scxml
 from argo_compiler.export.scxml_data import DUES
 from argo_compiler.hfsm import (
@@ -15,6 +16,7 @@ from argo_compiler.hfsm import (
     ActionStopped,
     ActionSucceeded,
     Cancel,
+    GiveBack,
     Occurred,
     Outcome,
     Pause,
@@ -32,35 +34,39 @@ from argo_compiler.il import (
     Task,
     TimeWindow,
     Transition,
-    WaitRule,
 )
 from tests.argo_compiler.export.charts import ARGO, NS, Chart
-from tests.argo_compiler.export.executing import Both, play
+from tests.argo_compiler.export.executing import Both
 from tests.argo_compiler.hfsm.random_missions import busy_cases, cases
+from tests.argo_compiler.hfsm.world import World
 from tests.conftest import examples
 from tests.mission_parts import HERE
+from tests.mission_writing import measure as a
+from tests.mission_writing import wait
+
+
+def without_handwork(case):
+    """The case without what a chart can't be told: what was done by hand."""
+    script = [(at, GiveBack() if isinstance(one, GiveBack) else one) for at, one in case.script]
+    return replace(case, script=script)
 
 
 def valid(mission):
-    return not any(found.severity is Severity.ERROR for found in check(mission))
+    return not has_errors(check(mission))
 
 
-@settings(max_examples=examples(50), deadline=None)
+@settings(max_examples=examples(50))
 @given(cases())
 def test_chart_does_what_the_executor_does(case):
     assume(valid(case.mission))
-    play(case.mission, case.doings, case.script)
+    World(Both(case.mission), without_handwork(case)).run()
 
 
-@settings(max_examples=examples(30), deadline=None)
+@settings(max_examples=examples(30))
 @given(busy_cases())
 def test_chart_is_interrupted_as_the_executor_is(case):
     assume(valid(case.mission))
-    play(case.mission, case.doings, case.script)
-
-
-def a(name, **fields):
-    return Task(name=name, action="MEASURE", object_id=name, **fields)
+    World(Both(case.mission), without_handwork(case)).run()
 
 
 def reaction(event, response, **fields):
@@ -121,17 +127,13 @@ def test_recharging_and_going_on():
 
 def test_limits_windows_waits_and_planned_rounds_come_as_time_outs():
     tasks = (
-        a("A", time_limit=4, retries=1, window=TimeWindow(earliest=2)),
-        Task(name="T", action="WAIT", wait=WaitRule(event="all_clear", limit=5)),
-        a("B", window=TimeWindow(latest=40, missed_target="C")),
+        a("A", "T", time_limit=4, retries=1, window=TimeWindow(earliest=2)),
+        wait("T", "B", event="all_clear", limit=5),
+        a("B", "C", window=TimeWindow(latest=40, missed_target="C")),
         a("C"),
     )
-    tasks = [
-        task.model_copy(update={"transitions": tuple(Transition(target=t) for t in then)})
-        for task, then in zip(tasks, ("T", "B", "C", ""), strict=True)
-    ]
     group = Group(name="G", start="A", end="T", max_repeat_count=2, every=30)
-    both = Both(Mission(tasks=tuple(tasks), groups=(group,)))
+    both = Both(Mission(tasks=tasks, groups=(group,)))
     seen = []
     for now in (6, 7, 11, 16, 30, 31, 40, 41):
         stops = ActionStopped(both.executor.running.name) if both.stopping else Tick()
@@ -157,8 +159,8 @@ def test_window_that_is_over_before_its_round_begins(target):
         Group(name="G/H", start="A", end="A", max_repeat_count=2, every=4, max_repeat_duration=9),
     )
     tasks = (
-        a("A", window=window, transitions=(Transition(target="B"),)),
-        a("B", transitions=(Transition(target="C"),)),
+        a("A", "B", window=window),
+        a("B", "C"),
         a("C"),
     )
     both = Both(Mission(tasks=tasks, groups=groups))
@@ -234,7 +236,7 @@ def test_the_level_of_the_battery_is_told(response):
 
 
 def test_timers_of_the_engine():
-    tasks = tuple(Task(name=n, action="MEASURE", object_id=n) for n in "AB")
+    tasks = (a("A"), a("B"))
     groups = (
         Group(name="G", start="A", end="A", max_repeat_duration=13),
         Group(name="H", start="B", end="B", max_repeat_duration=5, stop=Stop.SOFT),
@@ -255,7 +257,7 @@ def test_timers_of_the_engine():
 def test_timers_of_tasks_are_those_that_the_mission_has():
     tasks = (
         a("A", time_limit=4, window=TimeWindow(latest=9)),
-        Task(name="T", action="WAIT", wait=WaitRule(event="all_clear", limit=5)),
+        wait("T", event="all_clear", limit=5),
     )
     group = Group(name="G", start="A", end="T", max_repeat_count=2, every=30)
     hold = reaction("gas_leak", "pause", hold_limit=5)

@@ -30,7 +30,7 @@ def paths(data, at=()):
             yield from paths(inner, (*at, step))
 
 
-@settings(deadline=None, max_examples=200)
+@settings(max_examples=200)
 @given(DATA, LAYOUTS, st.booleans())
 def test_what_stands_at_a_place_is_the_value_of_its_path(data, layout, ascii):
     text = json.dumps(data, ensure_ascii=ascii, **layout)
@@ -58,7 +58,7 @@ def split_key(shown):
     return key, shown[end:].lstrip(": ")
 
 
-@settings(deadline=None, max_examples=100)
+@settings(max_examples=100)
 @given(DATA, LAYOUTS)
 def test_written_data_have_no_duplicates(data, layout):
     assert find_duplicates(JsonText(json.dumps(data, **layout)), 9) == {}

@@ -182,7 +182,7 @@ def routes(draw):
     return Mission(tasks=tasks, groups=draw(st.sampled_from([(), (group,)])))
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(routes())
 def test_each_way_keeps_its_velocity_or_its_task_is_named(mission):
     there, differ = of_ways_there(mission)
@@ -192,7 +192,7 @@ def test_each_way_keeps_its_velocity_or_its_task_is_named(mission):
         assert now[target] == old or target in differ
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(routes())
 def test_both_conventions_say_the_same_where_one_can_say_what_the_other_does(mission):
     on, differ = of_ways_on(mission)

@@ -166,7 +166,7 @@ def test_a_full_disk_leaves_all_old_or_all_new():
     old = {"data.json": b"o" * 7 * _PAGE, "page.html": b"o" * 2 * _PAGE}
     kept = set()
 
-    @settings(deadline=None, max_examples=examples(60))
+    @settings(max_examples=examples(60))
     @given(room=st.integers(0, 30), sizes=st.lists(st.integers(0, 9), min_size=3, max_size=3))
     def check(room, sizes):
         new = {name: b"n" * size * _PAGE for name, size in zip(FILES, sizes, strict=True)}

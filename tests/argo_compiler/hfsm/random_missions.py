@@ -24,7 +24,6 @@ from argo_compiler.il import (
     Mission,
     Mode,
     OnFailure,
-    Reaction,
     Response,
     Task,
     WaitRule,
@@ -34,6 +33,7 @@ from tests.mission_parts import (
     OBJECTS,
     conditions_of_readings,
     groups_over,
+    reactions_to,
     starts,
     tasks_named,
     transitions,
@@ -126,27 +126,13 @@ def missions(draw, events=True):
 @st.composite
 def reactions(draw, events=(*EVENTS, EventKind.TIME_UP), least=0):
     kinds = draw(st.lists(st.sampled_from(events), unique=True, min_size=least, max_size=4))
-    found = []
-    for event in kinds:
-        response = draw(st.sampled_from(Response))
-        others = [other for other in EVENTS if other in events and other is not event]
-        drives = response in (Response.RETURN, Response.SAFE_AREA)
-        until = draw(st.sampled_from([None, *others]))
-        holds = response is Response.PAUSE or (drives and until is not None)
-        limit = draw(st.sampled_from([None, 1, 2, 4])) if holds else None
-        found.append(
-            Reaction(
-                event=event,
-                response=response,
-                pose=HERE if response is Response.SAFE_AREA else None,
-                until=until if holds else None,
-                afterwards=draw(st.sampled_from(Afterwards)),
-                hold_limit=limit,
-                on_limit=draw(st.sampled_from(Afterwards)) if limit else Afterwards.WAIT,
-                priority=draw(st.one_of(st.none(), st.integers(0, 2))),
-            )
-        )
-    return found
+    return [draw(_reactions_to(event, [e for e in EVENTS if e in events])) for event in kinds]
+
+
+def _reactions_to(event, awaited):
+    untils = [None, *(other for other in awaited if other is not event)]
+    priorities = [None, None, 0, 1, 2]
+    return reactions_to(event, Response, untils, [None, 1, 2, 4], priorities, Afterwards)
 
 
 @st.composite

@@ -31,21 +31,21 @@ def machine(mission):
     return lower(mission)
 
 
-@settings(max_examples=examples(100), deadline=None)
+@settings(max_examples=examples(100))
 @given(cases(), st.sampled_from(Hears))
 def test_machine_does_what_the_rules_say(case, hears):
     machine(case.mission)
     compare(case, hears)
 
 
-@settings(max_examples=examples(100), deadline=None)
+@settings(max_examples=examples(100))
 @given(busy_cases())
 def test_interruptions_are_what_the_rules_say(case):
     machine(case.mission)
     compare(case, Hears.DEADLINES)
 
 
-@settings(max_examples=examples(40), deadline=None)
+@settings(max_examples=examples(40))
 @given(cases())
 def test_more_ticks_change_nothing(case):
     hfsm = machine(case.mission)
@@ -58,7 +58,7 @@ def test_more_ticks_change_nothing(case):
 
 
 @pytest.mark.rule("H1", "H2")
-@settings(max_examples=examples(60), deadline=None)
+@settings(max_examples=examples(60))
 @given(cases(), st.integers(0, 30), st.sampled_from([0, 0, 7]))
 def test_restored_machine_goes_on_alike(case, count, away):
     """Against a machine that a person pauses for as long as the other one is away."""
@@ -107,7 +107,7 @@ def test_restored_machine_goes_on_alike(case, count, away):
     assert list(other.trace[before[1] :]) == expected
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(missions())
 def test_every_state_carries_what_it_came_from(mission):
     hfsm = machine(mission)

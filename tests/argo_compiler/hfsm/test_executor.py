@@ -20,10 +20,11 @@ from argo_compiler.hfsm import (
 )
 from argo_compiler.hfsm.progress import Waiting
 from argo_compiler.il import EventKind, Group, Stop
+from tests.argo_compiler.hfsm.play import build
 
 
 @pytest.fixture
-def mission(build):
+def mission():
     """A, then B and C in a group for 10 s, then D."""
     return build("A B C D", Group(name="G", start="B", end="C", max_repeat_duration=10))
 
@@ -59,7 +60,7 @@ class TestCommands:
         assert [entry.time for entry in executor.trace[-2:]] == [11, 20]
         assert executor.trace[-1].cause is Cause.LATE
 
-    def test_late_driver_starts_and_cancels_nothing_in_between(self, build):
+    def test_late_driver_starts_and_cancels_nothing_in_between(self):
         group = Group(name="G", start="A", end="A", max_repeat_duration=1)
         mission = build("A", group, ways={"A": ["A"]})
         executor = Executor(lower(mission))
@@ -69,13 +70,13 @@ class TestCommands:
         assert executor.handle(ActionStopped("A"), 3.5) == (StartAction(mission.tasks[0], 2),)
         assert [entry.time for entry in executor.trace] == [0, 1, 2, 3]
 
-    def test_task_that_leads_to_itself_is_started_again(self, build):
+    def test_task_that_leads_to_itself_is_started_again(self):
         mission = build("A", ways={"A": ["A"]})
         executor = Executor(lower(mission))
         executor.start(0)
         assert executor.handle(ActionSucceeded("A"), 0) == (StartAction(mission.tasks[0], 2),)
 
-    def test_end_of_the_mission(self, build):
+    def test_end_of_the_mission(self):
         executor = Executor(lower(build("A")))
         executor.start(0)
         assert executor.handle(ActionFailed("A", "blocked"), 1) == ()
@@ -93,7 +94,7 @@ class TestViews:
         assert executor.values == {}
         assert executor.trace == ()
 
-    def test_configuration_and_rounds(self, build):
+    def test_configuration_and_rounds(self):
         groups = (
             Group(name="G", start="A", end="B", max_repeat_count=2),
             Group(name="G/H", start="A", end="A", max_repeat_count=2),
@@ -106,7 +107,7 @@ class TestViews:
         executor.handle(ActionSucceeded("A"), 2)
         assert executor.configuration == ("mission", "group:G", "task:B")
 
-    def test_deadline_is_the_earliest_of_all_hard_groups(self, build):
+    def test_deadline_is_the_earliest_of_all_hard_groups(self):
         groups = (
             Group(name="G", start="A", end="B", max_repeat_duration=8),
             Group(name="G/H", start="A", end="A", max_repeat_duration=5),
@@ -136,7 +137,7 @@ class TestMisuse:
         with pytest.raises(ValueError, match="started already"):
             executor.start(0)
 
-    def test_after_the_end(self, build):
+    def test_after_the_end(self):
         executor = Executor(lower(build("A")))
         executor.start(0)
         executor.handle(ActionSucceeded("A"), 1)
@@ -221,7 +222,7 @@ class TestProgress:
         assert later.start(70) == (StartAction(mission.tasks[3], 3),)
         assert later.trace[-1].time == 70
 
-    def test_ended_mission_stays_ended(self, build):
+    def test_ended_mission_stays_ended(self):
         hfsm = lower(build("A"))
         executor = Executor(hfsm)
         executor.start(0)

@@ -35,18 +35,17 @@ from argo_compiler.hfsm.progress import (
     Waiting,
 )
 from argo_compiler.il import (
-    Action,
     EventKind,
     Group,
     Mission,
     OnFailure,
     Reaction,
     Response,
-    Task,
-    Transition,
 )
 from tests.argo_compiler.hfsm.random_missions import missions, outcome_lists
 from tests.conftest import examples
+from tests.mission_writing import drive
+from tests.mission_writing import measure as task
 
 VISITS = 40
 PAUSE = Pause()
@@ -134,21 +133,27 @@ def order(*executors):
     return [(e.task, e.failure is not None) for executor in executors for e in executor.ended]
 
 
-@pytest.mark.rule("H2", "H3", "H4", "H5")
-@settings(max_examples=examples(200), deadline=None)
-@given(missions(events=False), outcome_lists, st.integers(0, 60), st.data())
-def test_before_by_hand_and_after_are_the_whole_mission(mission, outcomes, at, data):
+def whole_and_interrupted(mission, outcomes, at, by=PAUSE):
+    """Return the mission carried out as a whole, and up to a time at which a person interrupts it,
+    each as the executor and its site; and the time of the interruption."""
     assume(not has_errors(check(mission)))
     whole, once = Executor(lower(mission)), Site(outcomes)
     whole.start(0)
     once.run(whole, 0, VISITS)
-
-    first, site = Executor(lower(mission)), Site(outcomes)
-    first.start(0)
+    live, site = Executor(lower(mission)), Site(outcomes)
+    live.start(0)
     now = 0
-    while not first.finished and now < at and visits_of(first.progress()) < VISITS:
-        now = site.step(first, now, until=at)
-    site.pause(first, now)
+    while not live.finished and now < at and visits_of(live.progress()) < VISITS:
+        now = site.step(live, now, until=at)
+    site.pause(live, now, by)
+    return (whole, once), (live, site), now
+
+
+@pytest.mark.rule("H2", "H3", "H4", "H5")
+@settings(max_examples=examples(200))
+@given(missions(events=False), outcome_lists, st.integers(0, 60), st.data())
+def test_before_by_hand_and_after_are_the_whole_mission(mission, outcomes, at, data):
+    (whole, once), (first, site), _ = whole_and_interrupted(mission, outcomes, at)
     before = first.progress()
     by_hand = list(done_by_hand(data, site, once.log))
     text = hand_over(before, by_hand).model_dump_json()
@@ -171,21 +176,11 @@ def test_before_by_hand_and_after_are_the_whole_mission(mission, outcomes, at, d
 
 
 @pytest.mark.rule("H7")
-@settings(max_examples=examples(100), deadline=None)
+@settings(max_examples=examples(100))
 @given(missions(events=False), outcome_lists, st.integers(0, 60), st.integers(0, 30), st.data())
 def test_giving_back_is_a_progress_handed_over_and_gone_on_from(mission, outcomes, at, more, data):
     """A machine that was taken over and given back stands like one restored meanwhile."""
-    assume(not has_errors(check(mission)))
-    whole, once = Executor(lower(mission)), Site(outcomes)
-    whole.start(0)
-    once.run(whole, 0, VISITS)
-
-    live, site = Executor(lower(mission)), Site(outcomes)
-    live.start(0)
-    now = 0
-    while not live.finished and now < at and visits_of(live.progress()) < VISITS:
-        now = site.step(live, now, until=at)
-    site.pause(live, now, TakeOver())
+    (_, once), (live, site), now = whole_and_interrupted(mission, outcomes, at, TakeOver())
     before = live.progress()
     by_hand = tuple(done_by_hand(data, site, once.log))
     away = sum(done.duration for done in by_hand) + more
@@ -218,11 +213,6 @@ def done_by_hand(data, site, log):
                 left, site.spent, site.interrupted = seconds - site.spent, 0, None
             yield ByHand(task=name, value=value, duration=left, skipped=skipped)
             site.executions[name] += 1
-
-
-def task(name, *targets, **fields):
-    ways = tuple(Transition(target=target) for target in targets)
-    return Task(name=name, action=Action.MEASURE, object_id=name, transitions=ways, **fields)
 
 
 def line(*groups, **fields):
@@ -407,8 +397,7 @@ class TestMatch:
     @pytest.mark.rule("H6")
     def test_what_was_done_by_hand_and_does_not_fit(self):
         done = (ByHand(task="Z"), ByHand(task="W", value=3))
-        waypoint = Task(name="W", action=Action.WAYPOINT, pose=Pose(x=0, y=0, z=0))
-        mission = line().model_copy(update={"tasks": (*line().tasks, waypoint)})
+        mission = line().model_copy(update={"tasks": (*line().tasks, drive("W"))})
         matched, codes = self.codes(Progress(active="A", by_hand=done), mission)
         assert matched.by_hand == done[1:]
         assert codes == ["handover.by-hand-gone", "handover.by-hand-value"]

@@ -21,7 +21,8 @@ from argo_compiler.il import (
     Reaction,
     Response,
 )
-from tests.argo_compiler.hfsm.play import Play, badly, stopped, task, well
+from tests.argo_compiler.hfsm.play import Play, badly, stopped, well
+from tests.mission_writing import measure as task
 
 DOCK = Pose(x=1, y=0, z=0)
 SHELTER = Pose(x=2, y=0, z=0)

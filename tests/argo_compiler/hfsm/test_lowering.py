@@ -12,10 +12,11 @@ from argo_compiler.hfsm import (
     lower,
 )
 from argo_compiler.il import Group, Mission, Stop
+from tests.argo_compiler.hfsm.play import build
 
 
 @pytest.fixture
-def nested(build):
+def nested():
     return build(
         "A B C D",
         Group(name="G", start="A", end="C", max_repeat_duration=60, source=Span(line=4, column=1)),
@@ -61,7 +62,7 @@ def test_rounds_end_from_the_inside_out(nested):
     assert outer.timeout == StateTransition(kind=TransitionKind.TIMEOUT, completes="group:G")
 
 
-def test_task_and_group_may_have_the_same_name(build):
+def test_task_and_group_may_have_the_same_name():
     hfsm = lower(build("A B", Group(name="A", start="A", end="A", max_repeat_count=2)))
     assert [c.id for c in hfsm.composites] == ["mission", "group:A"]
 
@@ -90,7 +91,7 @@ def test_file_with_broken_references_is_refused(nested, old, new):
         Hfsm.model_validate_json(text.replace(old, new))
 
 
-def test_a_thousand_nested_groups(build):
+def test_a_thousand_nested_groups():
     groups = (
         Group(name="/".join(["G"] * depth), start="B", end="C", max_repeat_duration=1 + depth)
         for depth in range(1, 1001)
@@ -108,7 +109,7 @@ def test_a_thousand_nested_groups(build):
     assert executor.active == "D"
 
 
-def test_ten_thousand_tasks(build):
+def test_ten_thousand_tasks():
     names = [f"T{i}" for i in range(10_000)]
     groups = (
         Group(name=f"G{i}", start=f"T{i}", end=f"T{i + 8}", max_repeat_count=2)

@@ -39,34 +39,19 @@ from argo_compiler.il import (
     Response,
     Task,
     TimeWindow,
-    Transition,
-    WaitRule,
 )
-from tests.argo_compiler.hfsm.play import Play, badly, stopped, task, well
+from tests.argo_compiler.hfsm.play import Play, badly, stopped, well
+from tests.mission_writing import measure as task
+from tests.mission_writing import wait
+from tests.mission_writing import way as when
 
 CLEAR = Occurred(EventKind.ALL_CLEAR)
 DOCK = Pose(x=1, y=0, z=0)
 HIGH = Condition(type=ConditionType.GREATER, object_id="A", param1=5)
 
 
-def wait(name, *targets, window=None, on_failure=OnFailure.CONTINUE, **rule):
-    ways = tuple(Transition(target=target) for target in targets)
-    return Task(
-        name=name,
-        action=Action.WAIT,
-        wait=WaitRule(**rule),
-        window=window,
-        on_failure=on_failure,
-        transitions=ways,
-    )
-
-
 def plan(*tasks, **fields):
     return Mission(tasks=tasks, dock=DOCK, **fields)
-
-
-def when(target, *conditions):
-    return Transition(target=target, conditions=conditions)
 
 
 class TestWaits:
@@ -139,18 +124,17 @@ class TestWaits:
 
     @pytest.mark.rule("W3", "T7", "T8")
     def test_limit_leads_to_the_failure_branch(self):
-        waiting = wait(
-            "W", "A", event=EventKind.ALL_CLEAR, limit=10, on_failure=OnFailure.BRANCH
-        ).model_copy(update={"failure_target": "B"})
+        branch = {"on_failure": OnFailure.BRANCH, "failure_target": "B"}
+        waiting = wait("W", "A", event=EventKind.ALL_CLEAR, limit=10, **branch)
         play = Play(plan(waiting, task("A"), task("B")))
         assert play.at(10, Tick()) == ["+B"]
         assert play.trace[-1].cause is Cause.FAILURE
 
     @pytest.mark.rule("G14", "W1")
     def test_ways_join_in_a_wait_of_no_time(self):
-        ways = (when("End", HIGH), Transition(target="B"))
+        ways = (when("End", HIGH), "B")
         tasks = (
-            task("A").model_copy(update={"transitions": ways}),
+            task("A", *ways),
             task("B", "End"),
             wait("End", "C", duration=0),
             task("C"),
@@ -314,9 +298,8 @@ class TestReadings:
     )
     def test_what_came_of_a_measurement(self, event, kind, held):
         for type in (ConditionType.UNREADABLE, ConditionType.FAILED, ConditionType.ABNORMAL):
-            ways = (when("B", Condition(type=type, object_id="A")), Transition(target="C"))
-            first = task("A").model_copy(update={"transitions": ways})
-            play = Play(plan(first, task("B"), task("C")))
+            ways = (when("B", Condition(type=type, object_id="A")), "C")
+            play = Play(plan(task("A", *ways), task("B"), task("C")))
             play.at(1, event)
             assert play.readings["A"].kind == kind
             assert (play.active == "B") == (type.name in held)
@@ -325,9 +308,8 @@ class TestReadings:
     @pytest.mark.parametrize(("at", "follows"), [(4, "C"), (5, "B")])
     def test_stale_is_older_than_its_age(self, at, follows):
         stale = Condition(type=ConditionType.STALE, object_id="A", max_age=3)
-        ways = (when("B", stale), Transition(target="C"))
-        second = task("Z").model_copy(update={"transitions": ways})
-        play = Play(plan(task("A", "Z"), second, task("B"), task("C")))
+        ways = (when("B", stale), "C")
+        play = Play(plan(task("A", "Z"), task("Z", *ways), task("B"), task("C")))
         play.at(1, well("A", 1.0))
         play.at(at, well("Z", 1.0))
         assert play.active == follows
@@ -640,9 +622,8 @@ class TestRemaining:
     @pytest.mark.rule("H5", "W3")
     @pytest.mark.parametrize(("limit", "expected"), [(None, "A C"), (5, "A B C")])
     def test_wait_without_a_limit_can_not_fail(self, limit, expected):
-        waiting = wait(
-            "A", "C", event=EventKind.ALL_CLEAR, limit=limit, on_failure=OnFailure.BRANCH
-        ).model_copy(update={"failure_target": "B"})
+        branch = {"on_failure": OnFailure.BRANCH, "failure_target": "B"}
+        waiting = wait("A", "C", event=EventKind.ALL_CLEAR, limit=limit, **branch)
         assert self.names(plan(waiting, task("B"), task("C"))) == expected.split()
 
     @pytest.mark.rule("H6", "G13")

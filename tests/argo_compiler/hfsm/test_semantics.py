@@ -15,19 +15,17 @@ from argo_compiler.il import (
     TimeWindow,
     Transition,
 )
+from tests.argo_compiler.hfsm.play import build, drive, path
+from tests.mission_writing import way as when
 
 
 def greater(object_id: str, limit: float, max_age: float | None = None) -> Condition:
     return Condition(type=ConditionType.GREATER, object_id=object_id, param1=limit, max_age=max_age)
 
 
-def when(target: str, *conditions: Condition) -> Transition:
-    return Transition(target=target, conditions=conditions)
-
-
 class TestTasks:
     @pytest.mark.rule("M3", "T5")
-    def test_follow_their_transitions_until_one_has_none(self, build, drive, path):
+    def test_follow_their_transitions_until_one_has_none(self):
         executor = drive(build("A B C", ways={"A": ["C"], "C": ["B"], "B": []}))
         assert path(executor) == "A@0 C@1 B@2 end@3"
 
@@ -36,12 +34,12 @@ class TestTasks:
     @pytest.mark.rule("G10")
     @pytest.mark.rule("G8")
     @pytest.mark.parametrize(("value", "expected"), [(5.0, "A@0 C@1 end@2"), (3.0, "A@0 B@1")])
-    def test_unconditional_comes_last_wherever_it_stands(self, build, drive, path, value, expected):
+    def test_unconditional_comes_last_wherever_it_stands(self, value, expected):
         mission = build("A B C", ways={"A": ["B", when("C", greater("A", 3))]})
         assert path(drive(mission, reads={"A": [value]})).startswith(expected)
 
     @pytest.mark.rule("T2")
-    def test_first_transition_whose_conditions_all_hold(self, build, drive, path):
+    def test_first_transition_whose_conditions_all_hold(self):
         ways = {
             "A": [
                 when("B", greater("A", 1), greater("A", 9)),
@@ -55,14 +53,14 @@ class TestTasks:
         assert executor.trace[1].conditions == ("#A > 1",)
 
     @pytest.mark.rule("M3", "T4")
-    def test_mission_ends_when_no_condition_holds(self, build, drive, path):
+    def test_mission_ends_when_no_condition_holds(self):
         executor = drive(build("A B", ways={"A": [when("B", greater("A", 1))]}))
         assert path(executor) == "A@0 end@1"
         assert executor.finished
         assert executor.configuration == ("mission", "done")
 
     @pytest.mark.rule("T8", "C4")
-    def test_failure_is_recorded_and_the_mission_goes_on(self, build, drive, path):
+    def test_failure_is_recorded_and_the_mission_goes_on(self):
         ways = {"A": [when("C", greater("A", -1)), "B"]}
         executor = drive(build("A B C", ways=ways), reads={"A": [None]})
         assert path(executor) == "A@0 B@1 C@2 end@3"
@@ -70,7 +68,7 @@ class TestTasks:
         assert str(executor.trace[1]) == "1 s: A -> B (default; failed: no view)"
 
     @pytest.mark.rule("T8", "C3", "C4", "C6")
-    def test_failure_takes_the_place_of_the_value_before(self, build, drive):
+    def test_failure_takes_the_place_of_the_value_before(self):
         executor = drive(build("A B", ways={"B": [when("A", greater("B", 0))]}), reads={"B": [1]})
         assert executor.values["B"].value == 0
         mission = build("A", ways={"A": [when("A", greater("A", 0))]})
@@ -81,7 +79,7 @@ class TestTasks:
 
     @pytest.mark.rule("C5")
     @pytest.mark.parametrize(("takes", "reached"), [(5.0, "A"), (5.5, "end")])
-    def test_value_counts_up_to_its_greatest_age(self, build, drive, takes, reached):
+    def test_value_counts_up_to_its_greatest_age(self, takes, reached):
         mission = build("A B", ways={"B": [when("A", greater("A", 0, max_age=5))]})
         executor = drive(mission, takes={"B": takes}, reads={"A": [1, 0]}, steps=3)
         assert (executor.trace[2].target or "end") == reached
@@ -103,7 +101,7 @@ class TestTasks:
             (ConditionType.WITHIN, 3.1, False),
         ],
     )
-    def test_comparisons_exclude_their_bounds(self, build, drive, type, value, holds, inclusive):
+    def test_comparisons_exclude_their_bounds(self, type, value, holds, inclusive):
         """None: on the bound, which is what `inclusive` decides."""
         condition = Condition(type=type, object_id="A", param1=2, param2=3, inclusive=inclusive)
         mission = build("A B C", ways={"A": ["B", when("C", condition)]})
@@ -111,7 +109,7 @@ class TestTasks:
         assert drive(mission, reads={"A": [value]}).trace[1].target == ("C" if expected else "B")
 
     @pytest.mark.rule("C3")
-    def test_value_is_the_last_one_whoever_measured_it(self, build, drive, path):
+    def test_value_is_the_last_one_whoever_measured_it(self):
         ways = {"B": [when("D", greater("A", 5)), "C"]}
         mission = build("A B C D", ways=ways)
         again = mission.tasks[1].model_copy(update={"object_id": "A"})
@@ -123,21 +121,21 @@ class TestTasks:
 
     @pytest.mark.rule("C4")
     @pytest.mark.parametrize("type", ConditionType)
-    def test_what_was_never_measured_holds_never(self, build, drive, path, type):
+    def test_what_was_never_measured_holds_never(self, type):
         bounds = {"param1": 0, "param2": 1} if type.compares else {"max_age": 1}
         never = Condition(type=type, object_id="B", **bounds)
         mission = build("A B C", ways={"A": [when("C", never), "B"]})
         assert path(drive(mission)).startswith("A@0 B@1")
 
     @pytest.mark.rule("M5")
-    def test_what_is_for_display_changes_nothing(self, build, drive, path):
+    def test_what_is_for_display_changes_nothing(self):
         mission = build("A B")
         shown = tuple(task.model_copy(update={"group": "G"}) for task in mission.tasks)
         shown_mission = mission.model_copy(update={"tasks": shown, "current": "B"})
         assert path(drive(shown_mission)) == path(drive(mission)) == "A@0 B@1 end@2"
 
     @pytest.mark.rule("T1", "G9")
-    def test_what_has_no_meaning_is_refused(self, build):
+    def test_what_has_no_meaning_is_refused(self):
         mission = build("A B", Group(name="G", start="A", end="B"), ways={"B": ["A"]})
         with pytest.raises(DiagnosticError, match=r"il\.endless-group"):
             lower(mission)
@@ -151,14 +149,14 @@ class TestTasks:
 
 class TestStart:
     @pytest.mark.rule("M1", "M2")
-    def test_is_passed_over(self, build, drive, path):
+    def test_is_passed_over(self):
         start = Task(name="S", action=Action.START, transitions=(Transition(target="B"),))
         mission = build("A B")
         mission = mission.model_copy(update={"tasks": (start, *mission.tasks)})
         assert path(drive(mission)) == "B@0 end@1"
 
     @pytest.mark.rule("M1")
-    def test_without_transition_leads_to_the_first_task(self, build, drive, path):
+    def test_without_transition_leads_to_the_first_task(self):
         start = Task(name="S", action=Action.START)
         mission = build("A B")
         mission = mission.model_copy(update={"tasks": (*mission.tasks, start)})
@@ -174,14 +172,14 @@ class TestStart:
 
 class TestRounds:
     @pytest.mark.rule("G1", "G5", "G8")
-    def test_count_is_the_number_of_rounds_in_all(self, build, drive, path):
+    def test_count_is_the_number_of_rounds_in_all(self):
         mission = build("A B C", Group(name="G", start="A", end="B", max_repeat_count=2))
         executor = drive(mission)
         assert path(executor) == "A@0 B@1 A@2 B@3 C@4 end@5"
         assert executor.trace[2].repeated == "G"
 
     @pytest.mark.rule("G5", "G7")
-    def test_inner_decides_first_and_is_entered_anew(self, build, drive, path):
+    def test_inner_decides_first_and_is_entered_anew(self):
         groups = (
             Group(name="G", start="A", end="B", max_repeat_count=2),
             Group(name="G/H", start="B", end="B", max_repeat_count=2),
@@ -190,7 +188,7 @@ class TestRounds:
         assert path(executor) == "A@0 B@1 B@2 A@3 B@4 B@5 C@6 end@7"
 
     @pytest.mark.rule("G1", "G7")
-    def test_groups_of_the_same_range_multiply(self, build, drive, path):
+    def test_groups_of_the_same_range_multiply(self):
         groups = (
             Group(name="G/H", start="A", end="A", max_repeat_count=3),
             Group(name="G", start="A", end="A", max_repeat_count=2),
@@ -199,27 +197,27 @@ class TestRounds:
         assert path(executor) == "A@0 A@1 A@2 A@3 A@4 A@5 B@6 end@7"
 
     @pytest.mark.rule("G2")
-    def test_entry_in_the_middle_is_round_one(self, build, drive, path):
+    def test_entry_in_the_middle_is_round_one(self):
         group = Group(name="G", start="B", end="C", max_repeat_count=2)
         executor = drive(build("A B C D", group, ways={"A": ["C"]}))
         assert path(executor) == "A@0 C@1 B@2 C@3 D@4 end@5"
 
     @pytest.mark.rule("G4")
-    def test_jump_inside_changes_no_round(self, build, drive, path):
+    def test_jump_inside_changes_no_round(self):
         group = Group(name="G", start="A", end="B", max_repeat_count=2)
         mission = build("A B C", group, ways={"B": [when("A", greater("B", 0)), "C"]})
         executor = drive(mission, reads={"B": [1, 0, 0]})
         assert path(executor) == "A@0 B@1 A@2 B@3 A@4 B@5 C@6 end@7"
 
     @pytest.mark.rule("G3")
-    def test_condition_leaves_in_the_middle_and_entry_starts_anew(self, build, drive, path):
+    def test_condition_leaves_in_the_middle_and_entry_starts_anew(self):
         group = Group(name="G", start="A", end="B", max_repeat_count=2)
         ways = {"A": [when("C", greater("A", 0)), "B"], "C": [when("A", greater("A", 0))]}
         executor = drive(build("A B C", group, ways=ways), reads={"A": [0, 1, 0, 0]})
         assert path(executor) == "A@0 B@1 A@2 C@3 A@4 B@5 A@6 B@7 C@8 end@9"
 
     @pytest.mark.rule("G6")
-    def test_unconditional_to_a_member_after_the_last_round_enters_anew(self, build, drive, path):
+    def test_unconditional_to_a_member_after_the_last_round_enters_anew(self):
         group = Group(name="G", start="A", end="B", max_repeat_count=2)
         ways = {"B": ["A"], "A": [when("C", greater("A", 0)), "B"], "C": []}
         executor = drive(build("A B C", group, ways=ways), reads={"A": [0, 0, 0, 0, 1]})
@@ -232,7 +230,7 @@ class TestRounds:
         ]
 
     @pytest.mark.rule("G9")
-    def test_endless_group_is_left_by_a_condition(self, build, drive, path):
+    def test_endless_group_is_left_by_a_condition(self):
         group = Group(name="G", start="A", end="B")
         ways = {"B": ["C", when("C", greater("B", 0))]}
         executor = drive(build("A B C", group, ways=ways), reads={"B": [0, 0, 1]})
@@ -250,24 +248,24 @@ class TestDurations:
             stop=stop,
         )
 
-    def test_soft_completes_the_round(self, build, drive, path):
+    def test_soft_completes_the_round(self):
         executor = drive(build("A B C", self.group(Stop.SOFT, 3)))
         assert path(executor) == "A@0 B@1 A@2 B@3 C@4 end@5"
 
     @pytest.mark.rule("G8", "G10")
-    def test_soft_wants_no_round_exactly_at_its_time(self, build, drive, path):
+    def test_soft_wants_no_round_exactly_at_its_time(self):
         executor = drive(build("A B C", self.group(Stop.SOFT, 2)))
         assert path(executor) == "A@0 B@1 C@2 end@3"
 
     @pytest.mark.rule("G10")
-    def test_hard_leaves_at_once(self, build, drive, path):
+    def test_hard_leaves_at_once(self):
         executor = drive(build("A B C", self.group(Stop.HARD, 2.5)))
         assert path(executor) == "A@0 B@1 A@2 C@2.5 end@3.5"
         assert executor.trace[3].timed_out == "G"
         assert str(executor.trace[3]) == "2.5 s: A -> C (time of 'G' is up)"
 
     @pytest.mark.rule("G11")
-    def test_action_that_ends_with_the_time_has_ended(self, build, drive, path):
+    def test_action_that_ends_with_the_time_has_ended(self):
         executor = drive(build("A B C", self.group(Stop.HARD, 3)), reads={"A": [1, 2]})
         assert path(executor) == "A@0 B@1 A@2 B@3 C@3 end@4"
         assert executor.values["A"].value == 2
@@ -276,21 +274,21 @@ class TestDurations:
         ("count", "duration", "expected"),
         [(1, 9, "A@0 B@1 C@2 end@3"), (9, 2.5, "A@0 B@1 A@2 C@2.5 end@3.5")],
     )
-    def test_whichever_limit_comes_first(self, build, drive, path, count, duration, expected):
+    def test_whichever_limit_comes_first(self, count, duration, expected):
         executor = drive(build("A B C", self.group(Stop.HARD, duration, count)))
         assert path(executor) == expected
 
     @pytest.mark.rule("G2")
-    def test_clock_starts_at_the_entry(self, build, drive, path):
+    def test_clock_starts_at_the_entry(self):
         group = Group(name="G", start="B", end="B", max_repeat_duration=1.5)
         executor = drive(build("A B C", group), takes={"A": 10})
         assert path(executor) == "A@0 B@10 B@11 C@11.5 end@12.5"
 
-    def test_mission_ends_if_the_end_leads_nowhere(self, build, drive, path):
+    def test_mission_ends_if_the_end_leads_nowhere(self):
         assert path(drive(build("A B", self.group(Stop.HARD, 0.5)))) == "A@0 end@0.5"
 
     @pytest.mark.rule("G7", "G10")
-    def test_time_out_lets_outer_groups_decide(self, build, drive, path):
+    def test_time_out_lets_outer_groups_decide(self):
         groups = (
             Group(name="G", start="Z", end="B", max_repeat_count=2),
             self.group(Stop.HARD, 1.5, name="G/H"),
@@ -301,7 +299,7 @@ class TestDurations:
         assert executor.trace[3].repeated == "G"
 
     @pytest.mark.rule("G11")
-    def test_outermost_of_several_is_left(self, build, drive, path):
+    def test_outermost_of_several_is_left(self):
         groups = (
             Group(name="G", start="A", end="C", max_repeat_duration=0.5),
             Group(name="G/H", start="A", end="B", max_repeat_duration=0.5),
@@ -310,14 +308,14 @@ class TestDurations:
         assert path(executor) == "A@0 D@0.5 end@1.5"
 
     @pytest.mark.rule("G6")
-    def test_time_out_back_into_the_group_enters_it_anew(self, build, drive, path):
+    def test_time_out_back_into_the_group_enters_it_anew(self):
         mission = build("A B", self.group(Stop.HARD, 1.5), ways={"B": ["A"]})
         executor = drive(mission, steps=6)
         assert path(executor) == "A@0 B@1 A@1.5 B@2.5 A@3 B@4"
 
 
 @pytest.mark.rule("G13", "W5", "W7")
-def test_window_that_is_over_is_missed_when_the_round_is_due(build):
+def test_window_that_is_over_is_missed_when_the_round_is_due():
     """Or rounds without a limit would follow each other in no time."""
     mission = build("A", Group(name="G", start="A", end="A", every=10, until=(greater("A", 9),)))
     window = TimeWindow(latest=5)

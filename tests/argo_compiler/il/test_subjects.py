@@ -2,7 +2,7 @@
 
 import json
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from argo_compiler.checks import check
@@ -20,14 +20,12 @@ def test_names_are_written_as_in_normalised_paths():
     assert subject_of("tasks", "it's \\ a\nb\x01", ".pose") == r"tasks['it\'s \\ a\nb\u0001'].pose"
 
 
-@settings(deadline=None)
 @given(names, st.sampled_from(["", ".name", ".transitions[3].conditions[0].object_id"]))
 def test_any_name_is_read_back(name, rest):
     path = parse_subject(subject_of("groups", name, rest))
     assert path == ("groups", Named(name), *parse_subject(rest))
 
 
-@settings(deadline=None)
 @given(missions())
 def test_each_part_of_any_mission_has_a_subject_of_its_own_that_leads_to_it(mission):
     subjects = Subjects(mission)

@@ -71,13 +71,13 @@ def require_the_same_done(mission, values, seed, fails=frozenset()):
 
 
 @given(missions(), SHOWN, SEEDS)
-@settings(max_examples=examples(60), deadline=None)
+@settings(max_examples=examples(60))
 def test_another_order_does_the_same_tasks(mission, values, seed):
     require_the_same_done(mission, values, seed)
 
 
 @given(missions().flatmap(with_waits).flatmap(with_branches), SHOWN, SEEDS, st.data())
-@settings(max_examples=examples(60), deadline=None)
+@settings(max_examples=examples(60))
 def test_another_order_does_the_same_tasks_where_some_fail(mission, values, seed, data):
     assume(not has_errors(check(mission)))
     names = [t.name for t in mission.tasks if t.action in (Action.MEASURE, Action.WAYPOINT)]
@@ -89,7 +89,7 @@ def test_another_order_does_the_same_tasks_where_some_fail(mission, values, seed
 
 
 @given(wild_missions(), SHOWN, SEEDS)
-@settings(max_examples=examples(60), deadline=None)
+@settings(max_examples=examples(60))
 def test_any_mission_is_refused_or_kept_the_same(mission, values, seed):
     try:
         require_the_same_done(mission, values, seed)
@@ -98,7 +98,7 @@ def test_any_mission_is_refused_or_kept_the_same(mission, values, seed):
 
 
 @given(missions(), SEEDS)
-@settings(max_examples=examples(40), deadline=None)
+@settings(max_examples=examples(40))
 def test_the_written_order_gives_the_same_mission(mission, seed):
     planned = route_problem(mission, random_ways(mission, np.random.default_rng(seed)))
     assert evaluate(planned.problem, planned.written).feasible
@@ -106,7 +106,7 @@ def test_the_written_order_gives_the_same_mission(mission, seed):
 
 
 @given(missions(kinds=STRAIGHT, most=6, lasting=True), SEEDS)
-@settings(max_examples=examples(60), deadline=None)
+@settings(max_examples=examples(60))
 def test_a_mission_takes_as_long_as_its_route(mission, seed):
     rng = np.random.default_rng(seed)
     ways = random_ways(mission, rng)
@@ -121,7 +121,7 @@ def test_a_mission_takes_as_long_as_its_route(mission, seed):
 
 
 @given(missions(kinds=STRAIGHT, most=6).flatmap(with_waits).flatmap(with_windows), SEEDS)
-@settings(max_examples=examples(80), deadline=None)
+@settings(max_examples=examples(80))
 @pytest.mark.rule("W4", "W5")
 def test_waits_and_windows_are_kept_as_promised(mission, seed):
     rng = np.random.default_rng(seed)
@@ -137,7 +137,7 @@ def test_waits_and_windows_are_kept_as_promised(mission, seed):
 
 
 @given(missions(kinds=("task",), most=5).flatmap(with_windows), SEEDS)
-@settings(max_examples=examples(40), deadline=None)
+@settings(max_examples=examples(40))
 def test_the_best_of_all_orders_is_the_suggested_one(mission, seed):
     ways = random_ways(mission, np.random.default_rng(seed))
     planned = route_problem(mission, ways)
@@ -157,7 +157,7 @@ def test_the_best_of_all_orders_is_the_suggested_one(mission, seed):
 
 
 @given(missions(calm=True), SHOWN, SEEDS)
-@settings(max_examples=examples(60), deadline=None)
+@settings(max_examples=examples(60))
 def test_no_branch_takes_longer_than_reckoned(mission, values, seed):
     rng = np.random.default_rng(seed)
     ways = random_ways(mission, rng)
@@ -169,7 +169,7 @@ def test_no_branch_takes_longer_than_reckoned(mission, values, seed):
 
 
 @given(missions(), LIMITS, LIMITS, SHOWN, SEEDS)
-@settings(max_examples=examples(60), deadline=None)
+@settings(max_examples=examples(60))
 def test_what_is_left_out_is_named_and_not_done(mission, most, budget, values, seed):
     mission = mission.model_copy(update={"max_duration": most})
     rng = np.random.default_rng(seed)

@@ -22,20 +22,21 @@ from argo_compiler.il import (
     Task,
     TimeWindow,
     Transition,
-    WaitRule,
 )
 from argo_compiler.reorder.mission import late_visits, route_problem
 from argo_compiler.reorder.requirements import Requirements, parse_seconds
 from argo_compiler.reorder.rewriting import apply_route
 from argo_compiler.reorder.travel_matrix import TravelMatrix
 from argo_compiler.route import Tour, evaluate
+from tests.mission_writing import measure as measuring
+from tests.mission_writing import wait
 
 HERE = Pose(x=0, y=0, z=0)
 DOCK = Pose(x=9, y=9, z=0)
 
 
 def measure(id, *ways, **fields):
-    return Task(name=f"M{id}", action=Action.MEASURE, object_id=str(id), transitions=ways, **fields)
+    return measuring(f"M{id}", *ways, object_id=str(id), **fields)
 
 
 def above(object_id, target, value=5.0, **fields):
@@ -293,10 +294,6 @@ def test_a_group_is_optional_if_all_of_it_is():
             measure(1, optional=True), measure(2, optional=second), measure(3), groups=(group,)
         )
         assert [v.mandatory for v in planned(mission).problem.visits] == mandatory
-
-
-def wait(name, *ways, **rule):
-    return Task(name=name, action=Action.WAIT, wait=WaitRule(**rule), transitions=ways)
 
 
 def test_a_wait_stays_with_the_task_before_it():

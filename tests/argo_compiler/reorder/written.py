@@ -2,6 +2,7 @@
 
 from collections import Counter
 from dataclasses import dataclass
+from itertools import count
 
 import numpy as np
 from hypothesis import strategies as st
@@ -32,6 +33,7 @@ from argo_compiler.il import (
 )
 from argo_compiler.reorder.travel_matrix import TravelMatrix
 from argo_compiler.route import Tour, evaluate
+from tests.mission_writing import drive, measure
 
 HERE, DOCK = Pose(x=0, y=0, z=0), Pose(x=9, y=9, z=0)
 OBJECTS = ("1", "2", "3", "4")
@@ -58,16 +60,9 @@ class Item:
         return self.parts[0].entry if self.kind == "group" else self.parts[0]
 
 
-class Names:
-    """Gives each task a name. Counts."""
-
-    def __init__(self):
-        self.count = 0
-
-    def new(self, draw):
-        self.count += 1
-        measures = draw(st.booleans())
-        return f"M{draw(st.sampled_from(OBJECTS))} {self.count}" if measures else f"W{self.count}"
+def new_name(draw, numbers):
+    number, measures = next(numbers), draw(st.booleans())
+    return f"M{draw(st.sampled_from(OBJECTS))} {number}" if measures else f"W{number}"
 
 
 def conditions(rising):
@@ -83,7 +78,7 @@ def conditions(rising):
 
 
 @st.composite
-def items(draw, names, kinds, depth, most, docked, calm):
+def items(draw, numbers, kinds, depth, most, docked, calm):
     """A row of items; the last one is a task or group."""
     found = []
     for _ in range(draw(st.integers(1, most))):
@@ -93,35 +88,29 @@ def items(draw, names, kinds, depth, most, docked, calm):
         if kind == "group":
             if depth == 0:
                 continue
-            inside = tuple(draw(items(names, kinds, depth - 1, 3, docked, calm)))
+            inside = tuple(draw(items(numbers, kinds, depth - 1, 3, docked, calm)))
             found.append(
                 Item(
                     "group",
-                    f"G{names.new(draw)[1:]}".replace(" ", "-"),
+                    f"G{new_name(draw, numbers)[1:]}".replace(" ", "-"),
                     inside,
                     count=draw(st.integers(1, 3)),
                 )
             )
             continue
         size = {"task": 1, "home": 1, "again": 1, "detour": 2, "skip": 2, "back": 2}[kind]
-        parts = tuple(names.new(draw) for _ in range(size))
+        parts = tuple(new_name(draw, numbers) for _ in range(size))
         rising = calm and kind in {"again", "back", "home"}
         found.append(Item(kind, parts[0], parts, draw(conditions(rising))))
     if not found or found[-1].kind not in {"task", "group"}:
-        name = names.new(draw)
+        name = new_name(draw, numbers)
         found.append(Item("task", name, (name,)))
     return found
 
 
 def _task(name, *ways):
-    measures = name.startswith("M")
-    return Task(
-        name=name,
-        action=Action.MEASURE if measures else Action.WAYPOINT,
-        object_id=name[1] if measures else None,
-        pose=None if measures else HERE,
-        transitions=tuple(way for way in ways if way is not None),
-    )
+    ways = [way for way in ways if way is not None]
+    return measure(name, *ways, object_id=name[1]) if name[0] == "M" else drive(name, *ways)
 
 
 def _lay_out(row, after, around, tasks, groups):
@@ -171,7 +160,7 @@ def missions(draw, kinds=ALL, most=5, calm=False, lasting=False):
     """Any order. `calm`: what leads back or home never holds. `lasting`: with groups that last for
     a time and end with a whole round."""
     docked = draw(st.booleans())
-    row = draw(items(Names(), kinds, 2, most, docked, calm))
+    row = draw(items(count(1), kinds, 2, most, docked, calm))
     if lasting:
         for item in row:
             if item.kind == "group" and draw(st.booleans()):

@@ -73,7 +73,7 @@ def refusal(path):
 
 
 @pytest.mark.parametrize("form", FORMS)
-@settings(max_examples=examples(8), deadline=None)
+@settings(max_examples=examples(8))
 @given(mission=carried_missions())
 def test_every_mission_comes_back_unchanged(tmp_path_factory, form, mission):
     path = write(tmp_path_factory.mktemp("bag"), form, mission)
@@ -172,7 +172,7 @@ def test_a_wrong_field_in_a_bag_is_named(tmp_path):
 
 
 @pytest.mark.parametrize("form", FORMS)
-@settings(max_examples=examples(60), deadline=None)
+@settings(max_examples=examples(60))
 @given(data=st.data())
 def test_broken_bags_end_in_a_message(tmp_path_factory, form, data):
     path = write(tmp_path_factory.getbasetemp(), form)

@@ -31,6 +31,7 @@ from argo_compiler.ros import (
 )
 from argo_compiler.ros.package import SPECIFICATION, definitions
 from tests.conftest import examples
+from tests.mission_writing import drive
 from tests.missions_all import FLOATS, carried_missions
 
 VERSIONS = pytest.mark.parametrize("types", [ros1_types(), ros2_types()], ids=["ros1", "ros2"])
@@ -51,7 +52,7 @@ TYPE_HASH = "RIHS01_93351fa09eb7333bfae6019df14af63b2af606db84ec9c584121c2b50249
 
 
 @VERSIONS
-@settings(max_examples=examples(60), deadline=None)
+@settings(max_examples=examples(60))
 @given(mission=carried_missions())
 @example(mission=Mission())
 def test_every_mission_comes_back_unchanged(types, mission):
@@ -107,7 +108,6 @@ def test_package_lists_its_messages():
     assert b"<name>argo_mission_msgs</name>" in package["package.xml"]
 
 
-@settings(deadline=None)
 @given(yaw=FLOATS, x=FLOATS)
 @example(yaw=math.pi, x=0.0)
 @example(yaw=-math.pi, x=0.0)
@@ -123,7 +123,6 @@ def test_poses_keep_their_last_digit_and_whole_turns(yaw, x):
     assert from_message(message, types, "bag").mission == mission
 
 
-@settings(deadline=None)
 @given(
     yaw=st.floats(-math.pi, math.pi),
     size=st.floats(1e-100, 1e100),
@@ -252,19 +251,6 @@ def test_the_largest_numbers_fit():
     )
 
 
-def driven(name, velocity, *targets, **fields):
-    ways = tuple(Transition(target=target) for target in targets)
-    pose = Pose(x=1, y=2, z=3)
-    return Task(
-        name=name,
-        action=Action.WAYPOINT,
-        pose=pose,
-        velocity=velocity,
-        transitions=ways,
-        **fields,
-    )
-
-
 START = Task(name="S", action=Action.START, transitions=(Transition(target="A"),))
 
 
@@ -272,7 +258,7 @@ START = Task(name="S", action=Action.START, transitions=(Transition(target="A"),
 def test_velocities_in_a_message_are_those_of_the_way_on():
     types = ros2_types()
     mission = Mission(
-        tasks=(START, driven("A", 0.5, "B"), driven("B", 0.25, "C"), driven("C", None))
+        tasks=(START, drive("A", "B", velocity=0.5), drive("B", "C", velocity=0.25), drive("C"))
     )
     message = to_message(mission, types)
     assert [task.velocity for task in message.tasks] == [0.5, 0.25, 0.0, 0.0]
@@ -282,23 +268,23 @@ def test_velocities_in_a_message_are_those_of_the_way_on():
 @pytest.mark.parametrize(
     ("tasks", "groups", "named"),
     [
-        ((driven("A", 0.5, "B"), driven("B", None)), (), "A"),  # no START has its velocity
+        ((drive("A", "B", velocity=0.5), drive("B")), (), "A"),  # no START has its velocity
         (
             (
                 START,
-                driven("A", None, "B", failure_target="C"),
-                driven("B", 0.5),
-                driven("C", None),
+                drive("A", "B", failure_target="C"),
+                drive("B", velocity=0.5),
+                drive("C"),
             ),
             (),
             "C",
         ),
         (
-            (START, driven("A", 0.5, "B"), driven("B", None)),
+            (START, drive("A", "B", velocity=0.5), drive("B")),
             (Group(name="G", start="A", end="A", max_repeat_count=2),),
             "B",
         ),
-        ((START, driven("A", None), driven("B", 0.5)), (), "B"),  # nothing leads there
+        ((START, drive("A"), drive("B", velocity=0.5)), (), "B"),  # nothing leads there
     ],
 )
 def test_velocities_that_differ_by_what_follows_are_refused(tasks, groups, named):
@@ -311,9 +297,7 @@ def test_velocities_that_differ_by_what_follows_are_refused(tasks, groups, named
 
 def test_a_task_that_is_driven_to_at_several_velocities_has_the_slowest_and_a_warning():
     types = ros2_types()
-    message = to_message(
-        Mission(tasks=(START, driven("A", None, "B"), driven("B", None, "B"))), types
-    )
+    message = to_message(Mission(tasks=(START, drive("A", "B"), drive("B", "B"))), types)
     message.tasks[1].velocity, message.tasks[2].velocity = 0.5, 0.25
     received = from_message(message, types, "bag")
     assert [task.velocity for task in received.mission.tasks] == [None, None, 0.25]

@@ -1,4 +1,4 @@
-"""What a route costs, reckoned by hand."""
+"""What a route costs, and where it waits and charges, reckoned by hand."""
 
 import numpy as np
 import pytest
@@ -15,6 +15,7 @@ from argo_compiler.route import (
     Visit,
     evaluate,
 )
+from argo_compiler.route.tour_pauses import TourPause, pauses
 
 
 def line(*visits: Visit, chargers: int = 0, **more) -> RouteProblem:  # type: ignore[no-untyped-def]
@@ -143,3 +144,30 @@ def test_a_charge_within_a_round_breaks_a_rule() -> None:
 def test_a_route_of_another_problem_is_refused(route: Tour) -> None:
     with pytest.raises(Invalid, match="that there isn't"):
         evaluate(RouteProblem((Visit("a"), Visit("b")), np.ones((3, 3), np.int64)), route)
+
+
+EQUAL = np.full((4, 4), 10)
+"""ways, for which arrivals are easily reckoned"""
+
+
+def test_waits_are_those_of_the_visits_with_windows() -> None:
+    visits = (Visit("a", 5, earliest=12), Visit("b", 5, earliest=50), Visit("c", 5, earliest=3))
+    problem = RouteProblem(visits, EQUAL)
+    found = pauses(problem, Tour((2, 0, 1)))
+    # c at 10, a at 25, b at 40 if nothing waited
+    assert found == {2: (TourPause(10, visit=1),)}
+    assert evaluate(problem, Tour((2, 0, 1))).waiting == 10
+
+
+def test_a_charge_gives_back_what_was_used() -> None:
+    battery = EnergyBudget(EQUAL, capacity=35, used=3, overhead=4)
+    problem = RouteProblem(
+        (Visit("a"), Visit("b", earliest=60)), EQUAL, battery=battery, chargers=("dock",)
+    )
+    route = Tour((0, 1), {1: 0, 2: 0})
+    # 3 + two ways are used at the first charge (20 to 47); then two ways, at the second one
+    assert pauses(problem, route) == {
+        1: (TourPause(27, charger=0), TourPause(3, visit=1)),
+        2: (TourPause(24, charger=0),),
+    }
+    assert evaluate(problem, route).duration == 60 + 10 + 24 + 10

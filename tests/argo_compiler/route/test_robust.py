@@ -78,7 +78,7 @@ def routes(draw):
     return problem, Tour(tuple(order), charges)
 
 
-@settings(deadline=None, max_examples=examples(150))
+@settings(max_examples=examples(150))
 @given(case=routes())
 def test_without_spread_it_is_the_evaluation(case):
     problem, route = case
@@ -100,7 +100,7 @@ def test_what_is_torn_or_left_out_is_not_completed():
         assert probability(ordered, Tour(order), samples=2).probability == done
 
 
-@settings(deadline=None, max_examples=examples(40))
+@settings(max_examples=examples(40))
 @given(case=routes(), limits=st.tuples(*[st.integers(0, 2000)] * 2), seed=st.integers(0, 99))
 def test_more_time_is_never_worse(case, limits, seed):
     problem, route = case
@@ -213,7 +213,7 @@ def test_as_much_prize_as_is_sure_enough(objective):
     assert len(daring.route.order) == 4
 
 
-@settings(deadline=None, max_examples=examples(5))
+@settings(max_examples=examples(5))
 @given(seed=st.integers(0, 999))
 def test_never_less_sure_than_the_usual_route(seed):
     problem = random_problem(np.random.default_rng(seed))

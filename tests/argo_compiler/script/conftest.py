@@ -16,7 +16,10 @@ from argo_compiler.base.catalog import (
     Place,
 )
 from argo_compiler.base.model import Pose
-from argo_compiler.script import import_script
+from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
+from argo_compiler.il import Mission
+from argo_compiler.script import Resolved, import_script
+from tests.mission_writing import unplaced
 
 NAMES = {
     1: ["pressure gauge 1", "liquid level gauge 1", "pressure gauge 2", "valve R25"],
@@ -65,24 +68,43 @@ def make_catalog() -> Catalog:
 CATALOG = make_catalog()
 
 
-def _without_sources(value: object) -> object:
-    """All of a mission but where in the script it comes from."""
-    if isinstance(value, dict):
-        return {key: _without_sources(part) for key, part in value.items() if key != "source"}
-    if isinstance(value, list):
-        return [_without_sources(part) for part in value]
-    return value
+def findings(text: str, catalog: Catalog, **areas: int) -> tuple[Diagnostic, ...]:
+    """What is said of a script, be it a mission or refused."""
+    try:
+        result: Resolved | DiagnosticError = import_script(text, catalog, **areas)
+    except DiagnosticError as error:
+        result = error
+    return result.diagnostics
+
+
+def refusals(text: str, catalog: Catalog) -> list[Diagnostic]:
+    """The errors for which a script is refused."""
+    with pytest.raises(DiagnosticError) as caught:
+        import_script(text, catalog)
+    return [d for d in caught.value.diagnostics if d.severity is Severity.ERROR]
+
+
+def only(text: str, catalog: Catalog, **areas: int) -> tuple[str, int, int, int]:
+    """The one finding: its code, line, column and length."""
+    (finding,) = findings(text, catalog, **areas)
+    assert finding.span is not None
+    assert finding.excerpt == text.split("\n")[finding.span.line - 1]
+    return finding.code, finding.span.line, finding.span.column, finding.span.length
+
+
+def measured_in(mission: Mission) -> list[str]:
+    """What a mission measures, in the order of its tasks."""
+    return [task.object_id for task in mission.tasks if task.object_id is not None]
+
+
+def measured(text: str, catalog: Catalog) -> list[str]:
+    return measured_in(import_script(text, catalog).mission)
 
 
 @pytest.fixture(scope="session")
 def meaning_of() -> Callable[[str], object]:
     """What a script means: its mission, whatever its words and places."""
-
-    def mission_of(text: str) -> object:
-        mission = import_script(text, CATALOG).mission
-        return _without_sources(mission.model_dump(mode="json"))
-
-    return mission_of
+    return lambda text: unplaced(import_script(text, CATALOG).mission)
 
 
 @pytest.fixture(scope="session")

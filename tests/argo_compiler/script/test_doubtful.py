@@ -3,9 +3,10 @@
 import pytest
 
 from argo_compiler.base.catalog import Catalog
-from argo_compiler.diagnostics import DiagnosticError, Severity
+from argo_compiler.diagnostics import Severity
 from argo_compiler.il import Mission
 from argo_compiler.script import format_script, import_script
+from tests.argo_compiler.script.conftest import measured, refusals
 
 _ENGLISH = "1. Start in starting area 1.\n"
 _GERMAN = "1. Start in Startbereich 1.\n"
@@ -74,9 +75,7 @@ def test_to_repeat_once(text: str, count: int, assumed: bool, catalog: Catalog) 
     ],
 )
 def test_what_is_asked_about(text: str, code: str, readings: list[str], catalog: Catalog) -> None:
-    with pytest.raises(DiagnosticError) as caught:
-        import_script(text, catalog)
-    errors = [d for d in caught.value.diagnostics if d.severity is Severity.ERROR]
+    errors = refusals(text, catalog)
     assert [error.code for error in errors] == [f"script.ambiguous-{code}"]
     assert all(reading in errors[0].message for reading in readings)
     assert errors[0].span is not None
@@ -116,6 +115,5 @@ def test_one_of_them_or_both(condition: str, ways: int, catalog: Catalog) -> Non
     "text", ["Check #7\n", "Morning test 12\n", "Behaviour, test 12\n", "Designation: Test 12\n"]
 )
 def test_lines_over_the_steps_that_are_clear(text: str, catalog: Catalog) -> None:
-    mission, _ = read(f"{text}{_ENGLISH}{_TWO}", catalog)
-    measured = [task.object_id for task in mission.tasks if task.object_id is not None]
-    assert measured == (["7", "1", "4"] if "#" in text else ["1", "4"])
+    found = measured(f"{text}{_ENGLISH}{_TWO}", catalog)
+    assert found == (["7", "1", "4"] if "#" in text else ["1", "4"])

@@ -3,9 +3,10 @@
 import pytest
 
 from argo_compiler.base.catalog import Catalog
-from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
+from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Mission, Mode, Order
-from argo_compiler.script import Resolved, import_script
+from argo_compiler.script import import_script
+from tests.argo_compiler.script.conftest import findings
 
 STEPS = "1. Check #4\n"
 START = "Start: area 1\n"
@@ -15,12 +16,8 @@ def mission(header: str, catalog: Catalog) -> Mission:
     return import_script(header + "\n" + STEPS, catalog).mission
 
 
-def findings(text: str, catalog: Catalog) -> list[Diagnostic]:
-    try:
-        result: Resolved | DiagnosticError = import_script(text, catalog)
-    except DiagnosticError as error:
-        result = error
-    return [d for d in result.diagnostics if d.severity is not Severity.NOTE]
+def faults(text: str, catalog: Catalog) -> list[Diagnostic]:
+    return [d for d in findings(text, catalog) if d.severity is not Severity.NOTE]
 
 
 @pytest.mark.parametrize(
@@ -105,7 +102,7 @@ Subject: the weekly tour"""
 )
 def test_what_is_no_value(field: str, code: str, column: int, catalog: Catalog) -> None:
     start = "" if "Start" in field else START
-    (error,) = findings(start + field + "\n" + STEPS, catalog)
+    (error,) = faults(start + field + "\n" + STEPS, catalog)
     assert error.code == f"script.{code}"
     assert error.span is not None
     assert (error.span.line, error.span.column) == (1 + bool(start), column)
@@ -125,7 +122,7 @@ def test_what_is_no_value(field: str, code: str, column: int, catalog: Catalog) 
     ],
 )
 def test_two_values_are_an_error_that_names_both(first: str, second: str, catalog: Catalog) -> None:
-    (error,) = findings(f"{START}{first}\n{second}\n{STEPS}", catalog)
+    (error,) = faults(f"{START}{first}\n{second}\n{STEPS}", catalog)
     assert error.code == "script.repeated-field"
     assert error.span is not None
     assert error.span.line == 3
@@ -134,16 +131,16 @@ def test_two_values_are_an_error_that_names_both(first: str, second: str, catalo
 
 
 def test_the_same_value_twice_is_none(catalog: Catalog) -> None:
-    assert findings(f"{START}Maximum time: 20 min\nTime limit: 20'\n{STEPS}", catalog) == []
+    assert faults(f"{START}Maximum time: 20 min\nTime limit: 20'\n{STEPS}", catalog) == []
 
 
 def test_a_misspelt_label_is_a_warning(catalog: Catalog) -> None:
-    (warning,) = findings(f"{START}Maximun duration: 20 min\n{STEPS}", catalog)
+    (warning,) = faults(f"{START}Maximun duration: 20 min\n{STEPS}", catalog)
     assert warning.message == "read `Maximun` as `maximum`"
 
 
 def test_docks_that_are_chosen_later_are_asked_for(catalog: Catalog) -> None:
     text = f"The docks are chosen on the day.\n{STEPS}"
-    assert [d.code for d in findings(text, catalog)] == ["script.area-choice"] * 2
+    assert [d.code for d in faults(text, catalog)] == ["script.area-choice"] * 2
     found = import_script(text, catalog, start_area=1, end_area=2).mission
     assert (found.start_area, found.end_area) == (1, 2)

@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.model import Pose
 from argo_compiler.checks import check
-from argo_compiler.diagnostics import DiagnosticError, Severity
+from argo_compiler.diagnostics import DiagnosticError, has_errors
 from argo_compiler.files.mission_file import read_mission
 from argo_compiler.il import (
     Action,
@@ -30,28 +30,20 @@ from argo_compiler.script import format_script, import_script
 from argo_compiler.script.write.reading import read_back
 from tests.argo_compiler.hfsm.random_missions import missions as tangled_missions
 from tests.conftest import examples
+from tests.mission_writing import unplaced
 from tests.missions_sound import sound_missions
 
 HERE = Pose(x=1, y=2, z=0)
 
 
-def bare(mission: Mission) -> Mission:
-    """The mission without the places in its script."""
-    parts = {
-        name: tuple(part.model_copy(update={"source": None}) for part in getattr(mission, name))
-        for name in ("tasks", "groups", "reactions")
-    }
-    return mission.model_copy(update=parts)
-
-
 def read(text: str, catalog: Catalog) -> Mission:
-    return bare(import_script(text, catalog).mission)
+    return unplaced(import_script(text, catalog).mission)
 
 
 def assert_kept(mission: Mission, catalog: Catalog) -> str:
     text = format_script(mission, catalog)
     again = read(text, catalog)
-    assert again == bare(mission)
+    assert again == unplaced(mission)
     assert format_script(again, catalog) == text
     return text
 
@@ -242,12 +234,12 @@ def test_what_a_reaction_has_no_use_for_is_refused_by_name(catalog: Catalog) -> 
 def test_any_mission_is_kept_or_refused_by_name(tangled: bool, catalog: Catalog) -> None:
     kept = 0
 
-    @settings(max_examples=examples(240), deadline=None)
+    @settings(max_examples=examples(240))
     @given(tangled_missions() if tangled else sound_missions(catalog, most=5))
     def write(drawn: Mission) -> None:
         nonlocal kept
         mission = drawn.model_copy(update={"site": catalog.site})
-        assume(all(d.severity is not Severity.ERROR for d in check(mission, catalog)))
+        assume(not has_errors(check(mission, catalog)))
         try:
             format_script(mission, catalog)
         except DiagnosticError as error:
@@ -302,17 +294,17 @@ def test_shipped_missions_are_kept(catalog: Catalog) -> None:
 
 @pytest.mark.parametrize("tangled", [True, False])
 def test_what_is_said_back_is_the_same_mission(tangled: bool, catalog: Catalog) -> None:
-    @settings(max_examples=examples(30), deadline=None)
+    @settings(max_examples=examples(30))
     @given(tangled_missions() if tangled else sound_missions(catalog, most=5))
     def read_again(drawn: Mission) -> None:
         mission = drawn.model_copy(update={"site": catalog.site})
         found = check(mission, catalog)
-        assume(all(d.severity is not Severity.ERROR for d in found))
+        assume(not has_errors(found))
         try:
             text = read_back(mission, catalog, found).text
         except DiagnosticError:
             return
-        assert read(text, catalog) == bare(mission)
+        assert read(text, catalog) == unplaced(mission)
 
     read_again()
 

@@ -7,13 +7,9 @@ from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.il import EventKind, Order
 from argo_compiler.script import import_script
+from tests.argo_compiler.script.conftest import measured
 
 START = "Start in starting area 1. Check #1"
-
-
-def measured(text: str, catalog: Catalog) -> list[str]:
-    tasks = import_script(text, catalog).mission.tasks
-    return [task.object_id for task in tasks if task.object_id is not None]
 
 
 @pytest.mark.parametrize(

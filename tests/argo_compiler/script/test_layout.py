@@ -3,19 +3,12 @@
 import pytest
 
 from argo_compiler.base.catalog import Catalog
-from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
+from argo_compiler.diagnostics import Severity
 from argo_compiler.il import Order
-from argo_compiler.script import Resolved, import_script, parse
+from argo_compiler.script import import_script, parse
+from tests.argo_compiler.script.conftest import findings, measured
 
 START = "Start in starting area 1\n"
-
-
-def findings(text: str, catalog: Catalog) -> tuple[Diagnostic, ...]:
-    try:
-        result: Resolved | DiagnosticError = import_script(text, catalog)
-    except DiagnosticError as error:
-        result = error
-    return result.diagnostics
 
 
 def errors(text: str, catalog: Catalog) -> list[tuple[int, str]]:
@@ -28,11 +21,6 @@ def errors(text: str, catalog: Catalog) -> list[tuple[int, str]]:
 
 def notes(text: str, catalog: Catalog) -> list[str]:
     return [d.message.split("`")[1] for d in findings(text, catalog) if d.severity is Severity.NOTE]
-
-
-def measured(text: str, catalog: Catalog) -> list[str]:
-    tasks = import_script(text, catalog).mission.tasks
-    return [t.object_id for t in tasks if t.object_id is not None]
 
 
 @pytest.mark.parametrize(

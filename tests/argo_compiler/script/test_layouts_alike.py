@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.script import import_script
 from tests.argo_compiler.script.conftest import CATALOG
-from tests.campaigns.fuzz.laws import unplaced
+from tests.mission_writing import unplaced
 
 Steps = list[str]
 

@@ -4,6 +4,7 @@ import pytest
 
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.script import import_script
+from tests.mission_writing import unplaced
 
 ORDERS = {
     "measure": "Check checkpoint 4{}.",
@@ -98,19 +99,6 @@ SAME = {
 is in it once more"""
 
 
-def _without_spans(mission):
-    def stripped(part):
-        return part.model_copy(update={"source": None})
-
-    return mission.model_copy(
-        update={
-            "tasks": tuple(map(stripped, mission.tasks)),
-            "groups": tuple(map(stripped, mission.groups)),
-            "reactions": tuple(map(stripped, mission.reactions)),
-        }
-    )
-
-
 @pytest.mark.parametrize("order", ORDERS)
 def test_each_clause_is_in_the_plan_or_an_error(order, catalog):
     plain, plainly = None, set()
@@ -140,4 +128,4 @@ def _planned(order, clause, catalog):
         resolved = import_script("\n".join(lines), catalog)
     except DiagnosticError as error:
         return None, {d.span for d in error.diagnostics}
-    return _without_spans(resolved.mission), {d.code for d in resolved.diagnostics}
+    return unplaced(resolved.mission), {d.code for d in resolved.diagnostics}

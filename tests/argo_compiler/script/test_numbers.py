@@ -68,13 +68,30 @@ LENGTHS = {
     "1,000.5 s": 1000.5,
     "1'200 s": 1200,
     "1.000.000 s": 1_000_000,
+    "25 min": 1500,
+    "1 h 30 min": 5400,
+    "1 hour and 30 minutes": 5400,
+    "ninety seconds": 90,
+    "a minute": 60,
+    "2.5 h": 9000,
+    "754.5 s": 754.5,
+    "20′": 1200,
+    "20min.": 1200,
+    "twenty minutes": 1200,
+    "two hours 5 seconds": 7205,
 }
 
 
 @pytest.mark.parametrize(("said", "seconds"), LENGTHS.items())
 def test_lengths_of_time(said: str, seconds: float, catalog: Catalog) -> None:
+    """Of a wait, of rounds, and of the whole mission."""
     mission = imported(f"Wait for {said}, then check checkpoint 3.", catalog)
     assert wait_s(mission) == pytest.approx(seconds)
+    text = f"Maximum mission total duration: {said}\n{START}Patrol floor 1 for {said}"
+    result = import_script(text, catalog)
+    assert result.diagnostics == ()
+    (group,) = result.mission.groups
+    assert group.max_repeat_duration == result.mission.max_duration == pytest.approx(seconds)
 
 
 ASKED = {

@@ -2,9 +2,9 @@
 
 import pytest
 
-from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.il import EventKind, Order
 from argo_compiler.script import import_script
+from tests.argo_compiler.script.conftest import refusals
 
 
 def read(catalog, *lines):
@@ -12,9 +12,7 @@ def read(catalog, *lines):
 
 
 def refused(catalog, *lines):
-    with pytest.raises(DiagnosticError) as error:
-        read(catalog, *lines)
-    errors = (d for d in error.value.diagnostics if d.severity is Severity.ERROR)
+    errors = refusals("\n".join(["Start in starting area 1.", *lines]), catalog)
     return {(d.code.removeprefix("script."), d.span.line) for d in errors}
 
 

@@ -11,8 +11,7 @@ from argo_env.navigation import Navigator
 from argo_env.planning.catalog import make_catalog
 from argo_env.robot.spec import load_robot
 from argo_env.site import load_site
-from tests.argo_compiler.script.judging.cases import load
-from tests.argo_compiler.script.judging.verdicts import Kind, judge
+from tests.argo_compiler.script.judging.verdicts import Kind, judge, load
 
 OURS = Path(__file__).parent / "people"
 RIGHT_SHARE = 0.95

@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from argo_compiler.base.catalog import Catalog, CheckpointKind
-from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.script import import_script
+from tests.argo_compiler.script.conftest import findings
 
 QUANTITY = {
     CheckpointKind.PRESSURE_GAUGE: "value on",
@@ -42,13 +42,11 @@ def measured(text: str, catalog: Catalog) -> list[int]:
     return [int(t.object_id) for t in result.mission.tasks if t.object_id]
 
 
-@settings(deadline=None)
 @given(checkpoints=numbers, case=CASES)
 def test_sheets(checkpoints: list[int], case: type[str], catalog: Catalog) -> None:
     assert measured(case(sheet(catalog, checkpoints)), catalog) == checkpoints
 
 
-@settings(deadline=None)
 @given(edits=st.lists(st.tuples(st.integers(0, 9), st.booleans(), st.booleans()), max_size=12))
 def test_protocols_with_edits(edits: list[tuple[int, bool, bool]], catalog: Catalog) -> None:
     """The plan is that of a plain list on which the same edits are made."""
@@ -120,32 +118,27 @@ def mutations(draw: st.DrawFn, text: str) -> str:
 
 def assert_handled(text: str, catalog: Catalog) -> None:
     """Whatever it is, it is a mission or a message; every place lies in the text."""
-    try:
-        diagnostics = import_script(text, catalog).diagnostics
-    except DiagnosticError as error:
-        diagnostics = error.diagnostics
     lines = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    for finding in diagnostics:
+    for finding in findings(text, catalog):
         if finding.span is not None:
             line = lines[finding.span.line - 1]
             assert 1 <= finding.span.column <= len(line) + 1
             assert finding.span.column + finding.span.length <= len(line) + 2
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(text=mutations(GOOD))
 def test_mutated_protocols(text: str, catalog: Catalog) -> None:
     assert_handled(text, catalog)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(data=st.data())
 def test_mutated_sheets(data: st.DataObject, catalog: Catalog, missions: Path) -> None:
     good = (missions / "mission_1.txt").read_text().replace("1 or 2", "1")
     assert_handled(data.draw(mutations(good)), catalog)
 
 
-@settings(deadline=None)
 @given(text=st.text(max_size=200))
 def test_any_text(text: str, catalog: Catalog) -> None:
     assert_handled("Mission Protocol\n" + text, catalog)

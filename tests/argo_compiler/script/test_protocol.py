@@ -4,31 +4,12 @@ import pytest
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import Remedy
-from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
+from argo_compiler.diagnostics import Severity
 from argo_compiler.il import Action
 from argo_compiler.script import import_script
-from argo_compiler.script.resolve.importing import Resolved
+from tests.argo_compiler.script.conftest import findings, measured, only
 
 START = "Mission Protocol #9\n1. Set a starting point in starting area 1\n"
-
-
-def findings(text: str, catalog: Catalog, **areas: int) -> tuple[Diagnostic, ...]:
-    try:
-        result: Resolved | DiagnosticError = import_script(text, catalog, **areas)
-    except DiagnosticError as error:
-        result = error
-    return result.diagnostics
-
-
-def only(text: str, catalog: Catalog, **areas: int) -> tuple[str, int, int, int]:
-    (finding,) = findings(text, catalog, **areas)
-    assert finding.span is not None
-    return finding.code, finding.span.line, finding.span.column, finding.span.length
-
-
-def measured(text: str, catalog: Catalog) -> list[str]:
-    tasks = import_script(text, catalog).mission.tasks
-    return [t.object_id for t in tasks if t.object_id is not None]
 
 
 def steps(*lines: str) -> str:

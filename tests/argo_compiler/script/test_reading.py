@@ -6,10 +6,11 @@ import pytest
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import ArgoError
-from argo_compiler.diagnostics import DiagnosticError, Severity
-from argo_compiler.script import import_script, parse, read_script
+from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.script import parse, read_script
 from argo_compiler.script.syntax.parsing import MAX_LINES
 from argo_compiler.script.syntax.reading import MAX_BYTES
+from tests.argo_compiler.script.conftest import refusals
 
 
 def test_a_byte_order_mark_is_taken_off(tmp_path: Path) -> None:
@@ -90,16 +91,10 @@ def test_what_is_no_script(text: str, code: str) -> None:
     ],
 )
 def test_what_asks_for_nothing(text: str, code: str, catalog: Catalog) -> None:
-    with pytest.raises(DiagnosticError) as caught:
-        import_script(text, catalog)
-    errors = [d for d in caught.value.diagnostics if d.severity is Severity.ERROR]
-    assert [error.code for error in errors] == [code]
+    assert [error.code for error in refusals(text, catalog)] == [code]
 
 
 def test_too_many_errors_end_the_reading(catalog: Catalog) -> None:
-    text = "Mission Protocol\n" + "1. gibberish\n" * 15_000
-    with pytest.raises(DiagnosticError) as caught:
-        import_script(text, catalog)
-    errors = [d for d in caught.value.diagnostics if d.severity is Severity.ERROR]
+    errors = refusals("Mission Protocol\n" + "1. gibberish\n" * 15_000, catalog)
     assert len(errors) == 102
     assert errors[-1].code == "script.too-many-errors"

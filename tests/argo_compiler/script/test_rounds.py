@@ -62,7 +62,7 @@ def carried_out(mission: Mission) -> list[tuple[float, object]]:
 def test_what_is_carried_out_is_what_the_sentences_say() -> None:
     met: Counter[str] = Counter()
 
-    @settings(max_examples=examples(400), deadline=None)
+    @settings(max_examples=examples(400))
     @given(st.integers(0, 2**32))
     def compare(seed: int) -> None:
         steps, rounds = Writer(seed).protocol()

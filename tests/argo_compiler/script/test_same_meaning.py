@@ -1,4 +1,4 @@
-"""What is said beside orders: limits of what was ordered, the mission's time, counts, headings."""
+"""Lines as many people write them mean what the plain ones mean, or are asked about."""
 
 from collections.abc import Callable
 
@@ -15,6 +15,8 @@ _ROUNDS = f"{_ENGLISH}Check #1 and #4 three times.\n"
 _LIMITED = f"{_ENGLISH}Check #1 and #4 three times for 5 minutes.\n"
 _RUNDEN = f"{_GERMAN}Prüfe #1 und #4 dreimal.\n"
 _BEGRENZT = f"{_GERMAN}Prüfe #1 und #4 dreimal für 5 Minuten.\n"
+_TRIES = f"{_ENGLISH}Check #6. If it cannot be read, retry at most twice and then go on.\nCheck #9."
+_WINDOW = f"{_ENGLISH}Check #9 not before 10 min and not later than 15 min."
 
 
 @pytest.mark.parametrize(
@@ -170,6 +172,61 @@ _BEGRENZT = f"{_GERMAN}Prüfe #1 und #4 dreimal für 5 Minuten.\n"
             f"{_GERMAN}Fahre drei Runden über die Kontrollpunkte 5 bis 8.",
             f"{_GERMAN}Prüfe die Kontrollpunkte 5 bis 8 dreimal.",
         ),
+        (
+            f"{_ENGLISH}Check all valves on the first and on the third floor.",
+            f"{_ENGLISH}Check all valves on floors 1 and 3.",
+        ),
+        (
+            f"{_ENGLISH}Check all valves on the second, on the third and on the fourth floor.",
+            f"{_ENGLISH}Check all valves on floors 2, 3 and 4.",
+        ),
+        (
+            f"{_GERMAN}Prüfe alle Ventile im ersten und im dritten Stock.",
+            f"{_GERMAN}Prüfe alle Ventile im ersten und dritten Stock.",
+        ),
+        (_TRIES.replace("retry at most twice", "try again up to two more times"), _TRIES),
+        (_TRIES.replace("retry at most twice", "retry it at most two more times"), _TRIES),
+        (f"{_ENGLISH}Check #9 between minute 10 and minute 15 of the mission.", _WINDOW),
+        (f"{_ENGLISH}Check #9 between minute 10 and 15 minutes into the mission.", _WINDOW),
+        (f"{_GERMAN}Prüfe #9 zwischen Minute 10 und Minute 15 der Mission.", _WINDOW),
+        (f"{_ENGLISH}Check #8. Stay there.", f"{_ENGLISH}Check #8. End the mission."),
+        (f"{_ENGLISH}Check #8, the robot stays there", f"{_ENGLISH}Check #8. End the mission."),
+        (f"{_GERMAN}Prüfe #8 und bleibe dort.", f"{_GERMAN}Prüfe #8. Beende die Mission."),
+        (
+            f"{_ENGLISH}Check #8.\n\nThanks a lot and see you on Monday\nJonas",
+            f"{_ENGLISH}Check #8.",
+        ),
+        ("Start area 1\nCheck #1.", "Start area: 1\nCheck #1."),
+        ("Starting area 2\n\n1. Check #1.", "Start area: 2\n1. Check #1."),
+        ("Startbereich 2\nPrüfe Kontrollpunkt 1.", "Startbereich: 2\nPrüfe Kontrollpunkt 1."),
+        ("Start area 1\nEnding area: 2\nCheck #1.", "Start area: 1\nEnd area: 2\nCheck #1."),
+        ("Signed: B. Adeyemi, HSE\nStart area: 1\nCheck #1.", "Start area: 1\nCheck #1."),
+        ("Prepared by: M. Lindqvist\nStart area: 1\nCheck #1.", "Start area: 1\nCheck #1."),
+        ("Geprüft von: M. Weiß\nStartbereich: 1\nPrüfe #1.", "Startbereich: 1\nPrüfe #1."),
+        (
+            "Start area: 1\nCheck #1. The mission ends when the robot is docked in area 2.",
+            "Start area: 1\nCheck #1. Park in area 2.",
+        ),
+        (
+            f"{_ENGLISH}The robot has to check these valves in any order:\n- R25\n- R12",
+            f"{_ENGLISH}Check these valves in any order:\n- R25\n- R12",
+        ),
+        (
+            f"{_ENGLISH}Check #1. If it shows more than 20 or less than 5, check #4.",
+            f"{_ENGLISH}Check #1. If it is above 20 or below 5, check #4.",
+        ),
+        (
+            f"{_GERMAN}Prüfe #1. Wenn der Wert größer als 20 oder kleiner als 5 ist, prüfe #4.",
+            f"{_GERMAN}Prüfe #1. Wenn der Wert über 20 oder unter 5 ist, prüfe #4.",
+        ),
+        (
+            f"{_ENGLISH}Check #1 and #4.\n#4 has to be read not later than 5 min after the start.",
+            f"{_ENGLISH}Check #1.\nCheck #4 not later than 5 minutes after the start.",
+        ),
+        (
+            "Start area: 1\nOrder: any\nCheck #1 and #4.\nNote: #4 must be checked before #1.",
+            "Start area: 1\nOrder: any\nCheck #1 and #4.\n#4 must be checked before #1.",
+        ),
     ],
 )
 def test_other_words_mean_the_same(
@@ -266,3 +323,80 @@ def test_what_follows_the_dock_is_refused(catalog: Catalog) -> None:
     text = f"{_ENGLISH}Check #1.\nDrive back to the docking station.\nCheck #4."
     with pytest.raises(DiagnosticError, match="after-docking"):
         import_script(text, catalog)
+
+
+@pytest.mark.parametrize(
+    ("needed", "optional"),
+    [("yes", None), ("required", None), ("optional", True)],
+)
+def test_column_that_says_what_is_needed(
+    needed: str, optional: bool | None, catalog: Catalog
+) -> None:
+    text = f"{_ENGLISH}\n| Checkpoint | Needed |\n|---|---|\n| 4 | {needed} |\n"
+    (task,) = (t for t in import_script(text, catalog).mission.tasks if t.object_id)
+    assert bool(task.optional) is bool(optional)
+
+
+def test_what_is_not_needed_is_asked_about(catalog: Catalog) -> None:
+    text = f"{_ENGLISH}\n| Checkpoint | Needed |\n|---|---|\n| 4 | no |\n"
+    with pytest.raises(DiagnosticError) as error:
+        import_script(text, catalog)
+    assert "may be left out, or that it is left out" in str(error.value)
+
+
+def test_who_stays_before_the_end_is_asked_how_long(catalog: Catalog) -> None:
+    with pytest.raises(DiagnosticError) as error:
+        import_script(f"{_ENGLISH}Check #8.\nStay there.\nCheck #4.", catalog)
+    first = error.value.diagnostics[0]
+    assert first.span is not None
+    assert (first.span.line, first.code) == (3, "script.wait")
+
+
+@pytest.mark.parametrize("title", ["# Tour of the pumps", "Round of the upper deck crew"])
+def test_round_in_a_title(title: str, catalog: Catalog) -> None:
+    mission = import_script(f"{title}\n\n{_ENGLISH}Check #8.", catalog).mission
+    assert mission.designation == title.strip("# ")
+
+
+def test_mission_does_not_wait_for_a_person(catalog: Catalog) -> None:
+    with pytest.raises(DiagnosticError, match="a mission does not wait for a person"):
+        import_script(f"{_ENGLISH}Check #8.\nWait until the operator confirms.", catalog)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["Work instruction WI-31 rev. B", "Arbeitsanweisung WI-31 Rev. B"],
+)
+def test_title_with_a_revision(text: str, catalog: Catalog) -> None:
+    mission = import_script(f"{text}\n\nStart area: 1\n1. Check #1.", catalog).mission
+    assert mission.designation == text
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "said"),
+    [
+        (
+            "1. Check #1.\n2. Check #4.\n3. Repeat this three times.",
+            "step-range",
+            "all steps",
+        ),
+        ("1. Prüfe #1.\n2. Prüfe #4.\n3. Wiederhole es dreimal.", "step-range", "all steps"),
+        ("1. Check #1.\n2. #1 has to be read within 5 minutes.", "ambiguous-demand", "once more"),
+        ("1. Check #1.\n2. Check #4.\nNote: #4 must be read before #1.", "precedence", "MEASURE"),
+    ],
+)
+def test_what_stays_open_is_asked(text: str, code: str, said: str, catalog: Catalog) -> None:
+    start = _GERMAN if "Prüfe" in text else _ENGLISH
+    with pytest.raises(DiagnosticError) as error:
+        import_script(start + text, catalog)
+    assert code in str(error.value)
+    assert said in str(error.value)
+
+
+def test_table_of_values_to_be_read(catalog: Catalog) -> None:
+    text = (
+        "Start area:\t1\n\nNo.\tCheckpoint\tDescription\tTask\n1\t1\tpressure gauge 1\tread value\n"
+    )
+    text += "2\t4\tvalve R25\tread position\n"
+    mission = import_script(text, catalog).mission
+    assert [t.object_id for t in mission.tasks if t.object_id] == ["1", "4"]

@@ -3,10 +3,10 @@
 import pytest
 
 from argo_compiler.base.catalog import Catalog
-from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
+from argo_compiler.diagnostics import Severity
 from argo_compiler.il import Mission, Mode, Order
 from argo_compiler.script import import_script
-from argo_compiler.script.resolve.importing import Resolved
+from tests.argo_compiler.script.conftest import findings, only
 
 HEADER = """\
 Mission's designation: Mission #7
@@ -24,22 +24,6 @@ def mission(text: str, catalog: Catalog) -> Mission:
     return import_script(text, catalog).mission
 
 
-def findings(text: str, catalog: Catalog, **areas: int) -> tuple[Diagnostic, ...]:
-    try:
-        result: Resolved | DiagnosticError = import_script(text, catalog, **areas)
-    except DiagnosticError as error:
-        result = error
-    return result.diagnostics
-
-
-def only(text: str, catalog: Catalog, **areas: int) -> tuple[str, int, int, int]:
-    """The one finding: its code, line, column and length."""
-    (finding,) = findings(text, catalog, **areas)
-    assert finding.span is not None
-    assert finding.excerpt == text.split("\n")[finding.span.line - 1]
-    return finding.code, finding.span.line, finding.span.column, finding.span.length
-
-
 def test_a_sheet_that_fixes_its_areas_needs_no_options(catalog: Catalog) -> None:
     result = import_script(SHEET, catalog)
     assert result.diagnostics == ()
@@ -52,23 +36,6 @@ def test_case_and_blanks_make_no_difference(catalog: Catalog) -> None:
     assert [t.name for t in mission(SHEET.upper(), catalog).tasks] == expected
     assert [t.name for t in mission(SHEET.replace(" ", "  "), catalog).tasks] == expected
     assert [t.name for t in mission(SHEET.replace("\n", " \r\n\r\n"), catalog).tasks] == expected
-
-
-@pytest.mark.parametrize(
-    ("said", "seconds"),
-    [
-        ("20'", 1200),
-        ("20′", 1200),
-        ("20 min", 1200),
-        ("20min.", 1200),
-        ("twenty minutes", 1200),
-        ("90 s", 90),
-        ("1 h 30 min", 5400),
-        ("two hours 5 seconds", 7205),
-    ],
-)
-def test_durations(said: str, seconds: float, catalog: Catalog) -> None:
-    assert mission(SHEET.replace("20'", said), catalog).max_duration == seconds
 
 
 @pytest.mark.parametrize("said", ["0'", "10 min 20 min", "5 s 1 h"])

@@ -8,6 +8,7 @@ import pytest
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.script import import_script
+from argo_compiler.script.reference import BEGIN, END, as_markdown
 from argo_compiler.script.syntax.words import loading
 
 FOLDER = Path(loading.__file__).parent
@@ -104,3 +105,11 @@ def test_a_place_may_be_named_as_a_phrase_is(catalog: Catalog) -> None:
     named = catalog.model_copy(update={"places": (*catalog.places, place)})
     text = "Start in starting area 1. Go to the control room."
     assert place.pose in [task.pose for task in import_script(text, named).mission.tasks]
+
+
+def test_the_page_on_scripts_has_all_that_can_be_said() -> None:
+    page = Path(__file__).parents[3] / "docs" / "script.md"
+    said = page.read_text(encoding="utf-8").partition(BEGIN)[2].partition(END)[0]
+    assert said.strip() == as_markdown(loading.LANGUAGES), (
+        "run python -m argo_compiler.script docs/script.md"
+    )

@@ -11,6 +11,7 @@ torch = pytest.importorskip("torch")
 from argo_env.envs.route import RouteEnv  # noqa: E402
 from argo_env.envs.route_sources import TEST  # noqa: E402
 from baselines.learned.agent import WEIGHTS, LearnedPolicy, SampledPolicy, Scorer  # noqa: E402
+from baselines.policy import make_policy  # noqa: E402
 
 torch.set_num_threads(1)
 
@@ -33,23 +34,12 @@ def play(env: RouteEnv, number: int, policy: Any, seed: int = 0) -> tuple[float,
     return total, route
 
 
-class Nearest:
-    """The nearest checkpoint that is legal."""
-
-    def begin(self, observation: Any, budget: float, seed: int) -> None:
-        pass
-
-    def act(self, observation: Any) -> int:
-        legal = np.flatnonzero(observation["mask"][1:]) + 1
-        return int(legal[observation["travel"][legal].argmin()]) if len(legal) else 0
-
-
 def test_they_are_better_than_the_nearest_neighbour(scorer: Scorer) -> None:
     env = RouteEnv(full=True)
     prizes = {
         name: np.array([play(env, number, policy)[0] for number in TEST[:6]])
         for name, policy in [
-            ("nearest", Nearest()),
+            ("nearest", make_policy("nearest-neighbour")),
             ("learned", LearnedPolicy(scorer)),
             ("sampled", SampledPolicy(scorer, 8)),
         ]

@@ -43,7 +43,7 @@ def answers(observation: Observation, seed: int = 0) -> tuple[np.ndarray, np.nda
 
 
 @given(st.integers(0, 1000), st.integers(2, 12), st.integers(0, 5))
-@settings(deadline=None, max_examples=examples(15))
+@settings(max_examples=examples(15))
 def test_another_order_of_the_checkpoints_changes_nothing(seed: int, size: int, moves: int) -> None:
     seen = on_the_way(RandomRoutes(size), moves, seed)
     order = np.append(0, np.random.default_rng(seed).permutation(size) + 1)
@@ -58,7 +58,7 @@ def test_another_order_of_the_checkpoints_changes_nothing(seed: int, size: int, 
 
 
 @given(st.integers(0, 1000), st.integers(0, 4))
-@settings(deadline=None, max_examples=examples(8))
+@settings(max_examples=examples(8))
 def test_slots_that_are_not_used_change_nothing(seed: int, moves: int) -> None:
     class Padded(TrainingRoutes):
         def draw(self, number: int, *_: object) -> RouteInstance:  # type: ignore[override]

@@ -28,7 +28,7 @@ def oracle_of(instance: RouteInstance) -> Oracle:
 
 
 @given(st.integers(0, 10_000), st.integers(1, 5), st.floats(100.0, 900.0), st.floats(0.0, 1.0))
-@settings(deadline=None, max_examples=examples(25))
+@settings(max_examples=examples(25))
 def test_values_are_those_of_the_best_order(
     number: int, size: int, budget: float, precedence: float
 ) -> None:

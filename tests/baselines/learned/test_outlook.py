@@ -14,7 +14,7 @@ from tests.conftest import examples  # noqa: E402
 
 
 @given(st.integers(0, 4000), st.integers(1, 12), st.integers(0, 3))
-@settings(deadline=None, max_examples=examples(10))
+@settings(max_examples=examples(10))
 def test_it_is_what_the_rules_bring(number: int, size: int, moves: int) -> None:
     env = RouteEnv(source=RandomRoutes(size, budget=800.0, precedence=0.4), full=True)
     observation, _ = env.reset(options={"instance": number})

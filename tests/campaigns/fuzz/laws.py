@@ -6,16 +6,16 @@
 - What is read back is the same mission.
 """
 
-import json
 import random
 from dataclasses import dataclass
 
 from argo_compiler.checks import check
-from argo_compiler.diagnostics import DiagnosticError, Severity
+from argo_compiler.diagnostics import DiagnosticError, has_errors
 from argo_compiler.il import Mission
 from argo_compiler.script import format_script, import_script
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.campaigns.fuzz.sentences import Said, Sayer, text_of
+from tests.mission_writing import unplaced
 
 FRAME = """\
 Mission Protocol #1
@@ -68,17 +68,6 @@ def outcome_of(words: list[Said]) -> tuple[Outcome, Mission | None]:
     return Outcome(unplaced(resolved.mission), said), resolved.mission
 
 
-def unplaced(mission: Mission) -> object:
-    """The mission without the places in its source."""
-
-    def without(value: object) -> object:
-        if isinstance(value, dict):
-            return {key: without(part) for key, part in value.items() if key != "source"}
-        return [without(part) for part in value] if isinstance(value, list) else value
-
-    return without(json.loads(mission.model_dump_json()))
-
-
 def try_sentence(words: list[Said], sayer: Sayer, rng: random.Random) -> tuple[str, list[Breach]]:
     """What became of a sentence, `mission` or `refused`, and the laws that it breaks."""
     outcome, mission = outcome_of(words)
@@ -87,7 +76,7 @@ def try_sentence(words: list[Said], sayer: Sayer, rng: random.Random) -> tuple[s
     breaches: list[Breach] = []
     if len(words) <= LONGEST:
         breaches += unused(words, outcome, sayer, rng)
-    if not any(d.severity is Severity.ERROR for d in check(mission, CATALOG)):
+    if not has_errors(check(mission, CATALOG)):
         again = import_script(format_script(mission, CATALOG), CATALOG).mission
         if unplaced(again) != outcome.mission:
             breaches.append(Breach("what is read back is another mission", text_of(words)))

@@ -7,7 +7,7 @@ from pathlib import Path
 from argo_compiler.analysis import analyse
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.checks import check
-from argo_compiler.diagnostics import Severity
+from argo_compiler.diagnostics import has_errors
 from argo_compiler.files.mission_file import read_mission
 from argo_compiler.hfsm import (
     ActionFailed,
@@ -27,7 +27,7 @@ from argo_compiler.hfsm import (
 from argo_compiler.il import Action, EventKind, Mission, Task
 from argo_compiler.script import decode_script, format_script, import_script
 from tests.argo_compiler.script.conftest import CATALOG
-from tests.campaigns.fuzz.laws import unplaced
+from tests.mission_writing import unplaced
 
 STEPS = 30
 """events that the machine of a mission is given"""
@@ -43,7 +43,7 @@ def try_script(data: bytes, rng: random.Random) -> str:
     except ArgoError:
         return "refused"
     run(mission, rng)
-    if not any(finding.severity is Severity.ERROR for finding in check(mission, CATALOG)):
+    if not has_errors(check(mission, CATALOG)):
         again = import_script(format_script(mission, CATALOG), CATALOG).mission
         assert unplaced(again) == unplaced(mission), "formatting changes the mission"
     return "mission"

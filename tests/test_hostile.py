@@ -4,64 +4,64 @@ Each case runs in a process of its own whose memory and processor time the syste
 """
 
 import json
-import subprocess
-import sys
-import textwrap
+import multiprocessing
+import resource
 from functools import partial
+from multiprocessing.connection import Connection
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
-MEMORY_BYTES = 2_000_000_000
-CPU_SECONDS = 120
-
-PRELUDE = f"""
-import resource
-resource.setrlimit(resource.RLIMIT_AS, ({MEMORY_BYTES}, {MEMORY_BYTES}))
-resource.setrlimit(resource.RLIMIT_CPU, ({CPU_SECONDS}, {CPU_SECONDS}))
-import sys
-from pathlib import Path
 from argo_compiler.analysis import analyse
-from argo_compiler.checks import check
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.files.mission_file import read_mission
 from argo_compiler.hfsm import Executor, lower
+from argo_compiler.il import Mission
 from argo_compiler.script import format_script, import_script, read_script
 from tests.argo_compiler.script.conftest import CATALOG
 
-def everything(mission):
+MEMORY_BYTES = 2_000_000_000
+CPU_SECONDS = 120
+
+# Forks the processes from one that has loaded this module, and nothing else.
+PROCESSES = multiprocessing.get_context("forkserver")
+PROCESSES.set_forkserver_preload([__name__])
+
+
+def everything(mission: Mission) -> Mission:
     executor = Executor(lower(mission))
     executor.start(0.0)
     executor.progress()
     analyse(mission, CATALOG)
     return import_script(format_script(mission, CATALOG), CATALOG).mission
 
-def answer(path):
-    try:
-        if path.endswith(".json"):
-            mission = read_mission(Path(path))
-        else:
-            mission = import_script(read_script(path), CATALOG).mission
-        everything(mission)
-        print("mission")
-    except ArgoError as error:
-        print("refused", str(error)[-400:])
 
-answer(sys.argv[1])
-"""
+def read_within_limits(path: Path, answers: Connection) -> None:
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
+    resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS))
+    try:
+        if path.suffix == ".json":
+            mission = read_mission(path)
+        else:
+            mission = import_script(read_script(str(path)), CATALOG).mission
+        everything(mission)
+        answers.send("mission")
+    except ArgoError as error:
+        answers.send(f"refused {str(error)[-400:]}")
 
 
 def answer(path: Path) -> str:
-    done = subprocess.run(
-        [sys.executable, "-c", textwrap.dedent(PRELUDE), str(path)],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        timeout=600,
-    )
-    assert done.returncode == 0, done.stderr[-2000:]
-    return done.stdout
+    answers, sending = PROCESSES.Pipe(duplex=False)
+    process = PROCESSES.Process(target=read_within_limits, args=(path, sending))
+    process.start()
+    sending.close()
+    try:
+        said = answers.recv() if answers.poll(600) else "nothing within 600 s"
+    except EOFError:
+        said = "nothing"
+    process.join(10)
+    assert process.exitcode == 0, said
+    return said
 
 
 def nested(depth: int) -> dict[str, object]:

@@ -15,7 +15,6 @@ export interface GlbNode {
   readonly position: readonly [number, number, number];
   /** quaternion x, y, z, w */
   readonly rotation: readonly [number, number, number, number];
-  readonly extras: Readonly<Record<string, unknown>>;
   readonly parts: readonly GlbPart[];
 }
 
@@ -25,7 +24,6 @@ interface Told {
     readonly children?: readonly number[];
     readonly translation?: [number, number, number];
     readonly rotation?: [number, number, number, number];
-    readonly extras?: Record<string, unknown>;
     readonly mesh?: number;
   }[];
   readonly meshes?: readonly { readonly primitives: readonly Primitive[] }[];
@@ -68,7 +66,6 @@ export function readGlb(content: ArrayBuffer): GlbNode[] {
       parent: carrier === 0 ? null : carrier - 1,
       position: node.translation ?? [0, 0, 0],
       rotation: node.rotation ?? [0, 0, 0, 1],
-      extras: node.extras ?? {},
       parts: primitives.map((one) => partOf(content, told, binary, one)),
     };
   });

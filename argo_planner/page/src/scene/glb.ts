@@ -5,7 +5,6 @@ export interface GlbPart {
   readonly index: Uint16Array | Uint32Array;
   /** linear, 0 to 1 */
   readonly colour: readonly [number, number, number];
-  readonly open: boolean;
 }
 
 export interface GlbNode {
@@ -29,7 +28,6 @@ interface Told {
   readonly meshes?: readonly { readonly primitives: readonly Primitive[] }[];
   readonly materials?: readonly {
     readonly pbrMetallicRoughness?: { readonly baseColorFactor?: readonly number[] };
-    readonly doubleSided?: boolean;
   }[];
   readonly accessors: readonly {
     readonly bufferView: number;
@@ -88,6 +86,5 @@ function partOf(content: ArrayBuffer, told: Told, binary: number, primitive: Pri
     positions: new Float32Array(content, corners.at, 3 * corners.count),
     index: new Index(content, triangles.at, triangles.count),
     colour: [red, green, blue],
-    open: material?.doubleSided ?? false,
   };
 }

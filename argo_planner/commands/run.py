@@ -11,7 +11,7 @@ from rich.markup import escape
 
 from argo_compiler.base.errors import Invalid
 from argo_compiler.files.reading import read_bytes
-from argo_env.faults.reading import MAX_BYTES, FaultText, decode_faults
+from argo_env.faults.reading import MAX_BYTES, decode_faults
 from argo_env.files.folders import make_folder
 from argo_env.planning.opening import open_site
 from argo_env.run.drives_and_sensors import DRIVES, SENSORS
@@ -170,7 +170,9 @@ def run(
     """Run a mission, or the spec of a run, show what was measured, and write a report."""
     outputs = _Outputs(source, report, render, recording, journal, gui, pace, force)
     outputs.check(site, faults)
-    said = _read_faults(faults) if faults else None
+    said = None
+    if faults:
+        said = decode_faults(read_bytes(faults, "file of faults", MAX_BYTES), str(faults))
     spec = RunSpec(
         mission=NO_MISSION,
         source=os.path.realpath(source),
@@ -243,7 +245,3 @@ def _refuse_decided(context: typer.Context, source: Path) -> None:
             raise Invalid(
                 f"{source}: is the spec of a run, in which {dashed(name)} is decided already"
             )
-
-
-def _read_faults(path: Path) -> FaultText:
-    return decode_faults(read_bytes(path, "file of faults", MAX_BYTES), str(path))

@@ -58,11 +58,8 @@ def _noticed(record: RunRecord) -> Iterator[str]:
 
 def _readings(record: RunRecord) -> Table:
     table = Table(title="Readings", title_justify="left")
-    for name, side in (
-        ("#", "right"), ("checkpoint", "left"), ("floor", "right"), ("at", "right"),
-        ("value", "right"), ("nominal", "right"), ("", "left"),
-    ):  # fmt: skip
-        table.add_column(name, justify="right" if side == "right" else "left")
+    for name in ("#", "checkpoint", "floor", "at", "value", "nominal", ""):
+        table.add_column(name, justify="left" if name in ("checkpoint", "") else "right")
     for reading in record.readings:
         table.add_row(
             str(reading.checkpoint),

@@ -13,10 +13,14 @@ from argo_env.run.observer import Observer
 from argo_env.run.record import Reading
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
-from argo_env.run.steering import DoByHand, ReachIn, Steering, StopByHand, StopRun
+from argo_env.run.steering import DoByHand, ReachIn, StopByHand, StopRun
 from argo_planner.service.runs import requests as asked
-from argo_planner.service.runs.request_book import RequestBook
-from argo_planner.service.runs.requests import RequestProgress, RequestState, RunRequest
+from argo_planner.service.runs.requests import (
+    RequestBook,
+    RequestProgress,
+    RequestState,
+    RunRequest,
+)
 from argo_planner.service.runs.state import (
     EntryTold,
     PoseTold,
@@ -237,10 +241,8 @@ class RunDriver:
         match request:
             case asked.ChangeSpeed(speed=speed):
                 self._pace.change(speed, simulation.now, self._clock())
-                return _at_once
             case asked.SkipTask(task=name):
                 self._hands.skip(name)
-                return _at_once
             case asked.GiveRobotBack():
                 if not simulation.taken_over:
                     raise Conflict("nobody has the robot: it is given back by who took it over")
@@ -279,8 +281,15 @@ class RunDriver:
             case asked.CancelMission():
                 simulation.handle(Cancel())
                 return lambda: simulation.over
-        simulation.handle(_steering(request))
-        return _at_once
+            case asked.EndRun():
+                simulation.handle(StopRun())
+            case asked.TellEvent(event=event, detail=detail):
+                simulation.handle(Occurred(event, detail))
+            case asked.TellReading(checkpoint=checkpoint, value=value):
+                simulation.handle(ReadingGiven(checkpoint, value))
+            case asked.BeginFault(fault=fault):
+                simulation.handle(ReachIn(fault))
+        return lambda: True
 
     def _look(self) -> None:
         """Confirms what is so by now."""
@@ -349,21 +358,3 @@ class RunDriver:
             pose=(pose.x, pose.y, pose.z, pose.yaw, pose.pitch),
             charge=self._charge(),
         )
-
-
-def _at_once() -> bool:
-    return True
-
-
-def _steering(request: RunRequest) -> Steering:
-    """What a simulation is told for a request that needs nothing else."""
-    match request:
-        case asked.EndRun():
-            return StopRun()
-        case asked.TellEvent(event=event, detail=detail):
-            return Occurred(event, detail)
-        case asked.TellReading(checkpoint=checkpoint, value=value):
-            return ReadingGiven(checkpoint, value)
-        case asked.BeginFault(fault=fault):
-            return ReachIn(fault)
-    raise AssertionError(f"{request.kind} is begun otherwise")

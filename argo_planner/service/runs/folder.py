@@ -1,11 +1,15 @@
 """The runs of a service on disk: a folder each, with its order, its journal, its report, and the
 requests to it, each of which is there before the run's process hears of it."""
 
+import asyncio
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
@@ -24,6 +28,7 @@ from argo_planner.service.runs.requests import RequestState, RunOrder
 from argo_planner.service.runs.state import RunState
 from argo_planner.service.runs.worker import entries_of, journals
 
+T = TypeVar("T")
 RUN_ID = r"[0-9]{8}-[0-9]{6}-[0-9a-f]{4}"
 """what a run's id looks like: when it was begun, in UTC, and something that tells it from others"""
 _KEPT = "run.json"
@@ -179,3 +184,19 @@ class RunFolder:
             return False
         with open_journal(last) as journal:
             return journal.ended
+
+
+class DiskThread:
+    """Does work on the disk beside the event loop, one after the other. Holds the thread."""
+
+    def __init__(self) -> None:
+        self._thread = ThreadPoolExecutor(1, thread_name_prefix="runs-disk")
+
+    async def do(self, work: Callable[..., T], *arguments: Any) -> T:
+        """What comes of the work, once all that was to be done before it has been."""
+        loop = asyncio.get_running_loop()
+        return await loop.run_in_executor(self._thread, partial(work, *arguments))
+
+    def close(self) -> None:
+        """Nothing more is to be done; what was is done first."""
+        self._thread.shutdown()

@@ -11,9 +11,8 @@ from pathlib import Path
 from argo_compiler.base.errors import ArgoError, Conflict, NotFound
 from argo_compiler.base.model import Model
 from argo_env.run.log import Entry
-from argo_planner.service.rooms.mailbox import Mailbox
-from argo_planner.service.runs.disk import DiskThread
-from argo_planner.service.runs.folder import KeptRun, RunFolder
+from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
+from argo_planner.service.runs.folder import DiskThread, KeptRun, RunFolder
 from argo_planner.service.runs.pipe import BrokenOff, RobotText
 from argo_planner.service.runs.present import PresentRun
 from argo_planner.service.runs.process import RunProcess
@@ -25,7 +24,6 @@ from argo_planner.service.runs.requests import (
     RunOrder,
     RunRequest,
 )
-from argo_planner.service.runs.robot_line import RobotLine
 from argo_planner.service.runs.state import EntryList, RequestTold, RunState, RunStatus, StateTold
 
 _REPORT_LOOKS = 50
@@ -39,6 +37,38 @@ class AfterRestart(StrEnum):
     GO_ON = "go-on"
     WAIT = "wait"
     """for a person, who asks for it to go on"""
+
+
+class RobotLine:
+    """The connection of the robot, if there is one. Holds the texts that wait for it."""
+
+    def __init__(self) -> None:
+        self._mailbox: Mailbox | None = None
+
+    def connect(self) -> Mailbox:
+        """A robot has connected: the texts for it. One that was connected before is let go."""
+        self.close("the robot has connected again")
+        self._mailbox = Mailbox()
+        return self._mailbox
+
+    def is_that_of(self, mailbox: Mailbox) -> bool:
+        """Whether it is still the connection that came with these texts."""
+        return mailbox is self._mailbox
+
+    def post(self, text: str) -> None:
+        """A text for the robot, which nobody hears while it is not connected."""
+        if self._mailbox is not None:
+            self._mailbox.post(text)
+
+    def disconnect(self, mailbox: Mailbox) -> None:
+        """A connection has ended."""
+        if mailbox is self._mailbox:
+            self._mailbox = None
+
+    def close(self, why: str) -> None:
+        """Lets the robot go."""
+        if self._mailbox is not None:
+            self._mailbox.close(MailboxClosed(why))
 
 
 class RunHost:

@@ -6,10 +6,8 @@ from collections.abc import Iterable, Sequence
 from argo_compiler.base.errors import ArgoError, NotFound
 from argo_compiler.base.model import Model
 from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
-from argo_planner.service.runs.disk import DiskThread
-from argo_planner.service.runs.folder import KeptRun, RunFolder
-from argo_planner.service.runs.request_book import RequestBook
-from argo_planner.service.runs.requests import RequestState
+from argo_planner.service.runs.folder import DiskThread, KeptRun, RunFolder
+from argo_planner.service.runs.requests import RequestBook, RequestState
 from argo_planner.service.runs.state import (
     EntryList,
     EntryTold,

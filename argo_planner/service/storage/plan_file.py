@@ -192,7 +192,7 @@ class _Read:
 
 def _read(content: bytes) -> _Read | None:
     """The plan in a file as far as it is good; None if its first line is not."""
-    *whole, torn = content.split(b"\n")
+    whole = content.split(b"\n")[:-1]  # what is behind the last of them was torn off
     base = base_object(whole[0]) if whole else None
     if base is None:
         return None
@@ -208,7 +208,6 @@ def _read(content: bytes) -> _Read | None:
             return _Read(document, PlanExtent(first, size, number), len(whole) - number)
         document = following
         size += len(line) + 1
-    del torn
     return _Read(document, PlanExtent(first, size, len(whole)), 0)
 
 

@@ -20,7 +20,6 @@ from argo_compiler.base.errors import (
     Conflict,
     Invalid,
     NotFound,
-    Remedy,
     Unavailable,
     Unreachable,
 )
@@ -97,22 +96,19 @@ _STATUS: tuple[tuple[type[ArgoError], HTTPStatus], ...] = (
 )
 
 
-def _remedies(error: ArgoError, diagnostics: tuple[Diagnostic, ...]) -> list[Remedy]:
-    return [*error.remedies, *(remedy for found in diagnostics for remedy in found.remedies)]
-
-
 def problem_of(error: ArgoError) -> Problem:
     """The answer to an error of Argo."""
     status = next(status for kind, status in _STATUS if isinstance(error, kind))
     diagnostics: tuple[Diagnostic, ...] = ()
     if isinstance(error, DiagnosticError | EditRefused | ChangedSince):
         diagnostics = tuple(error.diagnostics[:100])
+    remedies = [*error.remedies, *(one for found in diagnostics for one in found.remedies)]
     return Problem.model_construct(
         status=int(status),
         code=error.code,
         detail=str(error)[:_LONGEST],
         diagnostics=diagnostics,
-        remedies=tuple(dict.fromkeys(map(str, _remedies(error, diagnostics)))),
+        remedies=tuple(dict.fromkeys(map(str, remedies))),
         place=error.place if isinstance(error, EditRefused) else None,
         newest=error.newest if isinstance(error, StaleCommand | StaleRevision) else None,
         since=error.since if isinstance(error, StaleCommand) else None,

@@ -5,7 +5,6 @@ import re
 from collections.abc import Callable, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from datetime import datetime
 from functools import partial
 from pathlib import Path as FilePath
 from typing import Annotated, Any, TypeVar
@@ -50,7 +49,6 @@ class PlanningService:
     obstacles: KeptObstacles
     site_thread: Executor
     """one thread, as a site is used by one at a time"""
-    started: datetime
 
     async def on_site(self, work: Callable[..., T], *arguments: Any) -> T:
         """What comes of work on the site, which may take long."""

@@ -87,7 +87,6 @@ def opened_service(
                     runs=runs,
                     obstacles=obstacles,
                     site_thread=thread,
-                    started=_now(),
                 )
             finally:
                 thread.shutdown(wait=False, cancel_futures=True)

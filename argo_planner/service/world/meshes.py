@@ -96,15 +96,11 @@ def _template(solid: Solid, role: Role, detail: Detail) -> UnitShape | None:
         return prism(_ROUND[Detail.MEDIUM if vessel else detail])
     thickness = sorted(solid.size)[1]
     if detail is Detail.FULL or (thickness > _THIN and role is not Role.STAIR):
-        return _toe(solid, role, detail)
+        is_toe = role is Role.RAILING and solid.size[1:] == (THICKNESS, TOE_PLATE)
+        return None if is_toe and detail is Detail.COARSE else prism(4)
     if detail is Detail.MEDIUM:
         return prism(4) if role is Role.STAIR else prism(4, capped=False)
     return step() if role is Role.STAIR else prism(3, capped=False)
-
-
-def _toe(solid: Box, role: Role, detail: Detail) -> UnitShape | None:
-    is_toe = role is Role.RAILING and solid.size[1:] == (THICKNESS, TOE_PLATE)
-    return None if is_toe and detail is Detail.COARSE else prism(4)
 
 
 def _merged(parts: list[tuple[UnitShape, Solid]], colour: Colour, wider: float) -> Mesh:

@@ -162,7 +162,8 @@ class _Ways:
     def way(self, start: Pose, goal: Task | Pose) -> PreviewedWay:
         task = _task_of(goal)
         if task.action is Action.WAIT:
-            return PreviewedWay(time=0.0, points=((0.0, *_row(start)),), end=start)
+            standing = (0.0, start.x, start.y, start.z, start.yaw)
+            return PreviewedWay(time=0.0, points=(standing,), end=start)
         try:
             if task.pose is not None:
                 require_on_site(task.pose, "its pose")
@@ -209,10 +210,6 @@ def _require_sound(task: Task, catalog: Catalog) -> None:
 
 def _not_there(goal: Task | Pose, reason: str) -> str:
     return reason if isinstance(goal, Pose) else f"task '{goal.name}': {reason}"
-
-
-def _row(pose: Pose) -> tuple[float, float, float, float]:
-    return pose.x, pose.y, pose.z, pose.yaw
 
 
 def _default_order(tasks: dict[str, Task], first: str) -> list[str]:

@@ -58,6 +58,8 @@ class Healed:
     """The script's lines without noise, each character mapped to where it stood."""
 
     lines: tuple[ScriptText, ...]
+    unreadable: frozenset[int]
+    """the numbers of lines with an error; their text is not to be used"""
     diagnostics: tuple[Diagnostic, ...]
 
     @property
@@ -78,6 +80,7 @@ def heal(
     source = Source(text) if isinstance(text, str) else text
     diagnostics = Diagnostics(source)
     lines = []
+    unreadable = set()
     for number in range(1, len(source.lines) + 1):
         if number in read:
             lines.append(_plain(read[number]))
@@ -90,14 +93,16 @@ def heal(
             message = f"the line has {len(line.content)} characters; at most {MAX_LINE} are read"
             diagnostics.error("long-line", message, line.span(0, 1), "break it into lines")
             lines.append(line[:0])
+            unreadable.add(number)
             continue
         healed, clear = _join_cuts(_plain(line), vocabulary, diagnostics)
         if not clear:
             # The number stays, so that the steps are still one after the other.
             mark = _STEP.match(healed.content)
             healed = healed[: mark.end() if mark else 0]
+            unreadable.add(number)
         lines.append(healed)
-    return Healed(tuple(lines), tuple(diagnostics.entries))
+    return Healed(tuple(lines), frozenset(unreadable), tuple(diagnostics.entries))
 
 
 def _plain(line: ScriptText) -> ScriptText:

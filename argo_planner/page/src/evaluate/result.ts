@@ -184,6 +184,10 @@ export class EvaluateResult extends PageElement {
     const standing = job.standing ?? null;
     const why = mayPlan() ? nothing : texts.mayNotPlan;
     const resumable = job.state === "cancelled" || job.state === "interrupted";
+    const button = (id: string, sign: unknown, label: string, act: (id: string) => unknown, look = "") =>
+      html`<button id=${id} class=${look} title=${why} ?disabled=${!mayPlan()} @click=${() => act(job.id)}>
+        ${sign} ${label}
+      </button>`;
     return html`<section aria-label=${texts.found} data-state=${job.state}>
       ${this.choice(job)}
       <h2 role="status">${texts.found}: ${texts.states[job.state]}</h2>
@@ -191,26 +195,14 @@ export class EvaluateResult extends PageElement {
       ${evaluationIsStale.value ? html`<p class="small">${texts.stale}</p>` : nothing}
       ${job.state === "running" && standing === null ? html`<progress></progress>` : nothing}
       ${standing === null ? nothing : this.standing(job, standing)}
-      ${job.state === "running"
-        ? html`<button id="cancel" title=${why} ?disabled=${!mayPlan()} @click=${() => cancelEvaluation(job.id)}>
-            ${icon("stop")} ${texts.cancel}
-          </button>`
-        : nothing}
-      ${resumable
-        ? html`<button id="go-on" title=${why} ?disabled=${!mayPlan()} @click=${() => goOnWithEvaluation(job.id)}>
-            ${icon("play")} ${texts.goOn}
-          </button>`
-        : nothing}
+      ${job.state === "running" ? button("cancel", icon("stop"), texts.cancel, cancelEvaluation) : nothing}
+      ${resumable ? button("go-on", icon("play"), texts.goOn, goOnWithEvaluation) : nothing}
       ${job.state === "done" || (resumable && standing !== null)
         ? html`<a href=${`/api/jobs/${job.id}/report`} target="_blank" rel="noopener">
             ${icon("flag", 14)} ${texts.report}
           </a>`
         : nothing}
-      ${job.state === "running"
-        ? nothing
-        : html`<button id="forget" class="bare" title=${why} ?disabled=${!mayPlan()} @click=${() => forget(job.id)}>
-            ${icon("bin", 14)} ${texts.forget}
-          </button>`}
+      ${job.state === "running" ? nothing : button("forget", icon("bin", 14), texts.forget, forget, "bare")}
     </section>`;
   }
 

@@ -32,19 +32,6 @@ export class EvaluateStart extends PageElement {
         padding: 4px 0 4px 10px;
         border-left: 2px solid var(--line);
       }
-      .begin {
-        display: grid;
-        grid-template-columns: 1fr minmax(110px, auto);
-        align-items: end;
-        gap: var(--gap);
-      }
-      .begin button {
-        min-height: 44px;
-        font-weight: 600;
-      }
-      .begin select {
-        min-height: 44px;
-      }
       .check {
         display: flex;
         align-items: center;

@@ -3,7 +3,7 @@
 import type { Mission } from "../api/types";
 import { editHere } from "../state/commands";
 import { tell } from "../state/notices";
-import { mission as open } from "../state/plan";
+import { laterTasks, mission as open } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
@@ -62,7 +62,7 @@ export function headerForm(mission: Mission) {
 /** Which tasks come before which others, whatever the order. */
 function befores(mission: Mission) {
   const texts = t().forms;
-  const names = mission.tasks.filter((task) => task.action !== "START").map((task) => task.name);
+  const names = laterTasks.value;
   const choice = (name: string, label: string) =>
     html`<select name=${name} aria-label=${label}>
       ${options(names.map((one) => [one, one]))}

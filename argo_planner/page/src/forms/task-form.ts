@@ -3,7 +3,7 @@
 import type { Task, TimeWindow, Transition, WaitRule } from "../api/types";
 import { taskKey } from "../model/outline";
 import { edit, editHere } from "../state/commands";
-import { mission, select, tasksByName } from "../state/plan";
+import { laterTasks, select, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { lookAt } from "../state/view";
 import { checkpointsById } from "../state/world";
@@ -249,7 +249,5 @@ function now(task: Task): Task {
 
 /** Tasks that may follow. */
 function followers(task: Task) {
-  return (mission.value?.tasks ?? [])
-    .filter((one) => one.action !== "START" && one.name !== task.name)
-    .map((one) => ({ value: one.name, label: one.name }));
+  return laterTasks.value.filter((name) => name !== task.name).map((name) => ({ value: name, label: name }));
 }

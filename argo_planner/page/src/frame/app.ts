@@ -108,10 +108,6 @@ export class ArgoApp extends PageElement {
       min-height: 0;
       overflow: auto;
     }
-    .still {
-      display: grid;
-      place-content: center;
-    }
     @media (max-width: 800px) {
       main {
         grid-template-columns: minmax(0, 1fr);

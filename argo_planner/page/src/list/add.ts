@@ -151,13 +151,17 @@ export class AddTasks extends PageElement {
     return html`<div class="menu" role="menu" @keydown=${this.onMenuKey}>
       ${started
         ? nothing
-        : docks.map(({ pose, area }) => this.item("flag", texts.addStart(area), () => this.startAt(pose, area)))}
+        : docks.map(({ pose, area }) =>
+            this.item("flag", texts.addStart(area), () => this.end(() => addStart(pose, area))),
+          )}
       ${this.item("gauge", texts.addMeasure, () => this.openMeasure(), "m")}
-      ${this.item("drive", texts.addWaypoint, () => this.navigate(), "n")}
+      ${this.item("drive", texts.addWaypoint, () => this.end(() => (tool.value = "navigate")), "n")}
       ${this.item("flag", texts.addAtPlace, () => this.addAtPlace(), "w")}
-      ${docks.map(({ pose, area }) => this.item("back", texts.addReturn(area), () => this.endAt(pose)))}
-      ${this.item("wait", texts.addWait, () => this.waits())}
-      ${this.item("reaction", texts.addReaction, () => this.reacts())}
+      ${docks.map(({ pose, area }) =>
+        this.item("back", texts.addReturn(area), () => this.end(() => addTask("WAYPOINT", "DOCK", { pose }))),
+      )}
+      ${this.item("wait", texts.addWait, () => this.end(addWait, true))}
+      ${this.item("reaction", texts.addReaction, () => this.end(addReaction, true))}
     </div>`;
   }
 
@@ -245,30 +249,10 @@ export class AddTasks extends PageElement {
     }
   }
 
-  private startAt(pose: Pose, area: number): void {
+  /** Closes it, and does what was chosen; `details`: which goes on in the details. */
+  private end(act: () => unknown, details = false): void {
     this.close();
-    void addStart(pose, area);
-  }
-
-  private endAt(pose: Pose): void {
-    this.close();
-    void addTask("WAYPOINT", "DOCK", { pose });
-  }
-
-  private waits(): void {
-    this.close();
-    panel.value = "properties";
-    void addWait();
-  }
-
-  private reacts(): void {
-    this.close();
-    panel.value = "properties";
-    void addReaction();
-  }
-
-  private navigate(): void {
-    this.close();
-    tool.value = "navigate";
+    if (details) panel.value = "properties";
+    void act();
   }
 }

@@ -13,16 +13,14 @@ export interface Convergence {
   /** points of a path in a drawing of the given size */
   readonly best: string;
   readonly bound: string;
-  readonly low: number;
-  readonly high: number;
   readonly end: number;
 }
 
-/** Both as steps: each holds until the next one. `until` (s): how long the search has lasted. */
-export function convergence(steps: readonly Step[], width: number, height: number, until = 0): Convergence | null {
+/** Both as steps: each holds until the next one. */
+export function convergence(steps: readonly Step[], width: number, height: number): Convergence | null {
   const last = steps.at(-1);
   if (last === undefined) return null;
-  const end = Math.max(last.time, until, 1e-3);
+  const end = Math.max(last.time, 1e-3);
   const bests = steps.flatMap((step) => step.best ?? []);
   const all = [...bests, ...steps.map((step) => step.bound).filter((bound) => bound > 0)];
   let low = Math.min(...all, ...(all.length === 0 ? [0] : []));
@@ -44,7 +42,7 @@ export function convergence(steps: readonly Step[], width: number, height: numbe
     }
     return height === null ? "" : `${path}H${x(end)}`;
   };
-  return { best: line((step) => step.best), bound: line((step) => step.bound), low, high, end };
+  return { best: line((step) => step.best), bound: line((step) => step.bound), end };
 }
 
 function round(value: number): number {

@@ -8,8 +8,6 @@ export interface TaskRow {
   readonly task: Task;
   /** In how many groups it lies. */
   readonly depth: number;
-  /** From 1 on, in the order of the mission. */
-  readonly number: number;
   /** Name of the innermost group that it lies in. */
   readonly inside: string | null;
 }
@@ -70,9 +68,8 @@ export function outline(mission: Mission): Row[] {
       rows.push({ kind: "group", key, group, depth: open.length, count, inside: inside() });
       open.push({ name: group.name, last });
     }
-    const number = index + 1;
     const key = taskKey(task.name);
-    rows.push({ kind: "task", key, task, depth: open.length, number, inside: inside() });
+    rows.push({ kind: "task", key, task, depth: open.length, inside: inside() });
     while (open.at(-1)?.last === index) open.pop();
   });
   return rows;

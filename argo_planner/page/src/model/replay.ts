@@ -13,10 +13,6 @@ export interface Moment {
   readonly pose: Vector5;
   /** of the battery, 0 to 1 */
   readonly charge: number | null;
-  /** m driven */
-  readonly distance: number;
-  /** m upwards */
-  readonly climbed: number;
   /** the task whose action was under way */
   readonly task: string | null;
   /** how the last visit of each task has ended */
@@ -49,8 +45,6 @@ export function momentAt(entries: readonly Entry[], t: number): Moment | null {
     t: Math.min(t, next?.t ?? last.t),
     pose: next === undefined ? last.pose : between(last.pose, next.pose, (t - last.t) / (next.t - last.t)),
     charge: last.charge ?? null,
-    distance: last.distance,
-    climbed: last.climbed,
     task: next?.running ?? null,
     outcomes: outcomesOf(entries, count),
     readings: readingsOf(entries, count),

@@ -2,7 +2,7 @@
 
 import { readTime, writeTime } from "../forms/times";
 import { edit } from "../state/commands";
-import { broken, mission } from "../state/plan";
+import { broken, laterTasks, mission } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
 import { choice, iconButton, options } from "../ui/controls";
@@ -122,7 +122,7 @@ export class RoutePanel extends PageElement {
 
   /** An order that is kept can't be bettered. */
   private fixed() {
-    if (mission.value === null || mission.value.order === "any" || this.names().length < 2) return nothing;
+    if (mission.value === null || mission.value.order === "any" || laterTasks.value.length < 2) return nothing;
     return html`<div class="row">
       <p class="grow reason">${t().route.fixed}</p>
       <button
@@ -186,13 +186,8 @@ export class RoutePanel extends PageElement {
 
   private choice(id: string, label: string) {
     return html`<select id=${id} aria-label=${label}>
-      ${options(this.names().map((name) => [name, name]))}
+      ${options(laterTasks.value.map((name) => [name, name]))}
     </select>`;
-  }
-
-  private names(): string[] {
-    const tasks = mission.value?.tasks ?? [];
-    return tasks.filter((task) => task.action !== "START").map((task) => task.name);
   }
 
   private addPair(): void {
@@ -228,14 +223,14 @@ export class RoutePanel extends PageElement {
   private whyNot(): string | null {
     const texts = t().route;
     if (!mayPlan()) return texts.mayNotPlan;
-    if (this.names().length < 2) return texts.nothing;
+    if (laterTasks.value.length < 2) return texts.nothing;
     return broken.value ? texts.hasErrors : null;
   }
 
   private search(event: SubmitEvent): void {
     event.preventDefault();
     const form = new FormData(event.target as HTMLFormElement);
-    const known = new Set(this.names());
+    const known = new Set(laterTasks.value);
     const asked: Asked = {
       budget: readTime(form.get("budget") as string),
       before: this.pairsAsked.filter((pair) => pair.every((name) => known.has(name))),

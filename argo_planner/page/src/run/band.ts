@@ -8,7 +8,7 @@ import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { styled } from "../ui/styled";
-import { percent } from "../ui/figures";
+import { percent, seconds } from "../ui/figures";
 import { modeWords } from "./mode-words";
 import { parts } from "./parts";
 
@@ -148,8 +148,7 @@ export class RunBand extends PageElement {
         : nothing}
       ${robotConnected.value ? nothing : html`<p class="problem">${texts.notConnected}</p>`}
       <dl>
-        ${this.row(texts.time, now?.t ?? run.t, run.max_duration ?? null)} ${this.charge()}
-        ${this.tasks()}
+        ${this.time(now?.t ?? run.t, run.max_duration ?? null)} ${this.charge()} ${this.tasks()}
       </dl>`;
   }
 
@@ -170,21 +169,16 @@ export class RunBand extends PageElement {
     return said.filter(Boolean).join(" · ");
   }
 
-  private row(name: string, value: number, limit: number | null) {
-    const seconds = (s: number) => t().words.seconds(s);
-    const said = limit === null ? seconds(value) : t().run.ofLimit(seconds(value), seconds(limit));
-    const part = limit === null ? 0 : value / limit;
-    return html`<dt>${name}</dt>
-      ${limit === null ? html`<dd></dd>` : this.gauge(part, part >= 1)}
-      <dd id="time">${said}</dd>`;
+  private time(value: number, limit: number | null) {
+    const { time, ofLimit } = t().run;
+    if (limit === null) return this.row("time", time, seconds(value));
+    return this.row("time", time, ofLimit(seconds(value), seconds(limit)), value / limit, value >= limit);
   }
 
   private charge() {
     const charge = shownRun.value?.charge ?? null;
     if (charge === null) return nothing;
-    return html`<dt>${t().run.battery}</dt>
-      ${this.gauge(charge, charge < LOW_CHARGE)}
-      <dd id="charge">${percent(charge)}</dd>`;
+    return this.row("charge", t().run.battery, percent(charge), charge, charge < LOW_CHARGE);
   }
 
   private tasks() {
@@ -197,19 +191,21 @@ export class RunBand extends PageElement {
     const broken = all.some((task) => now.outcomes.get(task.name) === "failed");
     // Of a mission that was changed since, nobody here knows how many tasks it had.
     if (run.revision !== revision.value)
-      return html`<dt>${t().frame.tasks}</dt>
-        <dd></dd>
-        <dd id="done">${t().run.tasksDoneOnly(doneOf(now.outcomes))}</dd>`;
-    return html`<dt>${t().frame.tasks}</dt>
-      ${this.gauge(all.length === 0 ? 0 : done.length / all.length, broken)}
-      <dd id="done">${t().run.tasksDone(done.length, all.length)}</dd>`;
+      return this.row("done", t().frame.tasks, t().run.tasksDoneOnly(doneOf(now.outcomes)));
+    const part = all.length === 0 ? 0 : done.length / all.length;
+    return this.row("done", t().frame.tasks, t().run.tasksDone(done.length, all.length), part, broken);
   }
 
-  private gauge(part: number, broken: boolean) {
-    const width = `${Math.min(100, Math.max(0, 100 * part))}%`;
-    return html`<dd class="gauge ${broken ? "broken" : ""}" aria-hidden="true">
-      <div ${styled({ width })}></div>
-    </dd>`;
+  /** A value with its name, and as a `part` of what it may be, if that is known. */
+  private row(id: string, name: string, said: string, part: number | null = null, broken = false) {
+    const width = `${Math.min(100, Math.max(0, 100 * (part ?? 0)))}%`;
+    return html`<dt>${name}</dt>
+      ${part === null
+        ? html`<dd></dd>`
+        : html`<dd class="gauge ${broken ? "broken" : ""}" aria-hidden="true">
+            <div ${styled({ width })}></div>
+          </dd>`}
+      <dd id=${id}>${said}</dd>`;
   }
 }
 

@@ -3,7 +3,7 @@
 import { isTyping } from "../frame/keys";
 import { chosenCheckpoint } from "../model/checkpoint-choice";
 import { directionOf, type Direction } from "../model/hand-driving";
-import { chosenTask, mission, planId } from "../state/plan";
+import { chosenTask, laterTasks, planId } from "../state/plan";
 import { ask } from "../state/asking";
 import { run } from "../state/run";
 import { mayOperate } from "../state/session";
@@ -136,7 +136,7 @@ export class RunHand extends PageElement {
   /** A task of the mission, done or skipped. */
   private ofTasks(off: boolean, busy: boolean) {
     const texts = t().run;
-    const tasks = this.tasks();
+    const tasks = laterTasks.value;
     const chosen = tasks.includes(this.task) ? this.task : (tasks[0] ?? "");
     return html`<div class="line">
       <select id="task" aria-label=${texts.whichTask} @change=${(event: Event) => (this.task = valueOf(event))}>
@@ -177,11 +177,6 @@ export class RunHand extends PageElement {
     if (event.key !== "Enter" && event.key !== " ") return;
     event.preventDefault();
     if (!event.repeat) drive(direction);
-  }
-
-  private tasks(): string[] {
-    const tasks = mission.value?.tasks ?? [];
-    return tasks.filter((task) => task.action !== "START").map((task) => task.name);
   }
 
   /** Nobody can steer what moves many times as fast as it really would: meanwhile it is real time. */

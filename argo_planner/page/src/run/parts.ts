@@ -51,6 +51,19 @@ export const parts = css`
     grid-template-columns: 1fr 1fr;
     gap: var(--gap);
   }
+  .begin {
+    display: grid;
+    grid-template-columns: 1fr minmax(110px, auto);
+    align-items: end;
+    gap: var(--gap);
+  }
+  .begin button,
+  .begin select {
+    min-height: 44px;
+  }
+  .begin button {
+    font-weight: 600;
+  }
   .reason {
     color: var(--dim);
     font-size: 12px;

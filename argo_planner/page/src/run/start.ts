@@ -26,19 +26,8 @@ export class RunStart extends PageElement {
         display: grid;
         gap: 10px;
       }
-      .begin {
-        display: grid;
-        grid-template-columns: 1fr minmax(110px, auto);
-        align-items: end;
-        gap: var(--gap);
-      }
       .begin button {
-        min-height: 44px;
         font-size: 16px;
-        font-weight: 600;
-      }
-      .begin select {
-        min-height: 44px;
       }
       .inner {
         display: grid;

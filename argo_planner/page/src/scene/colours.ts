@@ -10,7 +10,6 @@ export interface Colours {
   readonly skyLight: string;
   readonly groundLight: string;
   readonly text: string;
-  readonly surface: string;
   readonly accent: string;
   readonly good: string;
   readonly warn: string;
@@ -37,7 +36,6 @@ function read(now: "light" | "dark"): Colours {
     skyLight: dark ? "#c4d4ea" : "#ffffff",
     groundLight: dark ? "#39434f" : "#9aa4b0",
     text: of("text"),
-    surface: of("surface"),
     accent: of("accent"),
     good: of("good"),
     warn: of("warn"),

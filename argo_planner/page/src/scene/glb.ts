@@ -5,7 +5,6 @@ export interface GlbPart {
   readonly index: Uint16Array | Uint32Array;
   /** linear, 0 to 1 */
   readonly colour: readonly [number, number, number];
-  readonly open: boolean;
 }
 
 export interface GlbNode {
@@ -15,7 +14,6 @@ export interface GlbNode {
   readonly position: readonly [number, number, number];
   /** quaternion x, y, z, w */
   readonly rotation: readonly [number, number, number, number];
-  readonly extras: Readonly<Record<string, unknown>>;
   readonly parts: readonly GlbPart[];
 }
 
@@ -25,13 +23,11 @@ interface Told {
     readonly children?: readonly number[];
     readonly translation?: [number, number, number];
     readonly rotation?: [number, number, number, number];
-    readonly extras?: Record<string, unknown>;
     readonly mesh?: number;
   }[];
   readonly meshes?: readonly { readonly primitives: readonly Primitive[] }[];
   readonly materials?: readonly {
     readonly pbrMetallicRoughness?: { readonly baseColorFactor?: readonly number[] };
-    readonly doubleSided?: boolean;
   }[];
   readonly accessors: readonly {
     readonly bufferView: number;
@@ -68,7 +64,6 @@ export function readGlb(content: ArrayBuffer): GlbNode[] {
       parent: carrier === 0 ? null : carrier - 1,
       position: node.translation ?? [0, 0, 0],
       rotation: node.rotation ?? [0, 0, 0, 1],
-      extras: node.extras ?? {},
       parts: primitives.map((one) => partOf(content, told, binary, one)),
     };
   });
@@ -91,6 +86,5 @@ function partOf(content: ArrayBuffer, told: Told, binary: number, primitive: Pri
     positions: new Float32Array(content, corners.at, 3 * corners.count),
     index: new Index(content, triangles.at, triangles.count),
     colour: [red, green, blue],
-    open: material?.doubleSided ?? false,
   };
 }

@@ -104,6 +104,12 @@ function checkpointMark(checkpoint: WorldCheckpoint): Mark {
   };
 }
 
+/** What a mark has that stands at a pose, raised by that many m, and of which nothing else is told. */
+function standing(site: World, { x, y, z }: Pose, raised = RAISED) {
+  const floor = floorOf(site.floors, z)?.number ?? 1;
+  return { at: new Vector3(x, y, z + raised), floor, numbers: "", value: "", tasks: [] };
+}
+
 function taskMarks(site: World): Mark[] {
   const found: Mark[] = [];
   mission.value?.tasks.forEach((task, index) => {
@@ -113,13 +119,11 @@ function taskMarks(site: World): Mark[] {
     const chosen = selection.value.includes(key);
     const isActive = active.value === task.name;
     found.push({
+      ...standing(site, pose),
       key,
       subject: { kind: "task", task, pose },
-      at: new Vector3(pose.x, pose.y, pose.z + RAISED),
-      floor: floorOf(site.floors, pose.z)?.number ?? 1,
       text: task.name,
       numbers: String(index + 1),
-      value: "",
       tone: isActive ? "active" : chosen ? "chosen" : "planned",
       weight: isActive ? 9 : chosen ? 8 : 5,
       tasks: [key],
@@ -138,16 +142,12 @@ export function poseOf(task: Task, site: World): Pose | null {
 
 function placeMarks(site: World): Mark[] {
   const mark = (name: string, pose: Pose, dock: number | null): Mark => ({
+    ...standing(site, pose),
     key: dock === null ? `place:${name}` : `dock:${dock}`,
     subject: { kind: "place", name, pose, dock },
-    at: new Vector3(pose.x, pose.y, pose.z + RAISED),
-    floor: floorOf(site.floors, pose.z)?.number ?? 1,
     text: name,
-    numbers: "",
-    value: "",
     tone: opened.value === (dock === null ? `place:${name}` : `dock:${dock}`) ? "chosen" : "dim",
     weight: 2,
-    tasks: [],
   });
   return [
     ...site.docks.map((dock) => mark(t().scene.dock(dock.area), dock.pose, dock.area)),
@@ -159,16 +159,12 @@ function obstacleMark(site: World, obstacle: Obstacle): Mark {
   const { pose, size } = obstacle;
   const key = `obstacle:${obstacle.id}`;
   return {
+    ...standing(site, pose, size[2]),
     key,
     subject: { kind: "obstacle", obstacle },
-    at: new Vector3(pose.x, pose.y, pose.z + size[2]),
-    floor: floorOf(site.floors, pose.z)?.number ?? 1,
     text: obstacle.name === "" ? t().scene.obstacle : obstacle.name,
-    numbers: "",
-    value: "",
     tone: opened.value === key ? "chosen" : "bad",
     weight: 3,
-    tasks: [],
   };
 }
 

@@ -29,7 +29,6 @@ interface Storey {
 
 export interface Hit {
   readonly point: Vector3;
-  readonly floor: number;
   readonly distance: number;
 }
 
@@ -91,7 +90,7 @@ export class Site {
       if (!storey.group.visible) continue;
       const hit = storey.ways.raycastFirst(ray, DoubleSide, beyond);
       if (hit !== null && (nearest === null || hit.distance < nearest.distance))
-        nearest = { point: hit.point, floor: storey.number, distance: hit.distance };
+        nearest = { point: hit.point, distance: hit.distance };
     }
     return nearest;
   }

@@ -140,22 +140,17 @@ export const sceneStyle = css`
     color: var(--person);
   }
   #robot.paused,
-  #robot.stopping,
-  #robot.notice {
+  #robot.stopping {
     border-color: var(--warn);
     border-style: dashed;
     background: var(--warn-ground);
     color: var(--warn);
   }
   #robot.reacting,
-  #robot.interrupted,
-  #robot.bad {
+  #robot.interrupted {
     border-color: var(--bad);
     background: var(--bad-ground);
     color: var(--bad);
-  }
-  #robot.good {
-    border-color: var(--good);
   }
   #verdict.bad {
     border-color: var(--bad);

@@ -21,7 +21,7 @@ interface Base {
 export const base = signal<Base | null>(null);
 export const draft = signal("");
 /** What the service said of the draft that it refused. */
-export const refused = signal<{ readonly text: string; readonly detail: string; readonly found: readonly Diagnostic[] } | null>(null);
+export const refused = signal<{ readonly text: string; readonly found: readonly Diagnostic[] } | null>(null);
 /** Why the mission can't be said as a script. */
 export const unsaid = signal<string | null>(null);
 /** A text that was put aside for the one of the mission. */
@@ -156,7 +156,7 @@ export async function apply(anyway = false): Promise<void> {
     keepDraft();
   } catch (error) {
     if (error instanceof Refusal && error.problem.diagnostics.length > 0)
-      refused.value = { text: script, detail: error.problem.detail, found: error.problem.diagnostics };
+      refused.value = { text: script, found: error.problem.diagnostics };
     // Where it was changed meanwhile, the panel says so, and nothing is overwritten.
     else if (!(error instanceof Refusal && error.problem.code === "stale-revision")) tellError(error);
   } finally {

@@ -54,6 +54,10 @@ export const lastRevision = signal<Revision | null>(null);
 export const tasksByName = computed(
   () => new Map((mission.value?.tasks ?? []).map((task) => [task.name, task])),
 );
+/** Names of all tasks but START, in their order. */
+export const laterTasks = computed(() =>
+  (mission.value?.tasks ?? []).filter((task) => task.action !== "START").map((task) => task.name),
+);
 /** The one task that is selected, if it is one. */
 export const chosenTask = computed(() => {
   const [key, second] = selection.value;

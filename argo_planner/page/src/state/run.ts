@@ -54,10 +54,8 @@ export const shownEntries = computed(() => pastRun.value?.entries ?? entries.val
 /** What the run that is shown is or was like at the time that is shown: where the robot is, what is
  * done and read. For the scene and the list, in place of the live values. */
 export interface ShownRun extends Moment {
-  readonly id: string;
-  /** id of the mission, and the revision that is driven */
+  /** id of the mission */
   readonly plan: string;
-  readonly revision: number;
   /** Whether it is the robot as it is now. */
   readonly live: boolean;
 }
@@ -66,12 +64,12 @@ const shownMoment = computed(() => momentAt(shownEntries.value, shownTime.value 
 export const shownRun = computed<ShownRun | null>(() => {
   const state = shownRunState.value;
   if (state === null) return null;
-  const { id, plan, revision: driven } = state;
+  const { plan } = state;
   const back = shownTime.value;
   const past = pastRun.value !== null;
   const moment = shownMoment.value;
   if (past || back !== null)
-    return moment && { ...moment, id, plan, revision: driven, live: false };
+    return moment && { ...moment, plan, live: false };
   const now = robotPose.value;
   const pose = now?.pose ?? moment?.pose;
   if (pose === undefined) return null;
@@ -79,15 +77,11 @@ export const shownRun = computed<ShownRun | null>(() => {
     t: Math.max(state.t, now?.t ?? 0),
     pose,
     charge: now?.charge ?? state.charge ?? null,
-    distance: moment?.distance ?? 0,
-    climbed: moment?.climbed ?? 0,
     task: state.task ?? null,
     outcomes: moment?.outcomes ?? new Map(),
     readings: state.readings,
     entries: entries.value.length,
-    id,
     plan,
-    revision: driven,
     live: true,
   };
 });

@@ -27,7 +27,6 @@ export const script = both(
     confirm: "OK",
     confirmAll: "All OK",
     loading: "The script is being written…",
-    severity: { error: "error", warning: "warning", note: "note" },
   },
   {
     title: "Die Mission als Skript",
@@ -55,6 +54,5 @@ export const script = both(
     confirm: "Stimmt so",
     confirmAll: "Alles stimmt so",
     loading: "Das Skript wird geschrieben …",
-    severity: { error: "Fehler", warning: "Warnung", note: "Hinweis" },
   },
 );

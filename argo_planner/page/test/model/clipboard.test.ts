@@ -2,8 +2,9 @@ import { expect, test } from "vitest";
 
 import { copied, pasting, readCopied } from "../../src/model/clipboard";
 import type { Task } from "../../src/api/types";
-import { mission, task } from "./missions";
+import { group, mission, task } from "./missions";
 
+const condition = { type: "MEASURED_VALUE_LESS", id: "", object_id: "1", param1: 2, inclusive: false } as const;
 const only = (...tasks: Task[]) => ({ tasks, groups: [] });
 
 test("what is copied is read again, other text is not", () => {
@@ -22,13 +23,6 @@ test("copies get free names, one behind the other", () => {
 });
 
 test("ways on conditions lead to the copies, others to what is there, the rest is left out", () => {
-  const condition = {
-    type: "MEASURED_VALUE_LESS",
-    id: "",
-    object_id: "1",
-    param1: 2,
-    inclusive: false,
-  } as const;
   const way = (target: string) => ({ target, conditions: [condition] });
   const first = task("a", { transitions: [way("b"), way("c"), way("gone"), { target: "b", conditions: [] }] });
   const { edits } = pasting(mission("b c"), only(first, task("b")), {});
@@ -39,7 +33,6 @@ test("ways on conditions lead to the copies, others to what is there, the rest i
 });
 
 test("where a copy goes on otherwise is kept", () => {
-  const condition = { type: "MEASURED_VALUE_LESS", id: "", object_id: "1", param1: 2, inclusive: false } as const;
   const first = task("a", {
     transitions: [
       { target: "b", conditions: [condition] },
@@ -64,11 +57,10 @@ test("a second start is not pasted", () => {
 
 test("a group is copied with all that it says, inner ones first, under free names", () => {
   const had = mission("a b c");
-  const group = (name: string, start: string, end: string, max_repeat_count: number) => ({
-    name, start, end, max_repeat_count, max_repeat_duration: 0, count_interruptions: false,
-    stop: "hard" as const, every: 0, until: [],
-  });
-  const groups = [group("Round", "a", "c", 3), group("Round/Twice", "b", "c", 2)];
+  const groups = [
+    { ...group("Round", "a", "c"), max_repeat_count: 3 },
+    { ...group("Round/Twice", "b", "c"), max_repeat_count: 2 },
+  ];
   const { edits } = pasting({ ...had, groups }, { tasks: had.tasks, groups }, { after: "c" });
   expect(edits.slice(3)).toMatchObject([
     { kind: "wrap_tasks", group: { name: "Twice (2)", start: "b (2)", end: "c (2)", max_repeat_count: 2 } },

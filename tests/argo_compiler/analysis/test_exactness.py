@@ -19,6 +19,7 @@ def test_most_of_what_is_called_possible_happens():
 
     @settings(
         max_examples=40,
+        deadline=None,
         database=None,
         derandomize=True,
         suppress_health_check=list(HealthCheck),

@@ -202,7 +202,7 @@ REFUSED = {
             "edit.ambiguous-task",
             lambda: editing.remove_task(Mission(tasks=(task("A"), task("A"))), "A"),
         ),
-        ("il.no-dock", lambda: editing.set_header(MISSION)),
+        ("il.no-dock", lambda: editing.set_header(MISSION, dock=None)),
         (
             "il.endless-group",
             lambda: editing.change_group(MISSION, "Alpha/Beta", max_repeat_count=0),

@@ -119,7 +119,9 @@ def differences(before, after, edit):
         was = old.get(t.name)
         if was is None or (t.name in asked and kind != "add_task"):
             continue
-        if (was.transitions, was.group, leads(was)) != (t.transitions, t.group, leads(t)):
+        own = kind == "change_task" and t.name == edit.name  # sets what follows a failure itself
+        told = (was.transitions, was.group) != (t.transitions, t.group)
+        if told or (not own and leads(was) != leads(t)):
             yield subject_of("tasks", t.name)
     if kind != "set_header" and before.current != after.current:
         yield "current"

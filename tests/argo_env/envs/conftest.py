@@ -1,14 +1,19 @@
-"""The sites of the environments' tests: UMAD as the environments keep it, and a small yard."""
+"""What the tests of environments share: sites, kinds, and environments that are closed."""
 
+from contextlib import ExitStack
+
+import gymnasium as gym
 import pytest
 import yaml
 
+from argo_env.envs import ENVIRONMENTS
 from argo_env.planning import open_site
 from tests.yard import SITE
 
 
 @pytest.fixture(scope="session")
 def navigator():
+    """That of UMAD, as the environments keep it."""
     return open_site("umad").prepare().navigator
 
 
@@ -20,3 +25,36 @@ def yard_file(tmp_path_factory):
     site = SITE | {"areas": [{"number": 1, "dock": [2.05, 2.05, 0]}]}
     path.write_text(yaml.safe_dump(site), encoding="utf-8")
     return str(path)
+
+
+@pytest.fixture(params=sorted(ENVIRONMENTS))
+def id(request):
+    return request.param
+
+
+@pytest.fixture
+def small(id, yard_file):
+    """What makes such environments on a small site, where they have one."""
+    return {} if id == "argo/Route-v0" else {"scenario": yard_file}
+
+
+@pytest.fixture
+def closing():
+    """Closes what it is given when the test has ended."""
+    with ExitStack() as stack:
+
+        def one(env):
+            stack.callback(env.close)
+            return env
+
+        yield one
+
+
+@pytest.fixture
+def make(id, small, closing):
+    """Makes environments of one kind, without wrappers, and closes them."""
+
+    def one(**arguments):
+        return closing(gym.make(id, disable_env_checker=True, **small | arguments)).unwrapped
+
+    return one

@@ -7,7 +7,6 @@ import os
 import pickle
 import signal
 import traceback
-from contextlib import ExitStack
 
 import gymnasium as gym
 import numpy as np
@@ -22,18 +21,6 @@ DRIVE, INSPECT = "argo/Drive-v0", "argo/Inspect-v0"
 SHORT = {DRIVE: {"time_limit": 0.7}, INSPECT: {"time_limit": 200.0, "faults": 2}}
 """arguments with which episodes end within a few steps"""
 SEED = 31
-
-
-@pytest.fixture
-def closing():
-    """Closes what it is given when the test has ended."""
-    with ExitStack() as stack:
-
-        def one(batch):
-            stack.callback(batch.close)
-            return batch
-
-        yield one
 
 
 @pytest.fixture

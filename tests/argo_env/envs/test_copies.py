@@ -15,13 +15,11 @@ from argo_compiler.base.errors import ArgoError
 from argo_env.drives.kinematic import KinematicDrive
 from argo_env.drives.tracked.body import TrackedBody
 from argo_env.drives.tracked.drive import TrackedDrive
-from argo_env.envs import ENVIRONMENTS
 from argo_env.pictures.scene import Scene
 from argo_env.site import load_site
 from argo_env.world.world import World
 from tests.argo_env.envs import rollouts
 
-IDS = sorted(ENVIRONMENTS)
 SEED, STEPS = 23, 5
 
 
@@ -32,11 +30,6 @@ def pickled(value):
 WAYS = {"copy": copy.copy, "deepcopy": copy.deepcopy, "pickle": pickled}
 
 
-@pytest.fixture(params=IDS)
-def id(request):
-    return request.param
-
-
 @pytest.fixture(params=sorted(WAYS))
 def duplicate(request, closing):
     """Duplicates an environment in one of the ways there are."""
@@ -44,23 +37,8 @@ def duplicate(request, closing):
 
 
 @pytest.fixture
-def closing():
-    """Closes what it was given, in the end."""
-    held = []
-
-    def hold(env):
-        held.append(env)
-        return env
-
-    yield hold
-    for env in held:
-        env.close()
-
-
-@pytest.fixture
-def make(id, yard_file, closing, request):
+def make(id, small, closing, request):
     """Makes environments of one kind as Gymnasium does, on a small site where they have one."""
-    small = {} if id == "argo/Route-v0" else {"scenario": yard_file}
 
     def one(**arguments):
         env = gym.make(id, **small | arguments)
@@ -280,9 +258,8 @@ def test_batch_after_close(batch, duplicate):
     assert resets[0] == resets[1]
 
 
-def test_batches_of_gymnasium(id, yard_file, closing):
+def test_batches_of_gymnasium(id, small, closing):
     """Those of copies, and copies of those."""
-    small = {} if id == "argo/Route-v0" else {"scenario": yard_file}
     env = closing(gym.make(id, **small))
     several = closing(gym.vector.SyncVectorEnv([lambda: copy.deepcopy(env)] * 2))
     several.reset(seed=SEED)

@@ -23,20 +23,15 @@ def env():
 
 
 @pytest.fixture
-def make(yard_file):
+def make(yard_file, closing):
     """Makes environments on the yard."""
-    made = []
 
     def one(**arguments):
-        env = gym.make(
-            "argo/Drive-v0", **{"scenario": yard_file} | arguments, disable_env_checker=True
+        return closing(
+            gym.make("argo/Drive-v0", scenario=yard_file, disable_env_checker=True, **arguments)
         )
-        made.append(env)
-        return env
 
-    yield one
-    for env in made:
-        env.close()
+    return one
 
 
 def follow(observation):

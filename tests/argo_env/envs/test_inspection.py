@@ -17,17 +17,11 @@ CHECKPOINTS = 20  # of the site
 
 
 @pytest.fixture
-def make():
-    made = []
-
+def make(closing):
     def one(**arguments):
-        env = gym.make("argo/Inspect-v0", disable_env_checker=True, **arguments).unwrapped
-        made.append(env)
-        return env
+        return closing(gym.make("argo/Inspect-v0", disable_env_checker=True, **arguments)).unwrapped
 
-    yield one
-    for env in made:
-        env.close()
+    return one
 
 
 def end_dock(observation):

@@ -4,14 +4,11 @@ import gc
 import math
 import weakref
 
-import gymnasium as gym
 import numpy as np
 import pytest
 from gymnasium.error import ResetNeeded
 
-import argo_env  # noqa: F401
 from argo_compiler.base.errors import ArgoError
-from argo_env.envs import ENVIRONMENTS
 from argo_env.envs.drive import DriveEnv
 from argo_env.envs.inspection import InspectEnv
 from argo_env.envs.inspection_options import draw_faults
@@ -26,17 +23,9 @@ CHOICES = (-1, 999, None, "dock", np.array([0, 1]), 1.5, np.float64(1.0))
 COMMANDS = (np.zeros(2), np.full(3, math.nan), None, "ahead", 1.0, np.full(3, math.inf))
 
 
-@pytest.fixture(params=sorted(ENVIRONMENTS))
-def id(request):
-    return request.param
-
-
 @pytest.fixture
-def env(id, yard_file):
-    small = {} if id == "argo/Route-v0" else {"scenario": yard_file}
-    made = gym.make(id, disable_env_checker=True, **small).unwrapped
-    yield made
-    made.close()
+def env(make):
+    return make()
 
 
 def an_action(env, observation):

@@ -25,26 +25,6 @@ RESETS = {"argo/Route-v0": 1000}  # for the others: 30
 PAGE = 4096  # bytes
 
 
-@pytest.fixture(params=IDS)
-def id(request):
-    return request.param
-
-
-@pytest.fixture
-def make(id, yard_file):
-    """Makes environments of one kind, on a small site where they have one, and closes them."""
-    made, small = [], {} if id == "argo/Route-v0" else {"scenario": yard_file}
-
-    def one(**arguments):
-        env = gym.make(id, disable_env_checker=True, **small | arguments).unwrapped
-        made.append(env)
-        return env
-
-    yield one
-    for env in made:
-        env.close()
-
-
 @pytest.fixture(scope="module")
 def elsewhere():
     """The digests of rollouts in another process, by id."""

@@ -12,13 +12,12 @@ from argo_env.navigation import Path
 from argo_env.navigation.path import wrap
 from argo_env.navigation.retreat import driven, recent, way_back
 from tests.conftest import examples
-from tests.yard import yard
 
 
 @pytest.fixture(scope="module")
-def path():
+def path(yard):
     start, goal = Pose(x=1.05, y=1.05, z=0.02), Pose(x=5.05, y=3.55, z=0.02, yaw=2.0)
-    return yard().plan(start, goal)
+    return yard.plan(start, goal)
 
 
 @settings(max_examples=examples(60), deadline=None)

@@ -6,12 +6,7 @@ import pytest
 
 from argo_compiler.base.model import Pose
 from argo_env.planning.poses_to_read_from import unseen_from_poses
-from tests.yard import measure, mission, opened, yard
-
-
-@pytest.fixture(scope="module")
-def site():
-    return opened(yard())
+from tests.yard import measure, mission
 
 
 def found(site, **pose):

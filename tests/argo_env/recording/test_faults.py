@@ -15,7 +15,7 @@ MOVED = DisplacedCheckpoint(checkpoint=3, at=10.0, until=20.0, offset=(0.0, 0.05
 
 
 @pytest.fixture(scope="module")
-def drawn(record_run, yard_navigator, tmp_path_factory):
+def drawn(record_run, yard, tmp_path_factory):
     """The scenes of a run with the faults, with their times (s), and where gauge 3 was planned."""
     file = tmp_path_factory.mktemp("faults") / "run.mcap"
     record_run(file, SPEC.model_copy(update={"faults": (BRICK, MOVED)}))
@@ -30,7 +30,7 @@ def drawn(record_run, yard_navigator, tmp_path_factory):
     return SimpleNamespace(
         site=[scene for topic, _, scene in said if topic == "/site/floor_1"],
         checkpoints=[(t, scene) for topic, t, scene in said if topic == "/checkpoints"],
-        planned=yard_navigator.site.checkpoint(3).position,
+        planned=yard.site.checkpoint(3).position,
     )
 
 

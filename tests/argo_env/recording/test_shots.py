@@ -21,21 +21,21 @@ pytest.importorskip("cv2")
 
 
 @pytest.fixture(scope="module")
-def taken(yard_navigator, tmp_path_factory):
+def taken(yard, tmp_path_factory):
     """The middle of gauge 1 (m), and the messages that tell of the pictures taken of it."""
     from argo_env.sensing.vision.sensor import CameraSensor
 
     file = tmp_path_factory.mktemp("shots") / "run.mcap"
-    site, robot = yard_navigator.site, yard_navigator.robot
-    start = yard_navigator.snap(site.docks[1])
-    view = yard_navigator.plan_to_view(start, 1).end
+    site, robot = yard.site, yard.robot
+    start = yard.snap(site.docks[1])
+    view = yard.plan_to_view(start, 1).end
     with World(site, robot) as world:
         drive = KinematicDrive(world, robot)
         drive.place(BodyPose(view.x, view.y, view.z, view.yaw))
         world.show_value(1, 3.0)
         sensor = CameraSensor(world, 1)
         with recording_to(file) as recorder:
-            recorder.on_begin(Rig(world, yard_navigator, drive, sensor), SPEC)
+            recorder.on_begin(Rig(world, yard, drive, sensor), SPEC)
             sensor.measure(1, drive.pose)
             recorder.on_step(4.2, None)
     messages = defaultdict(list)

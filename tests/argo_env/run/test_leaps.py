@@ -15,7 +15,6 @@ from argo_compiler.il import (
     Reaction,
     Response,
     Task,
-    Transition,
     WaitRule,
 )
 from argo_env.faults.reading import decode_faults
@@ -25,6 +24,7 @@ from argo_env.run.observer import Observer
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec, logged
 from tests.conftest import examples
+from tests.yard import in_order
 
 SITE = open_site("umad")
 PAPER_FAULTS = (
@@ -80,15 +80,12 @@ def mission_of(chosen: random.Random) -> Mission:
                     more["reading_limit"] = chosen.choice([1.0, 30.0])
                 tasks.append((f"READ {k}", more))
     names = [name for name, _ in tasks]
-    made = [
-        Task(
-            name=name,
-            transitions=(Transition(target=names[k + 1]),) if k + 1 < len(names) else (),
-            group="Again" if k else "",
-            **more,
+    made = in_order(
+        *(
+            Task(name=name, group="Again" if k else "", **more)
+            for k, (name, more) in enumerate(tasks)
         )
-        for k, (name, more) in enumerate(tasks)
-    ]
+    )
     group = Group(name="Again", start=names[1], end=names[-1], max_repeat_count=2)
     reactions = [
         Reaction(event=EventKind.LOW_BATTERY, response=Response.RETURN),
@@ -96,7 +93,7 @@ def mission_of(chosen: random.Random) -> Mission:
         Reaction(event=EventKind.CONNECTION_LOST, response=Response.PAUSE),
     ]
     return Mission(
-        tasks=tuple(made),
+        tasks=made,
         groups=(group,),
         reactions=tuple(chosen.sample(reactions, chosen.randint(0, 3))),
         max_duration=chosen.choice([None, None, 120.0]),
@@ -137,26 +134,15 @@ def outcome(spec, **options) -> str:
 
 
 EXAMPLES = examples(60)
-
-
-@pytest.mark.parametrize("seed", range(EXAMPLES))
-def test_the_record_and_the_journal_are_those_of_step_by_step(seed, tmp_path):
-    spec = spec_of(seed)
-    slow = outcome(spec, observers=[StepByStep()], journal=tmp_path / "slow")
-    assert outcome(spec) == slow
-    assert outcome(spec, journal=tmp_path / "fast") == slow
-    assert (tmp_path / "fast").read_bytes() == (tmp_path / "slow").read_bytes()
-
-
-IN_A_WORLD = [
-    pytest.param(seed, marks=pytest.mark.long if seed >= 3 else ())
+RUNS = [(seed, "route") for seed in range(EXAMPLES)] + [
+    pytest.param(1000 + seed, "kinematic", marks=pytest.mark.long if seed >= 3 else ())
     for seed in range(max(4, EXAMPLES // 5))
 ]
 
 
-@pytest.mark.parametrize("seed", IN_A_WORLD)
-def test_a_robot_in_a_world_does_what_it_does_step_by_step(seed, tmp_path):
-    spec = spec_of(1000 + seed, "kinematic")
+@pytest.mark.parametrize(("seed", "drive"), RUNS)
+def test_the_record_and_the_journal_are_those_of_step_by_step(seed, drive, tmp_path):
+    spec = spec_of(seed, drive)
     slow = outcome(spec, observers=[StepByStep()], journal=tmp_path / "slow")
     assert outcome(spec) == slow
     assert outcome(spec, journal=tmp_path / "fast") == slow

@@ -4,12 +4,9 @@ import math
 
 import pytest
 
-from argo_compiler.il import Action, Mission, Task, Transition
 from argo_env.faults.walkway import Brick
-from argo_env.run.journal import open_journal
 from argo_env.run.record import Anomaly
-from argo_env.run.session import resume
-from tests.yard import Watching, opened, simulated
+from tests.yard import Watching, from_place, measure, resumed, simulated
 
 BRICK = Brick(floor=2, place=(12.2958, 5.05), yaw=22.05)
 """on the walkway behind the east tower: before it the robot has no room to turn"""
@@ -20,13 +17,7 @@ class KilledError(Exception):
 
 
 def test_goes_back_along_the_way_that_it_came(navigator, tmp_path):
-    start = Task(
-        name="START",
-        action=Action.START,
-        pose=navigator.site.docks[1],
-        transitions=(Transition(target="MEASURE"),),
-    )
-    plan = Mission(tasks=(start, Task(name="MEASURE", action=Action.MEASURE, object_id="15")))
+    plan = from_place(navigator.site.docks[1], measure(15))
     place = tmp_path / "run.journal"
 
     def die(news):
@@ -42,8 +33,7 @@ def test_goes_back_along_the_way_that_it_came(navigator, tmp_path):
             journal=place,
             observers=[Watching(announce=die)],
         )
-    with open_journal(place) as journal:
-        record = resume(journal, opened(navigator))
+    record = resumed(place, navigator)
     (found,) = record.anomalies
     assert record.resumed == (found.t,)
     assert record.result.success

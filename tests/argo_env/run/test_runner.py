@@ -18,7 +18,7 @@ from argo_env.robot.calibration import MotionKind
 from argo_env.robot.pose import BodyPose
 from argo_env.run.record import RunRecord
 from argo_env.run.simulation import SAMPLE_PERIOD
-from tests.yard import simulated
+from tests.yard import in_order, simulated
 
 FRONT = Pose(x=8.05, y=-2.05, z=-0.03, yaw=0.0)
 
@@ -37,12 +37,7 @@ def measure(id, **fields):
 
 
 def mission(*tasks, **fields):
-    """The tasks one after the other, where they have no transitions of their own."""
-    linked = [
-        a if a.transitions else a.model_copy(update={"transitions": (Transition(target=b.name),)})
-        for a, b in pairwise(tasks)
-    ]
-    return Mission(site="umad", tasks=(*linked, tasks[-1]), **fields)
+    return Mission(site="umad", tasks=in_order(*tasks), **fields)
 
 
 def names(record):

@@ -4,23 +4,16 @@ import pytest
 
 from argo_compiler.base.errors import ArgoError, Invalid
 from argo_compiler.base.model import Pose
-from argo_compiler.il import Action, Mission, Task, Transition
+from argo_compiler.il import Action, Task
 from argo_env.run.drives_and_sensors import DRIVES
 from argo_env.run.rig import true_values
-from tests.yard import Watching, simulated
+from tests.yard import Watching, from_place, simulated
 
 
 @pytest.fixture(scope="module")
 def short():
     here, there = Pose(x=8.05, y=-2.05, z=-0.03), Pose(x=8.55, y=-2.05, z=-0.03)
-    return Mission(
-        tasks=(
-            Task(
-                name="START", action=Action.START, pose=here, transitions=(Transition(target="A"),)
-            ),
-            Task(name="A", action=Action.WAYPOINT, pose=there),
-        )
-    )
+    return from_place(here, Task(name="A", action=Action.WAYPOINT, pose=there))
 
 
 def test_record_says_what_it_was_made_with(short, navigator):

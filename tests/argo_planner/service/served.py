@@ -1,5 +1,7 @@
 """A service under test: a real server on a socket of its own, in a thread of this process."""
 
+import asyncio
+import json
 import socket
 import threading
 from collections.abc import Callable, Iterator
@@ -13,6 +15,7 @@ import uvicorn
 from websockets.sync.client import ClientConnection, connect
 
 from argo_env.planning.opening import OpenedSite
+from argo_planner.service.rooms.mailbox import Mailbox
 from argo_planner.service.web.access import AccessRole, AccessToken, TokenBook
 from argo_planner.service.web.app import make_app
 from argo_planner.service.web.connections import server_options
@@ -112,3 +115,15 @@ def raw(address: str, content: bytes, most: int = 1_000_000) -> bytes:
             while len(answer) < most and (part := connection.recv(65_536)):
                 answer += part
         return answer
+
+
+async def taken(mailbox: Mailbox, kind: str) -> list[dict[str, Any]]:
+    """All messages of a kind that wait."""
+    found = []
+    while True:
+        try:
+            message = json.loads(await asyncio.wait_for(mailbox.take(), 0.05))
+        except TimeoutError:
+            return found
+        if message["kind"] == kind:
+            found.append(message)

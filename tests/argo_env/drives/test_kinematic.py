@@ -13,6 +13,7 @@ from argo_env.navigation import Path
 from argo_env.navigation.path import Motion, wrap
 from argo_env.robot.calibration import Calibration, MotionKind
 from argo_env.robot.pose import BodyPose
+from tests.argo_env.drives.test_support import above_ground
 
 
 def body(pose):
@@ -128,12 +129,7 @@ def test_no_pitch_on_the_flat_and_none_over_36_degrees(simulation, robot, paths,
 @WAYS
 def test_body_neither_sinks_nor_hovers(simulation, robot, paths, way):
     poses, _ = follow(simulation, robot, paths[way])
-    # Below both tracks, for what lies between treads is no ground.
-    sides = [(-math.sin(p.yaw) * d, math.cos(p.yaw) * d) for p in poses for d in (-0.23, 0.23)]
-    points = np.repeat([[p.x, p.y] for p in poses], 2, axis=0) + np.array(sides)
-    below = np.repeat([p.z + 0.5 for p in poses], 2)
-    surface = simulation.heights(points, below).reshape(-1, 2).max(axis=1)
-    above = np.array([p.z for p in poses]) - surface
+    above = above_ground(simulation, poses)
     level = np.array([abs(p.pitch) < math.radians(2) for p in poses])
     assert above.min() >= -0.02
     assert above[level].max() <= 0.10

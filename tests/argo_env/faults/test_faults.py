@@ -27,13 +27,9 @@ from argo_env.site.shapes import Box, Role
 from argo_env.site.spec import SiteSpec
 from argo_env.world.world import World
 from tests.conftest import examples
-from tests.yard import SITE, gauged, measure, mission
+from tests.yard import SITE, faults_of, gauged, measure, mission
 
 SCENARIOS = sorted((resources.scenarios() / "umad" / "faults").glob("*.yaml"))
-
-
-def faults_of(*data):
-    return FaultFile.model_validate({"faults": data}).faults
 
 
 def written(tmp_path, text):

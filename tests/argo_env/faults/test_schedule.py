@@ -5,7 +5,7 @@ import pytest
 from argo_env.drives.battery import Battery
 from argo_env.drives.powertrain import Powertrain
 from argo_env.drives.route import RouteDrive
-from argo_env.faults.kinds import FaultFile, settle
+from argo_env.faults.kinds import settle
 from argo_env.faults.schedule import Schedule
 from argo_env.faults.targets import FaultTargets
 from argo_env.robot.pose import BodyPose
@@ -14,6 +14,7 @@ from argo_env.sensing.onboard_sensor import OnboardSensor
 from argo_env.surroundings import Surroundings
 from argo_env.surroundings.network import RadioNetwork
 from argo_env.world.paper_world import PaperWorld
+from tests.yard import faults_of
 
 POSE = BodyPose(5.0, 2.5, 0.0, 0.0)
 
@@ -30,7 +31,7 @@ def stage(umad, robot):
 
 def along(stage, look, times, *data):
     """What `look` sees of the stage at those times."""
-    faults = settle(FaultFile.model_validate({"faults": data}).faults, stage.world.site, 0)
+    faults = settle(faults_of(*data), stage.world.site, 0)
     schedule, seen = Schedule(faults, stage), []
     for now in times:
         schedule.advance(now)

@@ -17,13 +17,6 @@ CHECKPOINTS = sorted(p.stem for p in (resources.urdf() / "checkpoints").glob("*.
 FLIPPERS = ("left_flipper_joint", "right_flipper_joint")
 
 
-@pytest.fixture(scope="module")
-def client():
-    client = pybullet.connect(pybullet.DIRECT)
-    yield client
-    pybullet.disconnect(client)
-
-
 @pytest.fixture
 def urdf(robot):
     return yourdfpy.URDF.load(str(robot_folder() / robot.urdf), load_meshes=False)

@@ -21,13 +21,6 @@ solids = st.one_of(boxes, cylinders)
 points = st.tuples(*[st.floats(-6.0, 6.0)] * 3)
 
 
-@pytest.fixture(scope="module")
-def client():
-    client = pybullet.connect(pybullet.DIRECT)
-    yield client
-    pybullet.disconnect(client)
-
-
 def axes(solid):
     """Columns are the solid's axes, from PyBullet's reading of URDF's roll, pitch and yaw."""
     quaternion = pybullet.getQuaternionFromEuler(solid.rpy)

@@ -72,9 +72,32 @@ class Served:
         **said: Any,
     ) -> httpx.Response:
         body = {"kind": "edit", "id": f"k{next(_IDS)}"} | ({"edits": edits} if edits else {}) | said
-        headers = {"if-match": revision if isinstance(revision, str) else f'"{revision}"'}
         used = client or self.client
-        return used.post(f"/api/missions/{id}/commands", json=body, headers=headers)
+        return used.post(f"/api/missions/{id}/commands", json=body, headers=_if_match(revision))
+
+    def imported(self, script: str, **areas: int) -> str:
+        """Import a script; return the id of its mission."""
+        params = {"filename": "m.txt"} | areas
+        made = self.client.post("/api/imports", params=params, content=script)
+        assert made.status_code == 201, made.text
+        id: str = made.json()["id"]
+        return id
+
+    def run(
+        self, id: str, revision: int | str = "*", client: httpx.Client | None = None, **order: Any
+    ) -> httpx.Response:
+        """Ask for a run of a mission."""
+        used = client or self.client
+        return used.post(f"/api/missions/{id}/runs", json=order, headers=_if_match(revision))
+
+    def put_obstacles(self, *obstacles: Any, revision: int | str = "*") -> httpx.Response:
+        """Ask for obstacles instead of those that there are."""
+        body = {"obstacles": obstacles}
+        return self.client.put("/api/world/obstacles", json=body, headers=_if_match(revision))
+
+
+def _if_match(revision: int | str) -> dict[str, str]:
+    return {"if-match": revision if isinstance(revision, str) else f'"{revision}"'}
 
 
 @contextmanager

@@ -212,32 +212,7 @@ def python_statemachine() -> Run:
         F = State()
         ended = A.to(Alpha, on="enter_alpha") | Alpha.to(F) | F.to(A)
 
-        def __init__(self) -> None:
-            self.rounds = Rounds()
-            super().__init__()
-
-        def enter_alpha(self) -> None:
-            self.rounds.enter_alpha()
-
-        def enter_beta(self) -> None:
-            self.rounds.enter_beta()
-
-        def next_alpha(self) -> None:
-            self.rounds.next_alpha()
-
-        def next_beta(self) -> None:
-            self.rounds.next_beta()
-
-        def alpha_again(self) -> bool:
-            return self.rounds.alpha_again()
-
-        def beta_again(self) -> bool:
-            return self.rounds.beta_again()
-
-        def high(self, value: float) -> bool:
-            return self.rounds.high(value)
-
-    machine: Any = Night()
+    machine: Any = Night(Rounds())
 
     def run(values: Sequence[float]) -> list[str]:
         ended = []

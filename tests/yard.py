@@ -1,18 +1,22 @@
 """A yard: a site and missions that are loaded and run in a second or two."""
 
+from contextlib import contextmanager
 from itertools import pairwise
 
 from argo_compiler.base.model import Pose
+from argo_compiler.hfsm import TakeOver
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_env.drives.drive import DriveStatus
+from argo_env.faults.kinds import FaultFile
 from argo_env.navigation import Navigator
 from argo_env.planning.opening import OpenedSite
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import load_robot
 from argo_env.run.beginning import machine_of
+from argo_env.run.journal import Header, create_journal, open_journal
 from argo_env.run.observer import Observer
 from argo_env.run.rig import Rig
-from argo_env.run.session import simulate
+from argo_env.run.session import resume, simulate
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec, logged
 from argo_env.sensing.sensor import Measurement
@@ -71,14 +75,24 @@ def waypoint(name, x, y, **fields):
     return Task(name=name, action=Action.WAYPOINT, pose=Pose(x=x, y=y, z=0.02), **fields)
 
 
-def mission(*tasks, **fields):
+def in_order(*tasks):
     """The tasks one after the other, where they have no transitions of their own."""
-    start = Task(name="START", action=Action.START, pose=Pose(x=1.05, y=1.05, z=0.02))
     linked = [
         a if a.transitions else a.model_copy(update={"transitions": (Transition(target=b.name),)})
-        for a, b in pairwise((start, *tasks))
+        for a, b in pairwise(tasks)
     ]
-    return Mission(site="yard", tasks=(*linked, tasks[-1]), **fields)
+    return (*linked, tasks[-1])
+
+
+def from_place(pose, *tasks, **fields):
+    """A mission of the tasks in order, from a place."""
+    start = Task(name="START", action=Action.START, pose=pose)
+    return Mission(tasks=in_order(start, *tasks), **fields)
+
+
+def mission(*tasks, **fields):
+    """A mission of the tasks in order, from the dock of the yard."""
+    return from_place(Pose(x=1.05, y=1.05, z=0.02), *tasks, site="yard", **fields)
 
 
 class GlidingDrive:
@@ -208,3 +222,56 @@ def run(navigator, plan, *events, values=None):
 def simulation_of(spec, site, **arguments):
     """A simulation of the spec's mission."""
     return Simulation(machine_of(spec.mission, spec.beginning), site, spec, **arguments)
+
+
+@contextmanager
+def journaled(path, spec, site, **arguments):
+    """A simulation that a journal is kept of; where there is one already, from where that ends."""
+    known = path.exists()
+    with open_journal(path) if known else create_journal(path, Header.of(site, spec)) as journal:
+        past = journal.entries if known else ()
+        with simulation_of(spec, site, past=past, observers=[journal], **arguments) as simulation:
+            yield simulation
+
+
+def faults_of(*data):
+    return FaultFile.model_validate({"faults": data}).faults
+
+
+def cut(journal, share=0.5, to=None):
+    """Leaves so much of a journal as a process that was killed; `to` is where to, if elsewhere."""
+    lines = journal.read_bytes().splitlines(keepends=True)
+    (to or journal).write_bytes(b"".join(lines[: max(2, round(share * len(lines)))]))
+
+
+def cut_after(journal, entries):
+    """Leaves so many entries of a journal."""
+    lines = journal.read_bytes().splitlines(keepends=True)
+    journal.write_bytes(b"".join(lines[: 1 + entries]))
+
+
+def resumed(path, navigator, **options):
+    """The record of a run that goes on from where its journal ends."""
+    with open_journal(path) as journal:
+        return resume(journal, opened(navigator), **options)
+
+
+def steps(simulation, count):
+    for _ in range(count):
+        simulation.step()
+
+
+def until(simulation, reached):
+    while not reached():
+        simulation.step()
+
+
+def to_rest(simulation):
+    until(simulation, lambda: simulation.task is None or simulation.over)
+
+
+def take_over(simulation, after=0):
+    """A person takes over, after so many steps; the robot comes to rest."""
+    steps(simulation, after)
+    simulation.handle(TakeOver())
+    to_rest(simulation)

@@ -13,7 +13,8 @@ from argo_env.planning.catalog import make_catalog
 from argo_env.robot.spec import load_robot
 from argo_env.site import load_site
 from argo_env.site.urdf import to_urdf
-from tests.yard import Watching, simulated
+from tests import yard as the_yard
+from tests.yard import Watching, opened, simulated
 
 
 class World:
@@ -78,13 +79,6 @@ class World:
         pybullet.disconnect(self._client)
 
 
-@pytest.fixture(scope="module")
-def client():
-    client = pybullet.connect(pybullet.DIRECT)
-    yield client
-    pybullet.disconnect(client)
-
-
 @pytest.fixture(scope="session")
 def robot():
     return load_robot()
@@ -101,6 +95,26 @@ def navigator(umad, robot):
     navigator = Navigator(umad, robot, open_site("umad").navigator.parts)
     assert navigator.lattice.size > 0
     return navigator
+
+
+@pytest.fixture(scope="session")
+def yard():
+    """The navigator of the yard."""
+    return the_yard.yard()
+
+
+@pytest.fixture(scope="session")
+def site(yard):
+    """The yard, opened."""
+    return opened(yard)
+
+
+@pytest.fixture(scope="module")
+def client():
+    """A PyBullet server without a site."""
+    client = pybullet.connect(pybullet.DIRECT)
+    yield client
+    pybullet.disconnect(client)
 
 
 @pytest.fixture(scope="session")

@@ -25,3 +25,9 @@ def navigator(umad: OpenedSite) -> Navigator:
 @pytest.fixture(scope="session")
 def catalog(umad: OpenedSite) -> Catalog:
     return umad.catalog
+
+
+@pytest.fixture(scope="session")
+def anyio_backend() -> str:
+    """What carries out the tests that are coroutines (marked `anyio`)."""
+    return "asyncio"

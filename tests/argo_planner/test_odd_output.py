@@ -7,7 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from argo_env.files import resources
+
 ROOT = Path(__file__).parents[2]
+MISSION = (resources.scenarios() / "umad" / "missions" / "protocol_3.txt").read_text("utf-8")
 
 
 def test_letters_that_a_terminal_does_not_have_are_written_by_number(tmp_path: Path):
@@ -25,11 +28,14 @@ def test_letters_that_a_terminal_does_not_have_are_written_by_number(tmp_path: P
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full, a disk without room")
-def test_findings_that_could_not_be_printed_are_told_to_be_lost(tmp_path: Path):
-    (tmp_path / "script.txt").write_text("Once upon a time\n", encoding="utf-8")
+@pytest.mark.parametrize(
+    ("command", "text"), [("check", "Once upon a time\n"), ("format", MISSION)]
+)
+def test_output_that_has_no_room_is_told_to_be_lost(tmp_path: Path, command: str, text: str):
+    (tmp_path / "script.txt").write_text(text, encoding="utf-8")
     with open("/dev/full", "w", encoding="utf-8") as full:
         result = subprocess.run(
-            [sys.executable, "-m", "argo_planner", "check", tmp_path / "script.txt"],
+            [sys.executable, "-m", "argo_planner", command, tmp_path / "script.txt"],
             stdout=full,
             stderr=subprocess.PIPE,
             text=True,

@@ -2,7 +2,6 @@
 
 import re
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -118,17 +117,3 @@ def test_a_window_without_a_display_is_refused(argo, tmp_path: Path, monkeypatch
     monkeypatch.delenv("DISPLAY", raising=False)
     (tmp_path / "sheet.txt").write_text(SHEET)
     assert "DISPLAY" in refused(argo("run", tmp_path / "sheet.txt", "--gui"))
-
-
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full, a disk without room")
-def test_output_that_has_no_room_is_told(missions: Path):
-    with open("/dev/full", "w", encoding="utf-8") as full:
-        result = subprocess.run(
-            [sys.executable, "-m", "argo_planner", "format", missions / "protocol_3.txt"],
-            stdout=full,
-            stderr=subprocess.PIPE,
-            text=True,
-            check=False,
-        )
-    assert result.returncode == 2
-    assert result.stderr.endswith("argo: the output can't be written: No space left on device\n")

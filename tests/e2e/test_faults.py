@@ -8,7 +8,8 @@ import yaml
 
 from argo_compiler.files.mission_file import write_mission
 from argo_env.run.record import RunRecord
-from tests.yard import SITE, measure, mission, waypoint
+from tests.e2e.test_errors import refused
+from tests.yard import SITE, cut, measure, mission, waypoint
 
 FAULTS = """\
 faults:
@@ -51,8 +52,7 @@ def test_found_told_kept_and_shown(argo, folder):
     assert "What was found" in page
     assert "the base station answers" in page
     # From half of its journal it goes on with the same faults, and with one more event.
-    lines = (folder / "run.journal").read_bytes().splitlines(keepends=True)
-    (folder / "run.journal").write_bytes(b"".join(lines[: len(lines) // 2]))
+    cut(folder / "run.journal")
     resumed = argo(
         "resume", "run.journal", "--report", "again", "--event", "1=hot_spot", cwd=folder
     )
@@ -77,9 +77,7 @@ def test_found_told_kept_and_shown(argo, folder):
 def test_faults_that_make_no_sense(argo, folder, text, says):
     (folder / "faults.yaml").write_text(text, encoding="utf-8")
     ran = argo("run", "mission.json", "--site", "yard.yaml", "--faults", "faults.yaml", cwd=folder)
-    assert ran.returncode == 2
-    assert says in ran.stderr
-    assert "Traceback" not in ran.stderr
+    assert says in refused(ran)
 
 
 def test_a_drive_without_a_world_finds_no_brick(argo, folder):

@@ -69,8 +69,10 @@ def test_every_healed_word_is_shown(first) -> None:
 
 
 @pytest.mark.long
-def test_protocol_2_runs_to_success(argo, missions: Path, tmp_path: Path) -> None:
-    result = argo("run", missions / "protocol_2.txt", "--report", tmp_path)
+@pytest.mark.parametrize("folder", ["missions", "originals"])
+def test_protocol_2_runs_to_success(argo, request, folder: str, tmp_path: Path) -> None:
+    script = request.getfixturevalue(folder) / "protocol_2.txt"
+    result = argo("run", script, "--report", tmp_path)
     assert result.returncode == 0, result.stderr
     require_protocol_2(record_in(tmp_path))
 
@@ -82,13 +84,6 @@ def test_the_original_of_mission_1_runs_to_success(argo, originals: Path, tmp_pa
     result = argo("run", script, "--start-area", area, "--end-area", area, "--report", tmp_path)
     assert result.returncode == 0, result.stderr
     require_mission_1(record_in(tmp_path))
-
-
-@pytest.mark.long
-def test_the_original_of_protocol_2_runs_to_success(argo, originals: Path, tmp_path: Path) -> None:
-    result = argo("run", originals / "protocol_2.txt", "--report", tmp_path)
-    assert result.returncode == 0, result.stderr
-    require_protocol_2(record_in(tmp_path))
 
 
 def test_the_same_seed_gives_the_same_report(argo, first, missions: Path, tmp_path: Path) -> None:

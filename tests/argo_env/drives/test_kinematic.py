@@ -138,15 +138,20 @@ def test_no_pitch_on_the_flat_and_none_over_36_degrees(simulation, robot, paths,
         assert max(abs(p.pitch) for p in poses) <= math.radians(0.5)
 
 
-@WAYS
-def test_body_neither_sinks_nor_hovers(simulation, robot, paths, way):
-    poses, _ = follow(simulation, robot, paths[way])
+def above_ground(simulation, poses):
+    """How high (m) the body is above what is below its tracks."""
     # Below both tracks, for what lies between treads is no ground.
     sides = [(-math.sin(p.yaw) * d, math.cos(p.yaw) * d) for p in poses for d in (-0.23, 0.23)]
     points = np.repeat([[p.x, p.y] for p in poses], 2, axis=0) + np.array(sides)
     below = np.repeat([p.z + 0.5 for p in poses], 2)
     surface = simulation.heights(points, below).reshape(-1, 2).max(axis=1)
-    above = np.array([p.z for p in poses]) - surface
+    return np.array([p.z for p in poses]) - surface
+
+
+@WAYS
+def test_body_neither_sinks_nor_hovers(simulation, robot, paths, way):
+    poses, _ = follow(simulation, robot, paths[way])
+    above = above_ground(simulation, poses)
     level = np.array([abs(p.pitch) < math.radians(2) for p in poses])
     assert above.min() >= -0.02
     assert above[level].max() <= 0.10
@@ -336,11 +341,7 @@ def test_pitch_on_a_flight_is_bounded(on_flight):
 def test_body_keeps_to_the_surface_of_a_flight(on_flight, simulation):
     """Under the tracks' middle nothing rises into the body, and the ends stand on the flat."""
     _, poses = on_flight
-    sides = [(-math.sin(p.yaw) * d, math.cos(p.yaw) * d) for p in poses for d in (-0.23, 0.23)]
-    points = np.repeat([[p.x, p.y] for p in poses], 2, axis=0) + np.array(sides)
-    below = np.repeat([p.z + 0.5 for p in poses], 2)
-    surface = simulation.heights(points, below).reshape(-1, 2).max(axis=1)
-    above = np.array([p.z for p in poses]) - surface
+    above = above_ground(simulation, poses)
     assert above.min() >= -0.02
     for end in (above[0], above[-1]):
         assert end == pytest.approx(0.0, abs=0.01)

@@ -21,9 +21,9 @@ from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import Calibration, MotionPace, load_robot
 from argo_env.world.paper_world import PaperWorld
 from benchmarks.drives import random_mission
-from tests import yard
 from tests.conftest import examples
-from tests.yard import simulated
+from tests.yard import measure, simulated, waypoint
+from tests.yard import mission as in_the_yard
 
 ROBOT = load_robot()
 
@@ -118,17 +118,10 @@ def test_halt_stops_at_once_and_forgets_the_path():
     assert drive.pose == stopped
 
 
-@pytest.fixture(scope="module")
-def small():
-    return yard.yard()
-
-
-def test_a_mission_goes_as_with_the_kinematic_drive(small):
-    mission = yard.mission(
-        yard.measure(1), yard.waypoint("A", 5.05, 2.05, velocity=0.2), yard.measure(3)
-    )
+def test_a_mission_goes_as_with_the_kinematic_drive(yard):
+    mission = in_the_yard(measure(1), waypoint("A", 5.05, 2.05, velocity=0.2), measure(3))
     route, kinematic = (
-        simulated(mission, small, drive=drive, seed=2) for drive in ("route", "kinematic")
+        simulated(mission, yard, drive=drive, seed=2) for drive in ("route", "kinematic")
     )
     assert route.drive == "route"
     assert route.tasks[-1].outcome == "done"
@@ -153,12 +146,12 @@ def test_a_mission_takes_exactly_as_long_as_planned(navigator, catalog, seed):
     assert ends == {t.task: pytest.approx(t.end, abs=1e-6) for t in record.tasks}
 
 
-def test_there_is_nothing_to_show_or_to_photograph(small):
-    mission = yard.mission(yard.measure(1))
+def test_there_is_nothing_to_show_or_to_photograph(yard):
+    mission = in_the_yard(measure(1))
     with pytest.raises(ArgoError, match="no world to show"):
-        simulated(mission, small, drive="route", gui=True)
+        simulated(mission, yard, drive="route", gui=True)
     with pytest.raises(ArgoError, match="no world that the sensor `camera`"):
-        simulated(mission, small, drive="route", sensor="camera")
+        simulated(mission, yard, drive="route", sensor="camera")
 
 
 def test_lines_of_sight_are_those_of_the_world(umad, robot, simulation):

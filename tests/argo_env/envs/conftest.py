@@ -1,8 +1,9 @@
 """What the tests of environments share: UMAD as the environments keep it, a small yard, the ids of
-all environments, and what closes those that a test has made."""
+all environments, and what makes them and closes those that a test has made."""
 
 from contextlib import ExitStack
 
+import gymnasium as gym
 import pytest
 import yaml
 
@@ -13,6 +14,7 @@ from tests.yard import SITE
 
 @pytest.fixture(scope="session")
 def navigator():
+    """That of UMAD, as the environments keep it."""
     return open_site("umad").prepare().navigator
 
 
@@ -47,3 +49,13 @@ def closing():
             return env
 
         yield one
+
+
+@pytest.fixture
+def make(id, small, closing):
+    """Makes environments of one kind, without wrappers, and closes them."""
+
+    def one(**arguments):
+        return closing(gym.make(id, disable_env_checker=True, **small | arguments)).unwrapped
+
+    return one

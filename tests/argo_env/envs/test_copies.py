@@ -15,13 +15,11 @@ from argo_compiler.base.errors import ArgoError
 from argo_env.drives.kinematic import KinematicDrive
 from argo_env.drives.tracked.body import TrackedBody
 from argo_env.drives.tracked.drive import TrackedDrive
-from argo_env.envs import ENVIRONMENTS
 from argo_env.pictures.scene import Scene
 from argo_env.site import load_site
 from argo_env.world.world import World
 from tests.argo_env.envs import rollouts
 
-IDS = sorted(ENVIRONMENTS)
 SEED, STEPS = 23, 5
 
 
@@ -260,9 +258,8 @@ def test_batch_after_close(batch, duplicate):
     assert resets[0] == resets[1]
 
 
-def test_batches_of_gymnasium(id, yard_file, closing):
+def test_batches_of_gymnasium(id, small, closing):
     """Those of copies, and copies of those."""
-    small = {} if id == "argo/Route-v0" else {"scenario": yard_file}
     env = closing(gym.make(id, **small))
     several = closing(gym.vector.SyncVectorEnv([lambda: copy.deepcopy(env)] * 2))
     several.reset(seed=SEED)

@@ -4,12 +4,10 @@ import gc
 import math
 import weakref
 
-import gymnasium as gym
 import numpy as np
 import pytest
 from gymnasium.error import ResetNeeded
 
-import argo_env  # noqa: F401
 from argo_compiler.base.errors import ArgoError
 from argo_env.envs.drive import DriveEnv
 from argo_env.envs.inspection import InspectEnv, draw_faults
@@ -25,8 +23,8 @@ COMMANDS = (np.zeros(2), np.full(3, math.nan), None, "ahead", 1.0, np.full(3, ma
 
 
 @pytest.fixture
-def env(id, small, closing):
-    return closing(gym.make(id, disable_env_checker=True, **small).unwrapped)
+def env(make):
+    return make()
 
 
 def an_action(env, observation):

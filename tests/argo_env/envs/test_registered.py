@@ -25,14 +25,6 @@ RESETS = {"argo/Route-v0": 1000}  # for the others: 30
 PAGE = 4096  # bytes
 
 
-@pytest.fixture
-def make(id, small, closing):
-    """Makes environments of one kind, on a small site where they have one, and closes them."""
-    return lambda **arguments: closing(
-        gym.make(id, disable_env_checker=True, **small | arguments).unwrapped
-    )
-
-
 @pytest.fixture(scope="module")
 def elsewhere():
     """The digests of rollouts in another process, by id."""

@@ -5,30 +5,21 @@ from importlib.util import find_spec
 
 import pytest
 
-from argo_compiler.il import Action, Mission, Task, Transition
+from argo_compiler.il import Action, Mission, Task
 from argo_env.evaluation.case import EvaluationCase
 from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.evaluation.pool.backends import make_backend
 from argo_env.planning.opening import open_site
 from argo_env.run.spec import RunSpec
+from tests.yard import from_place
 
 
 def short_mission(limit: float | None = None) -> Mission:
     """One gauge of UMAD, from its first dock."""
     start = open_site("umad").site.docks[1]
-    return Mission(
-        tasks=(
-            Task(
-                name="START",
-                action=Action.START,
-                pose=start,
-                transitions=(Transition(target="GAUGE"),),
-            ),
-            Task(name="GAUGE", action=Action.MEASURE, object_id="1"),
-        ),
-        max_duration=limit,
-    )
+    gauge = Task(name="GAUGE", action=Action.MEASURE, object_id="1")
+    return from_place(start, gauge, max_duration=limit)
 
 
 @pytest.fixture(scope="session")

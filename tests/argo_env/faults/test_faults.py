@@ -38,13 +38,9 @@ from argo_env.surroundings.surroundings import RadioNetwork
 from argo_env.world.paper_world import PaperWorld
 from argo_env.world.world import World
 from tests.conftest import examples
-from tests.yard import SITE, gauged, measure, mission
+from tests.yard import SITE, faults_of, gauged, measure, mission
 
 SCENARIOS = sorted((resources.scenarios() / "umad" / "faults").glob("*.yaml"))
-
-
-def faults_of(*data):
-    return FaultFile.model_validate({"faults": data}).faults
 
 
 def written(tmp_path, text):
@@ -351,7 +347,7 @@ def stage(umad, robot):
 
 def along(stage, look, times, *data):
     """What `look` sees of the stage at those times."""
-    faults = settle(FaultFile.model_validate({"faults": data}).faults, stage.world.site, 0)
+    faults = settle(faults_of(*data), stage.world.site, 0)
     schedule, seen = Schedule(faults, stage), []
     for now in times:
         schedule.advance(now)

@@ -14,7 +14,6 @@ from argo_env.navigation import Blockage, Path
 from argo_env.navigation.path import wrap
 from argo_env.navigation.retreat import driven, recent, way_back
 from tests.conftest import examples
-from tests.yard import yard
 
 FLIGHT = Blockage((3.0, 1.0, 3.5, 2.1), 1.0, "the stairs are blocked")
 
@@ -141,20 +140,19 @@ def test_states_over_it_are_closed_and_no_others(hall, robot):
     assert (closed.state_of >= 0).sum() == lattice.size - gone.sum()
 
 
-def test_without_a_way_round_there_is_none():
+def test_without_a_way_round_there_is_none(yard):
     """Within one region, small and without landmarks."""
-    navigator = yard()
     wall = Blockage((3.4, 0.0, 3.6, 5.0), 0.02, "a trench")
     start, goal = Pose(x=1.55, y=1.55, z=0.02), Pose(x=5.55, y=2.55, z=0.02)
-    assert navigator.plan(start, goal).length > 4.0
+    assert yard.plan(start, goal).length > 4.0
     with pytest.raises(Unreachable, match="a trench"):
-        navigator.avoiding([wall]).plan(start, goal)
+        yard.avoiding([wall]).plan(start, goal)
 
 
 @pytest.fixture(scope="module")
-def path():
+def path(yard):
     start, goal = Pose(x=1.05, y=1.05, z=0.02), Pose(x=5.05, y=3.55, z=0.02, yaw=2.0)
-    return yard().plan(start, goal)
+    return yard.plan(start, goal)
 
 
 @settings(max_examples=examples(60), deadline=None)

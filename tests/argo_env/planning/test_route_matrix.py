@@ -10,24 +10,27 @@ from argo_compiler.il import Order
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.rewriting import apply_route
 from argo_compiler.route import Tour, evaluate
+from argo_env.navigation import Navigator
 from argo_env.planning.route_matrix import mission_ways, plan_mission
 from argo_env.planning.travel import SiteTravel
-from argo_env.run.journal import open_journal
 from argo_env.run.record import Reordering
-from argo_env.run.session import resume
-from tests.yard import fast_rig, measure, mission, opened, run_with, simulated, waypoint, yard
+from tests.yard import (
+    cut,
+    fast_rig,
+    measure,
+    mission,
+    resumed,
+    run_with,
+    simulated,
+    waypoint,
+)
 
 STEP = 0.1  # s of the drive
 
 
-@pytest.fixture(scope="module")
-def navigator():
-    return yard()
-
-
-def driven(changed, navigator):
+def driven(changed, yard):
     """How long a mission takes, s."""
-    return run_with(changed, fast_rig(navigator)).result.duration
+    return run_with(changed, fast_rig(yard)).result.duration
 
 
 def around(**fields):
@@ -35,7 +38,7 @@ def around(**fields):
     return mission(*places, order=Order.ANY, **fields)
 
 
-def test_ways_between_places_take_as_long_as_driven(navigator):
+def test_ways_between_places_take_as_long_as_driven(yard):
     plain = around()
     slow = plain.model_copy(
         update={
@@ -43,29 +46,27 @@ def test_ways_between_places_take_as_long_as_driven(navigator):
         }
     )
     for written in (plain, slow):
-        planned = plan_mission(written, navigator, Requirements())
+        planned = plan_mission(written, yard, Requirements())
         for order in ((0, 1, 2), (2, 0, 1), (1, 2, 0)):
             predicted = evaluate(planned.problem, Tour(order)).duration * planned.problem.unit
             changed = apply_route(planned, Tour(order))
-            assert driven(changed, navigator) == pytest.approx(predicted, abs=len(order) * STEP)
+            assert driven(changed, yard) == pytest.approx(predicted, abs=len(order) * STEP)
 
 
-def test_a_mission_with_checkpoints_takes_about_as_long(navigator):
+def test_a_mission_with_checkpoints_takes_about_as_long(yard):
     written = mission(measure(1), waypoint("A", 5.5, 2), measure(3), measure(2), order=Order.ANY)
-    planned = plan_mission(written, navigator, Requirements())
+    planned = plan_mission(written, yard, Requirements())
     for order in ((0, 1, 2, 3), (3, 2, 1, 0), (1, 3, 0, 2)):
         predicted = evaluate(planned.problem, Tour(order)).duration * planned.problem.unit
-        assert driven(apply_route(planned, Tour(order)), navigator) == pytest.approx(
-            predicted, rel=0.1
-        )
+        assert driven(apply_route(planned, Tour(order)), yard) == pytest.approx(predicted, rel=0.1)
 
 
-def test_many_places_are_reckoned_over_the_lattice(navigator, monkeypatch):
+def test_many_places_are_reckoned_over_the_lattice(yard, monkeypatch):
     written = mission(measure(1), waypoint("A", 5.5, 2, velocity=0.2), measure(3))
-    exact = mission_ways(written, navigator, SiteTravel(navigator))
+    exact = mission_ways(written, yard, SiteTravel(yard))
     monkeypatch.setattr(route_matrix, "MOST_PLANNED", 2)
     monkeypatch.setattr(route_matrix, "NEAREST", 1)
-    rough = mission_ways(written, navigator, SiteTravel(navigator))
+    rough = mission_ways(written, yard, SiteTravel(yard))
     assert np.array_equal(rough.work, exact.work)
     assert np.array_equal(
         rough.time[:, 1], exact.time[:, 1]
@@ -75,40 +76,37 @@ def test_many_places_are_reckoned_over_the_lattice(navigator, monkeypatch):
     assert (rough.energy >= exact.energy - 1e-9)[2:][away[2:]].all()
 
 
-def test_a_small_battery_brings_in_the_docking_stations(navigator):
-    weak = yard()
-    weak.robot = navigator.robot.model_copy(update={"battery": 1.5})
+def test_a_small_battery_brings_in_the_docking_stations(yard):
+    weak = Navigator(yard.site, yard.robot.model_copy(update={"battery": 1.5}))
     planned = plan_mission(around(), weak, Requirements())
     assert planned.problem.chargers == ("docking station 1",)
     assert planned.problem.battery is not None
-    assert plan_mission(around(), navigator, Requirements()).problem.battery is None
+    assert plan_mission(around(), yard, Requirements()).problem.battery is None
 
 
-def test_a_task_that_can_not_be_carried_out_is_named(navigator):
+def test_a_task_that_can_not_be_carried_out_is_named(yard):
     written = mission(measure(1), waypoint("far", 60, 60), measure(3))
     with pytest.raises(ArgoError, match="can't carry out task 'far'"):
-        plan_mission(written, navigator, Requirements())
+        plan_mission(written, yard, Requirements())
 
 
-def test_an_area_is_where_a_mission_without_a_pose_starts(navigator):
-    travel = SiteTravel(navigator)
+def test_an_area_is_where_a_mission_without_a_pose_starts(yard):
+    travel = SiteTravel(yard)
     written = mission(measure(1), measure(3))
     start = written.tasks[0].model_copy(update={"pose": None})
     docked = written.model_copy(update={"tasks": (start, *written.tasks[1:]), "start_area": 1})
-    assert travel.start(docked) == navigator.snap(Pose(x=1.05, y=1.05, z=0.0))
-    assert (mission_ways(docked, navigator, travel).time < np.inf).all()
+    assert travel.start(docked) == yard.snap(Pose(x=1.05, y=1.05, z=0.0))
+    assert (mission_ways(docked, yard, travel).time < np.inf).all()
 
 
-def test_a_resumed_run_still_says_in_what_order_it_is(navigator, tmp_path):
+def test_a_resumed_run_still_says_in_what_order_it_is(yard, tmp_path):
     said = Reordering(
         written=("A", "B"), order=("B", "A"), written_duration=90.0, duration=80.0, bound=80.0,
         proven=True,
     )  # fmt: skip
     written = mission(waypoint("B", 5.5, 3.5), waypoint("A", 2, 2))
     place = tmp_path / "run.journal"
-    whole = simulated(written, navigator, drive="route", journal=place, reordering=said)
+    whole = simulated(written, yard, drive="route", journal=place, reordering=said)
     assert whole.reordering == said
-    lines = place.read_bytes().splitlines(keepends=True)
-    place.write_bytes(b"".join(lines[: len(lines) // 2]))
-    with open_journal(place) as journal:
-        assert resume(journal, opened(navigator)).reordering == said
+    cut(place)
+    assert resumed(place, yard).reordering == said

@@ -7,12 +7,7 @@ import pytest
 from argo_compiler.base.model import Pose
 from argo_env.planning.site_warnings import too_fast, unseen_from_poses
 from argo_env.robot.spec import load_robot
-from tests.yard import measure, mission, opened, yard
-
-
-@pytest.fixture(scope="module")
-def site():
-    return opened(yard())
+from tests.yard import measure, mission
 
 
 def found(site, **pose):

@@ -4,9 +4,9 @@ import pytest
 
 from argo_compiler.analysis import Leg, NoWay, analyse, unproved_bounds
 from argo_compiler.base.model import Pose
-from argo_compiler.il import Action, Mission, Task, Transition
+from argo_compiler.il import Action, Mission, Task
 from argo_env.planning.travel import SiteTravel
-from tests.yard import simulated
+from tests.yard import in_order, simulated
 
 STEP = 0.1  # s of the drive, within which a sum of times may be rounded differently
 
@@ -18,16 +18,7 @@ def travel(navigator):
 
 def chain(*tasks, **more):
     """The tasks one after the other."""
-    named = [t.name for t in tasks]
-    return Mission(
-        tasks=tuple(
-            t.model_copy(update={"transitions": (Transition(target=following),)})
-            if following
-            else t
-            for t, following in zip(tasks, [*named[1:], None], strict=True)
-        ),
-        **more,
-    )
+    return Mission(tasks=in_order(*tasks), **more)
 
 
 def measure(checkpoint, **more):

@@ -11,7 +11,7 @@ from argo_env.recording.files import recording_to
 from argo_env.recording.reader import read_recording
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec, logged
-from tests.yard import measure, mission, opened, waypoint, yard
+from tests.yard import measure, mission, opened, waypoint
 
 PLAN = mission(
     measure(1),
@@ -45,17 +45,12 @@ SPEC = RunSpec(
 
 
 @pytest.fixture(scope="session")
-def yard_navigator():
-    return yard()
-
-
-@pytest.fixture(scope="session")
-def record_run(yard_navigator):
+def record_run(yard):
     """Runs the plan and records it to a file; returns the run's record."""
 
     def run(file, spec=SPEC, source=None):
         with recording_to(file, source) as recorder:
-            return simulate(spec, opened(yard_navigator), observers=[recorder])
+            return simulate(spec, opened(yard), observers=[recorder])
 
     return run
 

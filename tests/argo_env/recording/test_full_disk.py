@@ -27,10 +27,10 @@ def record_on(disk, navigator, *observers, spec=SPEC):
 
 
 @pytest.mark.parametrize("share", [0.4, 0.8, 1.0])
-def test_a_recording_ends_where_the_disk_is_full(recorded, yard_navigator, share) -> None:
+def test_a_recording_ends_where_the_disk_is_full(recorded, yard, share) -> None:
     pages = int(share * (len(recorded.content) - 1) / _PAGE)
     with small_disk(pages * _PAGE) as disk:
-        record, warnings, loss = record_on(disk, yard_navigator)
+        record, warnings, loss = record_on(disk, yard)
         found = read_recording(disk / "run.mcap")
     assert record == recorded.record
     (warning,) = warnings
@@ -42,26 +42,26 @@ def test_a_recording_ends_where_the_disk_is_full(recorded, yard_navigator, share
     assert found.readings == record.readings[: len(found.readings)]
 
 
-def test_a_disk_that_is_full_from_the_first_step_on_is_no_loss_of_the_run(yard_navigator) -> None:
+def test_a_disk_that_is_full_from_the_first_step_on_is_no_loss_of_the_run(yard) -> None:
     with small_disk(_PAGE) as disk:
-        record, warnings, loss = record_on(disk, yard_navigator, spec=SHORT)
+        record, warnings, loss = record_on(disk, yard, spec=SHORT)
     assert record.result.success
     assert len(warnings) == 1
     assert loss == "nothing of the run is in it: No space left on device"
 
 
-def test_a_disk_that_is_full_before_the_run_is_said_before_it(yard_navigator) -> None:
+def test_a_disk_that_is_full_before_the_run_is_said_before_it(yard) -> None:
     with small_disk(_PAGE) as disk:
         fill(disk)
         with pytest.raises(ArgoError, match=r"run\.mcap: the recording can't be written.*No space"):
-            record_on(disk, yard_navigator, spec=SHORT)
+            record_on(disk, yard, spec=SHORT)
 
 
 def test_a_recorder_is_told_all_that_observers_are() -> None:
     assert {n for n in vars(Observer) if n.startswith("on_")} <= vars(BestEffort).keys()
 
 
-def test_room_that_comes_back_makes_no_gap(recorded, yard_navigator) -> None:
+def test_room_that_comes_back_makes_no_gap(recorded, yard) -> None:
     with small_disk(int(0.9 * len(recorded.content))) as disk:
         (disk / "other").write_bytes(bytes(len(recorded.content) // 3))
 
@@ -69,28 +69,28 @@ def test_room_that_comes_back_makes_no_gap(recorded, yard_navigator) -> None:
             if now > 80.0:
                 (disk / "other").unlink(missing_ok=True)
 
-        record, _, loss = record_on(disk, yard_navigator, Watching(make_room))
+        record, _, loss = record_on(disk, yard, Watching(make_room))
         found = read_recording(disk / "run.mcap")
     assert record == recorded.record
     assert loss.startswith(f"it ends at {found.until:g} s")
 
 
 @pytest.mark.parametrize("kind", ["missing", "pipe"])
-def test_a_run_is_recorded_without_a_source_that_is_gone(yard_navigator, tmp_path, kind) -> None:
+def test_a_run_is_recorded_without_a_source_that_is_gone(yard, tmp_path, kind) -> None:
     source, warnings = tmp_path / "plan.txt", []
     if kind == "pipe":
         os.mkfifo(source)
     with recording_to(tmp_path / "run.mcap", source, warnings.append) as recorder:
-        record = simulate(SHORT, opened(yard_navigator), observers=[recorder])
+        record = simulate(SHORT, opened(yard), observers=[recorder])
     assert read_recording(tmp_path / "run.mcap").record == record
     (warning,) = warnings
     assert re.match(r".*plan\.txt: is not recorded with the run: ", warning)
 
 
-def test_all_files_of_a_folder_are_recorded_as_the_source(yard_navigator, tmp_path) -> None:
+def test_all_files_of_a_folder_are_recorded_as_the_source(yard, tmp_path) -> None:
     bag = tmp_path / "bag"
     bag.mkdir()
     (bag / "metadata.yaml").write_text("what is in it")
     with recording_to(tmp_path / "run.mcap", bag) as recorder:
-        simulate(SHORT, opened(yard_navigator), observers=[recorder])
+        simulate(SHORT, opened(yard), observers=[recorder])
     assert b"source/bag/metadata.yaml" in (tmp_path / "run.mcap").read_bytes()

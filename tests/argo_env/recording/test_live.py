@@ -14,16 +14,11 @@ from argo_env.recording.live import served_live
 from argo_env.recording.run_recorder import RunRecorder
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
-from tests.yard import measure, mission, opened, simulation_of, waypoint, yard
+from tests.yard import measure, mission, simulation_of, waypoint
 
 SPEC = RunSpec(
     mission=mission(measure(1), waypoint("A", 4.05, 2.05), measure(2)), site="yard", drive="route"
 )
-
-
-@pytest.fixture(scope="module")
-def site():
-    return opened(yard())
 
 
 @contextmanager

@@ -306,7 +306,7 @@ MOVED = DisplacedCheckpoint(checkpoint=3, at=10.0, until=20.0, offset=(0.0, 0.05
 
 
 @pytest.fixture(scope="module")
-def drawn(record_run, yard_navigator, tmp_path_factory):
+def drawn(record_run, yard, tmp_path_factory):
     """The scenes of a run with the faults, with their times (s), and where gauge 3 was planned."""
     file = tmp_path_factory.mktemp("faults") / "run.mcap"
     record_run(file, SPEC.model_copy(update={"faults": (BRICK, MOVED)}))
@@ -321,7 +321,7 @@ def drawn(record_run, yard_navigator, tmp_path_factory):
     return SimpleNamespace(
         site=[scene for topic, _, scene in said if topic == "/site/floor_1"],
         checkpoints=[(t, scene) for topic, t, scene in said if topic == "/checkpoints"],
-        planned=yard_navigator.site.checkpoint(3).position,
+        planned=yard.site.checkpoint(3).position,
     )
 
 
@@ -352,21 +352,21 @@ pytest.importorskip("cv2")
 
 
 @pytest.fixture(scope="module")
-def taken(yard_navigator, tmp_path_factory):
+def taken(yard, tmp_path_factory):
     """The middle of gauge 1 (m), and the messages that tell of the pictures taken of it."""
     from argo_env.sensing.vision.sensor import CameraSensor
 
     file = tmp_path_factory.mktemp("shots") / "run.mcap"
-    site, robot = yard_navigator.site, yard_navigator.robot
-    start = yard_navigator.snap(site.docks[1])
-    view = yard_navigator.plan_to_view(start, 1).end
+    site, robot = yard.site, yard.robot
+    start = yard.snap(site.docks[1])
+    view = yard.plan_to_view(start, 1).end
     with World(site, robot) as world:
         drive = KinematicDrive(world, robot)
         drive.place(BodyPose(view.x, view.y, view.z, view.yaw))
         world.show_value(1, 3.0)
         sensor = CameraSensor(world, 1)
         with recording_to(file) as recorder:
-            recorder.on_begin(Rig(world, yard_navigator, drive, sensor), SPEC)
+            recorder.on_begin(Rig(world, yard, drive, sensor), SPEC)
             sensor.measure(1, drive.pose)
             recorder.on_step(4.2, None)
     messages = defaultdict(list)

@@ -19,17 +19,17 @@ from argo_env.run.session import resume, simulate
 from argo_env.run.spec import RunSpec
 from tests.argo_env.recording.conftest import PLAN, SPEC
 from tests.conftest import examples
-from tests.yard import Watching, opened
+from tests.yard import Watching, cut, opened
 
 EMPTY = b"\x89MCAP0\r\n"
 
 
-def test_the_report_can_be_made_again(recorded, yard_navigator, tmp_path: Path) -> None:
+def test_the_report_can_be_made_again(recorded, yard, tmp_path: Path) -> None:
     found = recorded.found
     assert found.record == recorded.record
-    assert found.site == yard_navigator.site
+    assert found.site == yard.site
     assert (found.flaw, found.facts["seed"]) == (None, "3")
-    write_report(recorded.record, yard_navigator.site, tmp_path / "of the run")
+    write_report(recorded.record, yard.site, tmp_path / "of the run")
     write_report(found.record, found.site, tmp_path / "again")
     for name in ("report.html", "report.json"):
         assert (tmp_path / "again" / name).read_bytes() == (
@@ -55,35 +55,30 @@ def test_equal_runs_give_equal_files(recorded, record_run, tmp_path: Path) -> No
     assert (tmp_path / "other.mcap").read_bytes() != recorded.content
 
 
-def test_a_recorded_run_is_the_run_without_a_recorder(recorded, yard_navigator) -> None:
-    assert simulate(SPEC, opened(yard_navigator)) == recorded.record
+def test_a_recorded_run_is_the_run_without_a_recorder(recorded, yard) -> None:
+    assert simulate(SPEC, opened(yard)) == recorded.record
 
 
-def test_an_interrupted_run_is_recorded_with_its_record_as_it_stands(
-    yard_navigator, tmp_path: Path
-) -> None:
+def test_an_interrupted_run_is_recorded_with_its_record_as_it_stands(yard, tmp_path: Path) -> None:
     looks, file = iter([False] * 200 + [True]), tmp_path / "run.mcap"
     with recording_to(file) as recorder:
-        record = simulate(
-            SPEC, opened(yard_navigator), observers=[recorder], interrupted=lambda: next(looks)
-        )
+        record = simulate(SPEC, opened(yard), observers=[recorder], interrupted=lambda: next(looks))
     found = read_recording(file)
     assert found.record == record
     assert (found.flaw, record.result.ended) == (None, False)
 
 
 def test_a_resumed_run_is_recorded_with_the_record_of_all_of_it(
-    recorded, yard_navigator, tmp_path: Path
+    recorded, yard, tmp_path: Path
 ) -> None:
     place = tmp_path / "run.journal"
-    whole = simulate(SPEC, opened(yard_navigator), journal=place)
+    whole = simulate(SPEC, opened(yard), journal=place)
     assert whole == recorded.record
-    lines = place.read_bytes().splitlines(keepends=True)
-    place.write_bytes(b"".join(lines[: len(lines) // 2]))
+    cut(place)
     file = tmp_path / "rest.mcap"
     with open_journal(place) as journal, recording_to(file) as recorder:
         gone_on_at = journal.entries[-1].t
-        record = resume(journal, opened(yard_navigator), observers=[recorder])
+        record = resume(journal, opened(yard), observers=[recorder])
     found = read_recording(file)
     assert found.record == record
     assert record.resumed == (gone_on_at,)
@@ -224,14 +219,14 @@ def test_where_no_recording_can_be_written(tmp_path: Path, monkeypatch) -> None:
         check_recording(tmp_path / "run.mcap")
 
 
-def test_a_run_that_fails_leaves_what_was_recorded(yard_navigator, tmp_path: Path) -> None:
+def test_a_run_that_fails_leaves_what_was_recorded(yard, tmp_path: Path) -> None:
     def fail(now, _):
         if now > 30.0:
             raise RuntimeError("the plug was pulled")
 
     file = tmp_path / "failed.mcap"
     with pytest.raises(RuntimeError, match="plug"), recording_to(file) as recorder:
-        simulate(SPEC, opened(yard_navigator), observers=[recorder, Watching(fail)])
+        simulate(SPEC, opened(yard), observers=[recorder, Watching(fail)])
     found = read_recording(file)
     assert (found.flaw, found.record) == (None, None)
     assert found.until == pytest.approx(30.1)

@@ -7,38 +7,35 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from argo_compiler.base.errors import Unavailable
-from argo_compiler.hfsm import Cancel, GiveBack, Outcome, TakeOver
+from argo_compiler.hfsm import Cancel, GiveBack, Outcome
 from argo_compiler.il import EventKind
 from argo_env.remote.channel import Channel
 from argo_env.remote.messages import EndReport, FoundReport, message_schemas
 from argo_env.remote.robot import RemoteRobot
-from argo_env.run.journal import Header, create_journal, open_journal
 from argo_env.run.spec import RunSpec
 from argo_env.run.steering import DoByHand, StopRun
 from tests.argo_env.remote.fakes import FakeRobot, Time, Wires
 from tests.conftest import examples
-from tests.yard import measure, mission, opened, simulation_of, waypoint, yard
+from tests.yard import (
+    journaled,
+    measure,
+    mission,
+    simulation_of,
+    steps,
+    take_over,
+    waypoint,
+)
 
 PLAN = mission(measure(1), waypoint("A", 4.05, 2.05), measure(2), waypoint("B", 2.05, 1.55))
 SPEC = RunSpec(mission=PLAN, site="yard", drive="route")
 NAMES = ["MEASURE 1", "A", "MEASURE 2", "B"]
 
 
-@pytest.fixture(scope="module")
-def navigator():
-    return yard()
-
-
-@pytest.fixture(scope="module")
-def site(navigator):
-    return opened(navigator)
-
-
 class Yard:
     """A robot in the yard, and Argo far from it."""
 
-    def __init__(self, navigator, seed=0, loss=0.0, values=None):
-        self.navigator = navigator
+    def __init__(self, yard, seed=0, loss=0.0, values=None):
+        self.navigator = yard
         self.wires = Wires(Random(seed), loss)
         self.time = Time()
         self.robot = FakeRobot(self.wires, self.time, values)
@@ -54,17 +51,24 @@ class Yard:
         )
 
 
+@pytest.fixture
+def there(yard):
+    return Yard(yard)
+
+
+@pytest.fixture
+def simulation(there, site):
+    """Of the plan, on the robot that is there."""
+    with simulation_of(SPEC, site, robot=there.remote()) as simulation:
+        yield simulation
+
+
 def done(record):
     return [t.task for t in record.tasks if t.outcome == "done"]
 
 
-def step(simulation, count):
-    for _ in range(count):
-        simulation.step()
-
-
-def test_a_mission_is_carried_out(navigator, site):
-    there = Yard(navigator, values={"2": 9.0})
+def test_a_mission_is_carried_out(yard, site):
+    there = Yard(yard, values={"2": 9.0})
     with simulation_of(SPEC, site, robot=there.remote()) as simulation:
         record = simulation.run()
     assert record.result.outcome is Outcome.COMPLETED
@@ -80,8 +84,8 @@ def test_a_mission_is_carried_out(navigator, site):
 
 @settings(max_examples=examples(30), deadline=None)
 @given(st.integers(0, 10**6), st.sampled_from([0.1, 0.3, 0.6]))
-def test_nothing_is_lost_and_nothing_is_done_twice(navigator, site, seed, loss):
-    there = Yard(navigator, seed, loss)
+def test_nothing_is_lost_and_nothing_is_done_twice(yard, site, seed, loss):
+    there = Yard(yard, seed, loss)
     with simulation_of(SPEC, site, robot=there.remote(patience=100)) as simulation:
         record = simulation.run()
     assert done(record) == NAMES
@@ -90,54 +94,50 @@ def test_nothing_is_lost_and_nothing_is_done_twice(navigator, site, seed, loss):
 
 
 class TestConnection:
-    def test_nothing_is_claimed_while_it_is_lost(self, navigator, site):
-        there = Yard(navigator)
-        with simulation_of(SPEC, site, robot=there.remote()) as simulation:
-            step(simulation, 5)
-            assert simulation.silent_since is None
-            there.wires.broken = True
-            before = simulation.record().tasks
-            at = simulation.now
-            step(simulation, 100)
-            assert there.robot.finished  # there, and nobody here can know it
-            assert simulation.record().tasks == before
-            assert simulation.task.name == "MEASURE 1"
-            assert simulation.silent_since == pytest.approx(at, abs=0.2)
-            there.wires.broken = False
-            record = simulation.run()
-            assert simulation.silent_since is None
+    def test_nothing_is_claimed_while_it_is_lost(self, there, simulation):
+        steps(simulation, 5)
+        assert simulation.silent_since is None
+        there.wires.broken = True
+        before = simulation.record().tasks
+        at = simulation.now
+        steps(simulation, 100)
+        assert there.robot.finished  # there, and nobody here can know it
+        assert simulation.record().tasks == before
+        assert simulation.task.name == "MEASURE 1"
+        assert simulation.silent_since == pytest.approx(at, abs=0.2)
+        there.wires.broken = False
+        record = simulation.run()
+        assert simulation.silent_since is None
         assert done(record) == NAMES
         assert record.tasks[0].end > 10.0
 
-    def test_a_stop_is_under_way_until_the_robot_confirms_it(self, navigator, site):
-        there = Yard(navigator)
-        with simulation_of(SPEC, site, robot=there.remote()) as simulation:
-            step(simulation, 5)
-            there.wires.broken = True
-            simulation.handle(Cancel())
-            step(simulation, 3)
-            assert not simulation.over
-            there.robot.TICKS = 1000
-            there.robot.doing = (there.robot.doing[0], 1000)
-            step(simulation, 30)
-            assert not simulation.over
-            there.wires.broken = False
-            record = simulation.run()
+    def test_a_stop_is_under_way_until_the_robot_confirms_it(self, there, simulation):
+        steps(simulation, 5)
+        there.wires.broken = True
+        simulation.handle(Cancel())
+        steps(simulation, 3)
+        assert not simulation.over
+        there.robot.TICKS = 1000
+        there.robot.doing = (there.robot.doing[0], 1000)
+        steps(simulation, 30)
+        assert not simulation.over
+        there.wires.broken = False
+        record = simulation.run()
         assert record.result.outcome is Outcome.CANCELLED
         assert there.robot.stopped == ["run 1/1"]
 
-    def test_a_robot_that_is_not_there(self, navigator):
-        there = Yard(navigator)
+    def test_a_robot_that_is_not_there(self, yard):
+        there = Yard(yard)
         there.wires.broken = True
         with pytest.raises(Unavailable, match="has not told within 10 s"):
             there.remote()
 
     @pytest.mark.parametrize("broken", [False, True])
-    def test_a_run_that_ends_tells_the_robot(self, navigator, site, broken):
-        there = Yard(navigator)
+    def test_a_run_that_ends_tells_the_robot(self, yard, site, broken):
+        there = Yard(yard)
         remote = there.remote()
         with simulation_of(SPEC, site, robot=remote) as simulation:
-            step(simulation, 5)
+            steps(simulation, 5)
             there.wires.broken = broken
             simulation.handle(StopRun())
             assert remote.settle(2.0) is not broken
@@ -146,74 +146,51 @@ class TestConnection:
 
 class TestRobotThatBeganAnew:
     @pytest.mark.parametrize("forget", [False, True])
-    def test_an_action_that_it_does_not_know_has_failed(self, navigator, site, forget):
-        there = Yard(navigator)
-        with simulation_of(SPEC, site, robot=there.remote()) as simulation:
-            step(simulation, 5)
-            there.robot.boot(forget)
-            record = simulation.run()
+    def test_an_action_that_it_does_not_know_has_failed(self, there, simulation, forget):
+        steps(simulation, 5)
+        there.robot.boot(forget)
+        record = simulation.run()
         assert record.tasks[0].outcome == "failed"
         assert "began anew" in record.tasks[0].reason
         assert done(record) == NAMES[1:]
 
-    def test_what_it_had_ended_is_told_again(self, navigator, site):
-        there = Yard(navigator)
-        with simulation_of(SPEC, site, robot=there.remote()) as simulation:
-            step(simulation, 5)
-            there.wires.broken = True
-            step(simulation, 20)
-            there.robot.boot()
-            for report in there.robot.ended.values():
-                there.robot._channel.post(report)
-            there.wires.broken = False
-            record = simulation.run()
+    def test_what_it_had_ended_is_told_again(self, there, simulation):
+        steps(simulation, 5)
+        there.wires.broken = True
+        steps(simulation, 20)
+        there.robot.boot()
+        for report in there.robot.ended.values():
+            there.robot._channel.post(report)
+        there.wires.broken = False
+        record = simulation.run()
         assert done(record) == NAMES
         assert set(there.robot.begun.values()) == {1}
 
 
 class TestArgoThatBeganAnew:
     @pytest.mark.parametrize("at", [3, 12, 14, 16, 20, 30])
-    def test_an_action_goes_on(self, navigator, site, tmp_path, at):
+    def test_an_action_goes_on(self, yard, site, tmp_path, at):
         """The robot went on meanwhile: what it has done is not done again."""
-        there, path = Yard(navigator), tmp_path / "run.journal"
-        with (
-            create_journal(path, Header.of(site, SPEC)) as journal,
-            simulation_of(SPEC, site, robot=there.remote(), observers=[journal]) as simulation,
-        ):
-            step(simulation, at)
+        there, path = Yard(yard), tmp_path / "run.journal"
+        with journaled(path, SPEC, site, robot=there.remote()) as simulation:
+            steps(simulation, at)
         there.time.sleep(0.1)
         there.time.sleep(0.1)
-        with (
-            open_journal(path) as journal,
-            simulation_of(
-                SPEC, site, robot=there.remote(), past=journal.entries, observers=[journal]
-            ) as simulation,
-        ):
+        with journaled(path, SPEC, site, robot=there.remote()) as simulation:
             record = simulation.run()
         assert done(record) == NAMES
         assert set(there.robot.begun.values()) == {1}
         assert len(record.resumed) == 1
 
-    def test_what_was_under_way_by_hand_is_stopped(self, navigator, site, tmp_path):
-        there, path = Yard(navigator), tmp_path / "run.journal"
-        with (
-            create_journal(path, Header.of(site, SPEC)) as journal,
-            simulation_of(SPEC, site, robot=there.remote(), observers=[journal]) as simulation,
-        ):
-            step(simulation, 3)
-            simulation.handle(TakeOver())
-            while simulation.task:
-                simulation.step()
+    def test_what_was_under_way_by_hand_is_stopped(self, yard, site, tmp_path):
+        there, path = Yard(yard), tmp_path / "run.journal"
+        with journaled(path, SPEC, site, robot=there.remote()) as simulation:
+            take_over(simulation, after=3)
             simulation.handle(DoByHand(PLAN.task("A")))
-            step(simulation, 3)
+            steps(simulation, 3)
         there.robot.TICKS = 1000
-        with (
-            open_journal(path) as journal,
-            simulation_of(
-                SPEC, site, robot=there.remote(), past=journal.entries, observers=[journal]
-            ) as simulation,
-        ):
-            step(simulation, 5)
+        with journaled(path, SPEC, site, robot=there.remote()) as simulation:
+            steps(simulation, 5)
             assert there.robot.doing is None
             there.robot.TICKS = 12
             assert simulation.taken_over
@@ -229,31 +206,25 @@ class TestArgoThatBeganAnew:
 
 
 class TestReports:
-    def test_what_the_robot_finds_is_told(self, navigator, site):
-        there = Yard(navigator)
-        with simulation_of(SPEC, site, robot=there.remote()) as simulation:
-            step(simulation, 3)
-            there.robot._channel.post(FoundReport(event=EventKind.GAS_LEAK, detail="840 ppm"))
-            there.robot._channel.post(FoundReport(event=EventKind.TIME_UP))
-            record = simulation.run()
+    def test_what_the_robot_finds_is_told(self, there, simulation):
+        steps(simulation, 3)
+        there.robot._channel.post(FoundReport(event=EventKind.GAS_LEAK, detail="840 ppm"))
+        there.robot._channel.post(FoundReport(event=EventKind.TIME_UP))
+        record = simulation.run()
         (found,) = record.anomalies
         assert (found.kind, found.detail, found.source) == ("gas_leak", "840 ppm", "robot")
 
     @pytest.mark.parametrize("text", ["", "[]", "nonsense", '{"sender": 1}', "\0", "9" * 5000])
-    def test_what_is_no_message_changes_nothing(self, navigator, site, text):
-        there = Yard(navigator)
-        with simulation_of(SPEC, site, robot=there.remote()) as simulation:
-            step(simulation, 3)
-            there.wires.carry(1, text)
-            assert done(simulation.run()) == NAMES
+    def test_what_is_no_message_changes_nothing(self, there, simulation, text):
+        steps(simulation, 3)
+        there.wires.carry(1, text)
+        assert done(simulation.run()) == NAMES
 
-    def test_an_end_that_makes_no_sense_is_a_failure(self, navigator, site):
-        there = Yard(navigator)
-        with simulation_of(SPEC, site, robot=there.remote()) as simulation:
-            step(simulation, 3)
-            there.robot._channel.post(EndReport.model_construct(id="run 1/1", outcome="perhaps"))
-            step(simulation, 3)
-            (run,) = simulation.record().tasks
+    def test_an_end_that_makes_no_sense_is_a_failure(self, there, simulation):
+        steps(simulation, 3)
+        there.robot._channel.post(EndReport.model_construct(id="run 1/1", outcome="perhaps"))
+        steps(simulation, 3)
+        (run,) = simulation.record().tasks
         assert (run.task, run.outcome) == ("MEASURE 1", "failed")
         assert "makes no sense" in run.reason
 

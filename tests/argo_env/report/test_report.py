@@ -13,6 +13,7 @@ from argo_env.report.html import page
 from argo_env.report.machine import MAX_STATES, machine
 from argo_env.report.rounds import blocks
 from argo_env.run.record import RoundRun, RunRecord
+from tests.yard import in_order
 
 SECTIONS = [
     "summary",
@@ -214,18 +215,12 @@ def test_refusals(tmp_path, site, simple):
 
 def test_jumps_and_inner_rounds_begin_no_round(make):
     names = ["1", "2", "3"]
-    tasks = tuple(
-        Task(name=a, action=Action.MEASURE, object_id=a, transitions=(Transition(target=b),))
-        for a, b in pairwise(names)
-    )
-    last = Task(name="3", action=Action.MEASURE, object_id="3")
+    tasks = in_order(*(Task(name=a, action=Action.MEASURE, object_id=a) for a in names))
     groups = (
         Group(name="Outer", start="1", end="3", max_repeat_count=2),
         Group(name="Outer/Inner", start="1", end="2", max_repeat_count=2),
     )
-    record = make(
-        Mission(tasks=(*tasks, last), groups=groups), ["1", "2", "1", "2", "3", "1", "2", "3"]
-    )
+    record = make(Mission(tasks=tasks, groups=groups), ["1", "2", "1", "2", "3", "1", "2", "3"])
     began = [("Outer", 1, 0), ("Outer/Inner", 1, 0), ("Outer/Inner", 2, 2), ("Outer", 2, 5)]
     rounds = tuple(
         RoundRun(group=g, number=n, since=record.tasks[k].start, began=record.tasks[k].start)

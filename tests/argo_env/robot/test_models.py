@@ -245,11 +245,8 @@ angles = st.floats(-3.0, 3.0)
 
 
 @pytest.fixture(scope="module")
-def body():
-    client = pybullet.connect(pybullet.DIRECT)
-    body = pybullet.loadURDF(str(FILE), physicsClientId=client)
-    yield client, body
-    pybullet.disconnect(client)
+def body(client):
+    return client, pybullet.loadURDF(str(FILE), physicsClientId=client)
 
 
 @settings(deadline=None, max_examples=examples(30))

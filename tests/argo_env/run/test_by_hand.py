@@ -3,14 +3,23 @@
 import pytest
 
 from argo_compiler.base.errors import Conflict, Invalid, NotFound
-from argo_compiler.hfsm import ByHand, Cancel, GiveBack, Outcome, Pause, Resume, TakeOver
+from argo_compiler.hfsm import ByHand, Cancel, GiveBack, Outcome, Pause, Resume
 from argo_compiler.il import Action, Task
 from argo_env.faults.checkpoints import AbnormalValue
-from argo_env.run.journal import Header, create_journal, open_journal
+from argo_env.run.journal import open_journal
 from argo_env.run.session import resume
 from argo_env.run.spec import RunSpec, logged
 from argo_env.run.steering import DoByHand, StopByHand
-from tests.yard import measure, mission, opened, simulation_of, waypoint, yard
+from tests.yard import (
+    journaled,
+    measure,
+    mission,
+    simulation_of,
+    steps,
+    take_over,
+    to_rest,
+    waypoint,
+)
 
 PLAN = mission(measure(1), waypoint("A", 4.05, 2.05), measure(2))
 SPEC = RunSpec(mission=PLAN, site="yard", drive="route", seed=3)
@@ -19,29 +28,12 @@ GAUGE_3 = Task(name="look at gauge 3", action=Action.MEASURE, object_id="3")
 THERE = waypoint("there", 5.05, 2.05)
 
 
-@pytest.fixture(scope="module")
-def site():
-    return opened(yard())
-
-
 @pytest.fixture
 def simulation(site):
     """Taken over at rest, on the way to the first gauge."""
     with simulation_of(SPEC, site) as simulation:
-        take_over(simulation)
+        take_over(simulation, after=20)
         yield simulation
-
-
-def take_over(simulation):
-    for _ in range(20):
-        simulation.step()
-    simulation.handle(TakeOver())
-    to_rest(simulation)
-
-
-def to_rest(simulation):
-    while simulation.task is not None and not simulation.over:
-        simulation.step()
 
 
 def let(simulation, *tasks):
@@ -100,7 +92,7 @@ class TestDoing:
     def test_a_value_that_is_abnormal(self, site):
         spec = SPEC.model_copy(update={"faults": (AbnormalValue(checkpoint=1, value=9.0),)})
         with simulation_of(spec, site) as simulation:
-            take_over(simulation)
+            take_over(simulation, after=20)
             let(simulation, FIRST)
             assert simulation.done_by_hand[0].abnormal
             assert simulation.machine.progress().readings[0].abnormal
@@ -202,7 +194,7 @@ class TestRefusals:
     def test_a_resume_given_beforehand_waits_for_its_end(self, site):
         spec = SPEC.model_copy(update={"events": logged((4.0, Resume()))})
         with simulation_of(spec, site) as simulation:
-            take_over(simulation)
+            take_over(simulation, after=20)
             simulation.handle(DoByHand(SECOND))
             while simulation.by_hand:
                 assert simulation.taken_over
@@ -215,15 +207,11 @@ class TestRefusals:
 @pytest.fixture(scope="module")
 def content(site, tmp_path_factory):
     path = tmp_path_factory.mktemp("by_hand") / "run.journal"
-    with (
-        create_journal(path, Header.of(site, SPEC)) as journal,
-        simulation_of(SPEC, site, observers=[journal]) as simulation,
-    ):
-        take_over(simulation)
+    with journaled(path, SPEC, site) as simulation:
+        take_over(simulation, after=20)
         let(simulation, SECOND)
         simulation.handle(DoByHand(FIRST))
-        for _ in range(12):
-            simulation.step()
+        steps(simulation, 12)
         simulation.handle(StopByHand())
         to_rest(simulation)
         simulation.handle(GiveBack(simulation.done_by_hand))

@@ -3,12 +3,13 @@
 import pytest
 
 from argo_compiler.base.errors import NotFound
-from argo_compiler.il import Action, Group, Mission, Task, Transition
+from argo_compiler.il import Action, Group, Mission, Task
 from argo_env.faults.reading import decode_faults
 from argo_env.planning.opening import open_site
 from argo_env.run.journal import open_journal
 from argo_env.run.session import resume, simulate
 from argo_env.run.spec import RunConditions, RunSpec
+from tests.yard import cut, from_place
 
 START = open_site("umad").site.docks[1]
 GAUGE = open_site("umad").site.checkpoint(4)
@@ -16,16 +17,12 @@ GAUGE = open_site("umad").site.checkpoint(4)
 
 def rounds(count: int) -> Mission:
     """One gauge, read so many times."""
-    return Mission(
-        tasks=(
-            Task(name="START", action=Action.START, pose=START,
-                 transitions=(Transition(target="GAUGE"),)),
-            Task(name="GAUGE", action=Action.MEASURE, object_id="4", group="Again",
-                 transitions=(Transition(target="AWAY"),)),
-            Task(name="AWAY", action=Action.WAYPOINT, pose=START, group="Again"),
-        ),
+    return from_place(
+        START,
+        Task(name="GAUGE", action=Action.MEASURE, object_id="4", group="Again"),
+        Task(name="AWAY", action=Action.WAYPOINT, pose=START, group="Again"),
         groups=(Group(name="Again", start="GAUGE", end="AWAY", max_repeat_count=count),),
-    )  # fmt: skip
+    )
 
 
 def run(count=1, mission=None, faults=(), seed=0, drive="route", journal=None, **conditions):
@@ -103,8 +100,7 @@ def test_a_run_that_was_killed_goes_on_in_the_same_conditions(tmp_path):
         "values": {4: {"drift": 3.6, "noise": 0.1}},
     }
     whole = run(4, journal=tmp_path / "whole", **conditions)
-    lines = (tmp_path / "whole").read_bytes().splitlines(keepends=True)
-    (tmp_path / "part").write_bytes(b"".join(lines[: len(lines) // 2]))
+    cut(tmp_path / "whole", to=tmp_path / "part")
     resumed = resume(open_journal(tmp_path / "part"))
     assert shown(resumed)[:2] == shown(whole)[:2]
     assert len(resumed.readings) == 4
@@ -117,13 +113,7 @@ def test_a_profile_of_no_checkpoint_is_refused_first():
 
 def test_friction_is_felt_by_the_tracked_drive_alone():
     there = START.model_copy(update={"x": START.x + 1.0})
-    drive = Mission(
-        tasks=(
-            Task(name="START", action=Action.START, pose=START,
-                 transitions=(Transition(target="THERE"),)),
-            Task(name="THERE", action=Action.WAYPOINT, pose=there),
-        )
-    )  # fmt: skip
+    drive = from_place(START, Task(name="THERE", action=Action.WAYPOINT, pose=there))
     tracks = [run(mission=drive, drive="tracked", friction=f).path for f in (1.0, 0.5)]
     assert tracks[0] != tracks[1]
     cheap = [run(mission=drive, drive="kinematic", friction=f).path for f in (1.0, 0.5)]

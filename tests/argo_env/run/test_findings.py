@@ -21,7 +21,6 @@ from tests.yard import (
     run_with,
     simulation_of,
     waypoint,
-    yard,
 )
 
 PLAN = mission(measure(1), waypoint("A", 4.05, 2.05))
@@ -34,14 +33,9 @@ SHELTER = Reaction(
 
 
 @pytest.fixture(scope="module")
-def navigator():
-    return yard()
-
-
-@pytest.fixture(scope="module")
-def quiet(navigator):
+def quiet(yard):
     """The record of a run in which nothing happened."""
-    return run(navigator, PLAN)
+    return run(yard, PLAN)
 
 
 def answering(*reactions):
@@ -66,8 +60,8 @@ def test_nothing_found_is_a_plain_success(quiet):
 
 
 class TestEventsFromOutside:
-    def test_without_a_reaction_it_is_a_finding(self, navigator):
-        record = run(navigator, PLAN, (3.0, LEAK))
+    def test_without_a_reaction_it_is_a_finding(self, yard):
+        record = run(yard, PLAN, (3.0, LEAK))
         (finding,) = record.findings
         assert (finding.t, finding.kind, finding.detail) == (3.0, EventKind.GAS_LEAK, "a hiss")
         assert (finding.is_told, finding.answered, finding.floor) == (True, False, 1)
@@ -78,8 +72,8 @@ class TestEventsFromOutside:
         said = "Done, 1 finding: gas leak at 00:03 (no reaction answers it)."
         assert str(record.headline) == said
 
-    def test_with_a_reaction_it_says_which_and_that_it_is_over(self, navigator):
-        record = run(navigator, answering(SHELTER), (4.0, LEAK), (60.0, CLEAR))
+    def test_with_a_reaction_it_says_which_and_that_it_is_over(self, yard):
+        record = run(yard, answering(SHELTER), (4.0, LEAK), (60.0, CLEAR))
         (finding,) = record.findings
         assert (finding.answered, finding.over_at) == (True, 60.0)
         assert str(record.headline) == (
@@ -87,46 +81,46 @@ class TestEventsFromOutside:
         )
 
     @pytest.mark.parametrize("response", [Response.REPORT, Response.ABORT])
-    def test_answers_that_do_not_interrupt(self, navigator, response):
+    def test_answers_that_do_not_interrupt(self, yard, response):
         reaction = Reaction(event=EventKind.GAS_LEAK, response=response)
-        (finding,) = run(navigator, answering(reaction), (4.0, LEAK)).findings
+        (finding,) = run(yard, answering(reaction), (4.0, LEAK)).findings
         assert finding.answer == f"answered by reaction: {response}"
 
-    def test_a_reaction_that_did_not_begin_answers_nothing(self, navigator):
-        record = run(navigator, answering(SHELTER), (3.0, Pause()), (4.0, LEAK))
+    def test_a_reaction_that_did_not_begin_answers_nothing(self, yard):
+        record = run(yard, answering(SHELTER), (3.0, Pause()), (4.0, LEAK))
         (finding,) = record.findings
         assert (finding.answered, finding.answer) == (False, "the reaction to it did not begin")
         assert record.headline.word == "No success"
         assert "nothing more occurs. 1 finding: gas leak at 00:04" in record.headline.text
 
-    def test_what_was_written_down_gives_the_same(self, navigator):
+    def test_what_was_written_down_gives_the_same(self, yard):
         kept, events = Entries(), logged((3.0, LEAK), (5.0, CLEAR))
         plan = answering()
-        record = run_with(plan, fast_rig(navigator, {1: 9.0}), events=events, observers=[kept])
+        record = run_with(plan, fast_rig(yard, {1: 9.0}), events=events, observers=[kept])
         spec = RunSpec(mission=plan, site="yard", events=events)
-        rig = fast_rig(navigator, {1: 9.0})
-        with simulation_of(spec, opened(navigator), past=kept.all, rig=rig) as again:
+        rig = fast_rig(yard, {1: 9.0})
+        with simulation_of(spec, opened(yard), past=kept.all, rig=rig) as again:
             assert again.record() == record
         assert [f.kind for f in record.findings] == ["gas_leak", "abnormal_reading"]
 
 
 class TestReadings:
-    def test_an_abnormal_one_counts_once(self, navigator):
-        record = run(navigator, PLAN, values={1: 9.0})
+    def test_an_abnormal_one_counts_once(self, yard):
+        record = run(yard, PLAN, values={1: 9.0})
         assert len(record.findings) == 1
         assert str(record.headline) == "Done, 1 finding: gauge 1 (#1) abnormal: 9 bar."
 
-    def test_one_of_which_no_anomaly_tells_counts_as_well(self, navigator):
-        record = run(navigator, PLAN, values={1: 9.0})
+    def test_one_of_which_no_anomaly_tells_counts_as_well(self, yard):
+        record = run(yard, PLAN, values={1: 9.0})
         bare = record.model_copy(update={"anomalies": ()})
         assert bare.headline == record.headline
         assert [f.number for f in bare.findings] == [None]
 
-    def test_the_same_value_again_is_named_once_and_counted(self, navigator):
+    def test_the_same_value_again_is_named_once_and_counted(self, yard):
         plan = mission(measure(1), waypoint("A", 2.05, 2.05), measure(1).model_copy(
             update={"name": "again"}
         ))  # fmt: skip
-        record = run(navigator, plan, values={1: 9.0})
+        record = run(yard, plan, values={1: 9.0})
         assert str(record.headline) == "Done, 2 findings: gauge 1 (#1) abnormal: 9 bar, 2 times."
 
 
@@ -194,15 +188,15 @@ class TestHeadline:
 
 
 class TestAsData:
-    def test_other_programs_get_findings_and_headline(self, navigator):
-        record = run(navigator, PLAN, (3.0, LEAK))
+    def test_other_programs_get_findings_and_headline(self, yard):
+        record = run(yard, PLAN, (3.0, LEAK))
         data = record.model_dump(mode="json")
         assert data["headline"]["word"] == "Done, 1 finding"
         assert data["findings"][0]["answered"] is False
         assert RunRecord.model_validate_json(json.dumps(data)) == record
 
-    def test_records_of_before_are_read(self, navigator):
-        record = run(navigator, PLAN, values={1: 9.0})
+    def test_records_of_before_are_read(self, yard):
+        record = run(yard, PLAN, values={1: 9.0})
         data = record.model_dump(mode="json", exclude={"findings", "headline"})
         for task in data["tasks"]:
             del task["measuring"]
@@ -213,17 +207,17 @@ class TestAsData:
 
 
 class TestMeasuring:
-    def test_it_is_told_apart_from_the_drive_there(self, navigator, quiet):
+    def test_it_is_told_apart_from_the_drive_there(self, yard, quiet):
         measured, drive = quiet.tasks[-2:]
-        takes = navigator.robot.sensor.measuring_time
+        takes = yard.robot.sensor.measuring_time
         (span,) = measured.measuring
         assert span == (pytest.approx(measured.end - takes), measured.end)
         assert measured.measured_for == pytest.approx(takes)
         assert drive.measuring == ()
 
-    def test_one_that_is_broken_off_ends_with_its_task(self, navigator, quiet):
+    def test_one_that_is_broken_off_ends_with_its_task(self, yard, quiet):
         begun = quiet.tasks[-2].measuring[0][0]
-        record = run(navigator, PLAN, (begun + 1.0, Pause()))
+        record = run(yard, PLAN, (begun + 1.0, Pause()))
         (task,) = [t for t in record.tasks if t.task == "MEASURE 1"]
         assert task.outcome == "interrupted"
         assert task.measuring == ((begun, task.end),)

@@ -13,14 +13,14 @@ from argo_compiler.il import EventKind, Group
 from argo_compiler.il.mission import TimeWindow
 from argo_env.faults.checkpoints import AbnormalValue
 from argo_env.run.beginning import KnownAnomaly
-from argo_env.run.journal import Header, create_journal, open_journal
+from argo_env.run.journal import open_journal
 from argo_env.run.record import Anomaly, WindowKept
 from argo_env.run.session import resume, simulate
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
 from argo_env.run.steering import DoByHand
 from tests.conftest import examples
-from tests.yard import measure, mission, opened, simulation_of, waypoint, yard
+from tests.yard import cut, journaled, measure, mission, simulation_of, take_over, to_rest, waypoint
 
 PARTS = (
     measure(1), measure(2), measure(3), waypoint("A", 4.05, 2.05), waypoint("B", 2.05, 1.55),
@@ -28,18 +28,8 @@ PARTS = (
 PLAN = mission(measure(1), waypoint("A", 4.05, 2.05), measure(2), waypoint("B", 2.05, 1.55))
 
 
-@pytest.fixture(scope="module")
-def site():
-    return opened(yard())
-
-
 def spec_of(plan, **fields):
     return RunSpec(mission=plan, site="yard", drive="route", seed=3, **fields)
-
-
-def to_rest(simulation):
-    while simulation.task is not None and not simulation.over:
-        simulation.step()
 
 
 def stopped_after(simulation, reached):
@@ -48,8 +38,7 @@ def stopped_after(simulation, reached):
         simulation.step()
     for _ in range(3):
         simulation.step()
-    simulation.handle(TakeOver())
-    to_rest(simulation)
+    take_over(simulation)
 
 
 def ended(progress):
@@ -86,8 +75,7 @@ def test_before_by_hand_and_after_are_the_whole_mission(site, how, plan, at, dat
             if not first.over:
                 first.step()
         assume(not first.over)
-        first.handle(TakeOver())
-        to_rest(first)
+        take_over(first)
         assume(not first.over)
         done = done_and_skipped(data, plan, first)
         if how == "given back":
@@ -224,8 +212,7 @@ class TestEdited:
         with simulation_of(spec_of(short), site) as first:
             for _ in range(steps - 1):
                 first.step()
-            first.handle(TakeOver())
-            to_rest(first)
+            take_over(first)
             assert not first.over
             with pytest.raises(Conflict, match="nothing is left"):
                 first.going_on(mission(measure(1), measure(2)))
@@ -296,13 +283,9 @@ def test_its_journal_goes_on_from_anywhere(site, tmp_path, share):
         stopped_after(first, 1)
         spec = first.going_on(PLAN)
     path = tmp_path / "run.journal"
-    with (
-        create_journal(path, Header.of(site, spec)) as journal,
-        simulation_of(spec, site, observers=[journal]) as rest,
-    ):
+    with journaled(path, spec, site) as rest:
         record = rest.run()
-    lines = path.read_bytes().splitlines(keepends=True)
-    path.write_bytes(b"".join(lines[: max(2, int(share * len(lines)))]))
+    cut(path, share)
     with open_journal(path) as journal:
         again = resume(journal, site)
     assert [(t.task, t.outcome) for t in again.tasks] == [(t.task, t.outcome) for t in record.tasks]

@@ -20,16 +20,11 @@ from argo_env.run.record import RunRecord
 from argo_env.run.spec import logged
 from argo_env.sensing.sensor import MeasurementError
 from tests.conftest import examples
-from tests.yard import fast_rig, measure, mission, run, run_with, simulated, waypoint, yard
+from tests.yard import fast_rig, measure, mission, run, run_with, simulated, waypoint
 
 DOCK = Pose(x=1.05, y=1.05, z=0.02)
 SHELTER = Pose(x=3.05, y=1.55, z=0.02)
 NOWHERE = Pose(x=30.0, y=30.0, z=0.02)
-
-
-@pytest.fixture(scope="module")
-def navigator():
-    return yard()
 
 
 def react(event, response, **fields):
@@ -49,15 +44,15 @@ MEASURE = mission(measure(1))
 
 
 @pytest.fixture(scope="module")
-def arrival(navigator):
+def arrival(yard):
     """When the robot has arrived at the first checkpoint (s)."""
-    record = run(navigator, MEASURE)
-    return record.result.duration - navigator.robot.sensor.measuring_time
+    record = run(yard, MEASURE)
+    return record.result.duration - yard.robot.sensor.measuring_time
 
 
 class TestCleanUp:
-    def test_while_driving_the_robot_comes_to_rest(self, navigator):
-        record = run(navigator, MEASURE, (3.0, Cancel()))
+    def test_while_driving_the_robot_comes_to_rest(self, yard):
+        record = run(yard, MEASURE, (3.0, Cancel()))
         (task,) = record.tasks
         assert (task.outcome, task.end) == ("cancelled", pytest.approx(3.1))
         assert record.result.outcome is Outcome.CANCELLED
@@ -66,38 +61,38 @@ class TestCleanUp:
     @pytest.mark.parametrize(
         ("after", "takes"), [(1.0, 1.0), (2.0, 2.0), (3.0, 8 / 3), (5.0, 8 / 3)]
     )
-    def test_an_arm_that_is_raised_is_stowed(self, navigator, arrival, after, takes):
-        record = run(navigator, MEASURE, (arrival + after, Cancel()))
+    def test_an_arm_that_is_raised_is_stowed(self, yard, arrival, after, takes):
+        record = run(yard, MEASURE, (arrival + after, Cancel()))
         (task,) = record.tasks
         assert (task.outcome, record.readings) == ("cancelled", ())
         assert task.end - (arrival + after) == pytest.approx(takes, abs=0.11)
 
     @pytest.mark.parametrize("after", [5.5, 7.0, 7.9])
-    def test_a_value_that_has_been_seen_counts(self, navigator, arrival, after):
-        record = run(navigator, MEASURE, (arrival + after, Cancel()))
+    def test_a_value_that_has_been_seen_counts(self, yard, arrival, after):
+        record = run(yard, MEASURE, (arrival + after, Cancel()))
         assert names(record) == [("MEASURE 1", "done")]
         assert [r.value for r in record.readings] == [2.5]
         assert record.result.outcome is Outcome.CANCELLED
         assert record.result.duration == pytest.approx(arrival + 8.0)
 
-    def test_only_then_the_next_action_begins(self, navigator, arrival):
+    def test_only_then_the_next_action_begins(self, yard, arrival):
         plan = mission(
             measure(1), reactions=(react(EventKind.GAS_LEAK, Response.SAFE_AREA, pose=SHELTER),)
         )
-        rig = fast_rig(navigator)
+        rig = fast_rig(yard)
         events = ((arrival + 4.0, Occurred(EventKind.GAS_LEAK)),)
         record = run_with(plan, rig, events=logged(*events))
         first, second = record.tasks
         assert first.outcome == "interrupted"
         assert second.start == first.end
         assert first.end == pytest.approx(arrival + 4.0 + 8 / 3, abs=0.11)
-        stowed, raised = navigator.robot.arm_stowed, navigator.robot.arm_raised
+        stowed, raised = yard.robot.arm_stowed, yard.robot.arm_raised
         assert rig.world.arm[:2] == [raised, stowed]
 
 
 class TestPersons:
-    def test_pause_and_resume(self, navigator):
-        record = run(navigator, MEASURE, (3.0, Pause()), (20.0, Resume()))
+    def test_pause_and_resume(self, yard):
+        record = run(yard, MEASURE, (3.0, Pause()), (20.0, Resume()))
         assert names(record) == [("MEASURE 1", "interrupted"), ("MEASURE 1", "done")]
         assert record.tasks[0].reason == "the mission is paused"
         assert record.tasks[1].start == 20.0
@@ -109,30 +104,28 @@ class TestPersons:
         assert any("pause" in c for c in causes)
         assert any("resume" in c for c in causes)
 
-    def test_nobody_resumes(self, navigator):
-        record = run(navigator, MEASURE, (3.0, Pause()))
+    def test_nobody_resumes(self, yard):
+        record = run(yard, MEASURE, (3.0, Pause()))
         assert record.result.outcome is None
         assert not record.result.success
         assert "paused, and nothing more occurs" in record.result.verdict
         assert record.result.duration < 10.0
 
-    def test_events_at_the_beginning(self, navigator):
-        record = run(
-            navigator, MEASURE, (0.0, Pause()), (0.0, Resume()), (0.05, Pause()), (5, Resume())
-        )
+    def test_events_at_the_beginning(self, yard):
+        record = run(yard, MEASURE, (0.0, Pause()), (0.0, Resume()), (0.05, Pause()), (5, Resume()))
         assert record.result.success
         assert record.tasks[-1].start == 5.0
 
 
 class TestReactions:
-    def test_to_a_safe_area_and_on(self, navigator):
+    def test_to_a_safe_area_and_on(self, yard):
         shelter = react(
             EventKind.GAS_LEAK, Response.SAFE_AREA, pose=SHELTER, until=EventKind.ALL_CLEAR,
             afterwards=Afterwards.RESUME,
         )  # fmt: skip
         plan = mission(measure(1), waypoint("A", 4.05, 2.05), reactions=(shelter,))
         record = run(
-            navigator, plan, (4.0, Occurred(EventKind.GAS_LEAK, "a hiss")),
+            yard, plan, (4.0, Occurred(EventKind.GAS_LEAK, "a hiss")),
             (60.0, Occurred(EventKind.ALL_CLEAR)),
         )  # fmt: skip
         assert names(record) == [
@@ -164,48 +157,48 @@ class TestReactions:
             ),
         ],
     )
-    def test_that_end_the_mission(self, navigator, tmp_path, reaction, outcome, says):
+    def test_that_end_the_mission(self, yard, tmp_path, reaction, outcome, says):
         plan = mission(measure(1), reactions=(reaction,), dock=DOCK, end_area=1)
-        record = run(navigator, plan, (4.0, Occurred(EventKind.HOT_SPOT)))
+        record = run(yard, plan, (4.0, Occurred(EventKind.HOT_SPOT)))
         assert record.result.outcome is outcome
         assert not record.result.success
         assert says in record.result.verdict
         assert record.result.docked is (outcome is Outcome.RETURNED)
         text = record.model_dump_json()
         assert RunRecord.model_validate_json(text) == record
-        page = write_report(record, navigator.site, tmp_path).read_text(encoding="utf-8")
+        page = write_report(record, yard.site, tmp_path).read_text(encoding="utf-8")
         assert says in page
         assert "reaction: hot spot" in page
 
     @pytest.mark.parametrize("then", [Afterwards.END, Afterwards.WAIT, Afterwards.RESUME])
-    def test_a_hold_that_its_limit_ended_is_told_so(self, navigator, then):
+    def test_a_hold_that_its_limit_ended_is_told_so(self, yard, then):
         hold = react(
             EventKind.GAS_LEAK, Response.PAUSE, until=EventKind.ALL_CLEAR,
             afterwards=Afterwards.RESUME, hold_limit=20.0, on_limit=then,
         )  # fmt: skip
         plan = mission(measure(1), reactions=(hold,))
-        record = run(navigator, plan, (4.0, Occurred(EventKind.GAS_LEAK)))
+        record = run(yard, plan, (4.0, Occurred(EventKind.GAS_LEAK)))
         end = record.interruptions[0].end
         assert record.interruptions[0].limit_over
         assert waits(record)[0].outcome == f"the limit of the hold was over at {clock(end)}"
         cleared = (10.0, Occurred(EventKind.ALL_CLEAR))
-        record = run(navigator, plan, (4.0, Occurred(EventKind.GAS_LEAK)), cleared)
+        record = run(yard, plan, (4.0, Occurred(EventKind.GAS_LEAK)), cleared)
         assert [w.outcome for w in waits(record)] == ["over"]
 
-    def test_report_interrupts_nothing(self, navigator):
+    def test_report_interrupts_nothing(self, yard):
         plan = mission(measure(1), reactions=(react(EventKind.HOT_SPOT, Response.REPORT),))
-        record = run(navigator, plan, (4.0, Occurred(EventKind.HOT_SPOT)))
-        plain = run(navigator, plan)
+        record = run(yard, plan, (4.0, Occurred(EventKind.HOT_SPOT)))
+        plain = run(yard, plan)
         assert record.tasks == plain.tasks
         assert record.path == plain.path
         assert any("hot spot" in step.cause and step.t == 4.0 for step in record.trace)
         assert record.interruptions == ()
 
     @pytest.mark.parametrize("value", [5.5, 1.0])
-    def test_to_an_abnormal_reading(self, navigator, value):
+    def test_to_an_abnormal_reading(self, yard, value):
         pause = react(EventKind.ABNORMAL_READING, Response.PAUSE)
         plan = mission(measure(1), measure(2), reactions=(pause,))
-        record = run(navigator, plan, (90.0, Resume()), values={1: value})
+        record = run(yard, plan, (90.0, Resume()), values={1: value})
         assert names(record) == [("MEASURE 1", "done"), ("MEASURE 2", "done")]
         assert [(r.value, r.normal) for r in record.readings] == [(value, False), (3.5, True)]
         assert record.tasks[1].start == 90.0
@@ -213,19 +206,19 @@ class TestReactions:
         assert interruption.start == record.readings[0].t
         assert any(f"gauge 1 shows {value:g} bar" in step.cause for step in record.trace)
 
-    def test_a_normal_reading_is_no_event(self, navigator):
+    def test_a_normal_reading_is_no_event(self, yard):
         abort = react(EventKind.ABNORMAL_READING, Response.ABORT)
-        assert run(navigator, mission(measure(1), reactions=(abort,))).result.success
+        assert run(yard, mission(measure(1), reactions=(abort,))).result.success
 
-    def test_an_abnormal_reading_without_a_reaction_is_reported(self, navigator):
-        record = run(navigator, MEASURE, values={1: 9.0})
+    def test_an_abnormal_reading_without_a_reaction_is_reported(self, yard):
+        record = run(yard, MEASURE, values={1: 9.0})
         assert record.result.success
         assert any("abnormal reading" in step.cause for step in record.trace)
 
-    def test_when_the_time_is_up(self, navigator):
+    def test_when_the_time_is_up(self, yard):
         back = react(EventKind.TIME_UP, Response.RETURN)
         plan = mission(measure(1), measure(2), reactions=(back,), dock=DOCK, max_duration=20.0)
-        record = run(navigator, plan)
+        record = run(yard, plan)
         assert names(record) == [
             ("MEASURE 1", "done"), ("MEASURE 2", "interrupted"), ("react to time_up", "done"),
         ]  # fmt: skip
@@ -233,22 +226,22 @@ class TestReactions:
         assert record.result.outcome is Outcome.RETURNED
         assert "of at most 20 s" in record.result.verdict
 
-    def test_velocity_of_the_way_after_an_interruption(self, navigator):
+    def test_velocity_of_the_way_after_an_interruption(self, yard):
         """The way is still that to the same task, and a reaction has the planning speed."""
         shelter = react(
             EventKind.GAS_LEAK, Response.SAFE_AREA, pose=SHELTER, afterwards=Afterwards.RESUME
         )
         a, b = waypoint("A", 3.05, 2.05, velocity=0.2), waypoint("B", 4.55, 2.05, velocity=0.3)
         plan = mission(a, b, waypoint("C", 2.05, 2.05), reactions=(shelter,))
-        rig = fast_rig(navigator)
+        rig = fast_rig(yard)
         run_with(plan, rig, events=logged((16.0, Occurred(EventKind.GAS_LEAK))))
         assert rig.drive.velocities == [0.2, None, 0.2, 0.3, None]
 
 
-def test_velocity_of_a_way_back_to_the_same_task(navigator):
+def test_velocity_of_a_way_back_to_the_same_task(yard):
     again = Group(name="Twice", start="A", end="A", max_repeat_count=2)
     plan = mission(waypoint("A", 3.05, 2.05, velocity=0.2), groups=(again,))
-    rig = fast_rig(navigator)
+    rig = fast_rig(yard)
     run_with(plan, rig)
     assert rig.drive.velocities == [0.2, 0.2]
 
@@ -268,19 +261,19 @@ class TestFailures:
                 raise MeasurementError("fog")
             return self._good.measure(checkpoint_id, pose)
 
-    def run(self, navigator, plan, failures):
-        rig = fast_rig(navigator)
+    def run(self, yard, plan, failures):
+        rig = fast_rig(yard)
         moody = self.Moody(failures, rig.sensor)
         rig = type(rig)(rig.world, rig.navigator, rig.drive, moody)
         return run_with(plan, rig)
 
-    def test_a_retry_that_succeeds_is_a_success(self, navigator):
-        record = self.run(navigator, mission(measure(1, retries=2)), 2)
+    def test_a_retry_that_succeeds_is_a_success(self, yard):
+        record = self.run(yard, mission(measure(1, retries=2)), 2)
         assert [t.outcome for t in record.tasks] == ["failed", "failed", "done"]
         assert record.result.success
 
-    def test_retries_that_all_fail_are_none(self, navigator):
-        record = self.run(navigator, mission(measure(1, retries=1), measure(2)), 2)
+    def test_retries_that_all_fail_are_none(self, yard):
+        record = self.run(yard, mission(measure(1, retries=1), measure(2)), 2)
         assert [t.outcome for t in record.tasks] == ["failed", "failed", "done"]
         assert "failed: MEASURE 1" in record.result.verdict
 
@@ -291,9 +284,9 @@ class TestFailures:
             (OnFailure.ABORT, Outcome.ABORTED, []),
         ],
     )
-    def test_policies(self, navigator, policy, outcome, then):
+    def test_policies(self, yard, policy, outcome, then):
         plan = mission(measure(1, on_failure=policy), measure(2), dock=DOCK)
-        record = self.run(navigator, plan, 9)
+        record = self.run(yard, plan, 9)
         assert [t.task for t in record.tasks] == ["MEASURE 1", *then]
         assert record.result.outcome is outcome
         assert "failed: MEASURE 1" in record.result.verdict
@@ -353,13 +346,13 @@ def check_findings(record, plan, events):
 
 @settings(max_examples=examples(40), deadline=None)
 @given(given_events(), reactions(), st.none() | st.floats(5.0, 80.0))
-def test_whatever_occurs(navigator, events, answers, limit):
+def test_whatever_occurs(yard, events, answers, limit):
     plan = mission(
         measure(1), waypoint("A", 4.05, 2.05), measure(2), measure(3),
         reactions=answers, dock=DOCK, max_duration=limit,
     )  # fmt: skip
-    record = run(navigator, plan, *events, values={2: 5.5})
-    assert run(navigator, plan, *events, values={2: 5.5}) == record
+    record = run(yard, plan, *events, values={2: 5.5})
+    assert run(yard, plan, *events, values={2: 5.5}) == record
     check_findings(record, plan, events)
     # One action at a time, each with its end; a reading belongs to one that is done.
     assert all(a.end <= b.start for a, b in pairwise(record.tasks))
@@ -378,16 +371,16 @@ def test_whatever_occurs(navigator, events, answers, limit):
             if interruption.start < task.start < interruption.end:
                 assert task.task.startswith("react to")
     for a, b in pairwise(record.path):
-        assert math.dist((a.x, a.y), (b.x, b.y)) <= navigator.robot.speed * (b.t - a.t) + 0.15
+        assert math.dist((a.x, a.y), (b.x, b.y)) <= yard.robot.speed * (b.t - a.t) + 0.15
 
 
-def test_in_the_world(navigator):
+def test_in_the_world(yard):
     """The same with drive, sensor and contacts of the simulation."""
     plan = mission(
         measure(1), dock=DOCK, reactions=(react(EventKind.LOW_BATTERY, Response.RETURN),)
     )
     events = logged((8.0, Occurred(EventKind.LOW_BATTERY)))
-    record = simulated(plan, navigator, events=events)
+    record = simulated(plan, yard, events=events)
     assert names(record) == [("MEASURE 1", "interrupted"), ("react to low_battery", "done")]
     assert record.result.outcome is Outcome.RETURNED
     assert math.dist((record.path[-1].x, record.path[-1].y), (DOCK.x, DOCK.y)) < 0.1

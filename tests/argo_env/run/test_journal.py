@@ -3,6 +3,7 @@
 import os
 import resource
 import signal
+from contextlib import contextmanager
 from dataclasses import replace
 from itertools import count, pairwise
 from pathlib import Path
@@ -54,7 +55,6 @@ from tests.yard import (
     simulated,
     simulation_of,
     waypoint,
-    yard,
 )
 
 CAMPAIGN = examples(1) > 1
@@ -87,12 +87,7 @@ EVENTS = (
 )
 
 
-@pytest.fixture(scope="module")
-def navigator():
-    return yard()
-
-
-def header(navigator, plan=PLAN, events=EVENTS, source=None):
+def header(yard, plan=PLAN, events=EVENTS, source=None):
     spec = RunSpec(
         mission=plan,
         site="yard",
@@ -100,11 +95,11 @@ def header(navigator, plan=PLAN, events=EVENTS, source=None):
         events=logged(*events),
         source=None if source is None else str(source),
     )
-    return Header.of(opened(navigator), spec)
+    return Header.of(opened(yard), spec)
 
 
-def runner(navigator, journal, plan=PLAN, events=EVENTS, values=None):
-    rig = fast_rig(navigator, values or {2: 5.5})
+def runner(yard, journal, plan=PLAN, events=EVENTS, values=None):
+    rig = fast_rig(yard, values or {2: 5.5})
 
     def go_on(observe=None, announce=None, interrupted=lambda: False):
         watching = [Watching(observe, announce)]
@@ -116,12 +111,18 @@ def runner(navigator, journal, plan=PLAN, events=EVENTS, values=None):
     return SimpleNamespace(run=go_on)
 
 
-def resumed(navigator, path):
+def resumed(yard, path):
     """Goes on with a journal to the end; the record and what was announced on the way."""
     told = []
     with open_journal(path) as journal:
-        record = runner(navigator, journal).run(announce=told.append)
+        record = runner(yard, journal).run(announce=told.append)
     return record, told
+
+
+@pytest.fixture
+def path(tmp_path):
+    """Where the journal of a test is."""
+    return tmp_path / "run.journal"
 
 
 class Whole:
@@ -136,12 +137,12 @@ class Whole:
 
 
 @pytest.fixture(scope="module")
-def whole(navigator, tmp_path_factory):
+def whole(yard, tmp_path_factory):
     """The journal of a run that was never cut short, and its record."""
     path = tmp_path_factory.mktemp("whole") / "run.journal"
     told = []
-    with create_journal(path, header(navigator)) as journal:
-        record = runner(navigator, journal).run(announce=told.append)
+    with create_journal(path, header(yard)) as journal:
+        record = runner(yard, journal).run(announce=told.append)
     assert tuple(told) == record.readings
     return Whole(path.read_bytes(), record)
 
@@ -193,21 +194,20 @@ def test_the_reference_has_all_that_may_happen(whole):
     assert [r.normal for r in record.readings] == [True, False, True]
 
 
-def test_a_journal_changes_nothing(navigator, whole):
+def test_a_journal_changes_nothing(yard, whole):
     record = whole.record
-    assert runner(navigator, None).run() == record
+    assert runner(yard, None).run() == record
 
 
-def test_cut_at_every_line_end(navigator, whole, tmp_path):
+def test_cut_at_every_line_end(yard, whole, path):
     content, reference = whole.content, whole.record
-    path = tmp_path / "run.journal"
     ends = [k + 1 for k, byte in enumerate(content) if byte == ord("\n")]
     assert len(ends) > 100
     for end in ends if CAMPAIGN else ends[::5]:
         path.write_bytes(content[:end])
         with open_journal(path) as journal:
             entries = journal.entries
-        record, told = resumed(navigator, path)
+        record, told = resumed(yard, path)
         known = [e.reading for e in entries if e.reading]
         assert [*known, *told] == list(record.readings)
         if entries and not entries[-1].ended and not record.resumed:
@@ -219,15 +219,15 @@ def test_cut_at_every_line_end(navigator, whole, tmp_path):
             assert record == reference
 
 
-def test_interrupted_after_any_step(navigator, whole, tmp_path):
+def test_interrupted_after_any_step(yard, whole, path):
     """The record is the reference's so far, and the journal goes on to all of it."""
-    reference, path = whole.record, tmp_path / "run.journal"
+    reference = whole.record
     steps = round(reference.result.duration / 0.1)
     for n in range(0, steps, 1 if CAMPAIGN else 101):
         path.unlink(missing_ok=True)
         looks = count()
-        with create_journal(path, header(navigator)) as journal:
-            record = runner(navigator, journal).run(interrupted=lambda: next(looks) >= n)  # noqa: B023
+        with create_journal(path, header(yard)) as journal:
+            record = runner(yard, journal).run(interrupted=lambda: next(looks) >= n)  # noqa: B023
         assert not record.result.ended
         assert not record.result.success
         assert record.result.verdict == f"the mission is not at its end after {n / 10:.0f} s"
@@ -238,7 +238,7 @@ def test_interrupted_after_any_step(navigator, whole, tmp_path):
         with open_journal(path) as journal:
             assert not journal.ended
             reached = journal.entries[-1].t if journal.entries else None
-        gone_on, told = resumed(navigator, path)
+        gone_on, told = resumed(yard, path)
         assert (*record.readings, *told) == gone_on.readings
         if reached is None:
             assert gone_on == reference
@@ -247,7 +247,7 @@ def test_interrupted_after_any_step(navigator, whole, tmp_path):
             require_a_continuation(gone_on, reference, reached)
 
 
-def test_an_interruption_is_told_and_the_simulation_can_go_on(navigator):
+def test_an_interruption_is_told_and_the_simulation_can_go_on(yard):
     told, looks = [], iter([False] * 20 + [True])
 
     class Told(Observer):
@@ -255,40 +255,37 @@ def test_an_interruption_is_told_and_the_simulation_can_go_on(navigator):
             told.append(record)
 
     spec = RunSpec(mission=PLAN, site="yard")
-    with simulation_of(
-        spec, opened(navigator), observers=[Told()], rig=fast_rig(navigator)
-    ) as simulation:
+    with simulation_of(spec, opened(yard), observers=[Told()], rig=fast_rig(yard)) as simulation:
         record = simulation.run(lambda: next(looks))
         assert told == [record]
         assert record.result.duration == 2.0
         whole = simulation.run()
         assert told == [record]
     assert whole.result.ended
-    assert whole == run_with(PLAN, fast_rig(navigator))
+    assert whole == run_with(PLAN, fast_rig(yard))
 
 
-def test_a_run_that_has_ended_can_be_told_nothing(navigator, whole, tmp_path):
-    path = tmp_path / "run.journal"
+def test_a_run_that_has_ended_can_be_told_nothing(yard, whole, path):
     path.write_bytes(whole.content)
     with (
         open_journal(path) as journal,
         pytest.raises(Conflict, match=r"run\.journal: the run has ended, at") as caught,
     ):
-        resume(journal, opened(navigator), events=logged((5.0, Pause())))
+        resume(journal, opened(yard), events=logged((5.0, Pause())))
     assert caught.value.remedies == (Remedy.RUN_ANEW,)
     assert path.read_bytes() == whole.content
 
 
-def test_cut_at_every_byte_of_the_last_lines(navigator, tmp_path):
+def test_cut_at_every_byte_of_the_last_lines(yard, path):
     """The end of a short run: its last lines hold the end of an action and that of the run."""
-    plan, path = mission(measure(1)), tmp_path / "run.journal"
+    plan = mission(measure(1))
 
     def go_on():
         with open_journal(path) as journal:
-            return runner(navigator, journal, plan, ()).run()
+            return runner(yard, journal, plan, ()).run()
 
-    with create_journal(path, header(navigator, plan, ())) as journal:
-        reference = runner(navigator, journal, plan, ()).run()
+    with create_journal(path, header(yard, plan, ())) as journal:
+        reference = runner(yard, journal, plan, ()).run()
     content = path.read_bytes()
     first = len(content) - sum(map(len, content.splitlines(keepends=True)[-4:]))
     for cut in range(first, len(content)):
@@ -311,7 +308,7 @@ def test_cut_at_every_byte_of_the_last_lines(navigator, tmp_path):
 
 @settings(max_examples=examples(10), deadline=None)
 @given(st.lists(st.floats(0.0, 1.0), min_size=1, max_size=4))
-def test_cut_again_and_again(navigator, whole, tmp_path_factory, places):
+def test_cut_again_and_again(yard, whole, tmp_path_factory, places):
     """Each time it goes on to the end, and is cut at any byte behind the first line."""
     content, reference = whole.content, whole.record
     path = tmp_path_factory.mktemp("again") / "run.journal"
@@ -323,14 +320,13 @@ def test_cut_again_and_again(navigator, whole, tmp_path_factory, places):
         path.write_bytes(content[:cut])
         with open_journal(path) as journal:
             certain = [e.reading for e in journal.entries if e.reading]
-        record, told = resumed(navigator, path)
+        record, told = resumed(yard, path)
         require_the_same_mission(record, reference)
         assert [*certain, *told] == list(record.readings)
         assert list(record.resumed) == sorted(record.resumed)
 
 
-def test_a_reading_is_on_disk_when_it_is_told(navigator, tmp_path):
-    path = tmp_path / "run.journal"
+def test_a_reading_is_on_disk_when_it_is_told(yard, path):
     seen = []
 
     def announce(reading):
@@ -342,8 +338,8 @@ def test_a_reading_is_on_disk_when_it_is_told(navigator, tmp_path):
         assert now - last.t < SAMPLE_PERIOD
 
     plan = mission(measure(1), measure(2))
-    with create_journal(path, header(navigator, plan, ())) as journal:
-        runner(navigator, journal, plan, ()).run(observe, announce)
+    with create_journal(path, header(yard, plan, ())) as journal:
+        runner(yard, journal, plan, ()).run(observe, announce)
     assert seen == [True, True]
 
 
@@ -361,15 +357,14 @@ class Scraping(EmptyWorld):
         return ()
 
 
-def test_contacts_go_on_as_well(navigator, tmp_path):
+def test_contacts_go_on_as_well(yard, path):
     def run(journal):
-        rig = fast_rig(navigator)
+        rig = fast_rig(yard)
         rig = replace(rig, world=Scraping(rig.drive))
         return run_with(plan, rig, journal=journal, seed=1)
 
     plan = mission(waypoint("A", 3.05, 1.05), waypoint("B", 1.05, 1.05))
-    path = tmp_path / "run.journal"
-    with create_journal(path, header(navigator, plan, ())) as journal:
+    with create_journal(path, header(yard, plan, ())) as journal:
         reference = run(journal)
     assert len(reference.contacts) == 2
     content = path.read_bytes()
@@ -386,17 +381,16 @@ def test_contacts_go_on_as_well(navigator, tmp_path):
             assert contact.start == before.start or before.start > reached
 
 
-def test_simulate_and_resume_in_the_world(navigator, tmp_path):
+def test_simulate_and_resume_in_the_world(yard, path):
     plan = mission(measure(1), measure(2), end_area=1)
-    path = tmp_path / "run.journal"
-    reference = simulated(plan, navigator, seed=4, values={2: 4.0}, journal=path)
-    assert simulated(plan, navigator, seed=4, values={2: 4.0}) == reference
+    reference = simulated(plan, yard, seed=4, values={2: 4.0}, journal=path)
+    assert simulated(plan, yard, seed=4, values={2: 4.0}) == reference
     content = path.read_bytes()
     lines = content.splitlines(keepends=True)
     path.write_bytes(b"".join(lines[: len(lines) // 2])[:-3])
     with open_journal(path) as journal:
         at = journal.entries[-1].t
-        record = resume(journal, opened(navigator))
+        record = resume(journal, opened(yard))
     assert 0.0 < at < reference.result.duration
     assert record.resumed == (at,)
     assert record.seed == 4
@@ -423,36 +417,33 @@ def test_events_go_through_json(event):
 
 
 class TestRefusals:
-    def test_two_processes(self, navigator, tmp_path):
-        path = tmp_path / "run.journal"
-        with create_journal(path, header(navigator)), pytest.raises(ArgoError, match="in use"):
+    def test_two_processes(self, yard, path):
+        with create_journal(path, header(yard)), pytest.raises(ArgoError, match="in use"):
             open_journal(path)
         with open_journal(path), pytest.raises(ArgoError, match="in use"):
             open_journal(path)
         open_journal(path).close()
 
-    def test_a_journal_that_is_there_already(self, navigator, tmp_path):
-        path = tmp_path / "run.journal"
-        create_journal(path, header(navigator)).close()
+    def test_a_journal_that_is_there_already(self, yard, path, tmp_path):
+        create_journal(path, header(yard)).close()
         before = path.read_bytes()
         with pytest.raises(Conflict, match=r"run\.journal: is there already") as caught:
-            create_journal(path, header(navigator))
+            create_journal(path, header(yard))
         assert (caught.value.remedies, caught.value.about) == ((Remedy.RESUME,), str(path))
         assert path.read_bytes() == before
         assert list(tmp_path.iterdir()) == [path]
 
     @pytest.mark.skipif(not Path("/proc").is_dir(), reason="needs a folder without room for files")
-    def test_a_place_where_nothing_can_be_made_is_named_as_it_was_given(self, navigator):
+    def test_a_place_where_nothing_can_be_made_is_named_as_it_was_given(self, yard):
         with pytest.raises(Unavailable, match=r"^/proc/j: .*choose another"):
-            create_journal(Path("/proc/j"), header(navigator))
+            create_journal(Path("/proc/j"), header(yard))
 
-    def test_killed_while_the_first_line_was_written(self, navigator, tmp_path):
+    def test_killed_while_the_first_line_was_written(self, yard, path, tmp_path):
         """The draft of the first line that another process has left is no obstacle."""
-        path = tmp_path / "run.journal"
         (tmp_path / "run.journal.new").write_bytes(b"0123 half a li" * 1000)
-        create_journal(path, header(navigator)).close()
+        create_journal(path, header(yard)).close()
         with open_journal(path) as journal:
-            assert journal.header == header(navigator)
+            assert journal.header == header(yard)
         assert list(tmp_path.iterdir()) == [path]
 
     @pytest.mark.parametrize(
@@ -473,9 +464,8 @@ class TestRefusals:
         assert path.read_bytes() == content
 
     @pytest.mark.parametrize("cut", [0, 1, 8, 9, 50, -2, -1])
-    def test_the_first_line_is_not_whole(self, navigator, tmp_path, cut):
-        path = tmp_path / "run.journal"
-        create_journal(path, header(navigator)).close()
+    def test_the_first_line_is_not_whole(self, yard, path, cut):
+        create_journal(path, header(yard)).close()
         content = path.read_bytes()[:cut]
         path.write_bytes(content)
         with pytest.raises(ArgoError, match="is no journal, or its first line is damaged"):
@@ -488,21 +478,19 @@ class TestRefusals:
             open_journal(Path(name))
 
     @pytest.mark.parametrize("name", [".", "/dev/full", "no/such/folder/j"])
-    def test_places_that_can_not_be_written(self, navigator, tmp_path, monkeypatch, name):
+    def test_places_that_can_not_be_written(self, yard, tmp_path, monkeypatch, name):
         monkeypatch.chdir(tmp_path)
         with pytest.raises(ArgoError, match=r"is there already|its folder does not exist"):
-            create_journal(Path(name), header(navigator))
+            create_journal(Path(name), header(yard))
 
-    def test_another_version(self, navigator, tmp_path):
-        path = tmp_path / "run.journal"
-        future = header(navigator).model_copy(update={"version": 7})
+    def test_another_version(self, yard, path):
+        future = header(yard).model_copy(update={"version": 7})
         create_journal(path, future).close()
         with pytest.raises(ArgoError, match="has version 7 of the journal's format"):
             open_journal(path)
 
-    def test_damage_in_the_middle(self, whole, tmp_path):
+    def test_damage_in_the_middle(self, whole, path):
         content = whole.content
-        path = tmp_path / "run.journal"
         lines = content.splitlines(keepends=True)
         bad = bytes([lines[20][40] ^ 1])
         lines[20] = lines[20][:40] + bad + lines[20][41:]
@@ -523,101 +511,94 @@ class TestRefusals:
             (b"\r\n", b"", "CR LF"),
         ],
     )
-    def test_more_damage_than_a_kill_leaves(self, whole, tmp_path, line_end, more, says):
-        path = tmp_path / "run.journal"
+    def test_more_damage_than_a_kill_leaves(self, whole, path, line_end, more, says):
         content = whole.content.replace(b"\n", line_end) + more
         path.write_bytes(content)
         with pytest.raises(ArgoError, match=says):
             open_journal(path)
         assert path.read_bytes() == content
 
-    def test_a_changed_site(self, navigator, tmp_path):
-        path = tmp_path / "run.journal"
-        create_journal(path, header(navigator)).close()
+    def test_a_changed_site(self, yard, path):
+        create_journal(path, header(yard)).close()
         other = make_site(SiteSpec.model_validate({**SITE, "title": "Yard 2", "storey": 3.0}))
         with open_journal(path) as journal, pytest.raises(ArgoError) as refused:
-            resume(journal, opened(Navigator(other, navigator.robot)))
+            resume(journal, opened(Navigator(other, yard.robot)))
         assert "site's storey" in str(refused.value)
         assert "site's title" in str(refused.value)
         assert "floors" not in str(refused.value)
 
-    def test_another_argo(self, navigator, tmp_path, monkeypatch):
-        path = tmp_path / "run.journal"
-        create_journal(path, header(navigator)).close()
+    def test_another_argo(self, yard, path, monkeypatch):
+        create_journal(path, header(yard)).close()
         monkeypatch.setattr(argo_env.run.journal, "__version__", "99.9")
         with open_journal(path) as journal, pytest.raises(ArgoError, match=r"Argo .*is 99\.9"):
-            resume(journal, opened(navigator))
+            resume(journal, opened(yard))
 
-    def test_a_changed_mission_file(self, navigator, tmp_path):
-        path, source = tmp_path / "run.journal", tmp_path / "mission.json"
+    def test_a_changed_mission_file(self, yard, path, tmp_path):
+        source = tmp_path / "mission.json"
         source.write_text("first")
-        create_journal(path, header(navigator, source=source)).close()
+        create_journal(path, header(yard, source=source)).close()
         with open_journal(path) as journal:
-            journal.require_unchanged(opened(navigator))
+            journal.require_unchanged(opened(yard))
             source.write_text("second")
             with pytest.raises(ArgoError, match="mission file"):
-                resume(journal, opened(navigator))
+                resume(journal, opened(yard))
             # The journal holds the mission itself.
             source.unlink()
-            journal.require_unchanged(opened(navigator))
+            journal.require_unchanged(opened(yard))
 
-    def test_entries_of_another_mission(self, navigator, whole, tmp_path):
+    def test_entries_of_another_mission(self, yard, whole, path):
         content = whole.content
-        path = tmp_path / "run.journal"
         other = mission(waypoint("A", 2.05, 2.05))
-        create_journal(path, header(navigator, other)).close()
+        create_journal(path, header(yard, other)).close()
         path.write_bytes(path.read_bytes() + content.split(b"\n", 1)[1])
         with open_journal(path) as journal, pytest.raises(ArgoError, match="does not fit"):
-            runner(navigator, journal, other).run()
+            runner(yard, journal, other).run()
 
 
-def test_a_full_disk(navigator, whole, tmp_path):
+@contextmanager
+def files_up_to(size):
+    """No file gets larger than so many bytes."""
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    try:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        signal.signal(signal.SIGXFSZ, ignored)
+
+
+def test_a_full_disk(yard, whole, path):
     """The run ends with a message, nothing written is lost, and it goes on when there is room."""
     reference = whole.record
-    path = tmp_path / "run.journal"
-    with create_journal(path, header(navigator)) as journal:
-        limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-        ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-        try:
-            resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, limits[1]))
-            with pytest.raises(ArgoError, match=r"can't be written any further") as caught:
-                runner(navigator, journal).run()
-            assert caught.value.remedies == (Remedy.RESUME,)
-        finally:
-            resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-            signal.signal(signal.SIGXFSZ, ignored)
+    with create_journal(path, header(yard)) as journal:
+        further = r"can't be written any further"
+        with files_up_to(20_000), pytest.raises(ArgoError, match=further) as caught:
+            runner(yard, journal).run()
+        assert caught.value.remedies == (Remedy.RESUME,)
     assert 19_000 < path.stat().st_size <= 20_000
     with open_journal(path) as journal:
         reached = journal.entries[-1].t
-    record, _ = resumed(navigator, path)
+    record, _ = resumed(yard, path)
     require_a_continuation(record, reference, reached)
 
 
-def test_one_that_is_there_is_replaced_on_demand_unless_it_is_in_use(navigator, tmp_path):
-    path = tmp_path / "run.journal"
-    with create_journal(path, header(navigator)) as journal:
+def test_one_that_is_there_is_replaced_on_demand_unless_it_is_in_use(yard, path, tmp_path):
+    with create_journal(path, header(yard)) as journal:
         before = path.read_bytes()
         with pytest.raises(Conflict, match="is there already"):
-            create_journal(path, header(navigator))
+            create_journal(path, header(yard))
         with pytest.raises(Conflict, match="is in use"):
-            create_journal(path, header(navigator), replace=True)
+            create_journal(path, header(yard), replace=True)
         assert path.read_bytes() == before
         assert journal.path == path
     path.write_text("old")
-    create_journal(path, header(navigator), replace=True).close()
+    create_journal(path, header(yard), replace=True).close()
     assert path.read_bytes() == before
     assert os.listdir(tmp_path) == ["run.journal"]
 
 
-def test_no_room_for_the_first_line(navigator, tmp_path):
-    path = tmp_path / "run.journal"
-    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    try:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (100, limits[1]))
-        with pytest.raises(ArgoError, match="can't be written: File too large"):
-            create_journal(path, header(navigator))
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-        signal.signal(signal.SIGXFSZ, ignored)
+def test_no_room_for_the_first_line(yard, path, tmp_path):
+    with files_up_to(100), pytest.raises(ArgoError, match="can't be written: File too large"):
+        create_journal(path, header(yard))
     assert os.listdir(tmp_path) == []

@@ -15,7 +15,6 @@ from argo_compiler.il import (
     Reaction,
     Response,
     Task,
-    Transition,
     WaitRule,
 )
 from argo_env.faults.reading import decode_faults
@@ -24,6 +23,7 @@ from argo_env.run.observer import Observer
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunConditions, RunSpec, logged
 from tests.conftest import examples
+from tests.yard import in_order
 
 SITE = open_site("umad")
 PAPER_FAULTS = (
@@ -79,15 +79,12 @@ def mission_of(chosen: random.Random) -> Mission:
                     more["reading_limit"] = chosen.choice([1.0, 30.0])
                 tasks.append((f"READ {k}", more))
     names = [name for name, _ in tasks]
-    made = [
-        Task(
-            name=name,
-            transitions=(Transition(target=names[k + 1]),) if k + 1 < len(names) else (),
-            group="Again" if k else "",
-            **more,
+    made = in_order(
+        *(
+            Task(name=name, group="Again" if k else "", **more)
+            for k, (name, more) in enumerate(tasks)
         )
-        for k, (name, more) in enumerate(tasks)
-    ]
+    )
     group = Group(name="Again", start=names[1], end=names[-1], max_repeat_count=2)
     reactions = [
         Reaction(event=EventKind.LOW_BATTERY, response=Response.RETURN),
@@ -95,7 +92,7 @@ def mission_of(chosen: random.Random) -> Mission:
         Reaction(event=EventKind.CONNECTION_LOST, response=Response.PAUSE),
     ]
     return Mission(
-        tasks=tuple(made),
+        tasks=made,
         groups=(group,),
         reactions=tuple(chosen.sample(reactions, chosen.randint(0, 3))),
         max_duration=chosen.choice([None, None, 120.0]),

@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import Cause, Occurred, Outcome, Resume
 from argo_compiler.il import Afterwards, EventKind, OnFailure, Reaction, Response
-from argo_env.faults.kinds import FaultFile
 from argo_env.faults.schedule import Schedule
 from argo_env.navigation import Blockage
 from argo_env.robot.pose import BodyPose
@@ -29,22 +28,20 @@ from argo_env.sensing.watch import Detection
 from tests.conftest import examples
 from tests.yard import (
     Watching,
+    cut,
+    cut_after,
     fast_rig,
+    faults_of,
     measure,
     mission,
     opened,
+    resumed,
     run_with,
     simulated,
     waypoint,
-    yard,
 )
 
 DOCK = Pose(x=1.05, y=1.05, z=0.02)
-
-
-@pytest.fixture(scope="module")
-def navigator():
-    return yard()
 
 
 class Scripted:
@@ -64,8 +61,8 @@ class Scripted:
         return tuple(due)
 
 
-def run(navigator, plan, *watches, values=None, events=(), announce=None):
-    rig = fast_rig(navigator, values)
+def run(yard, plan, *watches, values=None, events=(), announce=None):
+    rig = fast_rig(yard, values)
     rig = Rig(rig.world, rig.navigator, rig.drive, rig.sensor, watches)
     return run_with(plan, rig, events=logged(*events), observers=[Watching(announce=announce)])
 
@@ -79,9 +76,9 @@ def obstacle(x, y, half=0.15, kind=EventKind.POSITIVE_OBSTACLE):
 class TestLooking:
     @settings(max_examples=examples(30), deadline=None)
     @given(periods=st.lists(st.sampled_from([0.1, 0.2, 0.5, 1.0, 3.0]), min_size=1, max_size=5))
-    def test_each_watch_at_its_period(self, navigator, periods):
+    def test_each_watch_at_its_period(self, yard, periods):
         watches = [Scripted(period=p) for p in periods]
-        perception = Perception(watches, navigator.site, 0.1)
+        perception = Perception(watches, yard.site, 0.1)
         for step in range(1, 121):
             perception.look(step, round(0.1 * step, 6), BodyPose(0, 0, 0, 0))
         for watch in watches:
@@ -90,11 +87,11 @@ class TestLooking:
             for a, b in pairwise(times):
                 assert b - a == pytest.approx(watch.period)
 
-    def test_what_is_found_is_told_and_reported(self, navigator):
+    def test_what_is_found_is_told_and_reported(self, yard):
         leak = Detection(EventKind.GAS_LEAK, "gas, 300 ppm", (2.0, 2.0, 0.5), 0.9)
         told = []
         plan = mission(waypoint("A", 3.05, 2.05))
-        record = run(navigator, plan, Scripted((4.0, leak)), announce=told.append)
+        record = run(yard, plan, Scripted((4.0, leak)), announce=told.append)
         (anomaly,) = record.anomalies
         assert told == [anomaly]
         assert (anomaly.t, anomaly.kind, anomaly.detail) == (4.0, leak.kind, leak.detail)
@@ -103,9 +100,9 @@ class TestLooking:
         assert record.result.success
         assert [s.t for s in record.trace if "gas, 300 ppm" in s.cause] == [4.0]
 
-    def test_what_has_no_place_tells_from_where_it_was_noticed(self, navigator):
+    def test_what_has_no_place_tells_from_where_it_was_noticed(self, yard):
         leak = Detection(EventKind.GAS_LEAK, "gas, 300 ppm", noticed_from=(2.0, 2.0, 0.5))
-        record = run(navigator, mission(waypoint("A", 3.05, 2.05)), Scripted((4.0, leak)))
+        record = run(yard, mission(waypoint("A", 3.05, 2.05)), Scripted((4.0, leak)))
         (anomaly,) = record.anomalies
         assert (anomaly.place, anomaly.noticed_from, anomaly.floor) == (None, (2.0, 2.0, 0.5), 1)
         # Records of before know no `noticed_from`.
@@ -113,7 +110,7 @@ class TestLooking:
         del old["noticed_from"]
         assert Anomaly.model_validate(old).noticed_from is None
 
-    def test_a_reaction_answers_and_its_end_is_sensed_too(self, navigator):
+    def test_a_reaction_answers_and_its_end_is_sensed_too(self, yard):
         shelter = Reaction(
             event=EventKind.GAS_LEAK, response=Response.RETURN, until=EventKind.ALL_CLEAR,
             afterwards=Afterwards.RESUME,
@@ -124,15 +121,15 @@ class TestLooking:
         )
         plan = mission(waypoint("A", 5.05, 3.05), reactions=(shelter,), dock=DOCK)
         # Something that occurs later keeps the run from ending while it waits.
-        record = run(navigator, plan, watch, events=((60.0, Occurred(EventKind.HOT_SPOT)),))
+        record = run(yard, plan, watch, events=((60.0, Occurred(EventKind.HOT_SPOT)),))
         assert [(t.task, t.outcome) for t in record.tasks] == [
             ("A", "interrupted"), ("react to gas_leak", "done"), ("A", "done"),
         ]  # fmt: skip
         assert record.tasks[2].start == 40.0
         assert record.result.success
 
-    def test_an_abnormal_reading_is_among_what_was_found(self, navigator):
-        record = run(navigator, mission(measure(1)), values={1: 9.0})
+    def test_an_abnormal_reading_is_among_what_was_found(self, yard):
+        record = run(yard, mission(measure(1)), values={1: 9.0})
         (anomaly,) = record.anomalies
         assert anomaly.kind is EventKind.ABNORMAL_READING
         assert anomaly.detail == "gauge 1 shows 9 bar"
@@ -145,12 +142,12 @@ class TestObstacles:
     def nearest(self, record, x, y):
         return min(math.dist((s.x, s.y), (x, y)) for s in record.path)
 
-    def test_another_way_is_taken(self, navigator):
-        free = run(navigator, self.PLAN)
+    def test_another_way_is_taken(self, yard):
+        free = run(yard, self.PLAN)
         half_way = next(s for s in free.path if s.t >= 0.65 * free.result.duration)
         x, y = half_way.x, half_way.y
         assert self.nearest(free, x, y) < 0.1
-        record = run(navigator, self.PLAN, Scripted((3.0, obstacle(x, y))))
+        record = run(yard, self.PLAN, Scripted((3.0, obstacle(x, y))))
         assert record.result.success
         assert [t.outcome for t in record.tasks] == ["done"]
         assert self.nearest(record, x, y) > 0.29 + 0.15
@@ -158,7 +155,7 @@ class TestObstacles:
         for a, b in pairwise(record.path):
             assert math.dist((a.x, a.y), (b.x, b.y)) <= 0.4 * (b.t - a.t) + 0.08
 
-    def test_a_detour_leads_to_the_view_that_was_under_way(self, navigator):
+    def test_a_detour_leads_to_the_view_that_was_under_way(self, yard):
         looks = []
 
         class Turned:
@@ -181,25 +178,25 @@ class TestObstacles:
                 if math.dist((pose.x, pose.y), (looks[0].x, looks[0].y)) < 0.1:
                     return ()
                 self._left = [Pose(x=pose.x, y=pose.y, z=pose.z, yaw=pose.yaw)]
-                view = navigator.plan_to_view(self._left[0], 1, TURNS[1]).end
+                view = yard.plan_to_view(self._left[0], 1, TURNS[1]).end
                 return (obstacle((pose.x + view.x) / 2, (pose.y + view.y) / 2, 0.05),)
 
-        rig = fast_rig(navigator)
+        rig = fast_rig(yard)
         watch = OnTheWay(period=0.1)
         rig = replace(rig, sensor=Turned(), watches=(watch,))
         record = run_with(mission(measure(1)), rig)
         (found,), (reading,) = record.anomalies, record.readings
         assert record.result.success
         assert len(looks) == reading.views == 2
-        aware = navigator.avoiding([blockage(found)])
+        aware = yard.avoiding([blockage(found)])
         unturned, turned = (aware.plan_to_view(watch._left[0], 1, t).end for t in TURNS[:2])
         assert math.dist((looks[1].x, looks[1].y), (turned.x, turned.y)) < 0.01
         assert math.dist((unturned.x, unturned.y), (turned.x, turned.y)) > 0.1
 
-    def test_one_that_is_not_in_the_way_changes_nothing(self, navigator):
+    def test_one_that_is_not_in_the_way_changes_nothing(self, yard):
         aside = obstacle(1.05, 4.0)
-        record = run(navigator, self.PLAN, Scripted((3.0, aside)))
-        assert record.path == run(navigator, self.PLAN).path
+        record = run(yard, self.PLAN, Scripted((3.0, aside)))
+        assert record.path == run(yard, self.PLAN).path
         assert len(record.anomalies) == 1
 
     @pytest.mark.parametrize(
@@ -209,7 +206,7 @@ class TestObstacles:
             (OnFailure.RETURN, Outcome.RETURNED),
         ],
     )
-    def test_without_another_way_the_task_fails_with_the_reason(self, navigator, policy, outcome):
+    def test_without_another_way_the_task_fails_with_the_reason(self, yard, policy, outcome):
         rect = (3.4, 0.0, 3.6, 5.0)
         wall = ObstacleDetection(
             EventKind.NEGATIVE_OBSTACLE, "a trench", (3.5, 2.5, 0.02),
@@ -218,7 +215,7 @@ class TestObstacles:
         plan = mission(
             waypoint("A", 5.55, 2.55, on_failure=policy), waypoint("B", 1.55, 1.55), dock=DOCK
         )
-        record = run(navigator, plan, Scripted((1.0, wall)))
+        record = run(yard, plan, Scripted((1.0, wall)))
         first, *rest = record.tasks
         assert (first.task, first.outcome) == ("A", "failed")
         assert "a trench" in first.reason
@@ -226,12 +223,10 @@ class TestObstacles:
         assert record.result.outcome is outcome
         assert not record.result.success
 
-    def test_a_pause_comes_first_then_the_detour(self, navigator):
+    def test_a_pause_comes_first_then_the_detour(self, yard):
         pause = Reaction(event=EventKind.POSITIVE_OBSTACLE, response=Response.PAUSE)
         plan = mission(waypoint("A", 5.55, 2.55), reactions=(pause,))
-        record = run(
-            navigator, plan, Scripted((3.0, obstacle(3.3, 1.8))), events=((30.0, Resume()),)
-        )
+        record = run(yard, plan, Scripted((3.0, obstacle(3.3, 1.8))), events=((30.0, Resume()),))
         assert [(t.task, t.outcome) for t in record.tasks] == [("A", "interrupted"), ("A", "done")]
         assert self.nearest(record, 3.3, 1.8) > 0.44
         assert record.tasks[1].start == 30.0
@@ -241,57 +236,53 @@ def anomaly(kind, t, place=None, source="scripted"):
     return Anomaly(t=t, kind=kind, detail="", source=source, place=place)
 
 
-FAULTS = FaultFile.model_validate(
-    {
-        "faults": [
-            {"kind": "brick", "floor": 1, "place": [3.0, 2.0], "yaw": 0},
-            {"kind": "connection_loss", "at": 4, "until": 12},
-            {"kind": "abnormal_value", "checkpoint": 3, "value": 8.0, "at": 5},
-            {"kind": "low_battery", "charge": 0.202},
-            {"kind": "worn_battery", "capacity": 0.1},
-        ]
-    }
-).faults
+FAULTS = faults_of(
+    {"kind": "brick", "floor": 1, "place": [3.0, 2.0], "yaw": 0},
+    {"kind": "connection_loss", "at": 4, "until": 12},
+    {"kind": "abnormal_value", "checkpoint": 3, "value": 8.0, "at": 5},
+    {"kind": "low_battery", "charge": 0.202},
+    {"kind": "worn_battery", "capacity": 0.1},
+)
 
 
 @pytest.fixture(scope="module")
-def whole(navigator, tmp_path_factory):
+def whole(yard, tmp_path_factory):
     path = tmp_path_factory.mktemp("whole") / "run.journal"
     plan = mission(waypoint("A", 5.05, 2.55), measure(3), waypoint("B", 1.55, 1.55))
-    return path, simulated(plan, navigator, seed=4, faults=FAULTS, journal=path)
+    return path, simulated(plan, yard, seed=4, faults=FAULTS, journal=path)
 
 
 class TestResumed:
     """After a resume the watches are new, and find again what is there."""
 
-    def look(self, navigator, told, finding, now):
-        perception = Perception((Scripted((0.0, finding), period=0.1),), navigator.site, 0.1)
+    def look(self, yard, told, finding, now):
+        perception = Perception((Scripted((0.0, finding), period=0.1),), yard.site, 0.1)
         perception.remember([(a, BodyPose(0, 0, 0, 0)) for a in told], 100.0)
         return perception.look(round(now * 10), now, BodyPose(0, 0, 0, 0))
 
-    def test_not_told_twice(self, navigator):
+    def test_not_told_twice(self, yard):
         spot = Detection(EventKind.HOT_SPOT, "", (2.3, 2.2, 1.0))
         told = [anomaly(EventKind.HOT_SPOT, 90.0, (2.0, 2.0, 1.0))]
-        assert self.look(navigator, told, spot, 100.5) == ()
-        assert self.look(navigator, told, spot, 300.0) == ()
+        assert self.look(yard, told, spot, 100.5) == ()
+        assert self.look(yard, told, spot, 300.0) == ()
 
-    def test_other_things_are_told(self, navigator):
+    def test_other_things_are_told(self, yard):
         at, away = (2.0, 2.0, 1.0), (4.0, 2.0, 1.0)
         told = [anomaly(EventKind.HOT_SPOT, 90.0, at)]
         for kind, place in (
             (EventKind.HOT_SPOT, away), (EventKind.HOT_SPOT, None), (EventKind.GAS_LEAK, at)
         ):  # fmt: skip
-            assert len(self.look(navigator, told, Detection(kind, "", place), 100.5)) == 1
+            assert len(self.look(yard, told, Detection(kind, "", place), 100.5)) == 1
         told = [anomaly(EventKind.HOT_SPOT, 90.0, at, source="another watch")]
-        assert len(self.look(navigator, told, Detection(EventKind.HOT_SPOT, "", at), 100.5)) == 1
+        assert len(self.look(yard, told, Detection(EventKind.HOT_SPOT, "", at), 100.5)) == 1
 
-    def test_a_watch_remembers_only_what_it_has_told_itself(self, navigator):
+    def test_a_watch_remembers_only_what_it_has_told_itself(self, yard):
         class Remembering(Scripted):
             def remember(self, told, now):
                 self.told = [(each.kind, each.pose) for each in told], now
 
         watch = Remembering((0.0, Detection(EventKind.ALL_CLEAR, "", (2.0, 2.0, 1.0))), period=0.1)
-        perception = Perception((watch,), navigator.site, 0.1)
+        perception = Perception((watch,), yard.site, 0.1)
         pose = BodyPose(1, 2, 3, 0)
         own = anomaly(EventKind.ALL_CLEAR, 90.0, (2.0, 2.0, 1.0))
         other = anomaly(EventKind.GAS_LEAK, 95.0, source="another watch")
@@ -299,10 +290,10 @@ class TestResumed:
         assert watch.told == ([(EventKind.ALL_CLEAR, pose)], 100.0)
         assert len(perception.look(1001, 100.1, pose)) == 1
 
-    def test_obstacles_are_known_by_their_place(self, navigator):
+    def test_obstacles_are_known_by_their_place(self, yard):
         told = [anomaly(EventKind.POSITIVE_OBSTACLE, 90.0, (2.0, 2.0, 0.02))]
-        assert self.look(navigator, told, obstacle(2.3, 2.2), 900.0) == ()
-        assert len(self.look(navigator, told, obstacle(4.0, 2.0), 100.5)) == 1
+        assert self.look(yard, told, obstacle(2.3, 2.2), 900.0) == ()
+        assert len(self.look(yard, told, obstacle(4.0, 2.0), 100.5)) == 1
 
     def test_the_whole_run(self, whole):
         _, record = whole
@@ -314,18 +305,16 @@ class TestResumed:
         )  # fmt: skip
         assert record.result.success
 
-    def test_the_same_again(self, navigator, whole):
+    def test_the_same_again(self, yard, whole):
         _, record = whole
-        assert simulated(record.mission, navigator, seed=4, faults=FAULTS) == record
+        assert simulated(record.mission, yard, seed=4, faults=FAULTS) == record
 
     @pytest.mark.parametrize("share", [0.1, 0.3, 0.5, 0.8, 0.97])
-    def test_a_run_that_was_cut_short(self, navigator, whole, tmp_path, share):
+    def test_a_run_that_was_cut_short(self, yard, whole, tmp_path, share):
         path, record = whole
-        lines = path.read_bytes().splitlines(keepends=True)
-        cut = tmp_path / "cut.journal"
-        cut.write_bytes(b"".join(lines[: max(2, round(share * len(lines)))]))
-        with open_journal(cut) as journal:
-            again = resume(journal, opened(navigator))
+        part = tmp_path / "cut.journal"
+        cut(path, share, part)
+        again = resumed(part, yard)
         assert again.result.success
         assert [r.value for r in again.readings] == [r.value for r in record.readings]
         assert sorted(a.kind for a in again.anomalies) == sorted(a.kind for a in record.anomalies)
@@ -333,26 +322,24 @@ class TestResumed:
         assert again.contacts == ()
         assert again.path[-1].charge == pytest.approx(record.path[-1].charge, abs=0.01)
 
-    def test_further_events_are_given_on_resuming_and_kept(self, navigator, whole, tmp_path):
+    def test_further_events_are_given_on_resuming_and_kept(self, yard, whole, tmp_path):
         path, _ = whole
-        lines = path.read_bytes().splitlines(keepends=True)
-        cut = tmp_path / "cut.journal"
-        cut.write_bytes(b"".join(lines[: len(lines) // 3]))
+        part = tmp_path / "cut.journal"
+        cut(path, 1 / 3, part)
         events = logged((2.0, Occurred(EventKind.HOT_SPOT)), (40.0, Occurred(EventKind.ALL_CLEAR)))
-        with open_journal(cut) as journal:
+        with open_journal(part) as journal:
             began = journal.entries[-1].t
-            first = resume(journal, opened(navigator), events=events)
+            first = resume(journal, opened(yard), events=events)
         reported = {s.cause: s.t for s in first.trace if s.cause.startswith(Cause.REPORT)}
         hot = [s.t for s in first.trace if "hot spot" in s.cause]
         assert hot == [pytest.approx(began + 0.1)], reported
         assert 40.0 in [s.t for s in first.trace if "all clear" in s.cause]
         # The journal knows them: the same again from it, without giving them anew.
-        lines = cut.read_bytes().splitlines(keepends=True)
+        lines = part.read_bytes().splitlines(keepends=True)
         later = tmp_path / "later.journal"
         third = len(lines) // 3 + 2
         later.write_bytes(b"".join(lines[: third + 3]))
-        with open_journal(later) as journal:
-            second = resume(journal, opened(navigator))
+        second = resumed(later, yard)
         assert 40.0 in [s.t for s in second.trace if "all clear" in s.cause]
         assert [s.t for s in second.trace if "hot spot" in s.cause] == hot
 
@@ -369,24 +356,21 @@ class TestResumedWhileItWaits:
         until=EventKind.CONNECTION_RESTORED,
     )  # fmt: skip
 
-    def cut_where(self, navigator, path, reaction, faults, wanted):
+    def cut_where(self, yard, path, reaction, faults, wanted):
         """The record of the whole run, and of one that is cut at the wanted entry and resumed."""
-        faults = FaultFile.model_validate({"faults": faults}).faults
         plan = mission(waypoint("A", 5.05, 2.55), reactions=(reaction,), dock=DOCK)
-        whole = simulated(plan, navigator, drive="route", faults=faults, journal=path)
+        whole = simulated(plan, yard, drive="route", faults=faults_of(*faults), journal=path)
         assert whole.result.success
-        lines = path.read_bytes().splitlines(keepends=True)
         with open_journal(path) as journal:
             at = next(k for k, entry in enumerate(journal.entries) if wanted(entry))
-        path.write_bytes(b"".join(lines[: at + 2]))
-        with open_journal(path) as journal:
-            return whole, resume(journal, opened(navigator))
+        cut_after(path, at + 1)
+        return whole, resumed(path, yard)
 
     @pytest.mark.parametrize("charge", [0.3, 0.7, 0.98])
-    def test_charging(self, navigator, tmp_path, charge):
+    def test_charging(self, yard, tmp_path, charge):
         low = [{"kind": "low_battery", "charge": 0.202}, {"kind": "worn_battery", "capacity": 0.1}]
         whole, again = self.cut_where(
-            navigator, tmp_path / "run.journal", self.LOW, low,
+            yard, tmp_path / "run.journal", self.LOW, low,
             lambda e: e.charge > charge and e.t > 5,
         )  # fmt: skip
         assert again.result.success
@@ -395,82 +379,78 @@ class TestResumedWhileItWaits:
         assert again.result.duration == pytest.approx(whole.result.duration, abs=2.0)
 
     @pytest.mark.parametrize("cut", [5.0, 11.9, 12.1])
-    def test_the_connection_is_back_before_or_after(self, navigator, tmp_path, cut):
+    def test_the_connection_is_back_before_or_after(self, yard, tmp_path, cut):
         loss = [{"kind": "connection_loss", "at": 2, "until": 12}]
         whole, again = self.cut_where(
-            navigator, tmp_path / "run.journal", self.LOST, loss, lambda e: e.t >= cut
+            yard, tmp_path / "run.journal", self.LOST, loss, lambda e: e.t >= cut
         )
         kinds = [EventKind.CONNECTION_LOST, EventKind.CONNECTION_RESTORED]
         assert [a.kind for a in again.anomalies] == kinds
         assert again.result.success
         assert again.result.duration == pytest.approx(whole.result.duration, abs=2.0)
 
-    def test_lost_once_more_right_after(self, navigator, tmp_path):
+    def test_lost_once_more_right_after(self, yard, tmp_path):
         losses = [
             {"kind": "connection_loss", "at": 1, "until": 4},
             {"kind": "connection_loss", "at": 7, "until": 12},
         ]
         _, again = self.cut_where(
-            navigator, tmp_path / "run.journal", self.LOST, losses, lambda e: e.t >= 6
+            yard, tmp_path / "run.journal", self.LOST, losses, lambda e: e.t >= 6
         )
         kinds = [EventKind.CONNECTION_LOST, EventKind.CONNECTION_RESTORED]
         assert [a.kind for a in again.anomalies] == 2 * kinds
 
-    def test_a_stop_right_after_is_another_one(self, navigator, tmp_path):
+    def test_a_stop_right_after_is_another_one(self, yard, tmp_path):
         stops = [
             {"kind": "emergency_stop", "at": 1, "until": 9},
             {"kind": "emergency_stop", "at": 10.1, "until": 16},
         ]
         whole, again = self.cut_where(
-            navigator, tmp_path / "run.journal", self.LOST, stops, lambda e: e.t >= 10
+            yard, tmp_path / "run.journal", self.LOST, stops, lambda e: e.t >= 10
         )
         assert [a.t for a in again.anomalies] == [a.t for a in whole.anomalies] == [1.0, 10.1]
 
 
 class TestStandingStill:
-    def schedule(self, *data):
-        faults = FaultFile.model_validate({"faults": data}).faults
-        return faults
-
-    def test_a_robot_that_waits_is_given_time_for_what_faults_lead_to(self, navigator):
+    def test_a_robot_that_waits_is_given_time_for_what_faults_lead_to(self, yard):
         pause = Reaction(
             event=EventKind.CONNECTION_LOST, response=Response.PAUSE,
             until=EventKind.CONNECTION_RESTORED,
         )  # fmt: skip
         plan = mission(waypoint("A", 5.05, 2.55), reactions=(pause,))
-        faults = self.schedule({"kind": "connection_loss", "at": 2, "until": 200})
-        record = simulated(plan, navigator, faults=faults)
+        faults = faults_of({"kind": "connection_loss", "at": 2, "until": 200})
+        record = simulated(plan, yard, faults=faults)
         assert record.result.success
-        forever = self.schedule({"kind": "connection_loss", "at": 2})
-        record = simulated(plan, navigator, faults=forever)
+        forever = faults_of({"kind": "connection_loss", "at": 2})
+        record = simulated(plan, yard, faults=forever)
         assert not record.result.success
         assert "nothing more occurs" in record.result.verdict
         assert record.result.duration == pytest.approx(record.anomalies[0].t + SETTLING, abs=0.2)
 
-    def test_held_by_the_emergency_stop(self, navigator):
-        faults = self.schedule({"kind": "emergency_stop", "at": 3})
+    def test_held_by_the_emergency_stop(self, yard):
+        faults = faults_of({"kind": "emergency_stop", "at": 3})
         plan = mission(waypoint("A", 5.05, 2.55))
-        record = simulated(plan, navigator, faults=faults)
+        record = simulated(plan, yard, faults=faults)
         assert "held by its emergency stop" in record.result.verdict
         held = [s for s in record.path if s.t >= 3]
         assert len({(s.x, s.y) for s in held}) == 1
         assert math.dist((held[0].x, held[0].y), (record.path[0].x, record.path[0].y)) > 0.1
 
-    def test_an_empty_battery_ends_the_run(self, navigator):
-        faults = self.schedule(
+    def test_an_empty_battery_ends_the_run(self, yard):
+        faults = faults_of(
             {"kind": "low_battery", "charge": 0.01}, {"kind": "worn_battery", "capacity": 0.04}
         )
         plan = mission(waypoint("A", 5.05, 2.55), waypoint("B", 1.55, 1.55))
-        record = simulated(plan, navigator, faults=faults)
+        record = simulated(plan, yard, faults=faults)
         assert "the battery was empty" in record.result.verdict
         assert record.path[-1].charge == 0.0
         assert record.anomalies[0].kind is EventKind.LOW_BATTERY
         assert record.result.duration < 15
 
-    def test_a_drive_that_stops_fails_the_task(self, navigator):
-        faults = self.schedule({"kind": "drive_dysfunction", "at": 3, "speed": 0})
+    def test_a_drive_that_stops_fails_the_task(self, yard):
+        faults = faults_of({"kind": "drive_dysfunction", "at": 3, "speed": 0})
         plan = mission(waypoint("A", 5.05, 2.55))
-        record = simulated(plan, navigator, faults=faults)
+        record = simulated(plan, yard, faults=faults)
         assert [a.kind for a in record.anomalies] == [EventKind.DYSFUNCTION]
         assert "has not moved for 30 s" in record.tasks[0].reason
 

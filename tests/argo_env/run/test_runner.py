@@ -18,12 +18,10 @@ from argo_env.navigation.path import Motion
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import MotionKind
 from argo_env.run.drives_and_sensors import DRIVES
-from argo_env.run.journal import open_journal
 from argo_env.run.record import Anomaly, RunRecord
 from argo_env.run.rig import true_values
-from argo_env.run.session import resume
 from argo_env.run.simulation import SAMPLE_PERIOD
-from tests.yard import Watching, measure, opened, simulated
+from tests.yard import Watching, from_place, in_order, measure, resumed, simulated
 
 FRONT = Pose(x=8.05, y=-2.05, z=-0.03, yaw=0.0)
 
@@ -38,12 +36,7 @@ def waypoint(name, x, y, z=-0.03, degrees=0.0, **fields):
 
 
 def mission(*tasks, **fields):
-    """The tasks one after the other, where they have no transitions of their own."""
-    linked = [
-        a if a.transitions else a.model_copy(update={"transitions": (Transition(target=b.name),)})
-        for a, b in pairwise(tasks)
-    ]
-    return Mission(site="umad", tasks=(*linked, tasks[-1]), **fields)
+    return Mission(site="umad", tasks=in_order(*tasks), **fields)
 
 
 def names(record):
@@ -381,14 +374,7 @@ def test_any_order_of_checkpoints_succeeds(navigator, ids):
 @pytest.fixture(scope="module")
 def two_places():
     here, there = Pose(x=8.05, y=-2.05, z=-0.03), Pose(x=8.55, y=-2.05, z=-0.03)
-    return Mission(
-        tasks=(
-            Task(
-                name="START", action=Action.START, pose=here, transitions=(Transition(target="A"),)
-            ),
-            Task(name="A", action=Action.WAYPOINT, pose=there),
-        )
-    )
+    return from_place(here, Task(name="A", action=Action.WAYPOINT, pose=there))
 
 
 def test_record_says_what_it_was_made_with(two_places, navigator):
@@ -461,13 +447,7 @@ class KilledError(Exception):
 
 
 def test_goes_back_along_the_way_that_it_came(navigator, tmp_path):
-    start = Task(
-        name="START",
-        action=Action.START,
-        pose=navigator.site.docks[1],
-        transitions=(Transition(target="MEASURE"),),
-    )
-    plan = Mission(tasks=(start, Task(name="MEASURE", action=Action.MEASURE, object_id="15")))
+    plan = from_place(navigator.site.docks[1], measure(15))
     place = tmp_path / "run.journal"
 
     def die(news):
@@ -483,8 +463,7 @@ def test_goes_back_along_the_way_that_it_came(navigator, tmp_path):
             journal=place,
             observers=[Watching(announce=die)],
         )
-    with open_journal(place) as journal:
-        record = resume(journal, opened(navigator))
+    record = resumed(place, navigator)
     (found,) = record.anomalies
     assert record.resumed == (found.t,)
     assert record.result.success

@@ -32,7 +32,7 @@ from argo_env.faults.plant import GasLeakFault
 from argo_env.faults.robot import ConnectionLoss, DriveDysfunction, LowBattery, SensorDysfunction
 from argo_env.faults.walkway import Brick
 from argo_env.run.fitting_together import check_run
-from argo_env.run.journal import Header, create_journal, open_journal
+from argo_env.run.journal import open_journal
 from argo_env.run.machine import OpenMachine
 from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
@@ -41,7 +41,19 @@ from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec, logged, read_spec
 from argo_env.run.steering import ReachIn, StopRun
 from tests.conftest import examples
-from tests.yard import SITE, Entries, measure, mission, opened, simulation_of, waypoint, yard
+from tests.yard import (
+    SITE,
+    Entries,
+    cut,
+    journaled,
+    measure,
+    mission,
+    simulation_of,
+    steps,
+    take_over,
+    until,
+    waypoint,
+)
 
 PLAN = mission(measure(1), waypoint("A", 4.05, 2.05), measure(2), measure(3), end_area=1)
 SHORT = mission(waypoint("A", 2.05, 1.55), measure(1))
@@ -54,11 +66,6 @@ FAULTS = (
 EVENTS = logged((6.0, Pause()), (8.5, Resume()), (10.0, Occurred(EventKind.HOT_SPOT, "told")))
 
 
-@pytest.fixture(scope="module")
-def site():
-    return opened(yard())
-
-
 @pytest.fixture(params=["route", "kinematic", "tracked"])
 def drive(request):
     return request.param
@@ -66,16 +73,6 @@ def drive(request):
 
 def spec_of(drive, **fields):
     return RunSpec(mission=PLANS[drive], site="yard", drive=drive, seed=5, **fields)
-
-
-def steps(simulation, count):
-    for _ in range(count):
-        simulation.step()
-
-
-def until(simulation, reached):
-    while not reached():
-        simulation.step()
 
 
 def read(record):
@@ -272,9 +269,7 @@ class TestSteering:
         ],
     )
     def test_what_nobody_can_have_done(self, simulation, done, says):
-        steps(simulation, 40)
-        simulation.handle(TakeOver())
-        until(simulation, lambda: simulation.task is None)
+        take_over(simulation, after=40)
         with pytest.raises(Invalid, match=says):
             simulation.handle(GiveBack((done,)))
 
@@ -294,9 +289,7 @@ class TestSteering:
         spec = RunSpec(mission=mission(measure(1), measure(2)), site="yard", drive="route")
         with simulation_of(spec, site) as simulation:
             until(simulation, lambda: simulation.task.name == done[0]["task"])
-            steps(simulation, 5)
-            simulation.handle(TakeOver())
-            until(simulation, lambda: simulation.task is None)
+            take_over(simulation, after=5)
             simulation.handle(GiveBack(tuple(ByHand(**fields) for fields in done)))
             record = simulation.run()
         assert done[0]["task"] in {t.task for t in record.tasks if t.outcome == "interrupted"}
@@ -304,9 +297,7 @@ class TestSteering:
         assert record.result.verdict == f"the plan was carried out; {verdict}"
 
     def test_what_was_skipped_is_told_where_the_mission_is_no_success(self, simulation):
-        steps(simulation, 40)
-        simulation.handle(TakeOver())
-        until(simulation, lambda: simulation.task is None)
+        take_over(simulation, after=40)
         simulation.handle(GiveBack((ByHand(task="MEASURE 3", skipped=True),)))
         verdict = simulation.run().result.verdict
         assert verdict == (
@@ -454,24 +445,19 @@ def steered(site, tmp_path_factory):
     """The journal of a run that was told things from outside, and its record."""
     path = tmp_path_factory.mktemp("steered") / "run.journal"
     spec = spec_of("route")
-    with (
-        create_journal(path, Header.of(site, spec)) as journal,
-        simulation_of(spec, site, observers=[journal]) as simulation,
-    ):
+    with journaled(path, spec, site) as simulation:
         steps(simulation, 20)
         simulation.handle(ReachIn(AbnormalValue(checkpoint=3, value=8.0)))
-        steps(simulation, 10)
-        simulation.handle(TakeOver())
-        until(simulation, lambda: simulation.task is None)
+        take_over(simulation, after=10)
         steps(simulation, 30)
         simulation.handle(GiveBack((ByHand(task="MEASURE 1", value=3.0),)))
         record = simulation.run()
-        return path.read_bytes(), record, path
+        return record, path
 
 
 class TestJournalOfASteeredRun:
     def test_it_ends_as_it_has_ended(self, site, steered):
-        _, record, path = steered
+        record, path = steered
         with open_journal(path) as journal:
             assert journal.ended
             assert resume(journal, site) == record
@@ -479,10 +465,9 @@ class TestJournalOfASteeredRun:
 
     @pytest.mark.parametrize("share", [0.1, 0.2, 0.25, 0.3, 0.5, 0.8])
     def test_it_goes_on_from_anywhere(self, site, steered, tmp_path, share):
-        content, record, _ = steered
+        record, whole = steered
         path = tmp_path / "run.journal"
-        lines = content.splitlines(keepends=True)
-        path.write_bytes(b"".join(lines[: int(share * len(lines))]))
+        cut(whole, share, path)
         with open_journal(path) as journal:
             told = journal.entries
             events = () if any(e.events and e.events[0].kind == "give_back" for e in told) else (

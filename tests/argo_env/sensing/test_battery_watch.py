@@ -11,14 +11,9 @@ from argo_env.robot.pose import BodyPose
 from argo_env.run.spec import RunConditions
 from argo_env.sensing.onboard import BatteryWatch
 from tests.conftest import examples
-from tests.yard import measure, mission, simulated, yard
+from tests.yard import measure, mission, simulated
 
 HERE = BodyPose(0.0, 0.0, 0.0, 0.0)
-
-
-@pytest.fixture(scope="module")
-def navigator():
-    return yard()
 
 
 def reaction(level):
@@ -34,24 +29,24 @@ def reaction(level):
 
 @pytest.mark.rule("R11")
 @pytest.mark.parametrize(("level", "low"), [(None, False), (0.4, False), (0.6, True)])
-def test_a_mission_says_from_which_charge_on_the_battery_is_low(navigator, level, low):
+def test_a_mission_says_from_which_charge_on_the_battery_is_low(yard, level, low):
     plan = mission(measure(1), reactions=(reaction(level),))
-    record = simulated(plan, navigator, faults=(LowBattery(charge=0.5),))
+    record = simulated(plan, yard, faults=(LowBattery(charge=0.5),))
     assert (EventKind.LOW_BATTERY in {a.kind for a in record.anomalies}) == low
 
 
 @pytest.mark.parametrize(("fault", "left"), [(0.5, 0.3), (0.2, 0.2)])
-def test_a_low_battery_is_never_a_fuller_one(navigator, fault, left):
+def test_a_low_battery_is_never_a_fuller_one(yard, fault, left):
     spec = RunConditions(charge=0.3)
     record = simulated(
-        mission(measure(1)), navigator, faults=(LowBattery(charge=fault),), conditions=spec
+        mission(measure(1)), yard, faults=(LowBattery(charge=fault),), conditions=spec
     )
     assert record.path[0].charge == pytest.approx(left, abs=0.01)
 
 
 @pytest.mark.rule("R11")
-def test_it_is_low_once_and_again_when_it_was_charged(navigator):
-    battery = Battery(navigator.robot)
+def test_it_is_low_once_and_again_when_it_was_charged(yard):
+    battery = Battery(yard.robot)
     watch = BatteryWatch(battery, 0.3)
     told = []
     for charge in (0.35, 0.25, 0.2, 0.35, 0.25, 1.0, 0.5, 0.25):
@@ -70,8 +65,8 @@ SHARES = st.floats(0.0, 1.0)
     charges=st.lists(SHARES, min_size=1, max_size=6),
     watts=st.floats(-600.0, 400.0),
 )
-def test_who_need_not_look_would_have_seen_nothing(navigator, level, was_low, charges, watts):
-    battery = Battery(navigator.robot)
+def test_who_need_not_look_would_have_seen_nothing(yard, level, was_low, charges, watts):
+    battery = Battery(yard.robot)
     watch, twin = BatteryWatch(battery, level), BatteryWatch(battery, level)
     if was_low:
         battery.charge = 0.0

@@ -9,42 +9,31 @@ from argo_compiler.hfsm import Pause, Resume
 from argo_compiler.il import EventKind
 from argo_env.drives.powertrain import Powertrain
 from argo_env.drives.timed_drive import RouteDrive
-from argo_env.faults.kinds import FaultFile
 from argo_env.robot.pose import BodyPose
 from argo_env.run.journal import open_journal
-from argo_env.run.session import resume
 from argo_env.run.spec import logged
 from argo_env.sensing.onboard import WINDOW, DriveWatch
 from tests.conftest import examples
-from tests.yard import mission, opened, simulated, waypoint, yard
+from tests.yard import cut_after, faults_of, mission, resumed, simulated, waypoint
 
 STEP = 0.1  # s
 START = Pose(x=1.05, y=1.05, z=0.02)
-
-
-@pytest.fixture(scope="module")
-def ground():
-    return yard()
 
 
 def stop(at, until):
     return {"kind": "emergency_stop", "at": at, "until": until}
 
 
-def faults(*data):
-    return FaultFile.model_validate({"faults": data}).faults
-
-
-def drive_along(ground, *goals, pressed=(), share=1.0):
+def drive_along(yard, *goals, pressed=(), share=1.0):
     """When a dysfunction is told (s) and how long it took (s), on the way to the goals one after
     the other, with the emergency stop pressed between those times (s)."""
-    drive = Powertrain(RouteDrive(ground.robot))
-    watch = DriveWatch(drive, ground.robot)
+    drive = Powertrain(RouteDrive(yard.robot))
+    watch = DriveWatch(drive, yard.robot)
     drive.place(BodyPose(START.x, START.y, START.z, START.yaw))
     drive.share = share
     told, step, here = [], 0, START
     for goal in goals:
-        path = ground.plan(here, goal)
+        path = yard.plan(here, goal)
         here = path.end
         drive.begin(path, None)
         while drive.way is not None and step < 6000:
@@ -65,15 +54,15 @@ FAR, NEAR = Pose(x=6.05, y=4.05, z=0.02), Pose(x=5.05, y=1.05, z=0.02)
         st.tuples(st.floats(0, 60), st.sampled_from([0.1, 0.4, 0.9, 1.5, 9.0, 40.0])), max_size=9
     )
 )
-def test_whoever_stops_the_robot_however_often_its_drive_is_well(ground, presses):
+def test_whoever_stops_the_robot_however_often_its_drive_is_well(yard, presses):
     pressed = [(at, at + seconds) for at, seconds in presses]
-    told, _ = drive_along(ground, FAR, START, NEAR, pressed=pressed)
+    told, _ = drive_along(yard, FAR, START, NEAR, pressed=pressed)
     assert told == []
 
 
 @pytest.mark.parametrize("pressed", [(), [(5.0, 15.0)], [(0.0, 30.0), (33.0, 33.5)]])
-def test_a_slow_drive_is_told_once_a_window_after_its_release(ground, pressed):
-    told, took = drive_along(ground, FAR, START, pressed=pressed, share=0.4)
+def test_a_slow_drive_is_told_once_a_window_after_its_release(yard, pressed):
+    told, took = drive_along(yard, FAR, START, pressed=pressed, share=0.4)
     free = max((end for _, end in pressed), default=0.0)
     assert len(told) == 1
     assert told[0] <= free + WINDOW + 2.0 < took
@@ -81,32 +70,30 @@ def test_a_slow_drive_is_told_once_a_window_after_its_release(ground, pressed):
 
 def test_released_again_the_robot_is_not_looked_for_where_its_way_began(shipped, navigator):
     plan = shipped("mission_1.txt", start_area=1, end_area=2).mission
-    record = simulated(plan, navigator, drive="route", faults=faults(stop(60, 120)))
+    record = simulated(plan, navigator, drive="route", faults=faults_of(stop(60, 120)))
     assert [a.kind for a in record.anomalies] == [EventKind.EMERGENCY_STOP]
     assert record.result.success
 
 
 @pytest.mark.parametrize("until", [10.0, 29.0, 30.0, 31.0])
-def test_resumed_while_it_is_held_or_just_released(ground, tmp_path, until):
+def test_resumed_while_it_is_held_or_just_released(yard, tmp_path, until):
     path = tmp_path / "run.journal"
     plan = mission(waypoint("A", 6.05, 4.05), waypoint("B", 1.55, 1.05), waypoint("C", 6.05, 4.05))
-    simulated(plan, ground, drive="route", faults=faults(stop(6, 30)), journal=path)
-    lines = path.read_bytes().splitlines(keepends=True)
+    simulated(plan, yard, drive="route", faults=faults_of(stop(6, 30)), journal=path)
     with open_journal(path) as journal:
         kept = sum(entry.t <= until for entry in journal.entries)
-    path.write_bytes(b"".join(lines[: 1 + kept]))
-    with open_journal(path) as journal:
-        record = resume(journal, opened(ground))
+    cut_after(path, kept)
+    record = resumed(path, yard)
     assert record.resumed
     assert [a.kind for a in record.anomalies] == [EventKind.EMERGENCY_STOP]
     assert record.result.success
     assert record.result.duration > 30 + WINDOW + 2
 
 
-def test_the_shift_to_where_a_way_begins_is_a_part_of_it(ground):
+def test_the_shift_to_where_a_way_begins_is_a_part_of_it(yard):
     # At a snail's pace a robot that was stopped beside the lattice takes seconds for it.
     plan = mission(waypoint("A", 2.05, 2.55, velocity=0.02))
     events = logged((56.8, Pause()), (61.8, Resume()))
-    record = simulated(plan, ground, drive="route", events=events)
+    record = simulated(plan, yard, drive="route", events=events)
     assert [run.outcome for run in record.tasks] == ["interrupted", "done"]
     assert record.anomalies == ()

@@ -179,10 +179,7 @@ def test_sizes_that_no_site_has_are_refused_with_their_place(tmp_path, where, va
     """Before solids are made of them by the million."""
     text = (resources.scenarios() / "darmstadt" / "site.yaml").read_text("utf-8")
     whole = yaml.safe_load(text)
-    node = whole
-    for step in where[:-1]:
-        node = node[step]
-    node[where[-1]] = value
+    change(whole, where, value)
     message = refusal(written(tmp_path, whole))
     assert says in message
     assert re.search(r"site.yaml:\d+:\d+: error", message)

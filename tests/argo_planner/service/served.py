@@ -1,5 +1,7 @@
 """A service under test: a real server on a socket of its own, in a thread of this process."""
 
+import asyncio
+import json
 import socket
 import threading
 from collections.abc import Callable, Iterator
@@ -13,6 +15,7 @@ import uvicorn
 from websockets.sync.client import ClientConnection, connect
 
 from argo_env.planning.opening import OpenedSite
+from argo_planner.service.rooms.mailbox import Mailbox
 from argo_planner.service.web.access import AccessRole, AccessToken, TokenBook
 from argo_planner.service.web.app import make_app
 from argo_planner.service.web.connections import server_options
@@ -69,9 +72,32 @@ class Served:
         **said: Any,
     ) -> httpx.Response:
         body = {"kind": "edit", "id": f"k{next(_IDS)}"} | ({"edits": edits} if edits else {}) | said
-        headers = {"if-match": revision if isinstance(revision, str) else f'"{revision}"'}
         used = client or self.client
-        return used.post(f"/api/missions/{id}/commands", json=body, headers=headers)
+        return used.post(f"/api/missions/{id}/commands", json=body, headers=_if_match(revision))
+
+    def imported(self, script: str, **areas: int) -> str:
+        """Import a script; return the id of its mission."""
+        params = {"filename": "m.txt"} | areas
+        made = self.client.post("/api/imports", params=params, content=script)
+        assert made.status_code == 201, made.text
+        id: str = made.json()["id"]
+        return id
+
+    def run(
+        self, id: str, revision: int | str = "*", client: httpx.Client | None = None, **order: Any
+    ) -> httpx.Response:
+        """Ask for a run of a mission."""
+        used = client or self.client
+        return used.post(f"/api/missions/{id}/runs", json=order, headers=_if_match(revision))
+
+    def put_obstacles(self, *obstacles: Any, revision: int | str = "*") -> httpx.Response:
+        """Ask for obstacles instead of those that there are."""
+        body = {"obstacles": obstacles}
+        return self.client.put("/api/world/obstacles", json=body, headers=_if_match(revision))
+
+
+def _if_match(revision: int | str) -> dict[str, str]:
+    return {"if-match": revision if isinstance(revision, str) else f'"{revision}"'}
 
 
 @contextmanager
@@ -112,3 +138,15 @@ def raw(address: str, content: bytes, most: int = 1_000_000) -> bytes:
             while len(answer) < most and (part := connection.recv(65_536)):
                 answer += part
         return answer
+
+
+async def taken(mailbox: Mailbox, kind: str) -> list[dict[str, Any]]:
+    """All messages of a kind that wait."""
+    found = []
+    while True:
+        try:
+            message = json.loads(await asyncio.wait_for(mailbox.take(), 0.05))
+        except TimeoutError:
+            return found
+        if message["kind"] == kind:
+            found.append(message)

@@ -193,9 +193,7 @@ def test_obstacles_stand_in_the_worlds(tmp_path: Path, site: OpenedSite) -> None
             "pose": start | {"x": start["x"] + 2.0},
             "size": [0.5, 6.0, 1.0],
         }
-        put = service.client.put(
-            "/api/world/obstacles", json={"obstacles": [crate]}, headers={"if-match": "*"}
-        )
+        put = service.put_obstacles(crate)
         assert put.status_code == 200, put.text
         job = over(service, begin(service, id, worlds=2))
         assert job["standing"]["times"] != free["times"] or job["standing"]["failing"]

@@ -4,18 +4,18 @@ mission would have done."""
 import random
 import time
 from collections import Counter
-from itertools import pairwise
 
 import pytest
 
 from argo_compiler.hfsm import Executor, lower
-from argo_compiler.il import Action, Group, Mission, Task, Transition
+from argo_compiler.il import Action, Group, Mission, Task
 from argo_env.planning.opening import OpenedSite
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
 from tests.argo_planner.service.served import Served
-from tests.argo_planner.service.test_runs import ask, state, wait
+from tests.argo_planner.service.test_runs import ask, settled, state, wait
 from tests.conftest import examples
+from tests.yard import from_place
 
 
 def random_mission(rng: random.Random, site: OpenedSite) -> Mission:
@@ -24,21 +24,14 @@ def random_mission(rng: random.Random, site: OpenedSite) -> Mission:
     numbers = [c.id for c in site.site.checkpoints if c.floor == floor]
     chosen = rng.sample(numbers, min(len(numbers), rng.randint(2, 4)))
     dock = site.site.docks[min(site.site.docks)]
-    start = Task(name="START", action=Action.START, pose=dock)
-    tasks = [start]
-    for number in chosen:
-        tasks.append(Task(name=f"M{number}", action=Action.MEASURE, object_id=str(number)))
-    linked = [
-        one.model_copy(update={"transitions": (Transition(target=after.name),)})
-        for one, after in pairwise(tasks)
-    ]
+    tasks = [Task(name=f"M{id}", action=Action.MEASURE, object_id=str(id)) for id in chosen]
     first = rng.randrange(len(chosen))
     last = rng.randrange(first, len(chosen))
     group = Group(
         name="round", start=f"M{chosen[first]}", end=f"M{chosen[last]}", max_repeat_count=2
     )
     groups = (group,) if rng.random() < 0.5 else ()
-    return Mission(tasks=(*linked, tasks[-1]), groups=groups)
+    return from_place(dock, *tasks, groups=groups)
 
 
 def visits(mission: Mission, site: OpenedSite) -> Counter[str]:
@@ -55,11 +48,7 @@ def play(service: Served, site: OpenedSite, seed: int) -> str:
     mission = random_mission(rng, site)
     expected = visits(mission, site)
     id = service.create(f"Run {seed}", mission.model_dump(mode="json"))
-    begun = service.client.post(
-        f"/api/missions/{id}/runs",
-        json={"drive": "route", "speed": 60.0},
-        headers={"if-match": "*"},
-    )
+    begun = service.run(id, drive="route", speed=60.0)
     assert begun.status_code == 201, begun.text
     run = begun.json()["id"]
     until = rng.uniform(0.0, 60.0)
@@ -81,12 +70,7 @@ def play(service: Served, site: OpenedSite, seed: int) -> str:
             asked = service.client.post(
                 f"/api/runs/{run}/plan", json={"id": "edited"}, headers={"if-match": '"2"'}
             )
-            assert asked.status_code == 202, asked.text
-            while (found := service.client.get(asked.headers["location"]).json())["progress"] in (
-                "accepted",
-                "under way",
-            ):
-                time.sleep(0.02)
+            found = settled(service, asked)
             if found["progress"] == "refused":
                 assert "nothing" in found["reason"]  # is left that could go on
                 assert ask(service, run, "give_back")["progress"] == "confirmed"

@@ -75,9 +75,8 @@ def test_a_script_becomes_a_mission_and_is_read_back(service: Served) -> None:
     "format", ["json", "script", "scxml", "dot", "mermaid", "btcpp", "flexbe", "isar", "ros1"]
 )
 def test_a_mission_is_exported(service: Served, format: str) -> None:
-    client = service.client
-    made = client.post("/api/imports", params={"filename": "f.txt", "end_area": 2}, content=SCRIPT)
-    answer = client.get(f"{made.headers['location']}/export/{format}")
+    id = service.imported(SCRIPT, end_area=2)
+    answer = service.client.get(f"/api/missions/{id}/export/{format}")
     if answer.status_code == 404:
         assert "there are" in answer.text or "choose from" in answer.text
         return
@@ -198,15 +197,13 @@ def test_who_may_do_what(service: Served) -> None:
 
 
 def test_the_analysis_follows(service: Served) -> None:
-    made = service.client.post(
-        "/api/imports", params={"filename": "first.txt", "end_area": 2}, content=SCRIPT
-    )
-    with service.follow(made.json()["id"]) as socket:
+    id = service.imported(SCRIPT, end_area=2)
+    with service.follow(id) as socket:
         for message in socket:
             told = json.loads(message)
             if told["kind"] == "analysis":
                 break
     assert told["analysis"]["revision"] == 1
     assert told["analysis"]["analysis"]["duration"]["least"]["value"] > 0
-    read = service.client.get(f"{made.headers['location']}/analysis").json()
+    read = service.client.get(f"/api/missions/{id}/analysis").json()
     assert read == told["analysis"]

@@ -11,19 +11,19 @@ from argo_compiler.base.errors import Conflict, NotFound, Unavailable
 from argo_planner.service.runs import requests as asked
 from argo_planner.service.runs.host import RunHost
 from argo_planner.service.runs.state import RunMode, RunStatus
+from tests.argo_planner.service.served import taken
 from tests.argo_planner.service.test_run_host import (
     begun,
     done,
     ended,
+    hosted,
     order,
-    play,
     reported,
     send_signal,
-    told,
     until,
 )
 
-pytestmark = pytest.mark.long
+pytestmark = [pytest.mark.long, pytest.mark.anyio]
 
 
 async def interrupted(host: RunHost) -> None:
@@ -39,8 +39,8 @@ def damage(folder: Path, run: str) -> None:
     path.write_bytes(content)
 
 
-def test_a_hung_process_delays_nobody(tmp_path, site) -> None:
-    async def script(host: RunHost) -> None:
+async def test_a_hung_process_delays_nobody(tmp_path, site) -> None:
+    async with hosted(tmp_path) as host:
         run = await begun(host, site, speed=1.0, after=0.0)
         send_signal(signal.SIGSTOP)
         taken: list[str] = []
@@ -63,17 +63,17 @@ def test_a_hung_process_delays_nobody(tmp_path, site) -> None:
         assert {host.request(run, id).progress for id in taken} == {"confirmed"}
         assert await done(host, asked.PauseRun(id="p")) == "confirmed"
 
-    play(tmp_path, script)
 
-
-def test_requests_are_known_after_the_service_was_killed(tmp_path, site) -> None:
-    async def asks(host: RunHost) -> None:
+async def test_requests_are_known_after_the_service_was_killed(tmp_path, site) -> None:
+    async with hosted(tmp_path) as host:
         run = await begun(host, site)
         assert await done(host, asked.PauseRun(id="p")) == "confirmed"
         send_signal(signal.SIGSTOP)
         assert (await host.ask(run, asked.TakeRobot(id="t"), "ann")).progress == "accepted"
-
-    async def asks_again(host: RunHost) -> None:
+    [file] = tmp_path.glob("*/requests")
+    with file.open("ab") as opened:
+        opened.write(b"00000000 {torn")
+    async with hosted(tmp_path) as host:
         run = host.state.id
         known = await host.ask(run, asked.PauseRun(id="p"), "ann")
         assert known.progress == "confirmed"
@@ -91,39 +91,26 @@ def test_requests_are_known_after_the_service_was_killed(tmp_path, site) -> None
         ]
         assert (await host.ask(run, asked.GoOnWithRun(id="g"), "ann")).progress == "confirmed"
         assert host.state.mode is RunMode.PAUSED, "the same request goes on once"
-
-    play(tmp_path, asks)
-    [file] = tmp_path.glob("*/requests")
-    with file.open("ab") as opened:
-        opened.write(b"00000000 {torn")
-    play(tmp_path, asks_again)
-    play(tmp_path, asks_nothing_twice)
+    async with hosted(tmp_path) as host:
+        for id, request in (("p", asked.PauseRun(id="p")), ("g", asked.GoOnWithRun(id="g"))):
+            assert (await host.ask(host.state.id, request, "ann")).progress == "confirmed", id
+        assert host.state.status is RunStatus.INTERRUPTED
 
 
-async def asks_nothing_twice(host: RunHost) -> None:
-    for id, request in (("p", asked.PauseRun(id="p")), ("g", asked.GoOnWithRun(id="g"))):
-        assert (await host.ask(host.state.id, request, "ann")).progress == "confirmed", id
-    assert host.state.status is RunStatus.INTERRUPTED
-
-
-def test_a_stop_that_was_kept_is_done_after_a_restart(tmp_path, site) -> None:
-    async def asks(host: RunHost) -> None:
+async def test_a_stop_that_was_kept_is_done_after_a_restart(tmp_path, site) -> None:
+    async with hosted(tmp_path) as host:
         run = await begun(host, site)
         send_signal(signal.SIGSTOP)
         assert (await host.ask(run, asked.EndRun(id="s"), "ann")).progress == "accepted"
-
-    async def looks(host: RunHost) -> None:
+    async with hosted(tmp_path, "go-on") as host:
         await until(host, ended(host))
         await until(host, lambda: host.request(host.state.id, "s").over)
         assert host.request(host.state.id, "s").progress == "confirmed"
         assert "stopped by a person" in (await reported(host)).result.verdict
 
-    play(tmp_path, asks)
-    play(tmp_path, looks, "go-on")
 
-
-def test_an_interrupted_run_goes_on_or_stops_and_nothing_else(tmp_path, site) -> None:
-    async def script(host: RunHost) -> None:
+async def test_an_interrupted_run_goes_on_or_stops_and_nothing_else(tmp_path, site) -> None:
+    async with hosted(tmp_path) as host:
         run = await begun(host, site)
         await interrupted(host)
         for request in (asked.PauseRun(id="1"), asked.SkipTask(id="2", task="MEASURE 1")):
@@ -135,15 +122,15 @@ def test_an_interrupted_run_goes_on_or_stops_and_nothing_else(tmp_path, site) ->
         await until(host, lambda: host.request(run, "s").over)
         assert host.state.status is RunStatus.ENDED
         assert host.state.headline is not None
-        steps = [m["request"]["progress"] for m in await told(follower, "request")]
+        steps = [m["request"]["progress"] for m in await taken(follower, "request")]
         assert steps == ["accepted", "under way", "confirmed"]
         assert "stopped by a person" in (await reported(host)).result.verdict
 
-    play(tmp_path, script)
 
-
-def test_a_damaged_journal_keeps_a_run_from_going_on_and_not_from_ending(tmp_path, site) -> None:
-    async def script(host: RunHost) -> None:
+async def test_a_damaged_journal_keeps_a_run_from_going_on_and_not_from_ending(
+    tmp_path, site
+) -> None:
+    async with hosted(tmp_path) as host:
         run = await begun(host, site)
         await interrupted(host)
         damage(tmp_path, run)
@@ -158,14 +145,12 @@ def test_a_damaged_journal_keeps_a_run_from_going_on_and_not_from_ending(tmp_pat
         await host.start(order(site), "bob")
         await until(host, ended(host))
 
-    play(tmp_path, script)
 
-
-def test_a_process_that_can_not_begin(tmp_path, site, monkeypatch) -> None:
+async def test_a_process_that_can_not_begin(tmp_path, site, monkeypatch) -> None:
     def refuse(_: BaseProcess) -> None:
         raise OSError(11, "Resource temporarily unavailable")
 
-    async def script(host: RunHost) -> None:
+    async with hosted(tmp_path) as host:
         await begun(host, site)
         await interrupted(host)
         with monkeypatch.context() as patched:
@@ -181,14 +166,14 @@ def test_a_process_that_can_not_begin(tmp_path, site, monkeypatch) -> None:
         await until(host, ended(host))
         assert host.state.headline is not None
 
-    play(tmp_path, script)
 
-
-def test_what_was_skipped_is_known_after_the_process_and_the_service_died(tmp_path, site) -> None:
+async def test_what_was_skipped_is_known_after_the_process_and_the_service_died(
+    tmp_path, site
+) -> None:
     measures = [t for t in order(site).mission.tasks if t.action == "MEASURE"]
     first, second = measures[0], measures[1]
 
-    async def skips(host: RunHost) -> None:
+    async with hosted(tmp_path) as host:
         await begun(host, site)
         assert await done(host, asked.TakeRobot(id="t")) == "confirmed"
         assert await done(host, asked.SkipTask(id="1", task=first.name)) == "confirmed"
@@ -196,8 +181,7 @@ def test_what_was_skipped_is_known_after_the_process_and_the_service_died(tmp_pa
         await interrupted(host)
         assert await done(host, asked.GoOnWithRun(id="g")) == "confirmed"
         assert host.state.skipped == (first.name, second.name)
-
-    async def gives_back(host: RunHost) -> None:
+    async with hosted(tmp_path) as host:
         assert await done(host, asked.GoOnWithRun(id="h")) == "confirmed"
         assert host.state.skipped == (first.name, second.name)
         assert host.state.mode is RunMode.SUPERVISED
@@ -215,30 +199,23 @@ def test_what_was_skipped_is_known_after_the_process_and_the_service_died(tmp_pa
         assert made[first.name] == (0, 1)
         assert made[second.name] == (1, 0), "it is another task, under the same name"
 
-    play(tmp_path, skips)
-    play(tmp_path, gives_back)
 
-
-def test_a_run_that_was_killed_before_its_report_says_so(tmp_path, site) -> None:
-    async def runs(host: RunHost) -> None:
+async def test_a_run_that_was_killed_before_its_report_says_so(tmp_path, site) -> None:
+    async with hosted(tmp_path) as host:
         run = await begun(host, site)
         with pytest.raises(NotFound, match="it is running"):
             await host.report(run, "report.html")
         assert await done(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
         await until(host, ended(host))
         await reported(host)
-
-    async def looks(host: RunHost) -> None:
-        assert host.state.status is RunStatus.ENDED
-        assert (await host.history(host.state.id, 0, 5)).count == host.state.entries > 0
-        with pytest.raises(NotFound, match=r"argo resume .*run-0001\.journal"):
-            await host.report(host.state.id, "report.html")
-
-    play(tmp_path, runs)
     [kept] = tmp_path.glob("*/run.json")
     as_killed = json.loads(kept.read_text())
     as_killed["state"]["status"] = "running"
     kept.write_text(json.dumps(as_killed))
     (kept.parent / "report.html").unlink()
-    play(tmp_path, looks)
-    play(tmp_path, looks)
+    for _ in range(2):
+        async with hosted(tmp_path) as host:
+            assert host.state.status is RunStatus.ENDED
+            assert (await host.history(host.state.id, 0, 5)).count == host.state.entries > 0
+            with pytest.raises(NotFound, match=r"argo resume .*run-0001\.journal"):
+                await host.report(host.state.id, "report.html")

@@ -19,11 +19,7 @@ SCRIPT = (
 
 
 def imported(service: Served) -> str:
-    made = service.client.post(
-        "/api/imports", params={"filename": "m.txt", "start_area": 1}, content=SCRIPT
-    )
-    assert made.status_code == 201, made.text
-    return made.json()["id"]
+    return service.imported(SCRIPT, start_area=1)
 
 
 def begin(service: Served, id: str, time_limit: float = 5) -> str:

@@ -27,9 +27,7 @@ def test_a_suggested_order_is_looked_at(service: Served) -> None:
 
 def test_notes_of_an_import_stay_until_the_mission_is_gone_for_good(service: Served) -> None:
     client = service.client
-    params = {"filename": "m.txt", "start_area": 1}
-    script = NEAR.replace("Check", "Chek")
-    id = client.post("/api/imports", params=params, content=script).json()["id"]
+    id = service.imported(NEAR.replace("Check", "Chek"), start_area=1)
     notes = client.get(f"/api/missions/{id}/notes").json()
     assert notes["revision"] == 1
     assert notes["notes"]
@@ -53,8 +51,7 @@ def test_notes_of_an_import_stay_until_the_mission_is_gone_for_good(service: Ser
 @pytest.mark.long
 def test_a_reading_of_the_camera_has_its_picture(service: Served) -> None:
     pytest.importorskip("cv2")
-    params = {"filename": "m.txt", "start_area": 1, "end_area": 1}
-    id = service.client.post("/api/imports", params=params, content=NEAR).json()["id"]
+    id = service.imported(NEAR, start_area=1, end_area=1)
     run = start(service, id, drive="kinematic", sensor="camera", speed=None)["id"]
     (reading,) = wait(service, run, status="ended")["readings"]
     at = f"/api/runs/{run}/pictures/{reading['checkpoint']}"

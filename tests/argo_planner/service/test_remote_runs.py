@@ -19,17 +19,9 @@ ROOT = Path(__file__).parents[3]
 FAKE = "tests.argo_planner.service.fake_robot"
 
 
-def imported(service: Served) -> str:
-    made = service.client.post(
-        "/api/imports", params={"filename": "m.txt", "start_area": 1}, content=SCRIPT
-    )
-    return made.json()["id"]
-
-
-def begin(service: Served, id: str) -> str:
-    begun = service.client.post(
-        f"/api/missions/{id}/runs", json={"drive": "remote"}, headers={"if-match": "*"}
-    )
+def begin(service: Served) -> str:
+    """Begins a run of a mission of its own."""
+    begun = service.run(service.imported(SCRIPT, start_area=1), drive="remote")
     assert begun.status_code == 201, begun.text
     return begun.json()["id"]
 
@@ -50,8 +42,7 @@ def a_robot(service: Served) -> Iterator[subprocess.Popen[bytes]]:
 
 def test_a_robot_somewhere_else_carries_a_mission_out(service: Served) -> None:
     with a_robot(service) as robot:
-        id = imported(service)
-        run = begin(service, id)
+        run = begin(service)
         wait(service, run, moving=True)
         assert ask(service, run, "take_over")["progress"] == "confirmed"
         assert not state(service, run)["moving"]
@@ -59,7 +50,7 @@ def test_a_robot_somewhere_else_carries_a_mission_out(service: Served) -> None:
         assert ask(service, run, "give_back")["progress"] == "confirmed"
         ended = wait(service, run, status="ended")
         counts = {t["task"]: t["done"] + t["by_hand"] for t in ended["tasks"]}
-        tasks = service.client.get(f"/api/missions/{id}").json()["mission"]["tasks"]
+        tasks = service.client.get(f"/api/missions/{ended['plan']}").json()["mission"]["tasks"]
         assert counts == {t["name"]: 1 for t in tasks if t["action"] != "START"}
         assert ended["headline"]["word"] in ("Success", "Done, 1 finding", "Done, 2 findings")
         assert robot.poll() is None
@@ -68,7 +59,7 @@ def test_a_robot_somewhere_else_carries_a_mission_out(service: Served) -> None:
 @pytest.mark.long
 def test_an_interrupted_run_stops_without_its_robot(service: Served) -> None:
     with a_robot(service):
-        run = begin(service, imported(service))
+        run = begin(service)
         wait(service, run, moving=True)
         send_signal(signal.SIGKILL, run)
         while state(service, run)["status"] != "interrupted":
@@ -90,7 +81,7 @@ def test_an_interrupted_run_stops_without_its_robot(service: Served) -> None:
 
 @pytest.mark.long
 def test_without_a_robot_it_is_said(service: Served) -> None:
-    run = begin(service, imported(service))
+    run = begin(service)
     while (found := state(service, run))["status"] == "preparing":
         time.sleep(0.05)
     assert found["status"] == "ended"

@@ -17,7 +17,10 @@ from argo_planner.service.rooms.room import PlanRoom
 from argo_planner.service.rooms.rooms import PlanRooms
 from argo_planner.service.storage import folder as folders
 from argo_planner.service.storage.folder import PlanFolder
+from tests.argo_planner.service.served import taken
 from tests.argo_planner.service.test_plan import mission
+
+pytestmark = pytest.mark.anyio
 
 
 def now() -> datetime:
@@ -25,10 +28,13 @@ def now() -> datetime:
 
 
 @pytest.fixture
-def rooms(tmp_path):
+async def rooms(tmp_path):
     numbers = count(1)
     folder = PlanFolder(tmp_path, lambda: f"{next(numbers):012x}")
-    return PlanRooms(folder, Catalog(site="x", checkpoints=(), areas=(), floors=()), None, now)
+    nothing = Catalog(site="x", checkpoints=(), areas=(), floors=())
+    rooms = PlanRooms(folder, nothing, None, now)
+    yield rooms
+    await rooms.close()
 
 
 def renamed(k: int) -> EditPlan:
@@ -36,166 +42,116 @@ def renamed(k: int) -> EditPlan:
     return EditPlan(id=f"k{k}", edits=(edits.RenameTask(name=old, new_name=f"a{k}"),))
 
 
-async def taken(mailbox: Mailbox, kind: str) -> list[dict]:
-    """All messages of a kind that wait."""
-    found = []
-    while True:
-        try:
-            message = json.loads(await asyncio.wait_for(mailbox.take(), 0.01))
-        except TimeoutError:
-            return found
-        if message["kind"] == kind:
-            found.append(message)
+async def test_poses_are_the_newest_and_events_are_all_there() -> None:
+    mailbox = Mailbox()
+    for k in range(5):
+        mailbox.post_newest("pose", f"pose {k}")
+        mailbox.post(f"event {k}")
+    mailbox.close(MailboxClosed("over"))
+    mailbox.post("too late")
+    heard = [await mailbox.take() for _ in range(6)]
+    with pytest.raises(MailboxClosed, match="over"):
+        await mailbox.take()
+    assert heard == [*(f"event {k}" for k in range(5)), "pose 4"]
 
 
-def test_poses_are_the_newest_and_events_are_all_there() -> None:
-    async def play() -> list[str]:
-        mailbox = Mailbox()
-        for k in range(5):
-            mailbox.post_newest("pose", f"pose {k}")
-            mailbox.post(f"event {k}")
-        mailbox.close(MailboxClosed("over"))
-        mailbox.post("too late")
-        heard = [await mailbox.take() for _ in range(6)]
-        with pytest.raises(MailboxClosed, match="over"):
-            await mailbox.take()
-        return heard
-
-    assert asyncio.run(play()) == [*(f"event {k}" for k in range(5)), "pose 4"]
-
-
-def test_who_is_too_slow_is_let_go_delays_nobody_and_resumes(rooms, monkeypatch) -> None:
+async def test_who_is_too_slow_is_let_go_delays_nobody_and_resumes(rooms, monkeypatch) -> None:
     monkeypatch.setattr(mailboxes, "MOST_MESSAGES", 10)
-
-    async def play() -> None:
-        room = await rooms.create("Round", mission("a", "b"))
-        slow, quick = room.join("1", "ann"), room.join("2", "bob")
-        heard = []
-        for k in range(1, 21):
-            await room.carry_out(renamed(k), "ann", k)
-            heard += await taken(quick, "revision")
-        assert [message["revision"]["number"] for message in heard] == [*range(2, 22)]
-        with pytest.raises(MailboxClosed) as closed:
-            await slow.take()
-        assert closed.value.too_slow
-        room.leave("1")
-        monkeypatch.setattr(mailboxes, "MOST_MESSAGES", 100)
-        again = await taken(room.join("3", "ann", since=11), "revision")
-        assert [message["revision"]["number"] for message in again] == [*range(12, 22)]
-        await rooms.close()
-
-    asyncio.run(play())
+    room = await rooms.create("Round", mission("a", "b"))
+    slow, quick = room.join("1", "ann"), room.join("2", "bob")
+    heard = []
+    for k in range(1, 21):
+        await room.carry_out(renamed(k), "ann", k)
+        heard += await taken(quick, "revision")
+    assert [message["revision"]["number"] for message in heard] == [*range(2, 22)]
+    with pytest.raises(MailboxClosed) as closed:
+        await slow.take()
+    assert closed.value.too_slow
+    room.leave("1")
+    monkeypatch.setattr(mailboxes, "MOST_MESSAGES", 100)
+    again = await taken(room.join("3", "ann", since=11), "revision")
+    assert [message["revision"]["number"] for message in again] == [*range(12, 22)]
 
 
-def test_who_has_just_come_is_told_much_without_being_let_go(monkeypatch) -> None:
+async def test_who_has_just_come_is_told_much_without_being_let_go(monkeypatch) -> None:
     monkeypatch.setattr(mailboxes, "MOST_MESSAGES", 2)
-
-    async def play() -> None:
-        mailbox = Mailbox(f"past {k}" for k in range(5))
-        mailbox.post("event 0")
-        mailbox.post("event 1")
-        heard = [await mailbox.take() for _ in range(6)]
-        assert heard == [*(f"past {k}" for k in range(5)), "event 0"]
-        mailbox.post("event 2")
-        mailbox.post("event 3")
-        with pytest.raises(MailboxClosed) as closed:
-            await mailbox.take()
-        assert closed.value.too_slow
-
-    asyncio.run(play())
+    mailbox = Mailbox(f"past {k}" for k in range(5))
+    mailbox.post("event 0")
+    mailbox.post("event 1")
+    heard = [await mailbox.take() for _ in range(6)]
+    assert heard == [*(f"past {k}" for k in range(5)), "event 0"]
+    mailbox.post("event 2")
+    mailbox.post("event 3")
+    with pytest.raises(MailboxClosed) as closed:
+        await mailbox.take()
+    assert closed.value.too_slow
 
 
-def test_a_command_is_carried_out_to_its_end_where_nobody_waits(rooms) -> None:
-    async def play() -> None:
-        room = await rooms.create("Round", mission("a", "b"))
-        told = room.join("1", "ann")
-        asked = asyncio.ensure_future(room.carry_out(renamed(1), "ann", 1))
-        await asyncio.sleep(0)
-        asked.cancel()
-        with pytest.raises(asyncio.CancelledError):
-            await asked
-        done = await room.carry_out(renamed(2), "ann", 2)
-        assert done.newest == 3
-        assert len(await taken(told, "revision")) == 2
-        await rooms.close()
-
-    asyncio.run(play())
+async def test_a_command_is_carried_out_to_its_end_where_nobody_waits(rooms) -> None:
+    room = await rooms.create("Round", mission("a", "b"))
+    told = room.join("1", "ann")
+    asked = asyncio.ensure_future(room.carry_out(renamed(1), "ann", 1))
+    await asyncio.sleep(0)
+    asked.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await asked
+    done = await room.carry_out(renamed(2), "ann", 2)
+    assert done.newest == 3
+    assert len(await taken(told, "revision")) == 2
 
 
-def test_commands_at_once_are_done_one_after_the_other(rooms) -> None:
-    async def play() -> None:
-        room = await rooms.create("Round", mission("a", "b"))
-        answers = await asyncio.gather(
-            *(room.carry_out(renamed(1), "ann", 1) for _ in range(5)),
-            room.carry_out(EditPlan(id="x", edits=(edits.RemoveTask(name="b"),)), "bob", None),
-        )
-        assert [answer.revision.number for answer in answers] == [2, 2, 2, 2, 2, 3]
-        await rooms.close()
-
-    asyncio.run(play())
+async def test_commands_at_once_are_done_one_after_the_other(rooms) -> None:
+    room = await rooms.create("Round", mission("a", "b"))
+    answers = await asyncio.gather(
+        *(room.carry_out(renamed(1), "ann", 1) for _ in range(5)),
+        room.carry_out(EditPlan(id="x", edits=(edits.RemoveTask(name="b"),)), "bob", None),
+    )
+    assert [answer.revision.number for answer in answers] == [2, 2, 2, 2, 2, 3]
 
 
-def test_a_closed_room_refuses(rooms) -> None:
-    async def play() -> None:
-        room: PlanRoom = await rooms.create("Round", mission("a", "b"))
-        await rooms.delete(room.document.id)
-        with pytest.raises(Conflict, match="closed or deleted"):
-            await room.carry_out(renamed(1), "ann", 1)
-        with pytest.raises(Conflict):
-            room.join("1", "ann")
-        back = await rooms.restore(room.document.id)
-        assert back.document.plan.mission == mission("a", "b")
-        await rooms.close()
-
-    asyncio.run(play())
+async def test_a_closed_room_refuses(rooms) -> None:
+    room: PlanRoom = await rooms.create("Round", mission("a", "b"))
+    await rooms.delete(room.document.id)
+    with pytest.raises(Conflict, match="closed or deleted"):
+        await room.carry_out(renamed(1), "ann", 1)
+    with pytest.raises(Conflict):
+        room.join("1", "ann")
+    back = await rooms.restore(room.document.id)
+    assert back.document.plan.mission == mission("a", "b")
 
 
-def test_rooms_that_nobody_uses_are_closed(rooms, monkeypatch) -> None:
+async def test_rooms_that_nobody_uses_are_closed(rooms, monkeypatch) -> None:
     monkeypatch.setattr("argo_planner.service.rooms.rooms.MOST_OPEN", 2)
-
-    async def play() -> None:
-        used = await rooms.create("used", mission("a"))
-        used.join("1", "ann")
-        others = [await rooms.create(str(k), mission("a")) for k in range(5)]
-        with pytest.raises(Conflict):
-            others[0].join("2", "bob")
-        await used.carry_out(renamed(1), "ann", 1)
-        assert (await rooms.open(others[0].document.id)).document.name == "0"
-        assert len(await rooms.plans()) == 6
-        await rooms.close()
-
-    asyncio.run(play())
+    used = await rooms.create("used", mission("a"))
+    used.join("1", "ann")
+    others = [await rooms.create(str(k), mission("a")) for k in range(5)]
+    with pytest.raises(Conflict):
+        others[0].join("2", "bob")
+    await used.carry_out(renamed(1), "ann", 1)
+    assert (await rooms.open(others[0].document.id)).document.name == "0"
+    assert len(await rooms.plans()) == 6
 
 
-def test_files_of_open_plans_are_not_read_for_a_list(rooms, monkeypatch) -> None:
+async def test_files_of_open_plans_are_not_read_for_a_list(rooms, monkeypatch) -> None:
     read = []
     monkeypatch.setattr(folders, "read_outline", read.append)
-
-    async def play() -> None:
-        room = await rooms.create("Round", mission("a", "b"))
-        await room.carry_out(renamed(1), "ann", 1)
-        (listed,) = await rooms.plans()
-        assert (listed.name, listed.revision) == ("Round", 2)
-        await rooms.close()
-
-    asyncio.run(play())
+    room = await rooms.create("Round", mission("a", "b"))
+    await room.carry_out(renamed(1), "ann", 1)
+    (listed,) = await rooms.plans()
+    assert (listed.name, listed.revision) == ("Round", 2)
     assert read == []
 
 
-def test_who_joins_while_a_command_is_written_hears_of_it_once(rooms) -> None:
-    async def play() -> None:
-        room = await rooms.create("Round", mission("a", "b"))
-        for k in range(1, 31):
-            asked = asyncio.ensure_future(room.carry_out(renamed(k), "ann", k))
-            for _ in range(k % 7):
-                await asyncio.sleep(0.001)
-            page = room.join(str(k), "bob")
-            await asked
-            told = [json.loads(await page.take())]
-            known = told[0]["state"]["revision"]
-            later = [m["revision"]["number"] for m in await taken(page, "revision")]
-            assert later == [*range(known + 1, k + 2)]
-            room.leave(str(k))
-        await rooms.close()
-
-    asyncio.run(play())
+async def test_who_joins_while_a_command_is_written_hears_of_it_once(rooms) -> None:
+    room = await rooms.create("Round", mission("a", "b"))
+    for k in range(1, 31):
+        asked = asyncio.ensure_future(room.carry_out(renamed(k), "ann", k))
+        for _ in range(k % 7):
+            await asyncio.sleep(0.001)
+        page = room.join(str(k), "bob")
+        await asked
+        told = [json.loads(await page.take())]
+        known = told[0]["state"]["revision"]
+        later = [m["revision"]["number"] for m in await taken(page, "revision")]
+        assert later == [*range(known + 1, k + 2)]
+        room.leave(str(k))

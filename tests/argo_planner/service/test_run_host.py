@@ -5,8 +5,8 @@ import json
 import multiprocessing
 import os
 import signal
-from collections.abc import Awaitable, Callable
-from contextlib import suppress
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -18,11 +18,13 @@ from argo_env.planning.opening import OpenedSite
 from argo_env.run.record import RunRecord
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
-from argo_planner.service.rooms.mailbox import Mailbox
 from argo_planner.service.runs import requests as asked
 from argo_planner.service.runs.host import AfterRestart, RunHost
 from argo_planner.service.runs.requests import RunOrder
 from argo_planner.service.runs.state import RunMode, RunStatus
+from tests.argo_planner.service.served import taken
+
+pytestmark = pytest.mark.anyio
 
 SCRIPT = (
     "Mission Protocol #1\n1. Set the starting point in starting area 1.\n2. Check valve R18.\n"
@@ -42,19 +44,16 @@ def order(site: OpenedSite, **other: object) -> RunOrder:
     )
 
 
-def play(folder: Path, script: Callable[[RunHost], Awaitable[None]], after: str = "wait") -> None:
-    """Lets a script play with a host."""
-
-    async def playing() -> None:
-        host = RunHost(folder, AfterRestart(after), now)
-        await host.open()
-        try:
-            async with asyncio.timeout(120):
-                await script(host)
-        finally:
-            await host.close()
-
-    asyncio.run(playing())
+@asynccontextmanager
+async def hosted(folder: Path, after: str = "wait") -> AsyncIterator[RunHost]:
+    """A host, which is closed in the end."""
+    host = RunHost(folder, AfterRestart(after), now)
+    await host.open()
+    try:
+        async with asyncio.timeout(120):
+            yield host
+    finally:
+        await host.close()
 
 
 def send_signal(number: signal.Signals, run: str = "") -> None:
@@ -79,17 +78,6 @@ async def done(host: RunHost, request: asked.RunRequest, by: str = "ann") -> str
     return host.request(state.id, request.id).progress
 
 
-async def told(mailbox: Mailbox, kind: str) -> list[dict]:
-    found = []
-    while True:
-        try:
-            message = json.loads(await asyncio.wait_for(mailbox.take(), 0.05))
-        except TimeoutError:
-            return found
-        if message["kind"] == kind:
-            found.append(message)
-
-
 async def begun(host: RunHost, site: OpenedSite, after: float = 3.0, **other: object) -> str:
     """Begins a run, and waits until some of its time is over."""
     run = (await host.start(order(site, **({"speed": 20.0} | other)), "ann")).id
@@ -111,12 +99,19 @@ async def reported(host: RunHost) -> RunRecord:
     return RunRecord.model_validate_json(await host.report(host.state.id, "report.json"))
 
 
-def test_a_run_is_that_of_the_simulation(tmp_path, site) -> None:
+async def done_by_itself(host: RunHost) -> str:
+    await until(host, ended(host))
+    assert host.state is not None
+    assert host.state.headline is not None
+    return host.state.headline.word
+
+
+async def test_a_run_is_that_of_the_simulation(tmp_path, site) -> None:
     wanted = order(site)
     spec = RunSpec(mission=wanted.mission, site=site.reference, drive="route", seed=4)
     alone = simulate(spec, site)
 
-    async def script(host: RunHost) -> None:
+    async with hosted(tmp_path) as host:
         follower = host.follow("1")
         begun = await host.start(wanted, "ann")
         assert begun.status is RunStatus.PREPARING
@@ -128,16 +123,14 @@ def test_a_run_is_that_of_the_simulation(tmp_path, site) -> None:
             run.task: 1 for run in alone.tasks if run.task in {t.name for t in wanted.mission.tasks}
         }
         assert [r.value for r in state.readings] == [r.value for r in alone.readings]
-        entries = await told(follower, "entry")
+        entries = await taken(follower, "entry")
         assert [entry["number"] for entry in entries] == [*range(1, state.entries + 1)]
         assert await reported(host) == alone
 
-    play(tmp_path, script)
-
 
 @pytest.mark.long
-def test_a_second_run_is_refused_with_who_has_the_robot(tmp_path, site) -> None:
-    async def script(host: RunHost) -> None:
+async def test_a_second_run_is_refused_with_who_has_the_robot(tmp_path, site) -> None:
+    async with hosted(tmp_path) as host:
         await host.start(order(site, speed=1.0), "ann")
         with pytest.raises(Conflict, match="ann has begun run"):
             await host.start(order(site), "bob")
@@ -150,12 +143,10 @@ def test_a_second_run_is_refused_with_who_has_the_robot(tmp_path, site) -> None:
         assert host.state.by == "bob"
         assert [state.by for state in await host.all()] == ["bob", "ann"]
 
-    play(tmp_path, script)
-
 
 @pytest.mark.long
-def test_paused_is_said_only_when_nothing_moves(tmp_path, site) -> None:
-    async def script(host: RunHost) -> None:
+async def test_paused_is_said_only_when_nothing_moves(tmp_path, site) -> None:
+    async with hosted(tmp_path) as host:
         await host.start(order(site, speed=20.0), "ann")
         await until(host, lambda: bool(host.state and host.state.moving and host.state.t > 5))
         run = host.state.id
@@ -165,7 +156,7 @@ def test_paused_is_said_only_when_nothing_moves(tmp_path, site) -> None:
         again = await host.ask(run, asked.PauseRun(id="p"), "ann")
         assert again.id == "p"
         await until(host, lambda: host.request(run, "p").over)
-        steps = [m["request"]["progress"] for m in await told(follower, "request")]
+        steps = [m["request"]["progress"] for m in await taken(follower, "request")]
         assert steps == ["accepted", "under way", "confirmed"]
         assert host.state.mode is RunMode.PAUSED
         assert not host.state.moving
@@ -182,11 +173,9 @@ def test_paused_is_said_only_when_nothing_moves(tmp_path, site) -> None:
         with pytest.raises(Conflict, match="is over"):
             await host.ask(run, asked.PauseRun(id="q"), "ann")
 
-    play(tmp_path, script)
 
-
-def test_a_person_takes_over_drives_measures_skips_and_gives_back(tmp_path, site) -> None:
-    async def script(host: RunHost) -> None:
+async def test_a_person_takes_over_drives_measures_skips_and_gives_back(tmp_path, site) -> None:
+    async with hosted(tmp_path) as host:
         wanted = order(site, speed=None)
         await host.start(order(site, speed=20.0), "ann")
         await until(host, lambda: bool(host.state and host.state.moving and host.state.t > 3))
@@ -217,15 +206,13 @@ def test_a_person_takes_over_drives_measures_skips_and_gives_back(tmp_path, site
         record = await reported(host)
         assert sum(run.by_hand for run in record.tasks) == 2
 
-    play(tmp_path, script)
-
 
 @pytest.mark.long
-def test_a_run_goes_on_when_its_process_was_killed(tmp_path, site) -> None:
+async def test_a_run_goes_on_when_its_process_was_killed(tmp_path, site) -> None:
     spec = RunSpec(mission=order(site).mission, site=site.reference, drive="route", seed=4)
     alone = simulate(spec, site)
 
-    async def script(host: RunHost) -> None:
+    async with hosted(tmp_path) as host:
         await host.start(order(site, speed=50.0), "ann")
         await until(host, lambda: bool(host.state and host.state.t > 10))
         send_signal(signal.SIGKILL)
@@ -243,17 +230,14 @@ def test_a_run_goes_on_when_its_process_was_killed(tmp_path, site) -> None:
         ]
         assert record.resumed
 
-    play(tmp_path, script)
-
 
 @pytest.mark.long
 @pytest.mark.parametrize("after", ["go-on", "wait"])
-def test_a_service_that_begins_again_finds_its_run(tmp_path, site, after: str) -> None:
-    async def begin(host: RunHost) -> None:
+async def test_a_service_that_begins_again_finds_its_run(tmp_path, site, after: str) -> None:
+    async with hosted(tmp_path) as host:
         await host.start(order(site, speed=50.0), "ann")
         await until(host, lambda: bool(host.state and host.state.t > 10))
-
-    async def find(host: RunHost) -> None:
+    async with hosted(tmp_path, after) as host:
         state = host.state
         assert state is not None
         if after == "wait":
@@ -266,20 +250,10 @@ def test_a_service_that_begins_again_finds_its_run(tmp_path, site, after: str) -
         with pytest.raises(NotFound):
             await host.history("20200101-000000-0000", 0, 1)
 
-    play(tmp_path, begin)
-    play(tmp_path, find, after)
-
-
-async def done_by_itself(host: RunHost) -> str:
-    await until(host, ended(host))
-    assert host.state is not None
-    assert host.state.headline is not None
-    return host.state.headline.word
-
 
 @pytest.mark.long
-def test_what_can_not_be_run_has_ended_with_its_reason(tmp_path, site) -> None:
-    async def script(host: RunHost) -> None:
+async def test_what_can_not_be_run_has_ended_with_its_reason(tmp_path, site) -> None:
+    async with hosted(tmp_path) as host:
         run = (await host.start(order(site, drive="flying"), "ann")).id
         await until(host, ended(host))
         assert "no drive `flying`" in host.state.problem
@@ -289,4 +263,66 @@ def test_what_can_not_be_run_has_ended_with_its_reason(tmp_path, site) -> None:
         await until(host, ended(host))
         assert host.state.problem is None
 
-    play(tmp_path, script)
+
+# A person has the robot: what can be asked twice, and what only in its time.
+
+
+@pytest.mark.long
+async def test_a_pause_during_a_pause_changes_nothing(tmp_path, site) -> None:
+    async with hosted(tmp_path) as host:
+        await begun(host, site)
+        assert await done(host, asked.PauseRun(id="p")) == "confirmed"
+        entries = [e.events for e in (await host.history(host.state.id, 0, 10**6)).entries]
+        assert await done(host, asked.PauseRun(id="q")) == "confirmed"
+        assert host.state.mode is RunMode.PAUSED
+        later = [e.events for e in (await host.history(host.state.id, 0, 10**6)).entries]
+        assert [*filter(None, later)] == [*filter(None, entries)]
+        assert await done(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
+        assert await done(host, asked.GoOnWithRun(id="g")) == "confirmed"
+        assert await done_by_itself(host) == "Success"
+
+
+@pytest.mark.long
+async def test_who_has_the_robot_neither_pauses_nor_skips_twice(tmp_path, site) -> None:
+    name = next(t.name for t in order(site).mission.tasks if t.action == "MEASURE")
+
+    async with hosted(tmp_path) as host:
+        run = await begun(host, site)
+        assert await done(host, asked.GiveRobotBack(id="1")) == "refused"
+        assert "nobody has the robot" in host.request(run, "1").reason
+        assert await done(host, asked.PauseRun(id="p")) == "confirmed"
+        assert await done(host, asked.GiveRobotBack(id="2")) == "refused"
+        assert host.state.mode is RunMode.PAUSED
+        assert await done(host, asked.TakeRobot(id="t")) == "confirmed"
+        assert host.state.mode is RunMode.SUPERVISED
+        assert await done(host, asked.PauseRun(id="3")) == "refused"
+        assert "until they give it back" in host.request(run, "3").reason
+        assert await done(host, asked.SkipTask(id="4", task=name)) == "confirmed"
+        assert await done(host, asked.SkipTask(id="5", task=name)) == "refused"
+        assert "skipped already" in host.request(run, "5").reason
+        assert host.state.skipped == (name,)
+        assert await done(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
+        assert await done(host, asked.GiveRobotBack(id="b")) == "confirmed"
+        assert host.state.mode is not RunMode.PAUSED, "the pause before is over as well"
+        assert await done_by_itself(host) != "No success"
+        assert {t.task: t.by_hand for t in host.state.tasks}[name] == 1
+
+
+async def test_the_state_is_told_before_what_has_brought_it_about(tmp_path, site) -> None:
+    name = next(t.name for t in order(site).mission.tasks if t.action == "MEASURE")
+
+    async with hosted(tmp_path) as host:
+        await begun(host, site)
+        follower = host.follow("1", host.state.entries)
+        for request, mode, skipped in (
+            (asked.PauseRun(id="p"), "paused", []),
+            (asked.TakeRobot(id="t"), "supervised", []),
+            (asked.SkipTask(id="s", task=name), "supervised", [name]),
+        ):
+            assert await done(host, request) == "confirmed"
+            heard = []
+            while not heard or heard[-1].get("request", {}).get("progress") != "confirmed":
+                heard.append(json.loads(await follower.take()))
+            states = [message["state"] for message in heard if message["kind"] == "state"]
+            assert states[-1]["mode"] == mode
+            assert states[-1]["skipped"] == skipped

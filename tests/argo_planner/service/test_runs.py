@@ -3,6 +3,7 @@
 import json
 import time
 
+import httpx
 import pytest
 from websockets.exceptions import InvalidStatus
 
@@ -13,18 +14,11 @@ from tests.argo_planner.service.test_run_host import SCRIPT
 
 @pytest.fixture(scope="module")
 def id(service: Served) -> str:
-    params = {"filename": "m.txt", "start_area": 1}
-    made = service.client.post("/api/imports", params=params, content=SCRIPT)
-    assert made.status_code == 201, made.text
-    return made.json()["id"]
+    return service.imported(SCRIPT, start_area=1)
 
 
 def start(service: Served, id: str, **other: object) -> dict:
-    begun = service.client.post(
-        f"/api/missions/{id}/runs",
-        json={"drive": "route", "seed": 4} | other,
-        headers={"if-match": '"1"'},
-    )
+    begun = service.run(id, 1, **({"drive": "route", "seed": 4} | other))
     assert begun.status_code == 201, begun.text
     assert begun.headers["location"] == f"/api/runs/{begun.json()['id']}"
     return begun.json()
@@ -46,7 +40,11 @@ def wait(service: Served, run: str, **wanted: object) -> dict:
 def ask(service: Served, run: str, kind: str, **fields: object) -> dict:
     """Asks for something and waits for how it ends."""
     request = {"kind": kind, "id": f"{kind}-{time.monotonic_ns()}"} | fields
-    accepted = service.client.post(f"/api/runs/{run}/requests", json=request)
+    return settled(service, service.client.post(f"/api/runs/{run}/requests", json=request))
+
+
+def settled(service: Served, accepted: httpx.Response) -> dict:
+    """Waits for how what was asked for ends."""
     assert accepted.status_code == 202, accepted.text
     while True:
         found = service.client.get(accepted.headers["location"]).json()
@@ -59,9 +57,7 @@ def test_a_run_is_begun_followed_steered_and_reported(service: Served, id: str) 
     live = service.socket("/api/robot/live", {"authorization": f"Bearer {ALL}"})
     assert json.loads(live.recv())["kind"] == "state"
     run = start(service, id, speed=20.0)["id"]
-    refused = service.as_("bob").post(
-        f"/api/missions/{id}/runs", json={}, headers={"if-match": "*"}
-    )
+    refused = service.run(id, client=service.as_("bob"))
     assert "ann has begun run" in problem(refused, 409, "conflict")["detail"]
     wait(service, run, moving=True)
     assert ask(service, run, "pause")["progress"] == "confirmed"
@@ -114,10 +110,7 @@ def test_what_there_is_not_is_said_before_anything_begins(service: Served, id: s
         ({"sensor": "nose"}, "`nose`", "ideal"),
         ({"values": {"99": 1.0, "1": 2.0, "98": 0.0}}, "checkpoint `99`, `98`", " 14,"),
     ):
-        refused = service.client.post(
-            f"/api/missions/{id}/runs", json=wrong, headers={"if-match": "*"}
-        )
-        detail = problem(refused, 422, "invalid")["detail"]
+        detail = problem(service.run(id, **wrong), 422, "invalid")["detail"]
         assert named in detail
         assert known in detail
     assert service.client.get("/api/runs").json()["runs"] == before
@@ -144,8 +137,7 @@ def test_the_run_goes_on_when_nobody_looks(service: Served, id: str) -> None:
 
 def test_only_operators_steer(service: Served, id: str) -> None:
     planner = service.as_("x", SECRETS["plan"])
-    begun = planner.post(f"/api/missions/{id}/runs", json={}, headers={"if-match": "*"})
-    problem(begun, 403, "access-denied")
+    problem(service.run(id, client=planner), 403, "access-denied")
     asked = planner.post(
         "/api/runs/20200101-000000-0000/requests", json={"kind": "stop", "id": "x"}
     )
@@ -158,10 +150,7 @@ def test_what_is_no_run_is_said(service: Served, id: str) -> None:
     problem(client.get("/api/runs/20200101-000000-0000"), 404, "not-found")
     problem(client.get("/api/runs/20200101-000000-0000/entries"), 404, "not-found")
     problem(client.get("/api/runs/..%2f..%2fetc/report/report.json"), 404, "not-found")
-    stale = client.post(f"/api/missions/{id}/runs", json={}, headers={"if-match": '"7"'})
-    problem(stale, 412, "stale-revision")
-    empty = service.create()
-    nothing = client.post(f"/api/missions/{empty}/runs", json={}, headers={"if-match": "*"})
-    problem(nothing, 422, "invalid")
+    problem(service.run(id, 7), 412, "stale-revision")
+    problem(service.run(service.create()), 422, "invalid")
     with pytest.raises(InvalidStatus, match="401"):
         service.socket("/api/robot/live", {})

@@ -15,20 +15,11 @@ from tests.argo_planner.service.test_runs import start, wait
 @pytest.fixture(autouse=True)
 def without_obstacles(service: Served):
     yield
-    given = service.client.put(
-        "/api/world/obstacles", json={"obstacles": []}, headers={"if-match": "*"}
-    )
-    assert given.status_code == 200
+    assert service.put_obstacles().status_code == 200
 
 
 def box(x: float, y: float, z: float, edge: float = 0.8) -> dict:
     return {"id": "box", "name": "a box", "pose": {"x": x, "y": y, "z": z}, "size": [edge] * 3}
-
-
-def put(service: Served, *obstacles: dict, revision: str = "*"):
-    return service.client.put(
-        "/api/world/obstacles", json={"obstacles": obstacles}, headers={"if-match": revision}
-    )
 
 
 def test_the_world_is_told_with_meshes_and_maps(service: Served, site: OpenedSite) -> None:
@@ -66,17 +57,14 @@ def test_the_world_is_told_with_meshes_and_maps(service: Served, site: OpenedSit
 
 def test_obstacles_close_the_ground_and_are_kept(service: Served) -> None:
     client = service.client
-    made = client.post(
-        "/api/imports", params={"filename": "m.txt", "start_area": 1}, content=SCRIPT
-    )
-    id = made.json()["id"]
+    id = service.imported(SCRIPT, start_area=1)
     preview = client.get(f"/api/missions/{id}/preview").json()
     assert preview["time"] > 0
     assert not preview["problems"]
     way = preview["ways"][1]["way"]
     middle = way["points"][len(way["points"]) // 2]
     page = service.follow(id)
-    given = put(service, box(*middle[1:4]))
+    given = service.put_obstacles(box(*middle[1:4]))
     assert given.status_code == 200, given.text
     while (told := json.loads(page.recv(timeout=30)))["kind"] != "world":
         pass
@@ -86,8 +74,8 @@ def test_obstacles_close_the_ground_and_are_kept(service: Served) -> None:
     world = client.get("/api/world").json()
     assert [o["name"] for o in world["obstacles"]] == ["a box"]
     assert json.loads((service.folder / "obstacles.json").read_bytes())["obstacles"]
-    problem(put(service, revision='"1"'), 412, "stale-revision")
-    twice = put(service, box(0, 0, 0), box(1, 1, 0))
+    problem(service.put_obstacles(revision=1), 412, "stale-revision")
+    twice = service.put_obstacles(box(0, 0, 0), box(1, 1, 0))
     assert "two obstacles" in problem(twice, 422, "invalid")["detail"]
     page.close()
 
@@ -95,13 +83,10 @@ def test_obstacles_close_the_ground_and_are_kept(service: Served) -> None:
 @pytest.mark.long
 def test_runs_go_round_obstacles(service: Served) -> None:
     client = service.client
-    made = client.post(
-        "/api/imports", params={"filename": "m.txt", "start_area": 1}, content=SCRIPT
-    )
-    id = made.json()["id"]
+    id = service.imported(SCRIPT, start_area=1)
     way = client.get(f"/api/missions/{id}/preview").json()["ways"][1]["way"]
     middle = way["points"][len(way["points"]) // 2]
-    put(service, box(*middle[1:4], edge=0.4))
+    service.put_obstacles(box(*middle[1:4], edge=0.4))
     around = client.get(f"/api/missions/{id}/preview").json()
     run = start(service, id, speed=None)["id"]
     ended = wait(service, run, status="ended")

@@ -9,7 +9,6 @@ import yourdfpy
 
 from argo_compiler.base.catalog import CheckpointKind
 from argo_compiler.base.errors import NotFound
-from argo_env.planning import open_site
 from argo_env.robot.spec import robot_folder
 from argo_env.site.shapes import Box, Role, half_extents
 from argo_env.site.storeys import storeys
@@ -35,11 +34,6 @@ def volume(solid, sides):
     if isinstance(solid, Box):
         return float(np.prod(solid.size))
     return sides / 2 * np.sin(2 * np.pi / sides) * solid.radius**2 * solid.length
-
-
-@pytest.fixture(scope="module")
-def site():
-    return open_site("umad")
 
 
 @pytest.mark.parametrize("floor", range(1, 7))

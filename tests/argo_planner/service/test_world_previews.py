@@ -19,7 +19,6 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
-from argo_env.planning import open_site
 from argo_env.planning.opening import OpenedSite
 from argo_env.run.journal import open_journal
 from argo_env.run.session import resume, simulate
@@ -27,11 +26,7 @@ from argo_env.run.spec import RunSpec
 from argo_planner.service.world.description import describe, world_digest
 from argo_planner.service.world.obstacles import Obstacle, with_obstacles
 from argo_planner.service.world.previews import WayKind, preview_mission, preview_way
-
-
-@pytest.fixture(scope="module")
-def site():
-    return open_site("umad")
+from tests.yard import in_order
 
 
 def crate(id, x, y, z, size=(0.4, 0.4, 0.8), yaw=0.3):
@@ -39,11 +34,7 @@ def crate(id, x, y, z, size=(0.4, 0.4, 0.8), yaw=0.3):
 
 
 def chain(*tasks, **fields):
-    linked = [
-        a.model_copy(update={"transitions": (Transition(target=b.name),)})
-        for a, b in pairwise(tasks)
-    ]
-    return Mission(site="umad", start_area=1, tasks=(*linked, tasks[-1]), **fields)
+    return Mission(site="umad", start_area=1, tasks=in_order(*tasks), **fields)
 
 
 def measure(id, **fields):

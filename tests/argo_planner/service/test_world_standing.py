@@ -15,7 +15,6 @@ from argo_compiler.base.model import Pose
 from argo_env.navigation.lattice import build_lattice
 from argo_env.navigation.navigator import SNAP_DISTANCE, nearest_state
 from argo_env.navigation.stencil import HEADINGS
-from argo_env.planning import open_site
 from argo_planner.service.world.obstacles import Obstacle, with_obstacles
 from argo_planner.service.world.standing import Ground, read_standing_map, standing_map
 
@@ -24,11 +23,6 @@ FLOORS = range(1, 7)
 
 def obstacle(id, x, y, z, size=(0.5, 0.4, 1.0), yaw=0.0):
     return Obstacle(id=id, name=f"crate {id}", pose=Pose(x=x, y=y, z=z, yaw=yaw), size=size)
-
-
-@pytest.fixture(scope="module")
-def site():
-    return open_site("umad")
 
 
 @pytest.fixture(scope="module")

@@ -34,16 +34,14 @@ poses = st.builds(
 
 
 @pytest.fixture(scope="module")
-def tracker(robot):
-    client = pybullet.connect(pybullet.DIRECT)
+def tracker(client, robot):
     path = robot_folder() / robot.urdf
     body = pybullet.loadURDF(str(path), useFixedBase=True, physicsClientId=client)
     infos = [
         pybullet.getJointInfo(body, k, physicsClientId=client)
         for k in range(pybullet.getNumJoints(body, physicsClientId=client))
     ]
-    yield client, body, {info[1].decode(): info for info in infos}
-    pybullet.disconnect(client)
+    return client, body, {info[1].decode(): info for info in infos}
 
 
 def by_pybullet(tracker, joints, pose):
@@ -93,13 +91,23 @@ def test_inverse_kinematics_brings_the_lens_there(tracker, joints, pose, reach):
     assert found, "the joints that it came from are one way at least"
 
 
+@pytest.fixture
+def look_at(simulation, navigator, umad):
+    """Places the robot where it sees a checkpoint; returns that, the place and the face."""
+
+    def placed(id):
+        checkpoint = umad.checkpoint(id)
+        stand = navigator.plan_to_view(umad.docks[1], id).end
+        pose = BodyPose(stand.x, stand.y, stand.z, stand.yaw)
+        simulation.place_robot(pose)
+        return checkpoint, pose, FacePose(*checkpoint.position, checkpoint.yaw, 0.0)
+
+    return placed
+
+
 @pytest.mark.parametrize("id", [1, 2, 4, 5, 10, 12, 16, 19])
-def test_planned_views_touch_nothing_and_see_the_checkpoint(id, simulation, navigator, umad, robot):
-    checkpoint = umad.checkpoint(id)
-    stand = navigator.plan_to_view(umad.docks[1], id).end
-    pose = BodyPose(stand.x, stand.y, stand.z, stand.yaw)
-    simulation.place_robot(pose)
-    face = FacePose(*checkpoint.position, checkpoint.yaw, 0.0)
+def test_planned_views_touch_nothing_and_see_the_checkpoint(id, look_at, simulation, umad, robot):
+    checkpoint, pose, face = look_at(id)
     solids = solids_near(umad, face.center, 1.5)
     views = plan_views(simulation, pose, face, solids, 0.05, (), 0.5)
     obliqueness = []
@@ -124,12 +132,8 @@ def on_the_way(robot, joints):
 
 
 @pytest.mark.parametrize("id", [1, 2, 4, 5, 10])
-def test_the_arm_gets_to_a_view_past_what_is_in_the_way(id, simulation, navigator, umad, robot):
-    checkpoint = umad.checkpoint(id)
-    stand = navigator.plan_to_view(umad.docks[1], id).end
-    pose = BodyPose(stand.x, stand.y, stand.z, stand.yaw)
-    simulation.place_robot(pose)
-    face = FacePose(*checkpoint.position, checkpoint.yaw, 0.0)
+def test_the_arm_gets_to_a_view_past_what_is_in_the_way(id, look_at, simulation, robot):
+    _, pose, face = look_at(id)
 
     def best_view():
         return next(plan_views(simulation, pose, face, (), 0.05, (), 0.5))

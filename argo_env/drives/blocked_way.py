@@ -1,7 +1,6 @@
 """How long a robot that does not move, as at a blocked way, waits before it gives its way up.
 
-The tracked drive notices sooner that it is stuck: see `tracked/stall_watch.py` and
-`tracked/recovery.py`.
+The tracked drive notices sooner that it is stuck, and tries to get free: see `tracked/drive.py`.
 """
 
 import math

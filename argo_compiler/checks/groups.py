@@ -241,10 +241,6 @@ def _endless(group: Group) -> bool:
     return not (group.max_repeat_count or group.max_repeat_duration or group.until)
 
 
-def _timed_out(group: Group) -> bool:
-    return group.stop is Stop.HARD and group.max_repeat_duration > 0
-
-
 def _check_endless(
     mission: Mission, layout: GroupNesting, subjects: Subjects
 ) -> Iterator[Diagnostic]:
@@ -259,7 +255,7 @@ def _check_endless(
     bounded = [False] * len(layout.ranges)
     for i, r in enumerate(layout.ranges):
         parent = layout.parent[i]
-        bounded[i] = _timed_out(r.group) or (parent is not None and bounded[parent])
+        bounded[i] = r.group.ends_at_once or (parent is not None and bounded[parent])
     for i in reversed(range(len(layout.ranges))):
         parent = layout.parent[i]
         if parent is not None:
@@ -307,7 +303,7 @@ def _goes_on(layout: GroupNesting, task: int) -> bool:
     ends there too can be up.
     """
     for i in reversed(layout.ending[task]):
-        if _timed_out(layout.ranges[i].group):
+        if layout.ranges[i].group.ends_at_once:
             return True
         if _endless(layout.ranges[i].group):
             return False

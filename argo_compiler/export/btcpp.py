@@ -21,7 +21,6 @@ from argo_compiler.il import (
     Mode,
     OnFailure,
     Response,
-    Stop,
     Task,
 )
 from argo_compiler.il.grouping import GroupNesting, GroupRange
@@ -466,7 +465,7 @@ def _pose_ports(pose: Pose | None) -> Attributes:
 
 
 def _is_timed(r: GroupRange) -> bool:
-    return bool(r.group.max_repeat_duration) and r.group.stop is Stop.HARD
+    return r.group.ends_at_once
 
 
 def _means_something(text: str) -> bool:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, Severity
+from argo_compiler.hfsm.group_timeout import timeout_of
 from argo_compiler.hfsm.model import (
     DONE,
     MISSION,
@@ -28,13 +29,11 @@ from argo_compiler.hfsm.model import (
 )
 from argo_compiler.il import (
     Action,
-    Group,
     Mission,
     Mode,
     OnFailure,
     Reaction,
     Response,
-    Stop,
     Task,
 )
 from argo_compiler.il.grouping import GroupNesting
@@ -157,7 +156,7 @@ class _Lowering:
                 until=r.group.until,
             ),
             transitions=(repeat, onward),
-            timeout=_timeout(r.group),
+            timeout=timeout_of(r.group),
             source=r.group.source,
         )
 
@@ -252,9 +251,3 @@ def _reaction_state(reaction: Reaction, mission: Mission) -> ReactionState:
             pose=(reaction.pose or mission.dock) if returns else reaction.pose,
         )
     return ReactionState(id=reaction_id(reaction.event), reaction=reaction, task=task)
-
-
-def _timeout(group: Group) -> StateTransition | None:
-    if group.stop is Stop.SOFT or not group.max_repeat_duration:
-        return None
-    return StateTransition(kind=TransitionKind.TIMEOUT, completes=group_id(group.name))

@@ -307,6 +307,11 @@ class Group(Model):
     """no other round begins once all of these hold at the end of one; none: not looked at"""
     source: Span | None = None
 
+    @property
+    def ends_at_once(self) -> bool:
+        """Return whether the group is left as soon as its time is up, in the middle of a round."""
+        return self.stop is Stop.HARD and self.max_repeat_duration > 0
+
 
 class Reaction(Model):
     """What to do when an event occurs. A mission has at most one for each kind of event.

@@ -7,7 +7,7 @@ of versions 1 and 2 have that of the way to the next task, whichever it is.
 from collections.abc import Iterator, Mapping
 
 from argo_compiler.il.grouping import group_ranges
-from argo_compiler.il.mission import Action, Mission, Stop, Task
+from argo_compiler.il.mission import Action, Mission, Task
 from argo_compiler.il.ways import beginning, branches, default_target, start_task
 
 Velocity = float | None
@@ -36,7 +36,7 @@ def ways(mission: Mission) -> Iterator[tuple[str, str]]:
             onward[task.name].append(following)
     for around in group_ranges(mission):  # the outer ones before those that lie in them
         group = around.group
-        if group.max_repeat_duration and group.stop is Stop.HARD:
+        if group.ends_at_once:
             for task in tasks[around.first : around.last + 1]:
                 for target in onward[group.end]:
                     yield task.name, target

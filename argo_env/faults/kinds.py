@@ -1,4 +1,8 @@
-"""All kinds of faults, and what a file of faults may say."""
+"""All kinds of faults, and what a file of faults may say.
+
+A new kind is a class in one of the files beside this, and is listed here; its words for the page
+are in `argo_planner/page/src/texts/run.ts`.
+"""
 
 from collections.abc import Sequence
 from typing import Annotated, get_args

@@ -1,1 +1,1 @@
-"""The robot: its measures and the drives that move it."""
+"""The robot: its measures, its model and its pose. What moves it is in `argo_env/drives`."""

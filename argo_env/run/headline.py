@@ -1,4 +1,7 @@
-"""The headline of a run: the same words on the terminal, in reports, recordings and films."""
+"""The headline of a run: the same words on the terminal, in reports, recordings and films.
+
+It begins with how the run ended, and goes on with the verdict, which `verdict.py` finds.
+"""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence

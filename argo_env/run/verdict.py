@@ -1,5 +1,8 @@
 """The verdict, whether the mission is a success and what is missing if it is not; and the record of
-the run."""
+the run.
+
+`headline.py` makes the line of it that people see.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 

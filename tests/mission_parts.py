@@ -1,8 +1,11 @@
 """Random parts of missions: conditions, tasks with ways in all directions, groups in groups."""
 
+from hypothesis import assume
 from hypothesis import strategies as st
 
 from argo_compiler.base.model import Pose
+from argo_compiler.checks import check
+from argo_compiler.diagnostics import has_errors
 from argo_compiler.il import (
     Action,
     Afterwards,
@@ -22,6 +25,12 @@ from argo_compiler.il import (
 
 OBJECTS = ("1", "2", "3")
 HERE = Pose(x=0, y=0, z=0)
+
+
+def assume_sound(mission):
+    """Return the mission, if it has no errors; otherwise another example is taken."""
+    assume(not has_errors(check(mission)))
+    return mission
 
 
 @st.composite

@@ -11,11 +11,9 @@ import os
 import subprocess
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.checks import check
-from argo_compiler.diagnostics import has_errors
 from argo_compiler.export.btcpp import to_btcpp
 from argo_compiler.il import (
     Condition,
@@ -28,8 +26,9 @@ from argo_compiler.il import (
 )
 from tests.argo_compiler.export import missions as m
 from tests.argo_compiler.export.carried import OUTCOMES, carried_missions, executed
-from tests.argo_compiler.export.test_btcpp import STEPS, codes, sound, task
+from tests.argo_compiler.export.test_btcpp import STEPS, codes, task
 from tests.conftest import examples
+from tests.mission_parts import assume_sound
 
 RUNNER = os.environ["ARGO_BTCPP_RUNNER"]
 
@@ -46,7 +45,7 @@ def printed(folder, mission, outcomes, steps=9):
 @settings(max_examples=examples(40))
 @given(carried_missions(timed=False), m.outcome_lists)
 def test_the_library_itself_does_the_same(tmp_path_factory, mission, outcomes):
-    sound(mission)
+    assume_sound(mission)
     script = "".join(
         f"{duration} {int(value is not None)} {value or 0} {int((value or 0) >= 5)} {int(failed)}\n"
         for duration, value, failed in outcomes
@@ -73,8 +72,7 @@ def test_the_library_waits_and_limits(tmp_path):
 @given(st.text(min_size=1), st.text(min_size=1))
 def test_the_library_reads_any_name(tmp_path_factory, name, object_id):
     measure = Task(name=name, action="MEASURE", object_id=object_id)
-    mission = Mission(tasks=(measure,), designation=object_id)
-    assume(not has_errors(check(mission)))
+    mission = assume_sound(Mission(tasks=(measure,), designation=object_id))
     if any(character in object_id for character in "{};") or object_id.startswith("json:"):
         assert codes(mission) == ["export.name"]
         return

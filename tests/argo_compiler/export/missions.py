@@ -2,14 +2,15 @@
 
 from hypothesis import strategies as st
 
-from argo_compiler.il import (
-    Action,
-    Mission,
-    Stop,
-    Task,
-    Transition,
-)
-from tests.mission_parts import HERE, groups_over, starts, task_names, tasks_named
+from argo_compiler.il import Action, Group, Mission, Stop, Task, Transition
+from tests.mission_parts import HERE, assume_sound, groups_over, starts, task_names, tasks_named
+
+
+def repeated(task):
+    """Return a mission of one task that is done twice, in which all is named like the task."""
+    own = task.name.replace("/", "")
+    group = Group(name=f"G{own}", start=task.name, end=task.name, max_repeat_count=2)
+    return assume_sound(Mission(tasks=(task,), groups=(group,), designation=task.name))
 
 
 @st.composite

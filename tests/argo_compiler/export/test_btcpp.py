@@ -3,11 +3,10 @@
 from itertools import cycle
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.checks import check
-from argo_compiler.diagnostics import DiagnosticError, has_errors
+from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.export.btcpp import to_btcpp
 from argo_compiler.il import (
     EventKind,
@@ -23,20 +22,16 @@ from tests.argo_compiler.export import missions as m
 from tests.argo_compiler.export.behaviour_tree import Interpreter, validate
 from tests.argo_compiler.export.carried import OUTCOMES, carried_missions, executed
 from tests.conftest import examples
+from tests.mission_parts import assume_sound
 from tests.mission_writing import drive as task
 
 STEPS = 40
 
 
-def sound(mission):
-    assume(not has_errors(check(mission)))
-    return mission
-
-
 @settings(max_examples=examples(80))
 @given(st.one_of(m.structured_missions(), carried_missions(), carried_missions()), m.outcome_lists)
 def test_tree_does_what_the_executor_does(mission, outcomes):
-    sound(mission)
+    assume_sound(mission)
     expected = executed(mission, outcomes, STEPS)
     log, outcome = Interpreter(to_btcpp(mission), cycle(outcomes)).run(STEPS)
     assert log == expected[0]
@@ -47,7 +42,7 @@ def test_tree_does_what_the_executor_does(mission, outcomes):
 @settings(max_examples=examples(40))
 @given(m.missions(), m.outcome_lists)
 def test_any_mission_is_refused_or_said_right(mission, outcomes):
-    sound(mission)
+    assume_sound(mission)
     try:
         text = to_btcpp(mission)
     except DiagnosticError as error:
@@ -91,10 +86,7 @@ def test_durations_that_a_timeout_node_does_not_take():
 
 @given(st.text(min_size=1))
 def test_any_name_is_text(name):
-    group = Group(name="G" + name.replace("/", ""), start=name, end=name, max_repeat_count=2)
-    mission = Mission(tasks=(task(name),), groups=(group,), designation=name)
-    assume(not has_errors(check(mission)))
-    root = validate(to_btcpp(mission))
+    root = validate(to_btcpp(m.repeated(task(name))))
     shown = root.find(".//DriveTo").attrib["name"]
     printable = all(c in "\t\n\r" or " " <= c < "\x7f" for c in name)
     assert shown == name or not printable

@@ -8,18 +8,18 @@ import xml.etree.ElementTree as ET
 from itertools import cycle
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.checks import check
-from argo_compiler.diagnostics import DiagnosticError, has_errors
+from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.export.flexbe import to_flexbe
 from argo_compiler.hfsm import lower
-from argo_compiler.il import EventKind, Group, Mission, Reaction, Response, Task
+from argo_compiler.il import EventKind, Mission, Reaction, Response, Task
 from tests.argo_compiler.export import missions as m
 from tests.argo_compiler.export.carried import carried_missions, executed
-from tests.argo_compiler.export.test_btcpp import sound
 from tests.conftest import examples
+from tests.mission_parts import assume_sound
+from tests.mission_writing import measure
 
 STEPS = 40
 
@@ -187,7 +187,7 @@ def run(package, mission, outcomes):
 @settings(max_examples=examples(60))
 @given(mission=st.one_of(m.missions(), carried_missions(windows=False)), outcomes=m.outcome_lists)
 def test_behaviour_does_what_the_executor_does(package, mission, outcomes):
-    sound(mission)
+    assume_sound(mission)
     log, outcome = run(package, mission, outcomes)
     expected = executed(mission, outcomes, STEPS)
     assert log == expected[0]
@@ -196,17 +196,12 @@ def test_behaviour_does_what_the_executor_does(package, mission, outcomes):
 
 @given(st.text(min_size=1))
 def test_names_are_data(package, name):
-    group = Group(name="G" + name.replace("/", ""), start=name, end=name, max_repeat_count=2)
-    task = Task(name=name, action="MEASURE", object_id=name)
-    mission = Mission(tasks=(task,), groups=(group,), designation=name)
-    assume(not has_errors(check(mission)))
-    assert run(package, mission, [(1, 2, False)]) == ([(0, name), (1, name)], "completed")
+    done = run(package, m.repeated(measure(name)), [(1, 2, False)])
+    assert done == ([(0, name), (1, name)], "completed")
 
 
 def test_files_are_two_packages_and_a_manifest():
-    mission = Mission(
-        tasks=(Task(name="A", action="MEASURE", object_id="1"),), designation="9 o'clock round"
-    )
+    mission = Mission(tasks=(measure("A"),), designation="9 o'clock round")
     made = to_flexbe(mission, lower(mission))
     assert {path.partition("/")[0] for path in made} == {
         "argo_flexbe_states",
@@ -224,8 +219,7 @@ def test_reactions_are_refused():
         Reaction(event=EventKind.GAS_LEAK, response=Response.PAUSE),
         Reaction(event=EventKind.HOT_SPOT, response=Response.REPORT),
     )
-    task = Task(name="A", action="MEASURE", object_id="1")
-    mission = Mission(tasks=(task,), reactions=reactions)
+    mission = Mission(tasks=(measure("A"),), reactions=reactions)
     with pytest.raises(DiagnosticError, match="reaction to 'gas_leak' can't be said") as caught:
         to_flexbe(mission, lower(mission))
     assert [d.code for d in caught.value.diagnostics] == ["export.reaction"]

@@ -1,10 +1,8 @@
 import pytest
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
 from lark import Lark, Transformer
 
-from argo_compiler.checks import check
-from argo_compiler.diagnostics import has_errors
 from argo_compiler.export import to_dot
 from argo_compiler.hfsm import lower
 from argo_compiler.il import (
@@ -17,6 +15,7 @@ from argo_compiler.il import (
     Reaction,
     Response,
 )
+from tests.argo_compiler.export import missions as m
 from tests.mission_parts import HERE
 from tests.mission_writing import drive, measure, way
 
@@ -117,10 +116,7 @@ def test_edges_say_why(mission):
 
 @given(st.text(min_size=1))
 def test_any_name_is_a_label(name):
-    group = Group(name="G" + name.replace("/", ""), start=name, end=name, max_repeat_count=2)
-    mission = Mission(tasks=(measure(name, object_id="1"),), groups=(group,), designation=name)
-    assume(not has_errors(check(mission)))
-    graph = PARSER.parse(to_dot(lower(mission)))
+    graph = PARSER.parse(to_dot(lower(m.repeated(measure(name, object_id="1")))))
     cluster = next(item for item in graph if item[0] == "cluster")
     assert len([item for item in graph if item[0] in ("node", "cluster")]) == 6
     label = next(item[2]["label"] for item in cluster[2] if item[0] == "node")

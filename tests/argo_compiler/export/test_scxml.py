@@ -4,11 +4,9 @@ import xml.etree.ElementTree as ET
 from dataclasses import replace
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 
 from argo_compiler.base.model import Pose
-from argo_compiler.checks import check
-from argo_compiler.diagnostics import has_errors
 from argo_compiler.export.scxml import to_scxml
 from argo_compiler.export.scxml_data import DUES
 from argo_compiler.hfsm import (
@@ -40,7 +38,7 @@ from tests.argo_compiler.export.executing import Both
 from tests.argo_compiler.hfsm.random_missions import busy_cases, cases
 from tests.argo_compiler.hfsm.world import World
 from tests.conftest import examples
-from tests.mission_parts import HERE
+from tests.mission_parts import HERE, assume_sound
 from tests.mission_writing import measure as a
 from tests.mission_writing import wait
 
@@ -51,22 +49,16 @@ def without_handwork(case):
     return replace(case, script=script)
 
 
-def valid(mission):
-    return not has_errors(check(mission))
-
-
 @settings(max_examples=examples(50))
 @given(cases())
 def test_chart_does_what_the_executor_does(case):
-    assume(valid(case.mission))
-    World(Both(case.mission), without_handwork(case)).run()
+    World(Both(assume_sound(case.mission)), without_handwork(case)).run()
 
 
 @settings(max_examples=examples(30))
 @given(busy_cases())
 def test_chart_is_interrupted_as_the_executor_is(case):
-    assume(valid(case.mission))
-    World(Both(case.mission), without_handwork(case)).run()
+    World(Both(assume_sound(case.mission)), without_handwork(case)).run()
 
 
 def reaction(event, response, **fields):
@@ -158,11 +150,7 @@ def test_window_that_is_over_before_its_round_begins(target):
         Group(name="G", start="A", end="B", max_repeat_count=2, every=30),
         Group(name="G/H", start="A", end="A", max_repeat_count=2, every=4, max_repeat_duration=9),
     )
-    tasks = (
-        a("A", "B", window=window),
-        a("B", "C"),
-        a("C"),
-    )
+    tasks = (a("A", "B", window=window), a("B", "C"), a("C"))
     both = Both(Mission(tasks=tasks, groups=groups))
     both.at(1, ActionSucceeded("A", 1.0))
     both.at(4, Tick())

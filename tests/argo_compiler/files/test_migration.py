@@ -6,12 +6,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.files.mission_file import decode_mission
-from argo_compiler.il import Action, Group, Mission, Stop, Task, Transition
+from argo_compiler.il import Group, Mission, Stop
 from argo_compiler.il.velocities import BEGINNING, of_ways_on, of_ways_there, ways
+from tests.mission_writing import drive
 
+LOW = {"type": "MEASURED_VALUE_LESS", "object_id": "1", "param1": 1}
 DOCK = {"x": 0.0, "y": 0.0, "z": 0.0, "yaw": 0.0}
 
 
@@ -44,9 +45,7 @@ def test_the_velocity_of_the_way_on_becomes_that_of_the_way_there(version):
 
 @pytest.mark.rule("M6")
 def test_where_velocities_differ_the_slowest_is_taken_and_said():
-    file = read(
-        tasks=[task("A", "C", velocity=0.3), task("B", "C", velocity=0.5), task("C", "B")],
-    )
+    file = read(tasks=[task("A", "C", velocity=0.3), task("B", "C", velocity=0.5), task("C", "B")])
     assert velocities(file.mission)["C"] == 0.3
     (change,) = file.changes
     assert change.code == "file.meaning-changed"
@@ -76,21 +75,7 @@ def test_the_next_round_is_a_way_too():
         ({"mode": "supervisory", "tasks": [task("A")]}, "begins paused"),
         ({"tasks": [task("A", pose=DOCK)]}, "was never used"),
         (
-            {
-                "tasks": [
-                    task("A")
-                    | {
-                        "transitions": [
-                            {
-                                "target": "A",
-                                "conditions": [
-                                    {"type": "MEASURED_VALUE_LESS", "object_id": "1", "param1": 1}
-                                ],
-                            }
-                        ]
-                    }
-                ]
-            },
+            {"tasks": [task("A", transitions=[{"target": "A", "conditions": [LOW]}])]},
             "earlier measurement",
         ),
         (
@@ -122,10 +107,7 @@ def test_what_does_not_mean_the_same_is_said(data, said):
         ({"tasks": [task("A", window={"latest": 9})]}, "tasks[0].window"),
         ({"tasks": [task("A"), task("W", action="WAIT")]}, "tasks[1].action"),
         (
-            {
-                "tasks": [task("A")],
-                "groups": [{"name": "G", "start": "A", "end": "A", "every": 9}],
-            },
+            {"tasks": [task("A")], "groups": [{"name": "G", "start": "A", "end": "A", "every": 9}]},
             "groups[0].every",
         ),
     ],
@@ -157,19 +139,8 @@ def routes(draw):
     """Missions in which each task is come to at one velocity."""
     names = [f"T{i}" for i in range(draw(st.integers(1, 6)))]
     speeds = st.sampled_from([None, 0.2, 0.4])
-    tasks = tuple(
-        Task(
-            name=name,
-            action=Action.WAYPOINT,
-            pose=Pose(x=0, y=0, z=0, yaw=0),
-            velocity=draw(speeds),
-            transitions=tuple(
-                Transition(target=target)
-                for target in draw(st.lists(st.sampled_from(names), max_size=1))
-            ),
-        )
-        for name in names
-    )
+    ways_on = st.lists(st.sampled_from(names), max_size=1)
+    tasks = tuple(drive(name, *draw(ways_on), velocity=draw(speeds)) for name in names)
     first, last = sorted(draw(st.tuples(*[st.integers(0, len(names) - 1)] * 2)))
     group = Group(
         name="G",

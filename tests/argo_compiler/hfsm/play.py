@@ -51,6 +51,13 @@ def badly(name):
     return ActionFailed(name, "stuck")
 
 
+def started(mission: Mission) -> Executor:
+    """Return the machine of the mission, started at 0 s."""
+    executor = Executor(lower(mission))
+    executor.start(0)
+    return executor
+
+
 def build(names: str, *groups: Group, ways: Ways | None = None) -> Mission:
     """Return a mission of MEASURE tasks at the checkpoints of their names, one after the other.
 

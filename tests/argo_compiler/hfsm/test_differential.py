@@ -4,31 +4,20 @@ from dataclasses import replace
 from itertools import tee
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.checks import check
-from argo_compiler.diagnostics import has_errors
-from argo_compiler.hfsm import (
-    ActionStopped,
-    Executor,
-    Hfsm,
-    Pause,
-    Progress,
-    Resume,
-    Tick,
-    lower,
-)
+from argo_compiler.hfsm import ActionStopped, Executor, Hfsm, Pause, Progress, Resume, Tick, lower
 from argo_compiler.hfsm.model import RETURN
 from argo_compiler.il import Action
 from tests.argo_compiler.hfsm.random_missions import busy_cases, cases, missions
 from tests.argo_compiler.hfsm.world import STEPS, Hears, World, compare
 from tests.conftest import examples
+from tests.mission_parts import assume_sound
 
 
 def machine(mission):
-    assume(not has_errors(check(mission)))
-    return lower(mission)
+    return lower(assume_sound(mission))
 
 
 @settings(max_examples=examples(100))

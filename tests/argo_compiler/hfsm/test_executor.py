@@ -20,7 +20,7 @@ from argo_compiler.hfsm import (
 )
 from argo_compiler.hfsm.progress import Waiting
 from argo_compiler.il import EventKind, Group, Stop
-from tests.argo_compiler.hfsm.play import build
+from tests.argo_compiler.hfsm.play import build, started
 
 
 @pytest.fixture
@@ -63,8 +63,7 @@ class TestCommands:
     def test_late_driver_starts_and_cancels_nothing_in_between(self):
         group = Group(name="G", start="A", end="A", max_repeat_duration=1)
         mission = build("A", group, ways={"A": ["A"]})
-        executor = Executor(lower(mission))
-        executor.start(0)
+        executor = started(mission)
         (cancel,) = executor.handle(Tick(), 3.5)
         assert isinstance(cancel, CancelAction)
         assert executor.handle(ActionStopped("A"), 3.5) == (StartAction(mission.tasks[0], 2),)
@@ -72,13 +71,11 @@ class TestCommands:
 
     def test_task_that_leads_to_itself_is_started_again(self):
         mission = build("A", ways={"A": ["A"]})
-        executor = Executor(lower(mission))
-        executor.start(0)
+        executor = started(mission)
         assert executor.handle(ActionSucceeded("A"), 0) == (StartAction(mission.tasks[0], 2),)
 
     def test_end_of_the_mission(self):
-        executor = Executor(lower(build("A")))
-        executor.start(0)
+        executor = started(build("A"))
         assert executor.handle(ActionFailed("A", "blocked"), 1) == ()
         assert executor.finished
         assert executor.active is None
@@ -99,8 +96,7 @@ class TestViews:
             Group(name="G", start="A", end="B", max_repeat_count=2),
             Group(name="G/H", start="A", end="A", max_repeat_count=2),
         )
-        executor = Executor(lower(build("A B", *groups)))
-        executor.start(0)
+        executor = started(build("A B", *groups))
         executor.handle(ActionSucceeded("A"), 1)
         assert executor.configuration == ("mission", "group:G", "group:G/H", "task:A")
         assert executor.rounds == {"G": 1, "G/H": 2}
@@ -113,8 +109,7 @@ class TestViews:
             Group(name="G/H", start="A", end="A", max_repeat_duration=5),
             Group(name="G/H/I", start="A", end="A", max_repeat_duration=2, stop=Stop.SOFT),
         )
-        executor = Executor(lower(build("A B", *groups)))
-        executor.start(0)
+        executor = started(build("A B", *groups))
         assert executor.next_deadline == 5
         executor.handle(Tick(), 5)
         assert executor.next_deadline == 8
@@ -138,8 +133,7 @@ class TestMisuse:
             executor.start(0)
 
     def test_after_the_end(self):
-        executor = Executor(lower(build("A")))
-        executor.start(0)
+        executor = started(build("A"))
         executor.handle(ActionSucceeded("A"), 1)
         assert executor.handle(Tick(), 2) == ()
         assert executor.handle(Pause(), 2) == ()

@@ -3,12 +3,11 @@
 from collections import Counter, defaultdict
 
 import pytest
-from hypothesis import assume, given, reject, settings
+from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.base.model import Pose
-from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.diagnostics.codes import CODES
 from argo_compiler.hfsm import (
@@ -27,23 +26,12 @@ from argo_compiler.hfsm import (
     lower,
 )
 from argo_compiler.hfsm.handover import hand_over, match
-from argo_compiler.hfsm.progress import (
-    GroupProgress,
-    Phase,
-    Reacting,
-    ReadingProgress,
-    Waiting,
-)
-from argo_compiler.il import (
-    EventKind,
-    Group,
-    Mission,
-    OnFailure,
-    Reaction,
-    Response,
-)
+from argo_compiler.hfsm.progress import GroupProgress, Phase, Reacting, ReadingProgress, Waiting
+from argo_compiler.il import EventKind, Group, Mission, OnFailure, Reaction, Response
+from tests.argo_compiler.hfsm.play import started
 from tests.argo_compiler.hfsm.random_missions import missions, outcome_lists
 from tests.conftest import examples
+from tests.mission_parts import assume_sound
 from tests.mission_writing import drive
 from tests.mission_writing import measure as task
 
@@ -136,12 +124,9 @@ def order(*executors):
 def whole_and_interrupted(mission, outcomes, at, by=PAUSE):
     """Return the mission carried out as a whole, and up to a time at which a person interrupts it,
     each as the executor and its site; and the time of the interruption."""
-    assume(not has_errors(check(mission)))
-    whole, once = Executor(lower(mission)), Site(outcomes)
-    whole.start(0)
+    whole, once = started(assume_sound(mission)), Site(outcomes)
     once.run(whole, 0, VISITS)
-    live, site = Executor(lower(mission)), Site(outcomes)
-    live.start(0)
+    live, site = started(mission), Site(outcomes)
     now = 0
     while not live.finished and now < at and visits_of(live.progress()) < VISITS:
         now = site.step(live, now, until=at)
@@ -277,8 +262,7 @@ class TestByHand:
         group = Group(
             name="G", start="A", end="D", max_repeat_duration=90, count_interruptions=counts
         )
-        live = Executor(lower(line(group)))
-        live.start(0)
+        live = started(line(group))
         live.handle(ActionSucceeded("A", 4), 5)
         live.handle(TakeOver(), 10)
         live.handle(ActionStopped("B"), 10)
@@ -295,8 +279,7 @@ class TestByHand:
             assert live.next_deadline == restored.next_deadline
 
     def test_not_while_an_action_runs(self):
-        executor = Executor(lower(line()))
-        executor.start(0)
+        executor = started(line())
         executor.handle(TakeOver(), 1)
         with pytest.raises(ValueError, match="while the action of 'A' still runs"):
             executor.handle(GiveBack((ByHand(task="A"),)), 2)

@@ -3,24 +3,8 @@
 import pytest
 
 from argo_compiler.base.model import Pose
-from argo_compiler.hfsm import (
-    Cancel,
-    Cause,
-    Occurred,
-    Outcome,
-    Pause,
-    Resume,
-    Tick,
-)
-from argo_compiler.il import (
-    Afterwards,
-    EventKind,
-    Group,
-    Mission,
-    OnFailure,
-    Reaction,
-    Response,
-)
+from argo_compiler.hfsm import Cancel, Cause, Occurred, Outcome, Pause, Resume, Tick
+from argo_compiler.il import Afterwards, EventKind, Group, Mission, OnFailure, Reaction, Response
 from tests.argo_compiler.hfsm.play import Play, badly, stopped, well
 from tests.mission_writing import measure as task
 
@@ -37,6 +21,14 @@ def plan(*tasks, **fields):
 def reaction(event, response, **fields):
     pose = SHELTER if response is Response.SAFE_AREA else None
     return Reaction(event=event.event, response=response, pose=pose, **fields)
+
+
+def interrupted(by, **fields):
+    """Return the play of a plan with these fields, in which A is stopped at 1 s by an event."""
+    play = Play(plan(**fields))
+    play.at(1, by)
+    play.at(1, stopped("A"))
+    return play
 
 
 class TestFailures:
@@ -112,18 +104,14 @@ class TestReactions:
         shelter = reaction(
             LEAK, Response.SAFE_AREA, until=CLEAR.event, afterwards=Afterwards.RESUME
         )
-        play = Play(plan(reactions=(shelter,)))
-        play.at(1, LEAK)
-        play.at(1, stopped("A"))
+        play = interrupted(LEAK, reactions=(shelter,))
         assert play.running.pose == SHELTER
         play.at(2, CLEAR)
         assert play.at(3, well("react to gas_leak")) == ["+A"]
 
     @pytest.mark.rule("R3")
     def test_person_ends_a_hold(self):
-        play = Play(plan(reactions=(reaction(LEAK, Response.PAUSE),)))
-        play.at(1, LEAK)
-        play.at(1, stopped("A"))
+        play = interrupted(LEAK, reactions=(reaction(LEAK, Response.PAUSE),))
         assert (play.at(2, Pause()), play.at(3, Resume())) == ([], [])
         assert play.holding
         assert play.at(4, Resume()) == ["+A"]
@@ -134,18 +122,14 @@ class TestReactions:
         [(Response.RETURN, Outcome.RETURNED), (Response.SAFE_AREA, Outcome.SHELTERED)],
     )
     def test_end(self, response, outcome):
-        play = Play(plan(reactions=(reaction(LEAK, response),)))
-        play.at(1, LEAK)
-        play.at(2, stopped("A"))
+        play = interrupted(LEAK, reactions=(reaction(LEAK, response),))
         play.at(3, well("react to gas_leak"))
         assert (play.outcome, play.finished, play.active) == (outcome, True, None)
 
     @pytest.mark.rule("R4")
     def test_wait(self):
         wait = reaction(LEAK, Response.RETURN, afterwards=Afterwards.WAIT)
-        play = Play(plan(reactions=(wait,)))
-        play.at(1, LEAK)
-        play.at(2, stopped("A"))
+        play = interrupted(LEAK, reactions=(wait,))
         assert play.at(3, well("react to gas_leak")) == []
         assert play.paused
         assert play.at(4, Resume()) == ["+A"]
@@ -163,9 +147,7 @@ class TestReactions:
         low = reaction(LEAK, Response.PAUSE, until=CLEAR.event, priority=1)
         equal = reaction(BATTERY, Response.RETURN, afterwards=Afterwards.RESUME, priority=1)
         high = reaction(ALARM, Response.SAFE_AREA, afterwards=Afterwards.RESUME, priority=2)
-        play = Play(plan(reactions=(low, equal, high)))
-        play.at(1, LEAK)
-        play.at(1, stopped("A"))
+        play = interrupted(LEAK, reactions=(low, equal, high))
         assert play.at(2, BATTERY) == []
         assert play.at(2, BATTERY) == []
         assert play.at(3, ALARM) == ["+react to platform_alarm"]
@@ -178,9 +160,8 @@ class TestReactions:
     @pytest.mark.rule("R8")
     @pytest.mark.parametrize("afterwards", Afterwards)
     def test_drive_fails(self, afterwards):
-        play = Play(plan(reactions=(reaction(LEAK, Response.RETURN, afterwards=afterwards),)))
-        play.at(1, LEAK)
-        play.at(2, stopped("A"))
+        back = reaction(LEAK, Response.RETURN, afterwards=afterwards)
+        play = interrupted(LEAK, reactions=(back,))
         play.at(3, badly("react to gas_leak"))
         ends = afterwards is Afterwards.END
         assert (play.outcome, play.paused) == (Outcome.FAILED if ends else None, not ends)
@@ -189,9 +170,7 @@ class TestReactions:
     def test_events_while_paused(self):
         back = reaction(LEAK, Response.RETURN, afterwards=Afterwards.RESUME)
         stop = reaction(ALARM, Response.ABORT)
-        play = Play(plan(reactions=(back, stop)))
-        play.at(1, Pause())
-        play.at(1, stopped("A"))
+        play = interrupted(Pause(), reactions=(back, stop))
         assert play.at(2, LEAK) == []
         assert play.at(3, Resume()) == ["+react to gas_leak"]
         play.at(4, Pause())
@@ -207,9 +186,7 @@ class TestReactions:
     def test_event_that_ends_a_hold_and_has_a_reaction(self, priority, asked):
         hold = reaction(LEAK, Response.PAUSE, until=CLEAR.event, priority=1)
         home = reaction(CLEAR, Response.RETURN, priority=priority)
-        play = Play(plan(reactions=(hold, home)))
-        play.at(1, LEAK)
-        play.at(1, stopped("A"))
+        play = interrupted(LEAK, reactions=(hold, home))
         assert play.at(2, CLEAR) == asked
 
 
@@ -226,9 +203,7 @@ class TestTimeUp:
     @pytest.mark.rule("M4")
     def test_counts_pauses_and_may_be_reacted_to(self):
         up = Reaction(event=EventKind.TIME_UP, response=Response.RETURN)
-        play = Play(plan(max_duration=5, reactions=(up,)))
-        play.at(1, Pause())
-        play.at(1, stopped("A"))
+        play = interrupted(Pause(), max_duration=5, reactions=(up,))
         play.at(5, Tick())
         assert play.at(8, Resume()) == ["+react to time_up"]
 
@@ -305,9 +280,7 @@ class TestPersons:
     @pytest.mark.rule("G12")
     def test_group_that_counts_interruptions_is_left_when_the_mission_goes_on(self):
         group = Group(name="G", start="A", end="A", max_repeat_duration=5, count_interruptions=True)
-        play = Play(plan(groups=(group,)))
-        play.at(1, Pause())
-        play.at(1, stopped("A"))
+        play = interrupted(Pause(), groups=(group,))
         assert play.next_deadline is None
         assert play.at(9, Tick()) == []
         assert play.at(10, Resume()) == ["+B"]

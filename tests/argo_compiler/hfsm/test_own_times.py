@@ -40,7 +40,7 @@ from argo_compiler.il import (
     Task,
     TimeWindow,
 )
-from tests.argo_compiler.hfsm.play import Play, badly, stopped, well
+from tests.argo_compiler.hfsm.play import Play, badly, started, stopped, well
 from tests.mission_writing import measure as task
 from tests.mission_writing import wait
 from tests.mission_writing import way as when
@@ -133,12 +133,7 @@ class TestWaits:
     @pytest.mark.rule("G14", "W1")
     def test_ways_join_in_a_wait_of_no_time(self):
         ways = (when("End", HIGH), "B")
-        tasks = (
-            task("A", *ways),
-            task("B", "End"),
-            wait("End", "C", duration=0),
-            task("C"),
-        )
+        tasks = (task("A", *ways), task("B", "End"), wait("End", "C", duration=0), task("C"))
         play = Play(
             plan(*tasks, groups=(Group(name="G", start="A", end="End", max_repeat_count=2),))
         )
@@ -424,8 +419,7 @@ class TestOrder:
             on_limit=Afterwards.RESUME,
         )
         plan_ = plan(task("A", time_limit=30), max_duration=5, reactions=(hold,))
-        executor = Executor(lower(plan_))
-        executor.start(0)
+        executor = started(plan_)
         (cancel,) = executor.handle(Tick(), 20)
         assert isinstance(cancel, CancelAction)
         (start,) = executor.handle(ActionStopped("A"), 21)
@@ -519,8 +513,7 @@ class TestStrictness:
         ],
     )
     def test_what_is_no_event_is_refused_and_changes_nothing(self, event):
-        executor = Executor(lower(plan(task("A", "B"), task("B"))))
-        executor.start(0)
+        executor = started(plan(task("A", "B"), task("B")))
         before = executor.progress(), len(executor.trace)
         with pytest.raises(ValueError, match=r".+"):
             executor.handle(event, 5)
@@ -542,15 +535,13 @@ class TestStrictness:
         assert (delivered, executor.outcome) == (4, Outcome.COMPLETED)
 
     def test_unknown_checkpoint_may_be_told(self):
-        executor = Executor(lower(plan(task("A"))))
-        executor.start(0)
+        executor = started(plan(task("A")))
         executor.handle(ReadingGiven("Z", 7), 1)
         assert executor.values["Z"].value == 7
 
     def test_no_call_from_inside_of_another(self):
         """An observer that hears of an event from a clock that the executor reads."""
-        executor = Executor(lower(plan(task("A"))))
-        executor.start(0)
+        executor = started(plan(task("A")))
         refused = []
 
         class Nosy(float):
@@ -599,8 +590,7 @@ class TestHistory:
         assert (begun.id, command.id) == (1, 2)
 
     def test_cancel_command_has_the_id(self):
-        executor = Executor(lower(plan(task("A", "B", time_limit=5), task("B"))))
-        executor.start(0)
+        executor = started(plan(task("A", "B", time_limit=5), task("B")))
         (cancel,) = executor.handle(Tick(), 5)
         assert cancel == CancelAction("A", "not done within 5 s", 1)
 

@@ -17,8 +17,9 @@ from hypothesis.internal.conjecture import providers
 from xdist.remote import Producer
 from xdist.scheduler import LoadFileScheduling
 
-# As many workers run as there are cores: threads of numerical libraries would wait for each other.
-os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+# As many workers run as there are cores: threads of numerical libraries would wait for each other,
+# and so would worker processes, each of which takes seconds to begin.
+os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHON_CPU_COUNT": "1"}
 
 _T = TypeVar("_T")
 

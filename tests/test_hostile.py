@@ -20,6 +20,8 @@ from argo_compiler.il import Mission
 from argo_compiler.script import format_script, import_script, read_script
 from tests.argo_compiler.script.conftest import CATALOG
 
+pytestmark = pytest.mark.long
+
 MEMORY_BYTES = 2_000_000_000
 CPU_SECONDS = 120
 
@@ -144,13 +146,7 @@ def test_hostile_scripts(name: str, tmp_path: Path) -> None:
     assert answer(path).split()[0] in ("mission", "refused")
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=pytest.mark.long) if name == "a hundred thousand tasks" else name
-        for name in FILES
-    ],
-)
+@pytest.mark.parametrize("name", FILES)
 def test_hostile_files(name: str, tmp_path: Path) -> None:
     path = tmp_path / "mission.json"
     path.write_text(json.dumps(FILES[name]()), encoding="utf-8")

@@ -13,6 +13,8 @@ import pytest
 ROOT = Path(__file__).parents[2]
 SMALL = "generated:floors=1,size=12x12,checkpoints=2,seed=1"
 
+pytestmark = pytest.mark.long
+
 COMMANDS = {
     "compile --sizes 20 --repeats 1 --states 10": r"20 total .*\n.* MB of text",
     "env route --window 0.005": r"Route-v0 \(vector\) +[\d,]+ steps/s",
@@ -30,9 +32,6 @@ COMMANDS = {
     "routes_sites --missions 2 --large 0 --peer 0 --sites umad": r"2 of 2 proven",
     "startup --repeats 1 --only import,": r"argo import, mission #1 +[\d.]+ +[\d.]+ +[\d.]+ s",
     "tracked --laps slab --repeats 1": r"slab +[\d.]+ s in ",
-}
-"""what is printed by each, which is the name of a module and its arguments"""
-LONG = {
     "against . import --repeats 1": r"import +[\d.]+ +[\d.]+ +[\d.]+ ",
     "drives --missions 1 --site darmstadt --workers 1": r"tracked +0.00 % ",
     "env resets --count 2": r"Inspect-v0 +2 resets: ",
@@ -45,14 +44,13 @@ LONG = {
     ),
     f"service_world --site {SMALL}": r"preview with obstacles +1 parts",
 }
+"""what is printed by each, which is the name of a module and its arguments"""
 
 
-@pytest.mark.parametrize(
-    "command", [*COMMANDS, *(pytest.param(each, marks=pytest.mark.long) for each in LONG)]
-)
+@pytest.mark.parametrize("command", COMMANDS)
 def test_runs_to_its_end(command, capfd, monkeypatch):
     monkeypatch.chdir(ROOT)
     monkeypatch.setenv("ARGO_CACHE_DIR", os.environ["ARGO_CACHE_DIR"])  # one of them changes it
     name, *arguments = command.split()
     import_module(f"benchmarks.{name}").main(arguments)
-    assert re.search((COMMANDS | LONG)[command], capfd.readouterr().out)
+    assert re.search(COMMANDS[command], capfd.readouterr().out)

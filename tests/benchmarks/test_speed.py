@@ -8,6 +8,7 @@ import pytest
 from benchmarks import speed
 
 
+@pytest.mark.long
 def test_figures_are_measured_and_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     kept = tmp_path / "speed.json"
     assert speed.main(["--smallest", "--write", "--kept", str(kept)]) == 0

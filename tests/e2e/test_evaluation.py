@@ -3,6 +3,7 @@
 import json
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -44,6 +45,24 @@ def file(tmp_path) -> Path:
     return path
 
 
+@pytest.fixture(scope="module")
+def evaluated(argo, tmp_path_factory) -> tuple[Path, str]:
+    """The folder of an evaluation, and what the command has printed."""
+    folder = tmp_path_factory.mktemp("evaluated")
+    (folder / "stop.yaml").write_text(STOP)
+    path = folder / "evaluation.yaml"
+    path.write_text(FILE.format(mission=ROOT / MISSION, last=4))
+    said = argo("evaluate", path, "--out", folder / "out")
+    assert said.returncode == 0, said.stderr
+    return folder / "out", said.stdout
+
+
+@pytest.fixture
+def out(evaluated, tmp_path) -> Path:
+    """The folder of the evaluation that `file` asks for."""
+    return shutil.copytree(evaluated[0], tmp_path / "out")
+
+
 def test_a_file_is_evaluated_and_what_failed_is_made_again(argo, file, tmp_path):
     out = tmp_path / "out"
     said = argo("evaluate", file, "--out", out, "--workers", "2")
@@ -66,13 +85,13 @@ def test_a_file_is_evaluated_and_what_failed_is_made_again(argo, file, tmp_path)
     assert "--seed is decided already" in refused.stderr
 
 
-def test_again_does_nothing_and_says_the_same(argo, file, tmp_path):
-    first = argo("evaluate", file, "--out", tmp_path / "out")
-    again = argo("evaluate", file, "--out", tmp_path / "out")
-    assert (first.returncode, again.returncode) == (0, 0)
-    assert again.stdout == first.stdout
+def test_again_does_nothing_and_says_the_same(argo, file, evaluated, out):
+    again = argo("evaluate", file, "--out", out)
+    assert again.returncode == 0
+    assert again.stdout == evaluated[1].replace(str(evaluated[0]), str(out))
 
 
+@pytest.mark.long
 def test_requirements_are_in_the_exit_status(argo, tmp_path):
     options = (MISSION, *AREAS, "--seeds", "0..199", "--out", tmp_path / "out")
     met = argo("evaluate", *options, "--require", "success >= 0.5")
@@ -88,10 +107,10 @@ def test_requirements_are_in_the_exit_status(argo, tmp_path):
 
 
 @pytest.mark.long
-def test_two_evaluations_are_compared(argo, file, tmp_path):
-    for name in ("a", "b"):
-        assert argo("evaluate", file, "--out", tmp_path / name).returncode == 0
-    said = argo("evaluate", "--compare", tmp_path / "a", tmp_path / "b")
+def test_two_evaluations_are_compared(argo, file, out, tmp_path):
+    other = tmp_path / "other"
+    assert argo("evaluate", file, "--out", other).returncode == 0
+    said = argo("evaluate", "--compare", out, other)
     assert said.returncode == 0
     assert "No difference is shown." in said.stdout
 
@@ -155,9 +174,7 @@ def test_a_wrong_file_says_where(argo, tmp_path, text, message):
 
 
 @pytest.mark.long
-def test_another_evaluation_is_not_overwritten(argo, file, tmp_path):
-    out = tmp_path / "out"
-    assert argo("evaluate", file, "--out", out).returncode == 0
+def test_another_evaluation_is_not_overwritten(argo, out):
     said = argo("evaluate", MISSION, *AREAS, "--seeds", "0..1", "--out", out)
     assert said.returncode == 2
     assert "has another evaluation" in said.stderr
@@ -171,9 +188,7 @@ def test_what_a_file_says_is_not_said_by_options_as_well(argo, file, tmp_path):
 
 
 @pytest.mark.long
-def test_faults_that_have_changed_are_not_those_of_before(argo, file, tmp_path):
-    out = tmp_path / "out"
-    assert argo("evaluate", file, "--out", out).returncode == 0
+def test_faults_that_have_changed_are_not_those_of_before(argo, file, out, tmp_path):
     (tmp_path / "stop.yaml").write_text(STOP.replace("at: 30", "at: 40"))
     said = argo("evaluate", file, "--out", out)
     assert said.returncode == 2
@@ -184,9 +199,7 @@ def test_faults_that_have_changed_are_not_those_of_before(argo, file, tmp_path):
 
 
 @pytest.mark.long
-def test_of_an_evaluation_that_is_replaced_only_what_fits_is_kept(argo, file, tmp_path):
-    out = tmp_path / "out"
-    assert argo("evaluate", file, "--out", out).returncode == 0
+def test_of_an_evaluation_that_is_replaced_only_what_fits_is_kept(argo, file, out):
     before = {row.key: row for row in read_rows(out)}
     assert len(list((out / "failing").iterdir())) == 5
     assert len(list((out / "parts").glob("*.parquet"))) == 1
@@ -266,9 +279,7 @@ def test_failing_runs_name_their_plan(argo, file, tmp_path):
 
 
 @pytest.mark.long
-def test_more_seeds_go_on_from_the_rows_that_are_there(argo, file, tmp_path):
-    out = tmp_path / "out"
-    assert argo("evaluate", file, "--out", out).returncode == 0
+def test_more_seeds_go_on_from_the_rows_that_are_there(argo, file, out):
     before = {row.key for row in read_rows(out)}
     file.write_text(FILE.format(mission=ROOT / MISSION, last=6))
     assert argo("evaluate", file, "--out", out).returncode == 0

@@ -4,6 +4,8 @@ import pytest
 
 from tests.pictures import evaluation, route_portfolio
 
+pytestmark = pytest.mark.long
+
 
 def test_the_portfolio_at_work(tmp_path):
     path = tmp_path / "portfolio.png"
@@ -11,7 +13,6 @@ def test_the_portfolio_at_work(tmp_path):
     assert path.read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.long
 def test_an_evaluation(tmp_path):
     evaluation.main([str(tmp_path), "--worlds", "2"])
     assert {path.name for path in tmp_path.iterdir()} == {

@@ -31,6 +31,7 @@ def with_orders(seed: int, count: int, orders: int) -> RouteProblem:
     return RouteProblem(visits, travel, precedences)
 
 
+@pytest.mark.long
 def test_small_problems_of_any_kind_are_solved_as_well_as_by_trying_all_routes() -> None:
     reached = possible = 0
     for seed in sample(range(2000, 2060)):

@@ -216,6 +216,7 @@ def simulated(plan, rng, share):
     return EvaluationResults(plan, tuple(rows))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("share", "asked"), [(0.85, 0.8), (0.9, 0.95)])
 def test_the_interval_covers_where_a_requirement_decides_when_to_stop(mission, share, asked):
     """An exact interval covers the rate in 93 of 100 of the first ones only."""

@@ -80,6 +80,7 @@ def test_a_fault_elsewhere_is_not_found_by_what_looks_the_same():
     assert false_alarms(other, spec, site.site) == 1
 
 
+@pytest.mark.long
 def test_findings_and_causes_as_another_reading_of_the_documentation_has_them():
     """Beside the causes that the measurements of faults know, in random runs with two faults."""
     seen = 0

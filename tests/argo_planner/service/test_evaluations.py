@@ -47,6 +47,7 @@ def until(service: Served, job: str, holds: Callable[[dict], bool]) -> dict:
         time.sleep(0.05)
 
 
+@pytest.mark.long
 def test_it_is_watched_says_what_the_library_says_and_its_runs_are_replayed(
     service: Served, id: str, site: OpenedSite
 ) -> None:

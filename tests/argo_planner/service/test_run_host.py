@@ -106,6 +106,7 @@ async def done_by_itself(host: RunHost) -> str:
     return host.state.headline.word
 
 
+@pytest.mark.long
 async def test_a_run_is_that_of_the_simulation(tmp_path, site) -> None:
     wanted = order(site)
     spec = RunSpec(mission=wanted.mission, site=site.reference, drive="route", seed=4)

@@ -20,7 +20,7 @@ class ConditionChecks:
     def diagnostics(
         self, about: About, part: Task | Group, condition: Condition, field: str
     ) -> Iterator[Diagnostic]:
-        """What is wrong with a condition of the part, in that field."""
+        """Yield the diagnostics of a condition of the part, in that field."""
         which = f"a {condition.type} condition of {_name(part)}"
         yield from _check_bounds(about, condition, field, which)
         if self.known is not None and condition.object_id not in self.known:

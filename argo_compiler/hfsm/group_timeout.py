@@ -1,4 +1,4 @@
-"""What happens when the time of a group is up.
+"""Time-outs of groups: what the machine does when the time of a group is up.
 
 With a hard stop the machine leaves the group at once, by the transition that is made here:
 `configuration.py` finds when that is due by the group's clock, and `tasks_and_groups.py` takes the

@@ -1,4 +1,4 @@
-"""Why there is an entry in a trace, how a mission has ended, and what came of a measurement."""
+"""Kinds of trace entries, of ends of a mission, and of results of a measurement."""
 
 from enum import StrEnum
 
@@ -41,7 +41,7 @@ class Cause(StrEnum):
 
 
 class Outcome(StrEnum):
-    """How a mission has ended."""
+    """End of a mission."""
 
     COMPLETED = "completed"
     """all was done that the plan asked for"""
@@ -60,7 +60,7 @@ class Outcome(StrEnum):
 
 
 class ReadingKind(StrEnum):
-    """What came of the last measurement at a checkpoint (C3)."""
+    """Result of the last measurement at a checkpoint (C3)."""
 
     VALUE = "value"
     UNREADABLE = "unreadable"

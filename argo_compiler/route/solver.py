@@ -1,4 +1,4 @@
-"""What takes part in a search, and how one's own solver does. Argo's are in `portfolio.py`."""
+"""The protocol of solvers, and the registry of one's own. Argo's are listed in `portfolio.py`."""
 
 from typing import Protocol
 

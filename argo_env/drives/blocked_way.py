@@ -1,4 +1,4 @@
-"""How long a robot that does not move, as at a blocked way, waits before it gives its way up.
+"""Patience of a robot that does not move, as at a blocked way, until it gives its way up.
 
 The tracked drive notices sooner that it is stuck, and tries to get free: see `tracked/drive.py`.
 """

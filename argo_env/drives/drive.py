@@ -1,5 +1,4 @@
-"""What every drive can do, whatever it costs: move the robot along a path, its flippers raised or
-flat."""
+"""The protocol of drives, which move the robot along a path, its flippers raised or flat."""
 
 import math
 from collections.abc import Sequence

@@ -1,5 +1,5 @@
-"""What the drives have in common that go by a timetable and know no forces; and the route drive,
-which has travel times only: the robot is at its place along the path by time."""
+"""Drives that go by a timetable and know no forces: what they share, and the route drive, which
+puts the robot at its place along the path by travel times only."""
 
 import math
 from abc import ABC, abstractmethod

@@ -1,5 +1,4 @@
-"""What every environment has in common: what a step and a state are checked for, copies, and how it
-shows itself."""
+"""Parts that every environment has: checks of its steps and states, copies, and pictures."""
 
 import os
 import sys

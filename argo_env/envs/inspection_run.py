@@ -1,5 +1,5 @@
-"""One inspection under way, a simulation whose tasks are given one by one; and what the ways from a
-robot to all docks and checkpoints of a site take, estimated."""
+"""An inspection under way, a simulation whose tasks are given one by one; and estimates of the
+travel times from any place to all docks and checkpoints of a site."""
 
 import math
 import weakref

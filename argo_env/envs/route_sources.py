@@ -1,5 +1,5 @@
-"""Where route instances come from: random sites, which have aisles and stairs along their ends, and
-the travel times of a real one."""
+"""Sources of route instances: random sites, which have aisles and stairs along their ends, and the
+travel times of a real one."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field

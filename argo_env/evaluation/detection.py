@@ -1,4 +1,4 @@
-"""Whether what was wrong was found, after how long, and what was found that was not so."""
+"""Detections of what was wrong, with their delays, and false alarms."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

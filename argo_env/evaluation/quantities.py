@@ -1,4 +1,4 @@
-"""What evaluations count of each run, such as successes; a new quantity is listed here."""
+"""Quantities that evaluations count of each run, such as successes; a new one is listed here."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING

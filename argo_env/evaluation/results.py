@@ -1,4 +1,4 @@
-"""What came of an evaluation: its rows, how long missions took, and where runs failed."""
+"""Results of an evaluation: its rows, how long missions took, and where runs failed."""
 
 import html
 import math

@@ -1,4 +1,4 @@
-"""Where results are written to."""
+"""Folders that results are written to."""
 
 import errno
 import os

@@ -41,8 +41,8 @@ def closed_cells(surface: Surface, blockages: Sequence[Blockage]) -> NDArray[np.
 
 
 def _within(places: NDArray[np.float64], blockage: Blockage, reach: float) -> NDArray[np.bool_]:
-    """Which places, shape (n, 3), are in the blockage's layer and within `reach` (m) of it along
-    each axis."""
+    """Return for each place, shape (n, 3), whether it is in the blockage's layer and within `reach`
+    (m) of it along each axis."""
     (x0, y0, x1, y1), (x, y, z) = blockage.rect, places.T
     return np.asarray(
         (np.abs(z - blockage.z) <= LAYER)

@@ -1,4 +1,4 @@
-"""What of a mission is odd on its site: poses that checkpoints can't be read from, and speeds that
+"""Warnings about a mission on its site: poses that checkpoints can't be read from, and speeds that
 the robot is not known to drive at."""
 
 from collections.abc import Iterator

@@ -1,5 +1,5 @@
-"""Where recordings are written and what they need, checked before a long run is made; and a
-recorder that its run does not depend on."""
+"""Files of recordings, checked before a long run is made; and a recorder whose failure does not end
+its run."""
 
 import logging
 from collections.abc import Callable, Iterator

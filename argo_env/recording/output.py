@@ -1,5 +1,5 @@
-"""What tells a recording, and the file that it is written to, without a buffer: what is written is
-with the system."""
+"""Mark and version of recordings, and the file that one is written to, without a buffer: what is
+written is with the system."""
 
 import os
 from contextlib import suppress

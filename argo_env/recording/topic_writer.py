@@ -1,4 +1,4 @@
-"""What a recorder writes to, a file or those who look on; and JSON schemas that viewers understand.
+"""Writers of a recorder's topics, to a file or a viewer; and JSON schemas that viewers understand.
 
 Foxglove shows a JSON topic whose schema has objects, arrays of one kind of item, and scalars.
 Its open-source version knows no `$ref` and no `anyOf`, which pydantic uses for parts and for fields

@@ -1,5 +1,5 @@
-"""What planning and driving need to know of a robot: `urdf/robot/<name>.yaml`; and how fast it gets
-ahead in fact, beside the speeds that it is told to go at."""
+"""Data of a robot for planning and driving (`urdf/robot/<name>.yaml`); and the speeds that it
+reaches in fact, beside those that it is told to go at."""
 
 import math
 import os

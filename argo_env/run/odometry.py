@@ -1,5 +1,5 @@
-"""What the robot's way adds up to: metres, contacts with the site, and mishaps. Touches that follow
-each other closely are one contact, from first to last."""
+"""Sums along the robot's way: metres, contacts with the site, and mishaps. Touches that follow each
+other closely are one contact, from first to last."""
 
 import math
 from collections.abc import Iterable, Sequence

@@ -1,5 +1,5 @@
-"""What a run is made from: all that it depends on, as data; and its conditions, which are as
-planned unless something else is said."""
+"""Spec of a run: all that it depends on, as data; and its conditions, which are as planned unless
+something else is said."""
 
 import math
 from typing import Any

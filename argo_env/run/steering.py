@@ -1,5 +1,5 @@
-"""What a run may be told from outside while it goes on, what of that makes no sense, and what a
-person may let the robot do who has taken it over."""
+"""Requests to a run that goes on, refusals of those that make no sense, and the actions of a person
+who has taken the robot over."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

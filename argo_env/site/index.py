@@ -1,4 +1,4 @@
-"""What is where: the solids of a site in arrays, and what rays meet first of them."""
+"""Index of a site's solids in arrays, and the first of them that rays meet."""
 
 from collections.abc import Sequence
 

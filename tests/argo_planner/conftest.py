@@ -29,5 +29,5 @@ def catalog(umad: OpenedSite) -> Catalog:
 
 @pytest.fixture(scope="session")
 def anyio_backend() -> str:
-    """What carries out the tests that are coroutines (marked `anyio`)."""
+    """Return the name of the library that runs tests that are coroutines (marked `anyio`)."""
     return "asyncio"

@@ -57,7 +57,7 @@ def missions(texts: Sequence[bytes]) -> list[bytes]:
 
 @cache
 def makers() -> tuple[Restructurer, Mutator, Mutator, Composer]:
-    """What makes files, scripts, files and scripts, in turn."""
+    """Return the makers of files, scripts, files and scripts, which take turns."""
     texts = scripts()
     files = missions(texts)
     return Restructurer(files), Mutator(texts), Mutator(files), Composer(texts)

@@ -248,7 +248,7 @@ class Cases:
         return said, ending
 
     def _target(self, said: Sequence[ScriptOrder]) -> Target | None:
-        """Where a case leads whose only order is to go elsewhere."""
+        """Return the target of a case whose only order is to go elsewhere; None for other cases."""
         if len(said) != 1 or said[0].manner is not None or said[0].name is not None:
             return None
         match said[0]:
@@ -269,7 +269,7 @@ class Cases:
     # ---- failures
 
     def _failure(self, case: Case, block: ProgramBlock) -> None:
-        """What is done if the last task fails."""
+        """Plan the orders that are carried out if the last task fails."""
         recent = self.context.recent
         if not recent:
             message = "there is no task before this that could fail"
@@ -353,7 +353,7 @@ class Cases:
         return found if test.negated else condition
 
     def _too_late(self, case: Case, condition: SaidCondition) -> None:
-        """What is done if the window of the last task is missed."""
+        """Plan the orders that are carried out if the last task misses its window."""
         recent = self.context.recent
         alone = len(condition.alternatives) == len(condition.alternatives[0]) == 1
         if not alone or len(recent) != 1 or recent[0].window is None:
@@ -370,7 +370,7 @@ class Cases:
 
 
 def _policy(said: Sequence[ScriptOrder]) -> OnFailure | None:
-    """What a mission does by itself in a failure, if that is all that is ordered."""
+    """Return the way that a mission has for failures, if that is all that is ordered, or None."""
     match said:
         case [orders.Plain(word=word, manner=None, name=None)]:
             return _POLICIES.get(word)
@@ -380,7 +380,7 @@ def _policy(said: Sequence[ScriptOrder]) -> OnFailure | None:
 
 
 def _is_failure(condition: SaidCondition) -> bool:
-    """Whether it asks only whether the last task has failed."""
+    """Return whether a case asks only whether the last task has failed."""
     match condition.alternatives:
         case ((Test(predicate=InState(state=TaskState.FAILED), negated=False) as test,),):
             return _is_of_it(test) and not condition.negated

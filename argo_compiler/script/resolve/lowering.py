@@ -31,14 +31,14 @@ Find = Callable[[Steps], ProgramNode | None]
 
 @dataclass(eq=False, slots=True)
 class Point:
-    """Where a way leads to; neither set: the mission ends."""
+    """Target of a way: a task or a point. With neither the mission ends."""
 
     item: "Item | None" = None
     same: "Point | None" = None
     """it is this one"""
 
     def circles(self) -> bool:
-        """Whether it leads to itself, and to no task."""
+        """Return whether the point leads to itself, and to no task."""
         point, seen = self, set()
         while point.same is not None and id(point) not in seen:
             seen.add(id(point))

@@ -1,4 +1,4 @@
-"""Where a mission starts and ends, as its header and its orders say."""
+"""Start and end of a mission, from its header and its orders."""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""How the canonical script says conditions, events and the reactions to them."""
+"""Conditions, events and the reactions to them in the canonical script."""
 
 from collections.abc import Sequence
 

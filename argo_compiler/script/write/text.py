@@ -1,4 +1,4 @@
-"""How the canonical script writes texts, numbers, poses, places and lines."""
+"""Texts, numbers, poses, places and lines in the canonical script."""
 
 import re
 from collections.abc import Iterable

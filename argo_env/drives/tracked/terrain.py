@@ -1,5 +1,5 @@
-"""What the tracked robot drives on, the world's solids as bodies that never move, and what of them
-it presses against that it must not touch."""
+"""Terrain of the tracked robot: the world's solids as bodies that never move, and those of them
+that it presses against and must not touch."""
 
 import math
 from collections.abc import Sequence

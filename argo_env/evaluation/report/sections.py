@@ -1,5 +1,5 @@
-"""What a report says of plans, of runs that are no success, and of how the evaluation was made,
-without the time of day: equal rows have an equal report."""
+"""Sections of a report: plans, runs that are no success, and how the evaluation was made, without
+the time of day, so that equal rows have an equal report."""
 
 import re
 import shlex

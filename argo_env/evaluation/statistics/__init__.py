@@ -1,4 +1,4 @@
-"""What follows from the outcomes of runs, and how sure it is: mathematics only.
+"""Estimates from the outcomes of runs, and how sure they are: mathematics only.
 
 What is counted of each run is listed in `../quantities.py`.
 """

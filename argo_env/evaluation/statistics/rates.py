@@ -1,4 +1,4 @@
-"""How often something happens: rates with confidence intervals, of runs, of worlds and of strata.
+"""Rates with confidence intervals, of runs, of worlds and of strata.
 
 The runs of one world depend on each other and count as one. Strata are faults that come with known
 probabilities: where failures are rare and most of them come with a few faults, it tells more to run

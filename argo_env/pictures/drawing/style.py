@@ -1,4 +1,4 @@
-"""How the things on a plan look; the headline of a picture, and the legend and scales below it."""
+"""Styles of the things on a plan; headline of a picture, and legend and scales below it."""
 
 import math
 from collections.abc import Mapping, Sequence

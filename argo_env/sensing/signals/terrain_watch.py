@@ -1,5 +1,5 @@
-"""What is in the way, or missing from it: a scanner, depth along rays to the lane ahead beside what
-the map lets expect, and the watch that tells of it."""
+"""Watch for what is in the way or missing from it, with its scanner: depth along rays to the lane
+ahead, beside the depth that the map lets expect."""
 
 import math
 from dataclasses import dataclass

@@ -1,5 +1,5 @@
-"""Where the indicator of an instrument stands, in a picture with the pose of its face known; and
-how sure such readings are, one or several."""
+"""Position of an instrument's indicator in a picture in which the pose of its face is known; and
+confidence of such readings, one or several."""
 
 import math
 from collections.abc import Sequence

@@ -1,5 +1,5 @@
-"""What the reader knows of a kind of checkpoint, its drawn face and its indicator: dial gauges,
-liquid level gauges and quarter-turn valves."""
+"""Models of the kinds of checkpoints, with drawn face and indicator: dial gauges, liquid level
+gauges and quarter-turn valves."""
 
 import math
 from collections.abc import Callable

@@ -62,7 +62,8 @@ def socket_client() -> str:
 async def admitted(
     socket: WebSocket, role: AccessRole = AccessRole.VIEW, plan: str | None = None
 ) -> bool:
-    """Whether a connection is taken, to a plan if one is named; else its client is told why not."""
+    """Return whether a connection is taken, to a plan if one is named. A client that is refused is
+    told why."""
     visitor: Visitor = socket.scope["visitor"]
     try:
         visitor.require(role)

@@ -1,4 +1,4 @@
-"""How many bytes a request may bring: what is uploaded, and anything else."""
+"""Limits of the bytes that a request may bring: uploads, other bodies, and messages."""
 
 from argo_compiler.files.mission_file import MAX_BYTES
 

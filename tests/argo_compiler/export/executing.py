@@ -44,7 +44,7 @@ class Both:
         self.agree("start")
 
     def start(self, now):
-        """What both began with when they were made."""
+        """Return the actions that both began with when they were made."""
         assert now == 0
         return self.begun
 

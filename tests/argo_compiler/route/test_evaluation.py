@@ -1,4 +1,4 @@
-"""What a route costs, and where it waits and charges, reckoned by hand."""
+"""Costs, waits and charges of routes, reckoned by hand."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What a route means, and what is claimed of it, against a second reading of both."""
+"""The meaning of routes, and the claims about them, against a second reading of both."""
 
 import numpy as np
 import pytest

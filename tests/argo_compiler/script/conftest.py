@@ -69,7 +69,7 @@ CATALOG = make_catalog()
 
 
 def findings(text: str, catalog: Catalog, **areas: int) -> tuple[Diagnostic, ...]:
-    """What is said of a script, be it a mission or refused."""
+    """Return the diagnostics of a script, be it a mission or refused."""
     try:
         result: Resolved | DiagnosticError = import_script(text, catalog, **areas)
     except DiagnosticError as error:
@@ -78,14 +78,14 @@ def findings(text: str, catalog: Catalog, **areas: int) -> tuple[Diagnostic, ...
 
 
 def refusals(text: str, catalog: Catalog) -> list[Diagnostic]:
-    """The errors for which a script is refused."""
+    """Return the errors for which a script is refused."""
     with pytest.raises(DiagnosticError) as caught:
         import_script(text, catalog)
     return [d for d in caught.value.diagnostics if d.severity is Severity.ERROR]
 
 
 def only(text: str, catalog: Catalog, **areas: int) -> tuple[str, int, int, int]:
-    """The one finding: its code, line, column and length."""
+    """Return the code, line, column and length of the only diagnostic."""
     (finding,) = findings(text, catalog, **areas)
     assert finding.span is not None
     assert finding.excerpt == text.split("\n")[finding.span.line - 1]
@@ -93,7 +93,7 @@ def only(text: str, catalog: Catalog, **areas: int) -> tuple[str, int, int, int]
 
 
 def measured_in(mission: Mission) -> list[str]:
-    """What a mission measures, in the order of its tasks."""
+    """Return the checkpoints that a mission measures, in the order of its tasks."""
     return [task.object_id for task in mission.tasks if task.object_id is not None]
 
 

@@ -84,7 +84,7 @@ LENGTHS = {
 
 @pytest.mark.parametrize(("said", "seconds"), LENGTHS.items())
 def test_lengths_of_time(said: str, seconds: float, catalog: Catalog) -> None:
-    """Of a wait, of rounds, and of the whole mission."""
+    """Durations of a wait, of rounds, and of the whole mission are read alike."""
     mission = imported(f"Wait for {said}, then check checkpoint 3.", catalog)
     assert wait_s(mission) == pytest.approx(seconds)
     text = f"Maximum mission total duration: {said}\n{START}Patrol floor 1 for {said}"

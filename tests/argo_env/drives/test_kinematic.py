@@ -139,7 +139,7 @@ def test_no_pitch_on_the_flat_and_none_over_36_degrees(simulation, robot, paths,
 
 
 def above_ground(simulation, poses):
-    """How high (m) the body is above what is below its tracks."""
+    """Return the height (m) of the body above what is below its tracks."""
     # Below both tracks, for what lies between treads is no ground.
     sides = [(-math.sin(p.yaw) * d, math.cos(p.yaw) * d) for p in poses for d in (-0.23, 0.23)]
     points = np.repeat([[p.x, p.y] for p in poses], 2, axis=0) + np.array(sides)

@@ -1,4 +1,4 @@
-"""What of a mission is odd on its site: poses that do not see their checkpoints, and speeds."""
+"""Warnings about a mission on its site: poses that do not see their checkpoints, and speeds."""
 
 import math
 

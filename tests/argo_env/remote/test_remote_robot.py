@@ -58,7 +58,7 @@ def there(yard):
 
 @pytest.fixture
 def simulation(there, site):
-    """Of the plan, on the robot that is there."""
+    """Yield a run of the plan on the robot that is there."""
     with simulation_of(SPEC, site, robot=there.remote()) as simulation:
         yield simulation
 

@@ -121,7 +121,7 @@ def resumed(yard, path):
 
 @pytest.fixture
 def path(tmp_path):
-    """Where the journal of a test is."""
+    """Return the path of the journal of a test."""
     return tmp_path / "run.journal"
 
 

@@ -1,4 +1,4 @@
-"""How scripts fare: what the front end makes of each, against what a careful reader takes it for.
+"""Verdicts on scripts: what the front end makes of each, and what a careful reader takes it for.
 
 That lies beside it: NAME.txt has the script, NAME.json what it has to become.
 """

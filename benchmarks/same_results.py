@@ -184,7 +184,7 @@ def command_results(group: str, only: str) -> Iterator[tuple[str, bytes]]:
     """Yield the name of each case of commands that has `only` in it, and all that it printed and
     wrote."""
     all_cases = {"plans": plan_cases, "routes": route_cases, "journals": journal_cases}[group]()
-    cases = [case for case in all_cases if only in case[0]]
+    cases = [case for case in all_cases if only in f"{group}: {case[0]}"]
     if not cases:
         return
     with tempfile.TemporaryDirectory() as name:

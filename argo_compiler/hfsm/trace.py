@@ -8,6 +8,9 @@ from argo_compiler.hfsm.kinds import Cause
 from argo_compiler.hfsm.tables import CompiledTransition, LeafNode
 from argo_compiler.il import Condition, EventKind
 
+new_tuple = tuple.__new__
+"""makes a NamedTuple in half the time of its own"""
+
 
 @dataclass(frozen=True, slots=True)
 class TraceEntry:

@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterator
 from itertools import pairwise
 
-from argo_env.site.spec import LEDGE, FloorSpec, Rect, SiteSpec, TowerSpec
+from argo_env.site.spec import LEDGE, FloorSpec, SiteSpec, TowerSpec, away
 
 PITCH = (20.0, 45.0)  # deg, of a flight
 GOING = (0.21, 0.31)  # m
@@ -78,13 +78,9 @@ def _checkpoints(floor: FloorSpec) -> Iterator[str]:
                 f"checkpoint {checkpoint.id}: it is {height:.3g} m high; the rules ask for "
                 f"{HEIGHT[0]:g} to {HEIGHT[1]:g} m"
             )
-        beside = min(_distance(x, y, rect) for rect in floor.walkways.values())
+        beside = min(away(rect, x, y) for rect in floor.walkways.values())
         if beside > BESIDE + _TOLERANCE:
             yield (
                 f"checkpoint {checkpoint.id}: it is {beside:.3g} m beside the walkway; the rules "
                 f"ask for {BESIDE:g} m at most"
             )
-
-
-def _distance(x: float, y: float, rect: Rect) -> float:
-    return math.hypot(max(rect[0] - x, 0.0, x - rect[2]), max(rect[1] - y, 0.0, y - rect[3]))

@@ -37,22 +37,24 @@ worlds:
 STOP = "faults: [{kind: emergency_stop, at: 30}]\n"
 
 
+def written(folder: Path, last: int = 4) -> Path:
+    """Return the file of an evaluation up to the seed `last`, written into a folder."""
+    (folder / "stop.yaml").write_text(STOP)
+    path = folder / "evaluation.yaml"
+    path.write_text(FILE.format(mission=ROOT / MISSION, last=last))
+    return path
+
+
 @pytest.fixture
 def file(tmp_path) -> Path:
-    (tmp_path / "stop.yaml").write_text(STOP)
-    path = tmp_path / "evaluation.yaml"
-    path.write_text(FILE.format(mission=ROOT / MISSION, last=4))
-    return path
+    return written(tmp_path)
 
 
 @pytest.fixture(scope="module")
 def evaluated(argo, tmp_path_factory) -> tuple[Path, str]:
     """The folder of an evaluation, and what the command has printed."""
     folder = tmp_path_factory.mktemp("evaluated")
-    (folder / "stop.yaml").write_text(STOP)
-    path = folder / "evaluation.yaml"
-    path.write_text(FILE.format(mission=ROOT / MISSION, last=4))
-    said = argo("evaluate", path, "--out", folder / "out")
+    said = argo("evaluate", written(folder), "--out", folder / "out")
     assert said.returncode == 0, said.stderr
     return folder / "out", said.stdout
 
@@ -317,11 +319,7 @@ def processes_of(session: int) -> list[int]:
 
 @pytest.fixture(scope="module")
 def long_file(tmp_path_factory) -> Path:
-    folder = tmp_path_factory.mktemp("long")
-    (folder / "stop.yaml").write_text(STOP)
-    path = folder / "evaluation.yaml"
-    path.write_text(FILE.format(mission=ROOT / MISSION, last=59))
-    return path
+    return written(tmp_path_factory.mktemp("long"), last=59)
 
 
 @pytest.fixture(scope="module")

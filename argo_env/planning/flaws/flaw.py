@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from argo_compiler.base.listing import listed
 from argo_env.site import Site
 from argo_env.site.shapes import WALKING_ROLES, half_extents
-from argo_env.site.spec import Rect
 
 Point = tuple[float, float]
 
@@ -46,11 +45,6 @@ def place(x: float, y: float) -> str:
 def direction(yaw: float) -> str:
     """Where someone looks who is turned by `yaw` (rad) from the east."""
     return _DIRECTIONS[round(yaw / (math.pi / 4)) % 8]
-
-
-def away(rect: Rect, x: float, y: float) -> float:
-    """m from a point to a rectangle."""
-    return math.hypot(max(rect[0] - x, 0.0, x - rect[2]), max(rect[1] - y, 0.0, y - rect[3]))
 
 
 def in_the_way(site: Site, low: Sequence[float], high: Sequence[float]) -> str:

@@ -11,9 +11,9 @@ from argo_env.navigation import Navigator
 from argo_env.navigation.lattice import MARGIN
 from argo_env.planning.catalog import APART, patrol_corners
 from argo_env.planning.checking import unserved_floors
-from argo_env.planning.flaws.flaw import ASIDE, Flaw, Mark, away, between, place
+from argo_env.planning.flaws.flaw import ASIDE, Flaw, Mark, between, place
 from argo_env.planning.flaws.standing import Standing
-from argo_env.site.spec import LEDGE, FloorSpec, TowerSpec
+from argo_env.site.spec import LEDGE, FloorSpec, TowerSpec, away
 from argo_env.site.stairs import mouths
 
 TURN = 1.4  # m by 1.4 m, in which the robot turns with room to spare

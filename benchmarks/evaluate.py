@@ -23,11 +23,11 @@ from pathlib import Path
 import numpy as np
 
 from argo_env.evaluation.case import EvaluationCase
+from argo_env.evaluation.estimates.pairs import SuccessPairs, power
 from argo_env.evaluation.evaluating import Evaluating, WorkOrder, carry_out
 from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.pool.backends import BACKENDS, make_backend
 from argo_env.evaluation.row import RunOutcome, RunRow
-from argo_env.evaluation.statistics.pairs import SuccessPairs, power
 from argo_env.planning.opening import open_site
 from argo_env.run.spec import RunSpec
 from argo_planner.use_cases.importing import Upload, import_mission

@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from argo_compiler.route import RouteProblem, RouteSuggestion, suggest_route
-from argo_compiler.route.portfolio import FIRST, solver_names
+from argo_compiler.route.solvers import FIRST, solver_names
 from benchmarks.instances import read_route_problem
 from benchmarks.options import seed_number
 from benchmarks.routes import find_files

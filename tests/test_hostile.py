@@ -19,10 +19,10 @@ from argo_compiler.hfsm import Executor, lower
 from argo_compiler.il import Mission
 from argo_compiler.script import format_script, import_script, read_script
 from tests.argo_compiler.script.conftest import CATALOG
+from tests.campaigns.hostile import MEMORY_BYTES, Json, condition, measure, mission, way
 
 pytestmark = pytest.mark.long
 
-MEMORY_BYTES = 2_000_000_000
 CPU_SECONDS = 120
 
 # Forks the processes from one that has loaded this module, and nothing else.
@@ -43,10 +43,9 @@ def read_within_limits(path: Path, answers: Connection) -> None:
     resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS))
     try:
         if path.suffix == ".json":
-            mission = read_mission(path)
+            everything(read_mission(path))
         else:
-            mission = import_script(read_script(str(path)), CATALOG).mission
-        everything(mission)
+            everything(import_script(read_script(str(path)), CATALOG).mission)
         answers.send("mission")
     except ArgoError as error:
         answers.send(f"refused {str(error)[-400:]}")
@@ -66,23 +65,22 @@ def answer(path: Path) -> str:
     return said
 
 
-def nested(depth: int) -> dict[str, object]:
+def nested(depth: int) -> Json:
     """Groups in groups: the one of depth i goes from the first task to the i-th last one."""
-    tasks = [
-        {
-            "name": f"T{i}",
-            "action": "MEASURE",
-            "object_id": "1",
-            "transitions": [{"target": f"T{i + 1}"}] if i < depth else [],
-        }
-        for i in range(depth + 1)
-    ]
-    names = ["/".join(["g"] * (i + 1)) for i in range(depth)]
     groups = [
-        {"name": name, "start": "T0", "end": f"T{depth - i}", "max_repeat_count": 2}
-        for i, name in enumerate(names)
+        {
+            "name": "/".join(["g"] * (i + 1)),
+            "start": "T0",
+            "end": f"T{depth - i}",
+            "max_repeat_count": 2,
+        }
+        for i in range(depth)
     ]
-    return {"version": 3, "tasks": tasks, "groups": groups}
+    return mission([*chain(depth), measure(f"T{depth}")], groups)
+
+
+def chain(count: int) -> list[Json]:
+    return [measure(f"T{i}", way(f"T{i + 1}")) for i in range(count)]
 
 
 SCRIPTS = {
@@ -101,41 +99,11 @@ SCRIPTS = {
 # Each is made by the test that reads it.
 FILES = {
     "groups a thousand deep": partial(nested, 1000),
-    "a name of a megabyte": lambda: {
-        "version": 3,
-        "tasks": [{"name": "A" * 1_000_000, "action": "MEASURE", "object_id": "1"}],
-    },
-    "a hundred thousand tasks": lambda: {
-        "version": 3,
-        "tasks": [
-            {
-                "name": str(i),
-                "action": "MEASURE",
-                "object_id": "1",
-                "transitions": [{"target": str(i + 1)}] if i < 99_999 else [],
-            }
-            for i in range(100_000)
-        ],
-    },
-    "ten thousand transitions from one task": lambda: {
-        "version": 3,
-        "tasks": [
-            {
-                "name": "A",
-                "action": "MEASURE",
-                "object_id": "1",
-                "transitions": [
-                    {
-                        "target": "A",
-                        "conditions": [
-                            {"type": "MEASURED_VALUE_GREATER", "object_id": "1", "param1": i}
-                        ],
-                    }
-                    for i in range(10_000)
-                ],
-            }
-        ],
-    },
+    "a name of a megabyte": lambda: mission([measure("A" * 1_000_000)]),
+    "a hundred thousand tasks": lambda: mission([*chain(99_999), measure("T99999")]),
+    "ten thousand transitions from one task": lambda: mission(
+        [measure("A", *(way("A", condition(1, i)) for i in range(10_000)))]
+    ),
 }
 
 

@@ -15,7 +15,7 @@ from argo_compiler.route.portfolio import solve
 from argo_compiler.route.problem import NEVER, Objective, RouteProblem
 from argo_compiler.route.pruning import longest, prune
 from argo_compiler.route.search import Observers, Search, SearchLimits
-from argo_compiler.route.solver import RouteSolver
+from argo_compiler.route.solvers import RouteSolver
 from argo_compiler.route.stop import FirstFeasible
 from argo_compiler.route.suggested import RouteSuggestion
 

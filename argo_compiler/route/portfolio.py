@@ -5,22 +5,17 @@ from collections.abc import Callable, Sequence
 
 from argo_compiler.base.errors import NotFound
 from argo_compiler.base.nearest_name import nearest_name
-from argo_compiler.route.cp_sat import CpSat
-from argo_compiler.route.exchange_search import ExchangeSearch
-from argo_compiler.route.first_rules import FirstRules
-from argo_compiler.route.held_karp import HeldKarp
-from argo_compiler.route.labels import LabelBeams, Labels
-from argo_compiler.route.linear_proof import LinearProof
-from argo_compiler.route.pyvrp_search import PyvrpSearch
 from argo_compiler.route.ruin_recreate import RuinRecreate
 from argo_compiler.route.search import Search
-from argo_compiler.route.solver import RouteSolver, registered_solvers
-
-FIRST: tuple[RouteSolver, ...] = (FirstRules(),)
-SMALL: tuple[RouteSolver, ...] = (HeldKarp(), Labels())
-"""prove what is small enough, and give up on all else at once"""
-IMPROVING: tuple[RouteSolver, ...] = (PyvrpSearch(), ExchangeSearch(), RuinRecreate())
-PROVING: tuple[RouteSolver, ...] = (LinearProof(), LabelBeams(), CpSat())
+from argo_compiler.route.solvers import (
+    FIRST,
+    IMPROVING,
+    PROVING,
+    SMALL,
+    RouteSolver,
+    registered_solvers,
+    solver_names,
+)
 
 _IMPROVED_FIRST = 0.35
 """share of the time for better routes before proofs are tried, where there is one worker"""
@@ -28,12 +23,6 @@ _FIRST_MOST, _FIRST_BRIEF = 0.05, 0.003
 """s for each step that this is at most; and where a proof needs no good route"""
 _PROVED = 0.7
 """share of the rest for proofs; what is left is for better routes again"""
-
-
-def solver_names() -> tuple[str, ...]:
-    """Of all solvers that there are."""
-    groups = FIRST, SMALL, IMPROVING, PROVING, registered_solvers()
-    return tuple(solver.name for group in groups for solver in group)
 
 
 def solve(search: Search, workers: int, chosen: Sequence[str | RouteSolver] | None = None) -> None:

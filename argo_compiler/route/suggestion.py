@@ -11,7 +11,7 @@ from argo_compiler.route.stop import SearchProgress, StopCriterion
 from argo_compiler.route.suggested import RouteSuggestion
 
 if TYPE_CHECKING:
-    from argo_compiler.route.solver import RouteSolver
+    from argo_compiler.route.solvers import RouteSolver
 
 _log = logging.getLogger(__name__)
 

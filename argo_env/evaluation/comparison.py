@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Conflict, NotFound, Remedy
 from argo_env.evaluation.case import PlanName
+from argo_env.evaluation.estimates.pairs import Difference, SuccessPairs, difference, power
+from argo_env.evaluation.estimates.rates import world_means
+from argo_env.evaluation.estimates.sequences import ConfidenceSequence
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
-from argo_env.evaluation.statistics.pairs import Difference, SuccessPairs, difference, power
-from argo_env.evaluation.statistics.rates import world_means
-from argo_env.evaluation.statistics.sequences import ConfidenceSequence
 
 _Pairs = list[tuple[RunRow, RunRow]]
 

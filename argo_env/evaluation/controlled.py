@@ -14,15 +14,15 @@ from argo_compiler.base.errors import Conflict, Invalid, NotFound
 from argo_compiler.base.model import Model
 from argo_compiler.files.reading import read_bytes
 from argo_compiler.files.writing import write_whole
-from argo_env.evaluation.plan import EvaluationPlan, Stopping
-from argo_env.evaluation.results import EvaluationResults
-from argo_env.evaluation.row import RunRow
-from argo_env.evaluation.statistics.control import (
+from argo_env.evaluation.estimates.control import (
     FEWEST_PAIRS,
     ControlVariate,
     controlled_mean,
 )
-from argo_env.evaluation.statistics.rates import Estimate, weighted_world_means
+from argo_env.evaluation.estimates.rates import Estimate, weighted_world_means
+from argo_env.evaluation.plan import EvaluationPlan, Stopping
+from argo_env.evaluation.results import EvaluationResults
+from argo_env.evaluation.row import RunRow
 from argo_env.planning.opening import open_site
 from argo_env.robot.spec import load_robot
 from argo_env.run.drives_and_sensors import IDEAL, ROUTE

@@ -12,13 +12,13 @@ from dataclasses import dataclass
 
 from argo_compiler.base.errors import ArgoError
 from argo_env.evaluation.case import EvaluationCase, PlanName
+from argo_env.evaluation.estimates.rates import Stratum, allocation
 from argo_env.evaluation.plan import EvaluationPlan, PlannedRun
 from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.evaluation.pool.pool import Finished, Pool
 from argo_env.evaluation.rates import is_enough
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome, RunRow, row_of, row_without_end
-from argo_env.evaluation.statistics.rates import Stratum, allocation
 from argo_env.evaluation.store import RowStore
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.robot.spec import load_robot

@@ -10,6 +10,7 @@ import numpy as np
 
 from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.comparison import PlanComparison
+from argo_env.evaluation.estimates.rates import Rate
 from argo_env.evaluation.rates import PlanRate
 from argo_env.evaluation.results import (
     DurationCurve,
@@ -18,7 +19,6 @@ from argo_env.evaluation.results import (
     failure_places_of,
 )
 from argo_env.evaluation.row import RunOutcome
-from argo_env.evaluation.statistics.rates import Rate
 from argo_env.formatting import clock
 from argo_env.pictures.drawing.floors import plans_of
 from argo_env.report.svg import clean, shorten

@@ -7,9 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from argo_env.evaluation.case import PlanName
-from argo_env.evaluation.plan import EvaluationPlan
-from argo_env.evaluation.row import RunOutcome, RunRow
-from argo_env.evaluation.statistics.rates import (
+from argo_env.evaluation.estimates.rates import (
     Rate,
     Stratum,
     clopper_pearson,
@@ -17,7 +15,9 @@ from argo_env.evaluation.statistics.rates import (
     weighted_world_means,
     wilson,
 )
-from argo_env.evaluation.statistics.sequences import ConfidenceSequence
+from argo_env.evaluation.estimates.sequences import ConfidenceSequence
+from argo_env.evaluation.plan import EvaluationPlan
+from argo_env.evaluation.row import RunOutcome, RunRow
 
 
 class IntervalMethod(StrEnum):

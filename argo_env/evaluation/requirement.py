@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from argo_compiler.base.errors import Invalid
 from argo_compiler.base.model import Model
-from argo_env.evaluation.quantities import QUANTITIES
+from argo_env.evaluation.statistics import QUANTITIES
 
 if TYPE_CHECKING:
     from argo_env.evaluation.row import RunRow

@@ -11,8 +11,8 @@ from itertools import accumulate
 from typing import TYPE_CHECKING
 
 from argo_env.evaluation.case import PlanName
+from argo_env.evaluation.estimates.rates import Rate
 from argo_env.evaluation.plan import EvaluationPlan
-from argo_env.evaluation.quantities import QUANTITIES
 from argo_env.evaluation.rates import (
     IntervalMethod,
     PlanRate,
@@ -22,7 +22,7 @@ from argo_env.evaluation.rates import (
     rate_of_runs,
 )
 from argo_env.evaluation.row import RunOutcome, RunRow
-from argo_env.evaluation.statistics.rates import Rate
+from argo_env.evaluation.statistics import QUANTITIES
 from argo_env.site.shapes import Vector
 
 if TYPE_CHECKING:

@@ -11,9 +11,9 @@ from pydantic import Field, model_validator
 
 from argo_compiler.base.model import Model
 from argo_compiler.files.reading import decode_text, read_bytes
+from argo_env.evaluation.estimates.pairs import difference
+from argo_env.evaluation.estimates.rates import Estimate, world_means
 from argo_env.evaluation.row import RunRow
-from argo_env.evaluation.statistics.pairs import difference
-from argo_env.evaluation.statistics.rates import Estimate, world_means
 from argo_env.files import resources
 from argo_env.files.yaml_file import parse_yaml
 

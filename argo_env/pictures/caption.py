@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from PIL import Image, ImageDraw, ImageFont
 
 from argo_env.formatting import clock
-from argo_env.run.headline import Tone
 from argo_env.run.record import Reading, RunRecord
+from argo_env.run.verdict_line import Tone
 
 HEIGHT = 0.105  # of the frame
 LINES = 3  # of the verdict, at most

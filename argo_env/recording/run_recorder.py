@@ -22,7 +22,6 @@ from argo_env.recording.writer import media_type
 from argo_env.report.files import to_json
 from argo_env.robot.robot_model import read_model
 from argo_env.robot.spec import robot_folder
-from argo_env.run.headline import Tone
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
 from argo_env.run.observer import Observer
@@ -30,6 +29,7 @@ from argo_env.run.record import Anomaly, Contact, Reading, RunRecord, TaskRun, T
 from argo_env.run.rig import Rig
 from argo_env.run.robot import RobotAction
 from argo_env.run.spec import RunSpec
+from argo_env.run.verdict_line import Tone
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.world.world import Shot, World
 

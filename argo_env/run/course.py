@@ -21,12 +21,12 @@ from argo_env.run.log import Entry, LoggedEvent, RunLog
 from argo_env.run.machine import Machine
 from argo_env.run.perception import blockage
 from argo_env.run.record import RunRecord, TaskRun
+from argo_env.run.result import make_record
 from argo_env.run.robot import ActionEnd, AnyRobot, RobotAction
 from argo_env.run.spec import RunSpec
 from argo_env.run.stays import InterruptionWatch, RoundWatch
 from argo_env.run.steering import Supervision, as_seen_on
 from argo_env.run.vehicle import way_come
-from argo_env.run.verdict import make_record
 
 
 class GivenEvents:

@@ -18,7 +18,7 @@ from argo_compiler.il import Action, EventKind, Mission, Response
 from argo_env.drives.drive import Trouble
 from argo_env.faults.kinds import AnyFault
 from argo_env.formatting import clock, where
-from argo_env.run.headline import Headline, headline
+from argo_env.run.verdict_line import Headline, headline
 from argo_env.site.shapes import Vector
 from argo_env.site.spec import Rect
 

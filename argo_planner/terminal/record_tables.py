@@ -8,8 +8,8 @@ from rich.table import Table
 
 from argo_env.formatting import clock, where
 from argo_env.report.rounds import waits
-from argo_env.run.headline import Tone
 from argo_env.run.record import RunRecord, WindowKept
+from argo_env.run.verdict_line import Tone
 
 _WIDE = 100
 """characters of a terminal that has room for what not everyone needs"""

@@ -32,16 +32,16 @@ GIVE_UP_S = 120
 Json = Any
 
 
-def _condition(object_id: object = 1, bound: float = 5) -> Json:
+def condition(object_id: object = 1, bound: float = 5) -> Json:
     kind = "MEASURED_VALUE_GREATER"
     return {"type": kind, "object_id": str(object_id), "param1": bound}
 
 
-def _way(target: str, *conditions: Json) -> Json:
+def way(target: str, *conditions: Json) -> Json:
     return {"target": target, "conditions": list(conditions)}
 
 
-def _measure(name: str, *ways: Json, object_id: object = 1, **more: Json) -> Json:
+def measure(name: str, *ways: Json, object_id: object = 1, **more: Json) -> Json:
     task = {"name": name, "action": "MEASURE", "object_id": str(object_id)}
     return task | {"transitions": list(ways)} | more
 
@@ -67,16 +67,16 @@ def filled(make: Callable[[int], Json], size: int = SIZE) -> Json:
     raise AssertionError
 
 
-def _mission(tasks: Json, groups: Json = (), **more: Json) -> Json:
+def mission(tasks: Json, groups: Json = (), **more: Json) -> Json:
     return {"version": 3, "tasks": list(tasks), "groups": list(groups)} | more
 
 
 def nested(depth: int, **rule: Json) -> Json:
     """Groups in groups with one task each; names grow with the depth."""
     names = ["/".join(["g"] * (i + 1)) for i in range(depth)]
-    tasks = [_drive(f"T{i}", _way(f"T{i + 1}")) for i in range(depth)] + [_drive(f"T{depth}")]
+    tasks = [_drive(f"T{i}", way(f"T{i + 1}")) for i in range(depth)] + [_drive(f"T{depth}")]
     groups = [{"name": n, "start": f"T{i}", "end": f"T{depth}"} | rule for i, n in enumerate(names)]
-    return _mission(tasks, groups)
+    return mission(tasks, groups)
 
 
 def _siblings(rule: Json, make: Callable[[int], Json]) -> Json:
@@ -86,77 +86,77 @@ def _siblings(rule: Json, make: Callable[[int], Json]) -> Json:
         {"name": f"g{k}", "start": f"T{2 * k}", "end": f"T{2 * k + 1}"} | rule
         for k in range(len(tasks))
     ]
-    return _mission([*pairs, _drive(f"T{len(pairs)}")], groups)
+    return mission([*pairs, _drive(f"T{len(pairs)}")], groups)
 
 
 def chained(make: Callable[[int, str], Json]) -> Json:
     """A chain of tasks, each of which leads to the next one."""
     tasks = filled(lambda k: make(k, f"T{k + 1}"))
-    return _mission([*tasks[:-1], _drive(f"T{len(tasks) - 1}")])
+    return mission([*tasks[:-1], _drive(f"T{len(tasks) - 1}")])
 
 
 def jumps(k: int) -> list[Json]:
     """Conditional ways to tasks all over the mission."""
-    return [_way(f"T{(k * 7919 + 31 * j) % 1500}", _condition(j + 1, k % 11)) for j in range(5)]
+    return [way(f"T{(k * 7919 + 31 * j) % 1500}", condition(j + 1, k % 11)) for j in range(5)]
 
 
 def _unlimited(number: str) -> str:
-    one = json.dumps(_mission([_drive("T0")], [{"name": "g", "start": "T0", "end": "T0"}]))
+    one = json.dumps(mission([_drive("T0")], [{"name": "g", "start": "T0", "end": "T0"}]))
     return one.replace('"end": "T0"', f'"end": "T0", "max_repeat_count": {number}')
 
 
 def _timed(number: str) -> str:
-    one = json.dumps(_mission([_drive("T0", x=0.0)]))
+    one = json.dumps(mission([_drive("T0", x=0.0)]))
     return one.replace('"version"', f'"max_duration": {number}, "version"')
 
 
 MISSIONS: dict[str, Callable[[], Json]] = {
-    "a chain of short tasks": lambda: chained(lambda k, n: _measure(f"T{k}", _way(n))),
-    "drives to and fro": lambda: chained(lambda k, n: _drive(f"T{k}", _way(n), x=-1 - k % 7)),
+    "a chain of short tasks": lambda: chained(lambda k, n: measure(f"T{k}", way(n))),
+    "drives to and fro": lambda: chained(lambda k, n: _drive(f"T{k}", way(n), x=-1 - k % 7)),
     "drives to places all different": lambda: chained(
-        lambda k, n: _drive(f"T{k}", _way(n), x=-1 - k / 1e4)
+        lambda k, n: _drive(f"T{k}", way(n), x=-1 - k / 1e4)
     ),
-    "tasks that lead anywhere": lambda: _mission(filled(lambda k: _measure(f"T{k}", *jumps(k)))),
+    "tasks that lead anywhere": lambda: mission(filled(lambda k: measure(f"T{k}", *jumps(k)))),
     "each task decides by a checkpoint of its own": lambda: chained(
-        lambda k, n: _drive(f"T{k}", _way(f"T{k // 2}", _condition(k)), _way(n))
+        lambda k, n: _drive(f"T{k}", way(f"T{k // 2}", condition(k)), way(n))
     ),
     "each task measures what another compares": lambda: chained(
-        lambda k, n: _measure(f"T{k}", _way("T0", _condition(k * 7 % 3000)), _way(n), object_id=k)
+        lambda k, n: measure(f"T{k}", way("T0", condition(k * 7 % 3000)), way(n), object_id=k)
     ),
     "bounds all different": lambda: chained(
-        lambda k, n: _measure(f"T{k}", _way("T0", _condition(1, k)), _way(n))
+        lambda k, n: measure(f"T{k}", way("T0", condition(1, k)), way(n))
     ),
     "bounds of another checkpoint, all different": lambda: chained(
-        lambda k, n: _drive(f"T{k}", _way("T0", _condition(1 + k % 9, k)), _way(n))
+        lambda k, n: _drive(f"T{k}", way("T0", condition(1 + k % 9, k)), way(n))
     ),
-    "one task with very many ways": lambda: _mission(
-        [_measure("A", *filled(lambda k: _way("A", _condition(1, k)), TASK_SIZE))]
+    "one task with very many ways": lambda: mission(
+        [measure("A", *filled(lambda k: way("A", condition(1, k)), TASK_SIZE))]
     ),
-    "one task with very many ways by other checkpoints": lambda: _mission(
-        [_drive("A", *filled(lambda k: _way("A", _condition(k, 1)), TASK_SIZE))]
+    "one task with very many ways by other checkpoints": lambda: mission(
+        [_drive("A", *filled(lambda k: way("A", condition(k, 1)), TASK_SIZE))]
     ),
-    "one way with very many conditions": lambda: _mission(
-        [_measure("A", _way("A", *filled(lambda k: _condition(1, k), TASK_SIZE)))]
+    "one way with very many conditions": lambda: mission(
+        [measure("A", way("A", *filled(lambda k: condition(1, k), TASK_SIZE)))]
     ),
-    "one way with very many conditions on checkpoints": lambda: _mission(
-        [_drive("A", _way("A", *filled(lambda k: _condition(k, 1), TASK_SIZE)))]
+    "one way with very many conditions on checkpoints": lambda: mission(
+        [_drive("A", way("A", *filled(lambda k: condition(k, 1), TASK_SIZE)))]
     ),
-    "unconditional ways": lambda: _mission([_drive("A", *filled(lambda _: _way("A"), TASK_SIZE))]),
-    "a wait for very many conditions": lambda: _mission(
-        [_wait("A", conditions=filled(lambda k: _condition(k, 1), TASK_SIZE))]
+    "unconditional ways": lambda: mission([_drive("A", *filled(lambda _: way("A"), TASK_SIZE))]),
+    "a wait for very many conditions": lambda: mission(
+        [_wait("A", conditions=filled(lambda k: condition(k, 1), TASK_SIZE))]
     ),
-    "waits of no time": lambda: chained(lambda k, n: _wait(f"T{k}", _way(n), duration=0)),
-    "waits of no time in a circle": lambda: _mission(
-        [*filled(lambda k: _wait(f"T{k}", _way(f"T{k + 1}"), duration=0))[:-1]]
+    "waits of no time": lambda: chained(lambda k, n: _wait(f"T{k}", way(n), duration=0)),
+    "waits of no time in a circle": lambda: mission(
+        [*filled(lambda k: _wait(f"T{k}", way(f"T{k + 1}"), duration=0))[:-1]]
     ),
-    "a group until very many conditions hold": lambda: _mission(
-        [_measure("A")],
+    "a group until very many conditions hold": lambda: mission(
+        [measure("A")],
         [
             {
                 "name": "g",
                 "start": "A",
                 "end": "A",
-                "until": filled(lambda k: _condition(1, k), TASK_SIZE),
+                "until": filled(lambda k: condition(1, k), TASK_SIZE),
             }
         ],
     ),
@@ -166,56 +166,54 @@ MISSIONS: dict[str, Callable[[], Json]] = {
         900, max_repeat_duration=100, stop="soft", every=7
     ),
     "groups beside each other": lambda: _siblings(
-        {"max_repeat_count": 5}, lambda k: _drive(f"T{k}", _way(f"T{k + 1}"))
+        {"max_repeat_count": 5}, lambda k: _drive(f"T{k}", way(f"T{k + 1}"))
     ),
     "groups with a hard stop, entered and left anywhere": lambda: _siblings(
         {"max_repeat_duration": 50},
-        lambda k: _measure(
-            f"T{k}", _way(f"T{k * 31 % 1900}", _condition(1, k % 9)), _way(f"T{k + 1}")
-        ),
+        lambda k: measure(f"T{k}", way(f"T{k * 31 % 1900}", condition(1, k % 9)), way(f"T{k + 1}")),
     ),
-    "groups of one name": lambda: _mission(
+    "groups of one name": lambda: mission(
         [_drive("A")],
         filled(lambda _: {"name": "g", "start": "A", "end": "A", "max_repeat_count": 2}),
     ),
-    "groups of the same range": lambda: _mission(
+    "groups of the same range": lambda: mission(
         [_drive("A")],
         filled(lambda k: {"name": f"g{k}", "start": "A", "end": "A", "max_repeat_count": 2}),
     ),
-    "tasks of one name": lambda: _mission(filled(lambda _: _drive("A", _way("A")))),
-    "misspelt targets": lambda: _mission(filled(lambda k: _drive(f"Task {k}", _way(f"Tusk {k}")))),
-    "two thousand ways to a name of 400 letters": lambda: _mission(
-        [_drive("A" * 400), *filled(lambda k: _drive(f"T{k}", _way("A" * 400)))[:2000]]
+    "tasks of one name": lambda: mission(filled(lambda _: _drive("A", way("A")))),
+    "misspelt targets": lambda: mission(filled(lambda k: _drive(f"Task {k}", way(f"Tusk {k}")))),
+    "two thousand ways to a name of 400 letters": lambda: mission(
+        [_drive("A" * 400), *filled(lambda k: _drive(f"T{k}", way("A" * 400)))[:2000]]
     ),
-    "reactions to one event": lambda: _mission(
+    "reactions to one event": lambda: mission(
         [_drive("A")], reactions=filled(lambda _: {"event": "gas_leak", "response": "pause"})
     ),
     "windows": lambda: chained(
         lambda k, n: _drive(
-            f"T{k}", _way(n), window={"earliest": k, "latest": k + 1, "missed_target": "T0"}
+            f"T{k}", way(n), window={"earliest": k, "latest": k + 1, "missed_target": "T0"}
         )
     ),
     "branches after failures": lambda: chained(
-        lambda k, n: _measure(
-            f"T{k}", _way(n), on_failure="branch", failure_target=f"T{k // 2}", object_id=k % 50
+        lambda k, n: measure(
+            f"T{k}", way(n), on_failure="branch", failure_target=f"T{k // 2}", object_id=k % 50
         )
     ),
-    "what was left out": lambda: _mission([_drive("A")], left_out=filled(lambda k: f"B{k}")),
-    "joints": lambda: _mission(
+    "what was left out": lambda: mission([_drive("A")], left_out=filled(lambda k: f"B{k}")),
+    "joints": lambda: mission(
         [_drive("A", joint_states={"names": filled(lambda k: f"j{k}", TASK_SIZE), "positions": []})]
     ),
-    "unknown fields": lambda: _mission([_drive("A")]) | {f"field {k}": k for k in range(50_000)},
-    "tasks of a wrong form": lambda: _mission(filled(lambda k: {"nme": k})),
-    "a name of a megabyte": lambda: _mission([_drive("A" * SIZE)]),
+    "unknown fields": lambda: mission([_drive("A")]) | {f"field {k}": k for k in range(50_000)},
+    "tasks of a wrong form": lambda: mission(filled(lambda k: {"nme": k})),
+    "a name of a megabyte": lambda: mission([_drive("A" * SIZE)]),
     "a number of rounds of 400 digits": lambda: _unlimited("1" + "0" * 400),
     "a number of rounds of 4,000 digits": lambda: _unlimited("1" + "0" * 4000),
     "a number of a megabyte": lambda: _unlimited("1" + "0" * SIZE),
     "a time of 1e300 s": lambda: _timed("1e300"),
     "a time of 1e400 s": lambda: _timed("1e400"),
     "a time of 1e-300 s": lambda: _timed("1e-300"),
-    "coordinates of 1e300 m": lambda: _mission([_drive("A", x=1e300), _drive("B", x=-1e308)]),
-    "a speed of 1e-300 m/s": lambda: _mission([_drive("A", velocity=1e-300)]),
-    "bounds of 1e308": lambda: _mission([_measure("A", _way("A", _condition(1, 1e308)))]),
+    "coordinates of 1e300 m": lambda: mission([_drive("A", x=1e300), _drive("B", x=-1e308)]),
+    "a speed of 1e-300 m/s": lambda: mission([_drive("A", velocity=1e-300)]),
+    "bounds of 1e308": lambda: mission([measure("A", way("A", condition(1, 1e308)))]),
     "lists in lists": lambda: "[" * SIZE,
     "objects in objects": lambda: '{"a":' * (SIZE // 5),
     "one object's keys, all the same": lambda: "{" + '"a": 1, ' * (SIZE // 8) + '"a": 1}',

@@ -130,7 +130,6 @@ class _Parser:
             source_text=source.text,
             header=self.fields.header,
             steps=(*first, *steps, *last),
-            remarks=tuple(self.reader.remarks),
             diagnostics=self.diagnostics.by_place(),
         )
 

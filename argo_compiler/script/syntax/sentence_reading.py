@@ -1,6 +1,6 @@
 """Reads the sentences of a script one after the other: which say what, and which have no effect."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from argo_compiler.script.syntax.asides import Asides, ask_of_remark
 from argo_compiler.script.syntax.doubts import ask_of_words, placed_in
@@ -37,7 +37,6 @@ class SentenceReader:
     asides: Asides
     fields: ScriptFields
     diagnostics: Diagnostics
-    remarks: list[Text] = field(default_factory=list)
     ordered: bool = False
     """whether anything is to be done by now but to start"""
     begun: bool = False
@@ -50,7 +49,6 @@ class SentenceReader:
         said = text.content if len(text.content) <= 60 else f"{text.content[:57]}..."
         message = f"`{said}` is taken for {what} and has no effect"
         self.diagnostics.note("no-effect", message, text.span())
-        self.remarks.append(Text(span=text.span(), text=text.content))
 
     def remark(self, text: ScriptText) -> list[Said]:
         """Says that a remark has no effect; a warning, where it tells what is to be done. What it
@@ -67,7 +65,6 @@ class SentenceReader:
             message = f"`{text.content}` is taken for a remark: what it asks for is not planned"
             hint = "write it as a step if it is to be done"
             self.diagnostics.warning("remark", message, text.span(), hint)
-            self.remarks.append(Text(span=text.span(), text=text.content))
         else:
             self.note(text, "a remark")
         return []

@@ -14,7 +14,6 @@ from argo_compiler.base.version import __version__
 from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.folder import FAILING
 from argo_env.evaluation.plots import failure_places
-from argo_env.evaluation.quantities import QUANTITIES
 from argo_env.evaluation.rates import PlanRate, means_of, success
 from argo_env.evaluation.report.picture import picture
 from argo_env.evaluation.report.words import counted, meaning, ranges
@@ -25,6 +24,7 @@ from argo_env.evaluation.results import (
     failure_places_of,
 )
 from argo_env.evaluation.row import RunOutcome, RunRow
+from argo_env.evaluation.statistics import QUANTITIES
 from argo_env.planning.opening import open_site
 from argo_env.robot.spec import load_robot
 from argo_env.site import Site

@@ -8,9 +8,9 @@ from pydantic import Field
 
 from argo_compiler.base.model import Model
 from argo_compiler.il import EventKind
-from argo_env.run.headline import Headline
 from argo_env.run.log import Entry
 from argo_env.run.record import Reading
+from argo_env.run.verdict_line import Headline
 from argo_planner.service.runs.requests import RequestState
 
 

@@ -19,7 +19,7 @@ from argo_compiler.route import (
 )
 from argo_compiler.route.batch import suggest_routes
 from argo_compiler.route.search import Search
-from argo_compiler.route.solver import register_solver, unregister_solver
+from argo_compiler.route.solvers import register_solver, unregister_solver
 from argo_compiler.route.stop import (
     FirstFeasible,
     MaxGap,

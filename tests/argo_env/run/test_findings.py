@@ -8,9 +8,9 @@ from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import Occurred, Pause
 from argo_compiler.il import Afterwards, EventKind, Reaction, Response
 from argo_env.drives.drive import Trouble
-from argo_env.run.headline import Tone
 from argo_env.run.record import Anomaly, Contact, Mishap, RunRecord
 from argo_env.run.spec import RunSpec, logged
+from argo_env.run.verdict_line import Tone
 from tests.yard import (
     Entries,
     fast_rig,

@@ -15,9 +15,9 @@ from argo_compiler.il import Afterwards, EventKind, Group, OnFailure, Reaction, 
 from argo_env.formatting import clock
 from argo_env.report import write_report
 from argo_env.report.rounds import waits
-from argo_env.run.headline import Tone
 from argo_env.run.record import RunRecord
 from argo_env.run.spec import logged
+from argo_env.run.verdict_line import Tone
 from argo_env.sensing.sensor import MeasurementError
 from tests.conftest import examples
 from tests.yard import fast_rig, measure, mission, run, run_with, simulated, waypoint

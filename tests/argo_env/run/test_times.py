@@ -18,10 +18,10 @@ from argo_compiler.il import (
     WaitRule,
 )
 from argo_env.report.rounds import waits, with_readings
-from argo_env.run.headline import Tone
 from argo_env.run.journal import open_journal
 from argo_env.run.record import RunRecord, WindowKept
 from argo_env.run.spec import logged
+from argo_env.run.verdict_line import Tone
 from tests.yard import (
     Entries,
     cut_after,

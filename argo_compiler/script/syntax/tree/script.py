@@ -82,6 +82,4 @@ class Script:
     source_text: str
     header: ScriptHeader = field(default_factory=ScriptHeader)
     steps: tuple[ScriptStep, ...] = ()
-    remarks: tuple[Text, ...] = ()
-    """what asks for nothing"""
     diagnostics: tuple[Diagnostic, ...] = ()

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scipy.stats import binomtest
 
 from argo_compiler.base.errors import Invalid
-from argo_env.evaluation.statistics.rates import (
+from argo_env.evaluation.estimates.rates import (
     Stratum,
     allocation,
     clopper_pearson,

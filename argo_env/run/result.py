@@ -1,7 +1,7 @@
 """The verdict, whether the mission is a success and what is missing if it is not; and the record of
 the run.
 
-`headline.py` makes the line of it that people see.
+`verdict_line.py` makes the line of it that people see.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,13 +12,13 @@ from argo_compiler.il import Action, Mission
 from argo_compiler.il.docked import at_dock
 from argo_compiler.il.reserved import RESERVED_NAMES
 from argo_env.formatting import told_apart
-from argo_env.run.headline import AS_PLANNED
 from argo_env.run.log import RunLog
 from argo_env.run.machine import Machine
 from argo_env.run.record import DIGITS, Result, RunRecord, TaskRun, TraceStep, WindowKept, WindowRun
 from argo_env.run.rig import Rig
 from argo_env.run.spec import RunSpec
 from argo_env.run.stays import InterruptionWatch, RoundWatch, Stay, stays_of, waits_of, windows_of
+from argo_env.run.verdict_line import AS_PLANNED
 
 _ENDINGS = {
     Outcome.RETURNED: "the mission was given up, and the robot returned to its dock",

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid
-from argo_env.evaluation.statistics.rates import LEVEL, Estimate
+from argo_env.evaluation.estimates.rates import LEVEL, Estimate
 
 FEWEST_PAIRS = 10
 """from which on a correlation says anything"""

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.stats import binom, binomtest
 
 from argo_compiler.base.errors import Invalid
-from argo_env.evaluation.statistics.rates import LEVEL, clopper_pearson
+from argo_env.evaluation.estimates.rates import LEVEL, clopper_pearson
 from argo_env.seeding import generator
 
 RESAMPLES = 10_000

@@ -1,4 +1,5 @@
-"""Quantities that evaluations count of each run, such as successes; a new one is listed here."""
+"""Statistics of evaluations: what is counted of each run, such as successes. A new one is listed
+here; how sure an estimate is, `estimates/` says."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid
-from argo_env.evaluation.statistics.rates import LEVEL
+from argo_env.evaluation.estimates.rates import LEVEL
 
 _BETS = 200
 """means that the money is spread over, between m and the end of the scale"""

@@ -1,6 +1,6 @@
 """The headline of a run: the same words on the terminal, in reports, recordings and films.
 
-It begins with how the run ended, and goes on with the verdict, which `verdict.py` finds.
+It begins with how the run ended, and goes on with the verdict, which `result.py` finds.
 """
 
 from collections import Counter

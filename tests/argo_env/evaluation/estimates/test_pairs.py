@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from argo_compiler.base.errors import Invalid
-from argo_env.evaluation.statistics.control import ControlVariate, controlled_mean
-from argo_env.evaluation.statistics.pairs import SuccessPairs, difference, power
+from argo_env.evaluation.estimates.control import ControlVariate, controlled_mean
+from argo_env.evaluation.estimates.pairs import SuccessPairs, difference, power
 
 COMPARISONS = 2_000
 

@@ -1,9 +1,20 @@
-"""The protocol of solvers, and the registry of one's own. Argo's are listed in `portfolio.py`."""
+"""The solvers of route problems: their protocol, Argo's own, and those that are registered.
+
+A new one of Argo's is listed here; when it takes part, `portfolio.py` says.
+"""
 
 from typing import Protocol
 
 from argo_compiler.base.errors import Conflict
+from argo_compiler.route.cp_sat import CpSat
+from argo_compiler.route.exchange_search import ExchangeSearch
+from argo_compiler.route.first_rules import FirstRules
+from argo_compiler.route.held_karp import HeldKarp
+from argo_compiler.route.labels import LabelBeams, Labels
+from argo_compiler.route.linear_proof import LinearProof
 from argo_compiler.route.problem import RouteProblem
+from argo_compiler.route.pyvrp_search import PyvrpSearch
+from argo_compiler.route.ruin_recreate import RuinRecreate
 from argo_compiler.route.search import Search
 
 
@@ -26,6 +37,12 @@ class RouteSolver(Protocol):
         ...
 
 
+FIRST: tuple[RouteSolver, ...] = (FirstRules(),)
+SMALL: tuple[RouteSolver, ...] = (HeldKarp(), Labels())
+"""prove what is small enough, and give up on all else at once"""
+IMPROVING: tuple[RouteSolver, ...] = (PyvrpSearch(), ExchangeSearch(), RuinRecreate())
+PROVING: tuple[RouteSolver, ...] = (LinearProof(), LabelBeams(), CpSat())
+
 _registered: dict[str, RouteSolver] = {}
 
 
@@ -47,3 +64,9 @@ def unregister_solver(name: str) -> None:
 def registered_solvers() -> tuple[RouteSolver, ...]:
     """One's own, in the order of their registration."""
     return tuple(_registered.values())
+
+
+def solver_names() -> tuple[str, ...]:
+    """Of all solvers that there are."""
+    groups = FIRST, SMALL, IMPROVING, PROVING, registered_solvers()
+    return tuple(solver.name for group in groups for solver in group)

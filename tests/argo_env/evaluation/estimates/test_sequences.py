@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from argo_compiler.base.errors import Invalid
-from argo_env.evaluation.statistics.rates import clopper_pearson
-from argo_env.evaluation.statistics.sequences import ConfidenceSequence
+from argo_env.evaluation.estimates.rates import clopper_pearson
+from argo_env.evaluation.estimates.sequences import ConfidenceSequence
 from tests.conftest import examples
 
 EVALUATIONS = examples(2_000)

@@ -209,7 +209,7 @@ class Configuration:
     ) -> None:
         """Leaves all below `domain`, which is the last of `keep` groups, and enters the leaf."""
         self.visits = number = self.visits + 1
-        self.visit = TaskVisit(leaf, number, now, now)
+        self.visit.begin(leaf, number, now)
         frames = self.frames
         changed = len(frames) > keep
         if changed:

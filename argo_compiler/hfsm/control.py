@@ -100,14 +100,14 @@ class Control:
                 elif (
                     place.due > now and place.own_due > now and not course.by_hand
                 ) or not course.step():
-                    break
+                    return
             elif course.time_up_at <= now:
                 self.occur(EventKind.TIME_UP, "")
             elif self.hold_due <= now:
                 self._advance(Trigger.LIMIT)
             else:
-                break
-        if course.outcome is not None and self.standing.outcome is None:
+                return
+        if self.standing.outcome is None:
             self._advance(Trigger.ENDED)
 
     # Events and reactions

@@ -4,7 +4,6 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import NoReturn
 
 from argo_compiler.hfsm.conditions import CheckpointReading, Measured
 from argo_compiler.hfsm.control import Control
@@ -165,13 +164,11 @@ class Executor:
             course = control.course
             if not course.now <= now <= MAX_TIME_S:
                 self._require_order(now)
-            kind = type(event)
-            if kind not in _EVENTS or not self._started:
-                self._refuse(event)
-            if isinstance(event, _ENDS):
+            # Most events are of the first kind.
+            if type(event) is ActionSucceeded and self._started:
                 self._require_end(event)
-            elif kind is not Tick:
-                self._require_report(event)
+            else:
+                self._require_event(event)
             place = course.place
             if (
                 now > place.due
@@ -182,11 +179,11 @@ class Executor:
                 # The next float below `now` stands for all times before it.
                 control.let_pass(math.nextafter(now, -math.inf))
             course.now = now
-            if isinstance(event, ActionSucceeded):
+            if type(event) is ActionSucceeded:
                 self._succeed(event)
             elif isinstance(event, _OTHER_ENDS):
                 self._end_action(event)
-            elif kind is not Tick:
+            else:
                 self._hear(event, now)
             control.settle()
             return self._command()
@@ -446,13 +443,14 @@ class Executor:
             before = self._control.course.now
             raise ValueError(f"time runs backwards: {now:g} s comes after {before:g} s")
 
-    def _refuse(self, event: Event) -> NoReturn:
+    def _require_event(self, event: Event) -> None:
         if not self._started:
             raise ValueError(_NOT_STARTED)
-        raise ValueError(f"{event!r} is no event: give an instance of one")
-
-    def _require_report(self, event: Event) -> None:
-        if isinstance(event, Occurred):
+        if type(event) not in _EVENTS:
+            raise ValueError(f"{event!r} is no event: give an instance of one")
+        if isinstance(event, _ENDS):
+            self._require_end(event)
+        elif isinstance(event, Occurred):
             if not isinstance(event.event, EventKind):
                 raise ValueError(f"{event.event!r} is no kind of event: give an EventKind")
         elif isinstance(event, ReadingGiven):
@@ -473,12 +471,13 @@ class Executor:
             raise ValueError(f"{event} is about a task that does not run; '{running.name}' does")
         if event.id is not None and event.id != self._last_id:
             raise ValueError(f"{event} is about another action: number {self._last_id} runs")
-        if isinstance(event, ActionSucceeded):
-            if event.value is None:
+        if type(event) is ActionSucceeded:
+            value = event.value
+            if value is None:
                 return
             if self._running_leaf is None or self._running_leaf.measures is None:
                 raise ValueError(f"{event} has a value, but the task measures nothing")
-            if not _finite(event.value):
+            if not _finite(value):
                 raise ValueError(f"{event} has no usable value: report that the action failed")
         elif isinstance(event, ActionStopped) and not self._cancelling:
             raise ValueError(f"{event} comes for an action that was not cancelled")

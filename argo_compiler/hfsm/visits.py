@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 from argo_compiler.hfsm.tables import LeafNode
 
+_NEVER = math.inf
+
 
 @dataclass(slots=True, eq=False)
 class TaskVisit:
@@ -24,6 +26,15 @@ class TaskVisit:
     """whether the event that a WAIT waits for has occurred"""
     action_due: float = math.inf
     """when the time limit of the running action is over (s)"""
+
+    def begin(self, leaf: LeafNode | None, number: int, now: float) -> None:
+        """Make this the visit of a task that begins now (s)."""
+        self.leaf = leaf
+        self.number = number
+        self.since = self.look_at = now
+        self.attempt = 0
+        self.occurred = False
+        self.action_due = _NEVER
 
     def wait_at(self, began: float) -> float:
         """When a WAIT may end (s), its conditions apart. `began`: the mission's start (s)."""

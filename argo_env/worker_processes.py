@@ -1,9 +1,14 @@
 """Processes that work for another one."""
 
+import multiprocessing
 import os
 import signal
 import threading
 import time
+from collections.abc import Callable
+from functools import partial
+from multiprocessing.connection import wait
+from multiprocessing.context import ForkServerContext
 
 _PERIOD = 1.0  # s between two looks whether the parent is there
 
@@ -19,14 +24,40 @@ def usable_processors() -> int:
     return os.cpu_count() or 1
 
 
-def serve_parent(parent: int) -> None:
-    """To be called in a worker, with the id of the process that it works for: the worker leaves
-    interruptions to it, and ends with it, even where it is killed."""
+def context_with(*modules: str) -> ForkServerContext:
+    """Return a context in which each process is forked from one that has loaded these modules, so
+    that it begins at once rather than after seconds.
+
+    That one is begun with the first of them, does nothing else, and ends with this process, which
+    has one of this kind only.
+    """
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(list(modules))
+    return context
+
+
+def end_with_parent(parent: int | None = None) -> None:
+    """Leave interruptions to the process that began this one, and end with it, even if it is
+    killed.
+
+    `parent`: its id, where it is not `multiprocessing` that began this one.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_after, args=(parent,), daemon=True).start()
+    begun_by = multiprocessing.parent_process()
+    if begun_by is not None and begun_by.sentinel is not None:
+        end: Callable[[], object] = partial(wait, [begun_by.sentinel])
+    elif parent is not None:
+        end = partial(_wait_for, parent)
+    else:
+        return
+    threading.Thread(target=_end_after, args=(end,), daemon=True).start()
 
 
-def _end_after(parent: int) -> None:
+def _wait_for(parent: int) -> None:
     while os.getppid() == parent:
         time.sleep(_PERIOD)
+
+
+def _end_after(end: Callable[[], object]) -> None:
+    end()
     os._exit(1)

@@ -29,6 +29,7 @@ PYTHON, YAML = snippets("python"), snippets("yaml")
 
 
 @pytest.mark.parametrize("page", PYTHON)
+@pytest.mark.long
 def test_snippets_run(page, monkeypatch):
     """Those of a page one after the other, from the project's folder."""
     monkeypatch.chdir(ROOT)

@@ -25,9 +25,7 @@ pytestmark = pytest.mark.long
 
 CPU_SECONDS = 120
 
-# Forks the processes from one that has loaded this module, and nothing else.
-PROCESSES = multiprocessing.get_context("forkserver")
-PROCESSES.set_forkserver_preload([__name__])
+PROCESSES = multiprocessing.get_context("spawn")
 
 
 def everything(mission: Mission) -> Mission:

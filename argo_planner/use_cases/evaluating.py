@@ -15,7 +15,7 @@ from argo_env.evaluation.case import AS_WRITTEN, NO_FAULTS, EvaluationCase
 from argo_env.evaluation.file import DrawnFaults, EvaluationFile, MissionEntry
 from argo_env.evaluation.plan import EvaluationPlan, Stopping, parse_seeds
 from argo_env.evaluation.pool.backend import WorkerBackend
-from argo_env.evaluation.pool.backends import make_backend
+from argo_env.evaluation.pool.backends import PROCESSES, make_backend
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.faults.kinds import AnyFault
 from argo_env.faults.reading import (
@@ -30,7 +30,7 @@ from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.robot.spec import load_robot
 from argo_env.run.rig import check_spec
 from argo_env.run.spec import RunSpec
-from argo_env.worker_processes import usable_processors
+from argo_env.worker_processes import context_with, usable_processors
 from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
 from argo_planner.use_cases.no_order import require_order
 from argo_planner.use_cases.routing import suggest_order
@@ -110,7 +110,13 @@ def make_workers(
     runs = len(plan.seeds) * (1 if plan.strata else len(plan.cases))
     if workers is None and address is None:
         workers = usable_processors()
-    return make_backend(backend, None if workers is None else min(workers, runs), address)
+    if workers is not None:
+        workers = min(workers, runs)
+    if backend == PROCESSES and address is None and workers:
+        from argo_env.evaluation.pool.processes import Processes
+
+        return Processes(workers, context_with("argo_env.evaluation.evaluating"))
+    return make_backend(backend, workers, address)
 
 
 def _cases(

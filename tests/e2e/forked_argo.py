@@ -8,6 +8,7 @@ status.
 """
 
 import json
+import multiprocessing
 import os
 import sys
 import time
@@ -16,22 +17,36 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
+from argo_compiler.script import parse
 from argo_env.pictures import film, overview
 from argo_env.planning import open_site
 from argo_planner.cli import ArgoCommands, main
 from argo_planner.terminal import stage_display
 from argo_planner.terminal.signals import end_at_once
+from argo_planner.use_cases import evaluating
 
 # On a busy machine anything may take so long that it is shown.
 stage_display.AFTER = float("inf")
 # Most of what a report takes is the picture of the site, and these tests do not look at pictures.
 overview.SIZE, overview._FINER, overview._SHADOW_MAP = (400, 300), 1, 200
 film.MP4_SIZE = film.GIF_SIZE = (128, 80)
+evaluating.context_with = lambda *_: multiprocessing.get_context("fork")
+
+LOADED_LATE = (
+    "argo_env.drives.kinematic",
+    "argo_env.evaluation.report.page",
+    "matplotlib.backends.backend_svg",
+    "pyarrow.parquet",
+)
+"""what commands load only where they need it"""
 
 
 def serve() -> None:
     for command in ArgoCommands.lazy_commands:
         import_module(command.module)
+    for module in LOADED_LATE:
+        import_module(module)
+    parse("Mission Protocol #1\n1. Check checkpoint #1")
     end_at_once()  # as `argo` itself begins
     kept = []
     for line in sys.stdin:

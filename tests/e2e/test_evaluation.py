@@ -18,6 +18,8 @@ from argo_env.evaluation.store import read_rows
 from tests.conftest import examples
 from tests.e2e.conftest import answer_signals
 
+pytestmark = pytest.mark.long
+
 MISSION = "scenarios/umad/missions/mission_1.txt"
 AREAS = ("--start-area", "1", "--end-area", "2")
 ROOT = Path(__file__).parents[2]
@@ -93,7 +95,6 @@ def test_again_does_nothing_and_says_the_same(argo, file, evaluated, out):
     assert again.stdout == evaluated[1].replace(str(evaluated[0]), str(out))
 
 
-@pytest.mark.long
 def test_requirements_are_in_the_exit_status(argo, tmp_path):
     options = (MISSION, *AREAS, "--seeds", "0..199", "--out", tmp_path / "out")
     met = argo("evaluate", *options, "--require", "success >= 0.5")
@@ -108,7 +109,6 @@ def test_requirements_are_in_the_exit_status(argo, tmp_path):
     assert "missed" in missed.stdout
 
 
-@pytest.mark.long
 def test_two_evaluations_are_compared(argo, file, out, tmp_path):
     other = tmp_path / "other"
     assert argo("evaluate", file, "--out", other).returncode == 0
@@ -175,7 +175,6 @@ def test_a_wrong_file_says_where(argo, tmp_path, text, message):
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.long
 def test_another_evaluation_is_not_overwritten(argo, out):
     said = argo("evaluate", MISSION, *AREAS, "--seeds", "0..1", "--out", out)
     assert said.returncode == 2
@@ -189,7 +188,6 @@ def test_what_a_file_says_is_not_said_by_options_as_well(argo, file, tmp_path):
     assert "--drive would say it again" in said.stderr
 
 
-@pytest.mark.long
 def test_faults_that_have_changed_are_not_those_of_before(argo, file, out, tmp_path):
     (tmp_path / "stop.yaml").write_text(STOP.replace("at: 30", "at: 40"))
     said = argo("evaluate", file, "--out", out)
@@ -200,7 +198,6 @@ def test_faults_that_have_changed_are_not_those_of_before(argo, file, out, tmp_p
     assert began == {40.0}
 
 
-@pytest.mark.long
 def test_of_an_evaluation_that_is_replaced_only_what_fits_is_kept(argo, file, out):
     before = {row.key: row for row in read_rows(out)}
     assert len(list((out / "failing").iterdir())) == 5
@@ -214,7 +211,6 @@ def test_of_an_evaluation_that_is_replaced_only_what_fits_is_kept(argo, file, ou
     assert {path.stem for path in (out / "failing").iterdir()} == set(after)
 
 
-@pytest.mark.long
 def test_files_of_others_are_not_written_over(argo, file, tmp_path):
     out = tmp_path / "out"
     out.mkdir()
@@ -248,7 +244,6 @@ def test_what_is_in_the_way_is_named_before_anything_runs(argo, file, tmp_path, 
     assert said.stdout == ""
 
 
-@pytest.mark.long
 def test_plans_of_one_evaluation_are_compared_by_name(argo, tmp_path):
     out = tmp_path / "out"
     options = ("--seeds", "0..9", "--out", out, "--policy", "as written", "--policy", "optimised")
@@ -273,14 +268,12 @@ def test_an_evaluation_of_which_no_run_could_be_carried_out_is_no_success(argo, 
     assert "are in no rate" in said.stdout
 
 
-@pytest.mark.long
 def test_failing_runs_name_their_plan(argo, file, tmp_path):
     file.write_text(file.read_text() + "policies: [as written, optimised]\n")
     said = argo("evaluate", file, "--out", tmp_path / "out")
     assert "  mission 1, optimised, seed 0, stop: " in said.stdout
 
 
-@pytest.mark.long
 def test_more_seeds_go_on_from_the_rows_that_are_there(argo, file, out):
     before = {row.key for row in read_rows(out)}
     file.write_text(FILE.format(mission=ROOT / MISSION, last=6))
@@ -332,7 +325,6 @@ def undisturbed(long_file, tmp_path_factory):
 KILLS = examples(20)
 
 
-@pytest.mark.long
 def test_killed_and_begun_again_the_rows_are_those_of_an_undisturbed_one(
     long_file, undisturbed, tmp_path
 ):
@@ -353,7 +345,6 @@ def test_killed_and_begun_again_the_rows_are_those_of_an_undisturbed_one(
     assert sorted(read_rows(out), key=lambda row: row.key) == undisturbed
 
 
-@pytest.mark.long
 def test_killed_workers_change_nothing_of_the_rows(long_file, undisturbed, tmp_path):
     chosen, out = random.Random(100 + KILLS), tmp_path / "out"
     process = started(long_file, out)
@@ -379,7 +370,6 @@ def count(out: Path) -> int:
         return 0
 
 
-@pytest.mark.long
 def test_no_worker_is_left_behind(long_file, tmp_path):
     process = started(long_file, tmp_path / "out")
     while count(tmp_path / "out") < 3:
@@ -393,7 +383,6 @@ def test_no_worker_is_left_behind(long_file, tmp_path):
     assert not processes_of(process.pid)
 
 
-@pytest.mark.long
 def test_ctrl_c_keeps_the_rows(long_file, tmp_path):
     out = tmp_path / "out"
     process = started(long_file, out, subprocess.PIPE)

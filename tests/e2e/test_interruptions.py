@@ -177,6 +177,7 @@ def interrupted_when_it_reads(number: int, *arguments: object) -> tuple[int, str
     return process.returncode, shown, said
 
 
+@pytest.mark.long
 def test_an_interrupted_run_is_reported_and_goes_on(argo, folder, navigator, tmp_path) -> None:
     report = tmp_path / "re port"
     status, shown, said = interrupted_when_it_reads(

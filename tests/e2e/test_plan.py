@@ -56,6 +56,7 @@ def mission_at(address: str) -> dict[str, object]:
         return found
 
 
+@pytest.mark.long
 def test_a_script_is_put_into_the_folder_once(tmp_path: Path, missions: Path) -> None:
     script, folder = missions / "mission_1.txt", tmp_path / "missions"
     places = []

@@ -4,24 +4,29 @@ import os
 import re
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
+from multiprocessing.context import BaseContext
 from typing import Any
 
 from loky import ProcessPoolExecutor
 from loky.process_executor import BrokenProcessPool
 
 from argo_env.evaluation.pool.backend import WorkerDiedError
-from argo_env.worker_processes import serve_parent
+from argo_env.worker_processes import end_with_parent
 
 
 class Processes:
     """Workers that are processes of this machine. If one dies, all of them are begun anew, and with
-    it the calls that were under way."""
+    it the calls that were under way.
+
+    Each is begun as the context says; without one each loads anew what it needs.
+    """
 
     name = "processes"
     names_the_dead = False
 
-    def __init__(self, workers: int) -> None:
+    def __init__(self, workers: int, context: BaseContext | None = None) -> None:
         self.workers = workers
+        self._context = context
         self._broken = False
         self._executor = self._begun()
 
@@ -56,7 +61,18 @@ class Processes:
         self._executor.shutdown(wait=True, kill_workers=True)
 
     def _begun(self) -> ProcessPoolExecutor:
-        return ProcessPoolExecutor(self.workers, initializer=serve_parent, initargs=(os.getpid(),))
+        niceness = os.getpriority(os.PRIO_PROCESS, 0)
+        return ProcessPoolExecutor(
+            self.workers,
+            context=self._context,
+            initializer=_begin,
+            initargs=(os.getpid(), niceness),
+        )
+
+
+def _begin(parent: int, niceness: int) -> None:
+    end_with_parent(parent)
+    os.setpriority(os.PRIO_PROCESS, 0, niceness)
 
 
 def _death(broken: BrokenProcessPool) -> WorkerDiedError:

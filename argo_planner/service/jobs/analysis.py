@@ -1,7 +1,6 @@
 """The analysis of a mission over all its paths, in a process of its own."""
 
 import asyncio
-import multiprocessing
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 
@@ -13,7 +12,8 @@ from argo_compiler.diagnostics import has_errors
 from argo_compiler.il import Mission
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.planning.site_warnings import unseen_from_poses
-from argo_planner.service.processes.work import end_with_parent
+from argo_env.worker_processes import end_with_parent
+from argo_planner.service.processes.context import CONTEXT
 from argo_planner.use_cases.checking import MOST_PLACES
 
 
@@ -53,8 +53,7 @@ class Analyst:
 
 
 def _pool() -> ProcessPoolExecutor:
-    spawn = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(1, mp_context=spawn, initializer=end_with_parent)
+    return ProcessPoolExecutor(1, mp_context=CONTEXT, initializer=end_with_parent)
 
 
 def _analysed(reference: str, mission: Mission, revision: int) -> AnalysisFound:

@@ -2,21 +2,18 @@
 ends with the service, even where that is killed."""
 
 import asyncio
-import multiprocessing
-import os
-import signal
-import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from multiprocessing.connection import Connection, wait
+from multiprocessing.connection import Connection
 from typing import Any, Generic, TypeVar
 
 from argo_compiler.base.errors import ArgoError, Unavailable
+from argo_env.worker_processes import end_with_parent
+from argo_planner.service.processes.context import CONTEXT
 
 Result = TypeVar("Result")
 Tell = Callable[[Any], None]
 """what the work is given to tell how far it is"""
-_SPAWN = multiprocessing.get_context("spawn")
 
 
 class JobProcess(Generic[Result]):
@@ -25,8 +22,8 @@ class JobProcess(Generic[Result]):
     def __init__(self, work: Callable[..., Result], *arguments: Any, parent: bool = False) -> None:
         """Begins the work, `work(*arguments, tell)`; all of it can be pickled. `parent`: whether
         it has processes of its own, which then have to end by themselves once it has."""
-        self._here, there = _SPAWN.Pipe(duplex=False)
-        self._process = _SPAWN.Process(target=_carried_out, args=(there, work, arguments))
+        self._here, there = CONTEXT.Pipe(duplex=False)
+        self._process = CONTEXT.Process(target=_carried_out, args=(there, work, arguments))
         self._process.daemon = not parent
         self._process.start()
         there.close()
@@ -56,20 +53,6 @@ class JobProcess(Generic[Result]):
         """Ends the process, whatever it does."""
         self._process.kill()
         self._process.join()
-
-
-def end_with_parent() -> None:
-    """From now on this process ends as soon as the one that began it has, and leaves interruptions
-    to it: Ctrl-C is sent to both."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        threading.Thread(target=_end_after, args=(parent.sentinel,), daemon=True).start()
-
-
-def _end_after(sentinel: int) -> None:
-    wait([sentinel])
-    os._exit(1)
 
 
 def _carried_out(pipe: Connection, work: Callable[..., Any], arguments: tuple[Any, ...]) -> None:

@@ -1,6 +1,5 @@
 """The process of a run, as the service sees it."""
 
-import multiprocessing
 import queue
 import threading
 from collections.abc import Callable, Sequence
@@ -9,6 +8,7 @@ from pathlib import Path
 
 from argo_compiler.base.errors import Unavailable
 from argo_compiler.base.model import Model
+from argo_planner.service.processes.context import CONTEXT
 from argo_planner.service.runs.pipe import RobotText
 from argo_planner.service.runs.requests import RunOrder, RunRequest
 from argo_planner.service.runs.state import RunState
@@ -18,7 +18,6 @@ MOST_WAITING = 200
 """messages for a process that does not read them"""
 MOST_AT_ONCE = 500
 """messages of a process that are heard together"""
-_SPAWN = multiprocessing.get_context("spawn")
 
 
 class RunProcess:
@@ -39,9 +38,9 @@ class RunProcess:
         self.for_stop = asked is not None and asked[0].kind == "stop"
         self.problem: str | None = None
         """why it says it has broken off"""
-        self._pipe, there = _SPAWN.Pipe()
+        self._pipe, there = CONTEXT.Pipe()
         arguments = (there, folder, order, first, foxglove, asked)
-        self._process = _SPAWN.Process(
+        self._process = CONTEXT.Process(
             target=carry_out, args=arguments, name=f"run {self.run}", daemon=True
         )
         self._process.start()

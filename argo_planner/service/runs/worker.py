@@ -24,7 +24,7 @@ from argo_env.run.record import RunRecord
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
 from argo_env.run.steering import StopRun
-from argo_planner.service.processes.work import end_with_parent
+from argo_env.worker_processes import end_with_parent
 from argo_planner.service.runs.driver import RunDriver, RunTeller
 from argo_planner.service.runs.pictures import PictureKeeper
 from argo_planner.service.runs.pipe import BrokenOff, WorkerPipe

@@ -131,6 +131,7 @@ def test_a_route_that_can_win_nothing_is_proven() -> None:
     assert (made.order, made.prize, made.prize_bound) == ((), 0, 0)
 
 
+@pytest.mark.long
 def test_of_a_round_with_many_members_nothing_is_claimed() -> None:
 
     grid = _grid(12)

@@ -81,6 +81,7 @@ def test_the_expert_gets_a_floor_down(descent, navigator):
     assert max(pitches) == pytest.approx(32.5, abs=5.0)
 
 
+@pytest.mark.long
 def test_the_expert_gets_a_floor_up(env, navigator):
     _, info = env.reset(seed=25, options={"floor": [4, 5], "max_way": 60.0})
     assert [navigator.site.floor_at(z) for z in (env.pose.z, info["goal"][2])] == [4, 5]

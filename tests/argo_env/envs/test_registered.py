@@ -71,6 +71,7 @@ def test_documented_in_sections(make):
     assert places == sorted(places)
 
 
+@pytest.mark.long
 def test_twins_are_the_same_here_and_in_another_process(id, make, elsewhere):
     first, second = (rollouts.digests([id], SEED, FEWER) for _ in range(2))
     assert first[id] == second[id] == elsewhere[id]

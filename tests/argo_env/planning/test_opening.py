@@ -124,6 +124,7 @@ def test_what_is_on_disk_equals_what_is_found_anew(reference, yard_file, folder,
     assert again.catalog == first.catalog == make_catalog(plain)
 
 
+@pytest.mark.long
 def test_a_drawn_site_is_not_drawn_again(monkeypatch):
     first = open_site(DRAWN)
     dock, catalog = first.site.docks[1], first.catalog

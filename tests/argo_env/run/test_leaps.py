@@ -136,7 +136,7 @@ EXAMPLES = examples(60)
 CASES = [
     *((seed, "route") for seed in range(EXAMPLES)),
     *(
-        pytest.param(1000 + seed, "kinematic", marks=pytest.mark.long if seed >= 3 else ())
+        pytest.param(1000 + seed, "kinematic", marks=pytest.mark.long if seed >= 1 else ())
         for seed in range(max(4, EXAMPLES // 5))
     ),
 ]

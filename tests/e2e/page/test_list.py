@@ -53,6 +53,7 @@ def order(person: Person, *names: str) -> None:
     )
 
 
+@pytest.mark.long
 def test_checkpoints_are_added_by_keys_one_after_the_other(ann, service, plan) -> None:
     ann.focus(ann.page.get_by_role("tree"))
     ann.key("End", "m")
@@ -124,6 +125,7 @@ def test_several_tasks_are_dragged_at_once_into_a_group(ann, service, plan) -> N
     assert (group["start"], group["end"]) == ("C4", "B2")
 
 
+@pytest.mark.long
 def test_what_was_done_is_undone_and_done_again(ann) -> None:
     ann.click(row(ann, "B2"))
     ann.key("Delete")

@@ -45,6 +45,7 @@ def test_a_checkpoint_is_measured_with_two_clicks(ann, service, plan) -> None:
     assert mission(service, plan)["tasks"][-1]["object_id"] == "3"
 
 
+@pytest.mark.long
 def test_what_is_hidden_is_not_hit(ann, service) -> None:
     above = checkpoint(service, 14)
     assert above["floor"] > 1
@@ -53,6 +54,7 @@ def test_what_is_hidden_is_not_hit(ann, service) -> None:
     expect(ann.page.get_by_text(above["name"], exact=False)).to_have_count(0)
 
 
+@pytest.mark.long
 def test_the_ghost_says_where_the_robot_can_stand_without_asking(ann, service) -> None:
     floor(ann, 1)
     world = service.client.get("/api/world").json()
@@ -73,6 +75,7 @@ def test_the_ghost_says_where_the_robot_can_stand_without_asking(ann, service) -
     assert asked == []
 
 
+@pytest.mark.long
 def test_a_click_where_it_can_not_stand_places_nothing(ann) -> None:
     floor(ann, 1)
     ann.key("n")
@@ -85,6 +88,7 @@ def test_a_click_where_it_can_not_stand_places_nothing(ann) -> None:
     expect(ann.page.locator("argo-scene #verdict")).to_be_hidden()
 
 
+@pytest.mark.long
 def test_a_drag_is_the_camera_and_no_click(ann) -> None:
     floor(ann, 1)
     ann.key("n")
@@ -99,6 +103,7 @@ def test_a_drag_is_the_camera_and_no_click(ann) -> None:
     assert ann.ask("() => window.argo.camera()") != before
 
 
+@pytest.mark.long
 def test_v_glides_to_what_is_selected(ann) -> None:
     ann.click(row(ann, "C4"))
     before = ann.ask("() => window.argo.camera()")
@@ -143,6 +148,7 @@ def test_an_obstacle_is_put_up_by_keys_alone(ann, service) -> None:
     service.client.put("/api/world/obstacles", json={"obstacles": []}, headers={"if-match": "*"})
 
 
+@pytest.mark.long
 def test_the_tool_is_moved_by_keys_at_once_and_put_away(ann) -> None:
     floor(ann, 1)
     ann.focus(ann.page.get_by_role("tree"))

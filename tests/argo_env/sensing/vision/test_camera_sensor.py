@@ -93,12 +93,14 @@ def test_too_dark(stage, id):
         CameraSensor(stage.world).measure(id, pose)
 
 
+@pytest.mark.long
 def test_not_there(stage):
     pose = stage(DIAL, 3.0, Placement((0.0, 0.0, -30.0)))
     with pytest.raises(MeasurementError, match="pressure gauge 1: not found"):
         CameraSensor(stage.world).measure(DIAL, pose)
 
 
+@pytest.mark.long
 def test_all_hidden(stage, umad):
     pose = stage(VALVE, 45.0)
     x, y, z = umad.checkpoint(VALVE).position

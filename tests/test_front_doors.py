@@ -5,13 +5,11 @@ which are the front doors, and others that are made in the same way.
 import ast
 import importlib
 import re
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
+from tests.processes import ROOT, run_python
+
 DOORS = ("argo_compiler", "argo_env")
 LAZY = sorted(
     ".".join(path.relative_to(ROOT).parent.parts)
@@ -54,15 +52,9 @@ def test_what_is_not_there_is_said_so(package):
         importlib.import_module(package).nothing  # noqa: B018
 
 
-def run_python(program):
-    return subprocess.run(
-        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
-    ).stdout
-
-
 @pytest.mark.parametrize("door", DOORS)
 def test_importing_it_imports_no_library(door):
-    loaded = set(run_python(f"import {door}, sys; print(*sys.modules)").split())
+    loaded = set(run_python("-c", f"import {door}, sys; print(*sys.modules)").stdout.split())
     assert not loaded & {"numpy", "scipy", "pydantic", "lark", "ortools", "gymnasium", "pybullet"}
 
 
@@ -77,14 +69,14 @@ def test_importing_it_imports_no_library(door):
 )
 def test_gymnasium_knows_the_environments_whichever_is_imported_first(program):
     made = "print(gymnasium.make('argo/Route-v0').spec.id, gymnasium.__loader__.get_filename())"
-    id, file = run_python(f"{program}\n{made}").split()
+    id, file = run_python("-c", f"{program}\n{made}").stdout.split()
     assert id == "argo/Route-v0"
     assert file.endswith("__init__.py")
 
 
 def test_gymnasium_can_be_looked_for_without_being_imported():
     asked = "import argo_env, importlib.util, sys\nimportlib.util.find_spec('gymnasium')"
-    assert run_python(f"{asked}\nprint('gymnasium' in sys.modules)").strip() == "False"
+    assert run_python("-c", f"{asked}\nprint('gymnasium' in sys.modules)").stdout.strip() == "False"
 
 
 def test_the_readme_imports_from_the_front_doors_only():

@@ -3,9 +3,21 @@
 from contextlib import contextmanager
 from itertools import pairwise
 
+import yaml
+
 from argo_compiler.base.model import Pose
+from argo_compiler.files.mission_file import write_mission
 from argo_compiler.hfsm import TakeOver
-from argo_compiler.il import Action, Mission, Task, Transition
+from argo_compiler.il import (
+    Action,
+    Afterwards,
+    EventKind,
+    Mission,
+    Reaction,
+    Response,
+    Task,
+    Transition,
+)
 from argo_env.drives.drive import DriveStatus
 from argo_env.faults.kinds import FaultFile
 from argo_env.navigation import Navigator
@@ -53,16 +65,37 @@ SITE = {
 }
 
 
+AWAY_FROM_THE_EDGE = [{"number": 1, "dock": [2.05, 2.05, 0]}]
+"""areas, so that the robot turns in its dock"""
+
+
+def site_of(**changes):
+    """The yard's site, or what it is with other fields."""
+    return make_site(SiteSpec.model_validate(SITE | changes))
+
+
+def write_site(path, **changes):
+    """Writes the yard's site into a file, or what it is with other fields; the path as a text."""
+    path.write_text(yaml.safe_dump(SITE | changes), encoding="utf-8")
+    return str(path)
+
+
+def write_yard(folder, **missions):
+    """Writes into a folder what a command needs: the site as `yard.yaml`, and missions by name."""
+    write_site(folder / "yard.yaml")
+    for name, plan in missions.items():
+        write_mission(plan, folder / f"{name}.json")
+
+
 def gauged(low, high):
     """The yard's site with gauges whose nominal range that is."""
     (floor,) = SITE["floors"]
     checkpoints = [c | {"nominal": {"low": low, "high": high}} for c in floor["checkpoints"]]
-    floors = [floor | {"checkpoints": checkpoints}]
-    return make_site(SiteSpec.model_validate(SITE | {"floors": floors}))
+    return site_of(floors=[floor | {"checkpoints": checkpoints}])
 
 
 def yard():
-    navigator = Navigator(make_site(SiteSpec.model_validate(SITE)), load_robot())
+    navigator = Navigator(site_of(), load_robot())
     navigator.prepare()
     return navigator
 
@@ -93,6 +126,17 @@ def from_place(pose, *tasks, **fields):
 def mission(*tasks, **fields):
     """A mission of the tasks in order, from the dock of the yard."""
     return from_place(Pose(x=1.05, y=1.05, z=0.02), *tasks, site="yard", **fields)
+
+
+def shelter(x, y):
+    """A reaction to gas: to wait at a safe place until it has gone, and then to go on."""
+    return Reaction(
+        event=EventKind.GAS_LEAK,
+        response=Response.SAFE_AREA,
+        pose=Pose(x=x, y=y, z=0.02),
+        until=EventKind.ALL_CLEAR,
+        afterwards=Afterwards.RESUME,
+    )
 
 
 class GlidingDrive:

@@ -12,6 +12,15 @@ def no_stages(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stage_display, "AFTER", float("inf"))
 
 
+@pytest.fixture
+def quick_picture(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Stands for the picture of the site in a report, which takes long."""
+    monkeypatch.setattr(
+        "argo_planner.use_cases.reporting.write_overview",
+        lambda *given: given[-1].write_bytes(b"a picture"),
+    )
+
+
 @pytest.fixture(scope="session")
 def umad() -> OpenedSite:
     return open_site("umad")

@@ -1,14 +1,12 @@
 """A run is checked once on every way that leads to it, and before anything is made."""
 
 import cProfile
-import json
 from collections import Counter
 from types import CodeType
 
 import pytest
 from typer.testing import CliRunner
 
-from argo_compiler.files.mission_file import mission_text
 from argo_env.envs.inspection import InspectEnv
 from argo_env.evaluation.evaluating import WorkOrder, carry_out
 from argo_env.evaluation.evaluation import Evaluation
@@ -20,7 +18,7 @@ from argo_env.run.session import resume, simulate
 from argo_env.run.spec import RunSpec
 from argo_env.run.steering import check_given
 from argo_planner.cli import app
-from tests.yard import SITE, measure, mission, simulation_of
+from tests.yard import measure, mission, simulation_of, write_yard
 
 CHECKS = (require_site, check_spec, check_given)
 ONCE = {check.__name__: 1 for check in CHECKS}
@@ -39,8 +37,7 @@ def counted(work, *checks):
 
 @pytest.fixture
 def folder(monkeypatch, tmp_path):
-    (tmp_path / "yard.yaml").write_text(json.dumps(SITE), encoding="utf-8")
-    (tmp_path / "plan.json").write_text(mission_text(PLAN), encoding="utf-8")
+    write_yard(tmp_path, plan=PLAN)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

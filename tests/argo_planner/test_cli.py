@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 
 from argo_planner.cli import ArgoCommands, app
 from argo_planner.lazy_group import LazyCommand, load_command
+from tests.processes import run_python
 
 COMMANDS = {command.name: command for command in ArgoCommands.lazy_commands}
 
@@ -44,10 +45,7 @@ def test_help_and_version_import_no_command_and_none_of_what_commands_need() -> 
         "except SystemExit: print(*sys.modules, file=sys.stderr)"
     )
     for option in ("--help", "--version"):
-        ran = subprocess.run(
-            [sys.executable, "-c", program, option], capture_output=True, text=True, check=True
-        )
-        loaded = set(ran.stderr.split())
+        loaded = set(run_python("-c", program, option).stderr.split())
         assert "argo_planner.cli" in loaded
         assert not loaded & {"numpy", "pydantic", "scipy", "gymnasium", "argo_env"}
         assert not {name for name in loaded if name.startswith("argo_planner.commands.")}

@@ -5,7 +5,6 @@ import re
 from pathlib import Path
 
 import pytest
-import yaml
 from typer.testing import CliRunner
 
 from argo_compiler.diagnostics import DiagnosticError
@@ -13,7 +12,8 @@ from argo_compiler.files.mission_file import read_mission
 from argo_compiler.il import Mission
 from argo_planner.cli import app
 from argo_planner.use_cases.schemas import FileKind, schema
-from tests.yard import SITE
+from tests.mission_writing import unplaced
+from tests.yard import write_yard
 
 SCRIPT = """\
 Mission Protocol #1
@@ -29,28 +29,25 @@ If a gas leak is detected, return to the docking station.
 @pytest.fixture
 def folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "yard.yaml").write_text(yaml.safe_dump(SITE), encoding="utf-8")
+    write_yard(tmp_path)
     (tmp_path / "s.txt").write_text(SCRIPT, encoding="utf-8")
     return tmp_path
 
 
+def argo(*words: str):
+    return CliRunner().invoke(app, [*words, "--site", "yard.yaml"])
+
+
 def explained(*words: str) -> str:
-    result = CliRunner().invoke(app, ["explain", *words, "--site", "yard.yaml"])
+    result = argo("explain", *words)
     assert result.exception is None, result.exception
     return result.stdout
 
 
 def mission_of(source: str) -> Mission:
-    result = CliRunner().invoke(
-        app, ["import", source, "-o", f"{source}.json", "--site", "yard.yaml"]
-    )
+    result = argo("import", source, "-o", f"{source}.json")
     assert result.exception is None, result.exception
-    mission = read_mission(Path(f"{source}.json"))
-    parts = {
-        name: tuple(part.model_copy(update={"source": None}) for part in getattr(mission, name))
-        for name in ("tasks", "groups", "reactions")
-    }
-    return mission.model_copy(update=parts)
+    return unplaced(read_mission(Path(f"{source}.json")))
 
 
 @pytest.mark.usefixtures("folder")
@@ -83,7 +80,7 @@ def test_for_programs_it_is_data_with_a_schema() -> None:
 
 @pytest.mark.usefixtures("folder")
 def test_an_import_says_what_was_understood() -> None:
-    result = CliRunner().invoke(app, ["import", "s.txt", "-o", "m.json", "--site", "yard.yaml"])
+    result = argo("import", "s.txt", "-o", "m.json")
     assert "2. Check checkpoint #1, at 0.3 m/s." in result.stdout
 
 
@@ -95,14 +92,13 @@ def test_a_mission_is_explained_as_its_script_is() -> None:
 
 @pytest.mark.usefixtures("folder")
 def test_warnings_fail_only_where_that_is_asked_for() -> None:
-    words = ["explain", "s.txt", "--site", "yard.yaml"]
-    assert CliRunner().invoke(app, words).exit_code == 0
-    assert CliRunner().invoke(app, [*words, "--strict"]).exit_code == 1
+    assert argo("explain", "s.txt").exit_code == 0
+    assert argo("explain", "s.txt", "--strict").exit_code == 1
 
 
 def test_errors_are_those_of_the_import(folder: Path) -> None:
     (folder / "s.txt").write_text("1. Fly to the moon.\n", encoding="utf-8")
-    result = CliRunner().invoke(app, ["explain", "s.txt", "--site", "yard.yaml"])
+    result = argo("explain", "s.txt")
     assert isinstance(result.exception, DiagnosticError)
 
 

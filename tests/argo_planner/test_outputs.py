@@ -3,19 +3,18 @@
 from pathlib import Path
 
 import pytest
-import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, Remedy
-from argo_compiler.files.mission_file import write_mission
 from argo_compiler.files.writing import write_folder
 from argo_planner.cli import app
 from argo_planner.terminal.words import said
+from tests.argo_compiler.files.test_writing import contents
 from tests.conftest import examples
 from tests.disks import fill, small_disk
-from tests.yard import SITE, measure, mission
+from tests.yard import measure, mission, write_yard
 
 SCRIPT = "Mission Protocol #1\n1. Start in starting area 1.\n2. Check checkpoint #1.\n"
 
@@ -82,22 +81,13 @@ def folder(monkeypatch, tmp_path: Path) -> Path:
     """The working folder, with what the commands read."""
     monkeypatch.chdir(tmp_path)
     Path("s.txt").write_text(SCRIPT, encoding="utf-8")
-    Path("yard.yaml").write_text(yaml.safe_dump(SITE), encoding="utf-8")
-    write_mission(mission(measure(1)), Path("m.json"))
+    write_yard(tmp_path, m=mission(measure(1)))
     return tmp_path
 
 
 def invoke(command: str, *more: str):
     site = [] if command.split()[0] in {"sites", "resume", "replay"} else ["--site", "yard.yaml"]
     return CliRunner().invoke(app, [*command.split(), *site, *more])
-
-
-def contents(folder: Path) -> dict[str, bytes]:
-    return {
-        path.relative_to(folder).as_posix(): path.read_bytes()
-        for path in folder.rglob("*")
-        if path.is_file()
-    }
 
 
 def put(names: list[str]) -> None:
@@ -137,15 +127,6 @@ def test_the_way_out_is_said() -> None:
     assert error.remedies == (Remedy.REPLACE,)
     assert said(error) == (
         "new.dot: is there already: choose another place, or replace it (--force)"
-    )
-
-
-@pytest.fixture
-def quick_picture(monkeypatch) -> None:
-    """Stands for the picture of the site, which takes long."""
-    monkeypatch.setattr(
-        "argo_planner.use_cases.reporting.write_overview",
-        lambda *given: given[-1].write_bytes(b"a picture"),
     )
 
 

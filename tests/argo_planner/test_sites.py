@@ -28,6 +28,19 @@ def hall_yaml():
     return yaml.safe_load(text)
 
 
+@pytest.fixture
+def look_over(tmp_path):
+    """Runs `argo sites` on a site that has flaws; what it says."""
+
+    def call(site, *options):
+        (tmp_path / "site.yaml").write_text(yaml.safe_dump(site, sort_keys=False), encoding="utf-8")
+        result = argo("sites", tmp_path / "site.yaml", *options)
+        assert result.exit_code == 2
+        return result.output
+
+    return call
+
+
 def test_list():
     result = argo("sites")
     assert result.exit_code == 0
@@ -93,22 +106,15 @@ def test_a_site_is_not_written_over_itself(tmp_path, hall_yaml):
     assert file.read_bytes() == before
 
 
-def test_stairs_that_do_not_end_at_the_next_floor(tmp_path, hall_yaml):
+def test_stairs_that_do_not_end_at_the_next_floor(look_over, hall_yaml):
     """Also where the robot would get over the step."""
     (flight,) = hall_yaml["towers"][0]["flights"]
     flight["rise"] -= 0.05 / flight["risers"]
-    file = tmp_path / "site.yaml"
-    file.write_text(yaml.safe_dump(hall_yaml), encoding="utf-8")
-    result = argo("sites", file)
-    assert result.exit_code == 2
-    (error,) = [line for line in result.output.splitlines() if "its flights rise" in line]
+    (error,) = [line for line in look_over(hall_yaml).splitlines() if "its flights rise" in line]
     assert ": error: " in error
     assert "and floor 2 lies 2.500 m above floor 1" in error
     flight["rise"] *= 2  # no robot gets up there, for that reason alone
-    file.write_text(yaml.safe_dump(hall_yaml), encoding="utf-8")
-    result = argo("sites", file)
-    assert result.exit_code == 2
-    (error,) = [line for line in result.output.splitlines() if ": error: " in line]
+    (error,) = [line for line in look_over(hall_yaml).splitlines() if ": error: " in line]
     assert "its flights rise" in error
 
 
@@ -129,19 +135,16 @@ def test_a_storey_that_is_not_the_height_from_floor_to_floor(tmp_path, hall_yaml
     assert "give it the height from floor to floor" in message
 
 
-def test_a_site_that_can_not_be_driven(tmp_path, hall_yaml):
+def test_a_site_that_can_not_be_driven(look_over, hall_yaml):
     hall_yaml["towers"][0]["flights"][0]["foot"] = [2.0, 5.0, 0.0]
     hall_yaml["floors"][0]["checkpoints"][0]["position"][2] = 9.0
     hall_yaml["floors"][0]["checkpoints"][1]["position"][2] = 2.4
-    file = tmp_path / "site.yaml"
-    file.write_text(yaml.safe_dump(hall_yaml), encoding="utf-8")
-    result = argo("sites", file)
-    assert result.exit_code == 2
-    assert "error: floor 2" in result.output
-    assert "error: checkpoint 1 (pressure gauge 1)" in result.output
-    assert "error: checkpoints 4, 5 and 6 on floor 2 can't be read" in result.output
-    assert "note: checkpoint 2: it is 2.4 m high" in result.output
-    assert "checkpoint 3" not in result.output
+    said = look_over(hall_yaml)
+    assert "error: floor 2" in said
+    assert "error: checkpoint 1 (pressure gauge 1)" in said
+    assert "error: checkpoints 4, 5 and 6 on floor 2 can't be read" in said
+    assert "note: checkpoint 2: it is 2.4 m high" in said
+    assert "checkpoint 3" not in said
 
 
 def reds(picture):
@@ -150,15 +153,11 @@ def reds(picture):
     return ((red - green > 80) & (abs(green - blue) < 30)).sum()
 
 
-def test_a_picture_shows_what_is_wrong_and_where(tmp_path, hall_yaml):
+def test_a_picture_shows_what_is_wrong_and_where(look_over, tmp_path, hall_yaml):
     hall_yaml["towers"] = []
     file, picture = tmp_path / "site.yaml", tmp_path / "site.png"
-    file.write_text(yaml.safe_dump(hall_yaml), encoding="utf-8")
-    told = argo("sites", file)
-    assert f"to see where: argo sites {file} --picture FILE.png" in told.output
-    result = argo("sites", file, "--picture", picture)
-    assert result.exit_code == 2
-    assert "to see where" not in result.output
+    assert f"to see where: argo sites {file} --picture FILE.png" in look_over(hall_yaml)
+    assert "to see where" not in look_over(hall_yaml, "--picture", picture)
     drawn = Image.open(picture)
     assert drawn.width == 1280
     assert drawn.height > 720, "the errors stand below the floors"

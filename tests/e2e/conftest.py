@@ -7,8 +7,12 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
+
+from argo_env.navigation import Navigator
+from tests.yard import yard
 
 ROOT = Path(__file__).parents[2]
 ORIGINALS = os.environ.get("ARGO_ORIGINALS")
@@ -21,6 +25,33 @@ def answer_signals() -> None:
     what it starts would as well."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
+
+
+def started(*arguments: object, **options: Any) -> subprocess.Popen[str]:
+    """A process of the command, with pipes for what it prints."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "argo_planner", *map(str, arguments)],
+        **{
+            "stdin": subprocess.DEVNULL,
+            "stdout": subprocess.PIPE,
+            "stderr": subprocess.PIPE,
+            "text": True,
+            "env": {**os.environ, "COLUMNS": "120"},
+            "preexec_fn": answer_signals,
+            **options,
+        },
+    )
+
+
+def told_until(process: subprocess.Popen[str], words: str) -> str:
+    """What a process says up to the line with these words."""
+    assert process.stderr
+    said = ""
+    while words not in said:
+        line = process.stderr.readline()
+        assert line, said
+        said += line
+    return said
 
 
 class ForkedArgo:
@@ -122,6 +153,12 @@ def argo_process() -> Argo:
         )
 
     return call
+
+
+@pytest.fixture(scope="module")
+def navigator() -> Navigator:
+    """That of the yard."""
+    return yard()
 
 
 @pytest.fixture(scope="session")

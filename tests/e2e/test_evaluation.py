@@ -6,7 +6,6 @@ import random
 import shutil
 import signal
 import subprocess
-import sys
 import time
 from contextlib import suppress
 from pathlib import Path
@@ -16,13 +15,12 @@ import pytest
 from argo_compiler.base.errors import NotFound
 from argo_env.evaluation.store import read_rows
 from tests.conftest import examples
-from tests.e2e.conftest import answer_signals
+from tests.e2e.conftest import ROOT, started
 
 pytestmark = pytest.mark.long
 
 MISSION = "scenarios/umad/missions/mission_1.txt"
 AREAS = ("--start-area", "1", "--end-area", "2")
-ROOT = Path(__file__).parents[2]
 
 FILE = """\
 name: stops
@@ -283,15 +281,9 @@ def test_more_seeds_go_on_from_the_rows_that_are_there(argo, file, out):
     assert len(after) == 14
 
 
-def started(file: Path, out: Path, stderr: int = subprocess.DEVNULL) -> "subprocess.Popen[bytes]":
-    return subprocess.Popen(
-        [sys.executable, "-m", "argo_planner", "evaluate", file, "--out", out, "--workers", "2"],
-        cwd=ROOT,
-        stdout=subprocess.DEVNULL,
-        stderr=stderr,
-        start_new_session=True,
-        preexec_fn=answer_signals,
-    )
+def begun(file: Path, out: Path, stderr: int = subprocess.DEVNULL) -> subprocess.Popen[str]:
+    options = {"stdout": subprocess.DEVNULL, "stderr": stderr, "start_new_session": True}
+    return started("evaluate", file, "--out", out, "--workers", 2, cwd=ROOT, **options)
 
 
 def processes_of(session: int) -> list[int]:
@@ -318,7 +310,7 @@ def long_file(tmp_path_factory) -> Path:
 @pytest.fixture(scope="module")
 def undisturbed(long_file, tmp_path_factory):
     out = tmp_path_factory.mktemp("undisturbed") / "out"
-    assert started(long_file, out).wait(300) == 0
+    assert begun(long_file, out).wait(300) == 0
     return sorted(read_rows(out), key=lambda row: row.key)
 
 
@@ -332,7 +324,7 @@ def test_killed_and_begun_again_the_rows_are_those_of_an_undisturbed_one(
     chosen, out = random.Random(KILLS), tmp_path / "out"
     done = 0
     for _ in range(KILLS):
-        process = started(long_file, out)
+        process = begun(long_file, out)
         wanted = done + chosen.randint(1, max(1, 2 * len(undisturbed) // KILLS - 1))
         while process.poll() is None and count(out) < min(wanted, len(undisturbed)):
             time.sleep(0.01)
@@ -341,13 +333,13 @@ def test_killed_and_begun_again_the_rows_are_those_of_an_undisturbed_one(
         process.wait()
         before, done = done, count(out)
         assert done >= before
-    assert started(long_file, out).wait(300) == 0
+    assert begun(long_file, out).wait(300) == 0
     assert sorted(read_rows(out), key=lambda row: row.key) == undisturbed
 
 
 def test_killed_workers_change_nothing_of_the_rows(long_file, undisturbed, tmp_path):
     chosen, out = random.Random(100 + KILLS), tmp_path / "out"
-    process = started(long_file, out)
+    process = begun(long_file, out)
     killed, wanted = 0, 1
     while process.poll() is None and killed < KILLS:
         # Some rows between two kills, so that it ever comes to an end.
@@ -371,7 +363,7 @@ def count(out: Path) -> int:
 
 
 def test_no_worker_is_left_behind(long_file, tmp_path):
-    process = started(long_file, tmp_path / "out")
+    process = begun(long_file, tmp_path / "out")
     while count(tmp_path / "out") < 3:
         time.sleep(0.02)
     assert processes_of(process.pid)
@@ -385,15 +377,15 @@ def test_no_worker_is_left_behind(long_file, tmp_path):
 
 def test_ctrl_c_keeps_the_rows(long_file, tmp_path):
     out = tmp_path / "out"
-    process = started(long_file, out, subprocess.PIPE)
+    process = begun(long_file, out, subprocess.PIPE)
     while count(out) < 3:
         time.sleep(0.02)
     os.killpg(process.pid, signal.SIGINT)
     _, told = process.communicate(timeout=60)
     assert process.returncode == 130
     kept = count(out)
-    assert f"argo: interrupted; {kept} runs are kept in {out}".encode() in told
+    assert f"argo: interrupted; {kept} runs are kept in {out}" in told
     assert kept >= 3
-    again = started(long_file, out)
+    again = begun(long_file, out)
     assert again.wait(300) == 0
     assert count(out) == 120

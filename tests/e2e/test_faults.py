@@ -4,12 +4,10 @@ import json
 import re
 
 import pytest
-import yaml
 
-from argo_compiler.files.mission_file import write_mission
 from argo_env.run.record import RunRecord
 from tests.e2e.test_errors import refused
-from tests.yard import SITE, cut, measure, mission, waypoint
+from tests.yard import cut, measure, mission, waypoint, write_yard
 
 FAULTS = """\
 faults:
@@ -19,21 +17,18 @@ faults:
   - {kind: gas_leak, at: 5, place: [3.0, 3.0, 0.8], rate: 0.03}
   - {kind: platform_alarm, at: 4000}
 """
+RUN = ("run", "mission.json", "--site", "yard.yaml", "--faults", "faults.yaml")
 
 
 @pytest.fixture
 def folder(tmp_path):
-    (tmp_path / "yard.yaml").write_text(yaml.safe_dump(SITE), encoding="utf-8")
+    write_yard(tmp_path, mission=mission(waypoint("A", 5.05, 2.55), measure(3)))
     (tmp_path / "faults.yaml").write_text(FAULTS, encoding="utf-8")
-    write_mission(mission(waypoint("A", 5.05, 2.55), measure(3)), tmp_path / "mission.json")
     return tmp_path
 
 
 def test_found_told_kept_and_shown(argo, folder):
-    ran = argo(
-        "run", "mission.json", "--site", "yard.yaml", "--faults", "faults.yaml", "--report", "out",
-        "--journal", "run.journal", cwd=folder,
-    )  # fmt: skip
+    ran = argo(*RUN, "--report", "out", "--journal", "run.journal", cwd=folder)
     assert ran.returncode == 0, ran.stderr
     shown = ran.stdout + ran.stderr
     for kind in ("positive obstacle", "connection lost", "connection restored"):
@@ -76,15 +71,11 @@ def test_found_told_kept_and_shown(argo, folder):
 )
 def test_faults_that_make_no_sense(argo, folder, text, says):
     (folder / "faults.yaml").write_text(text, encoding="utf-8")
-    ran = argo("run", "mission.json", "--site", "yard.yaml", "--faults", "faults.yaml", cwd=folder)
-    assert says in refused(ran)
+    assert says in refused(argo(*RUN, cwd=folder))
 
 
 def test_a_drive_without_a_world_finds_no_brick(argo, folder):
-    ran = argo(
-        "run", "mission.json", "--site", "yard.yaml", "--faults", "faults.yaml", "--drive", "route",
-        cwd=folder,
-    )  # fmt: skip
+    ran = argo(*RUN, "--drive", "route", cwd=folder)
     assert ran.returncode == 2
     assert "take another drive" in ran.stderr
 

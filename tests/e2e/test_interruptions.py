@@ -7,50 +7,32 @@ import random
 import re
 import shlex
 import signal
-import subprocess
-import sys
 import time
 from itertools import count
 from pathlib import Path
 
 import pytest
-import yaml
 
-from argo_compiler.files.mission_file import write_mission
 from argo_env.run.journal import open_journal
 from argo_env.run.record import RunRecord
 from tests.conftest import examples
-from tests.e2e.conftest import answer_signals
+from tests.e2e.conftest import started
 from tests.e2e.test_journal import (
     ANNOUNCED,
     LONGEST,
-    OPTIONS,
     PLAN,
     announced,
+    announced_in,
     require_complete,
+    run_of,
     settings,
 )
-from tests.yard import SITE, measure, mission, simulated, yard
+from tests.processes import run_python
+from tests.yard import measure, mission, simulated, write_yard
 
 INTERRUPTIONS = examples(50)
 FULL = Path("/dev/full")
 STATUS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
-
-
-def started(*arguments: object, **options) -> subprocess.Popen[str]:
-    """A process of the command, with pipes for what it prints."""
-    return subprocess.Popen(
-        [sys.executable, "-m", "argo_planner", *map(str, arguments)],
-        **{
-            "stdin": subprocess.DEVNULL,
-            "stdout": subprocess.PIPE,
-            "stderr": subprocess.PIPE,
-            "text": True,
-            "env": {**os.environ, "COLUMNS": "120"},
-            "preexec_fn": answer_signals,
-            **options,
-        },
-    )
 
 
 @pytest.mark.parametrize(
@@ -82,13 +64,8 @@ def test_while_modules_are_imported(missions: Path, number, module: str) -> None
 
 def test_at_each_line_that_answers_signals() -> None:
     """Once signals are ignored, the command has done what it was to do."""
-    lines = subprocess.run(
-        [sys.executable, "-m", "tests.e2e.signal_at_each_line", str(int(signal.SIGTERM))],
-        capture_output=True,
-        check=True,
-        text=True,
-    ).stdout.splitlines()
-    ends = [tuple(json.loads(line)) for line in lines]
+    ran = run_python("-m", "tests.e2e.signal_at_each_line", int(signal.SIGTERM))
+    ends = [tuple(json.loads(line)) for line in ran.stdout.splitlines()]
     interrupted = (143, "argo: interrupted\n")
     assert ends.count(interrupted) > 50
     assert ends == sorted(ends, key=lambda end: end != interrupted)
@@ -139,23 +116,9 @@ def test_output_that_has_no_room_is_told(arguments: list[str]) -> None:
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory, argo) -> Path:
     folder = tmp_path_factory.mktemp("interrupted")
-    (folder / "yard.yaml").write_text(yaml.safe_dump(SITE), encoding="utf-8")
-    write_mission(PLAN, folder / "plan.json")
-    write_mission(mission(measure(1)), folder / "short.json")
+    write_yard(folder, plan=PLAN, short=mission(measure(1)))
     argo.open(folder / "yard.yaml")
     return folder
-
-
-@pytest.fixture(scope="module")
-def navigator():
-    return yard()
-
-
-def run_of(folder: Path, seed: int = 3) -> tuple[object, ...]:
-    """The arguments of a run of the plan."""
-    return (
-        "run", folder / "plan.json", "--site", folder / "yard.yaml", "--seed", seed, *OPTIONS,
-    )  # fmt: skip
 
 
 def reported(folder: Path) -> RunRecord:
@@ -205,10 +168,7 @@ def test_an_interrupted_run_is_reported_and_goes_on(argo, folder, navigator, tmp
     result = argo(*go_on)
     assert result.returncode == 0, result.stderr
     record = reported(report)
-    told = [
-        (float(t), task, int(id), float(value))
-        for t, task, id, value in ANNOUNCED.findall(said + result.stderr)
-    ]
+    told = announced(said + result.stderr)
     require_complete(record, simulated(PLAN, navigator, **settings(3)), told)
     assert record.readings[: len(so_far.readings)] == so_far.readings
 
@@ -323,7 +283,7 @@ def test_runs_that_are_interrupted_lose_nothing(argo, folder, navigator) -> None
             said = output.read_text(encoding="utf-8") if output.exists() else ""
             assert "Traceback" not in said
             assert "ignored" not in said
-            told += announced(output)
+            told += announced_in(output)
             statuses.append(status)
             if status == 0:
                 break

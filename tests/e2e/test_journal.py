@@ -1,33 +1,26 @@
 """Processes that are killed while they run a mission, and others that go on with it.
 
-ARGO_KILLS=200 makes it a campaign.
+ARGO_EXAMPLES=200 makes it a campaign.
 """
 
 import random
 import re
 import signal
 import subprocess
-import sys
 from itertools import count
 from pathlib import Path
 from typing import Any
 
 import pytest
-import yaml
 
-from argo_compiler.base.model import Pose
-from argo_compiler.files.mission_file import write_mission
 from argo_compiler.hfsm import Occurred, Pause, Resume
 from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import (
     Action,
-    Afterwards,
     Condition,
     ConditionType,
     EventKind,
     Group,
-    Reaction,
-    Response,
     Task,
     TimeWindow,
     WaitRule,
@@ -37,10 +30,10 @@ from argo_env.run.record import RunRecord
 from argo_env.run.session import resume
 from argo_env.run.spec import logged
 from tests.conftest import examples
+from tests.e2e.conftest import started
 from tests.e2e.test_errors import refused
-from tests.yard import SITE, measure, mission, opened, simulated, waypoint, yard
+from tests.yard import measure, mission, opened, shelter, simulated, waypoint, write_yard
 
-ROOT = Path(__file__).parents[2]
 KILLS = examples(32)
 LONGEST = 4.0  # s that a process lives; a whole run takes about as long
 
@@ -71,15 +64,7 @@ PLAN = mission(
             until=(Condition(type=ConditionType.GREATER, object_id="3", param1=8.0),),
         ),
     ),
-    reactions=(
-        Reaction(
-            event=EventKind.GAS_LEAK,
-            response=Response.SAFE_AREA,
-            pose=Pose(x=2.05, y=1.55, z=0.02),
-            until=EventKind.ALL_CLEAR,
-            afterwards=Afterwards.RESUME,
-        ),
-    ),
+    reactions=(shelter(2.05, 1.55),),
 )
 EVENTS = (
     (22.0, Occurred(EventKind.GAS_LEAK)),
@@ -99,25 +84,29 @@ ANNOUNCED = re.compile(r"^(\S+) s: (.+): gauge \d \(#(\d)\) shows (\S+) bar$", r
 
 
 @pytest.fixture(scope="module")
-def navigator():
-    return yard()
-
-
-@pytest.fixture(scope="module")
 def folder(tmp_path_factory, argo):
     folder = tmp_path_factory.mktemp("killed")
-    (folder / "yard.yaml").write_text(yaml.safe_dump(SITE), encoding="utf-8")
-    write_mission(PLAN, folder / "plan.json")
+    write_yard(folder, plan=PLAN)
     argo.open(folder / "yard.yaml")
     return folder
 
 
-def announced(output: Path) -> list[tuple[float, str, int, float]]:
+def run_of(folder: Path, seed: int = 3) -> tuple[object, ...]:
+    """The arguments of a run of the plan."""
+    return (
+        "run", folder / "plan.json", "--site", folder / "yard.yaml", "--seed", seed, *OPTIONS,
+    )  # fmt: skip
+
+
+def announced(text: str) -> list[tuple[float, str, int, float]]:
     """The readings that a process said it had made: time, task, checkpoint and value."""
-    text = output.read_text(encoding="utf-8") if output.exists() else ""
     # A process may be killed in the middle of a line, which then says nothing.
     found = ANNOUNCED.findall(text[: text.rfind("\n") + 1])
     return [(float(t), task, int(id), float(value)) for t, task, id, value in found]
+
+
+def announced_in(output: Path) -> list[tuple[float, str, int, float]]:
+    return announced(output.read_text(encoding="utf-8")) if output.exists() else []
 
 
 def require_complete(record: RunRecord, reference: RunRecord, told) -> None:
@@ -159,10 +148,7 @@ def test_runs_that_are_killed_lose_nothing(argo, folder, navigator, record_prope
         seed = next(seeds)
         reference = simulated(PLAN, navigator, **settings(seed))
         journal = folder / f"{seed}.journal"
-        begin = (
-            "run", folder / "plan.json", "--site", folder / "yard.yaml", "--seed", seed,
-            "--journal", journal, *OPTIONS,
-        )  # fmt: skip
+        begin = (*run_of(folder, seed), "--journal", journal)
         told, ended = [], False
         for process in count():
             output = folder / f"{seed}-{process}.txt"
@@ -170,13 +156,13 @@ def test_runs_that_are_killed_lose_nothing(argo, folder, navigator, record_prope
             # The last processes of the last run may live as long as they like.
             after = rng.uniform(0.0, LONGEST) if kills < KILLS else None
             status = argo.kill(*arguments, output=output, after=after)
-            told += announced(output)
+            told += announced_in(output)
             if status == 0:
                 ended = True
                 break
             assert status == -signal.SIGKILL, output.read_text(encoding="utf-8")
             kills += 1
-            silent += not announced(output)
+            silent += not announced_in(output)
         assert ended
         with open_journal(journal) as book:
             assert book.ended
@@ -192,17 +178,7 @@ def test_kill_and_resume_by_the_command(
     argo, argo_process, folder: Path, tmp_path: Path, navigator
 ) -> None:
     journal = tmp_path / "run.journal"
-    begin = (
-        "run", folder / "plan.json", "--site", folder / "yard.yaml", "--seed", 3,
-        "--journal", journal, *OPTIONS,
-    )  # fmt: skip
-    with subprocess.Popen(
-        [sys.executable, "-m", "argo_planner", *map(str, begin)],
-        cwd=tmp_path,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        text=True,
-    ) as process:
+    with started(*run_of(folder), "--journal", journal, stdout=subprocess.DEVNULL) as process:
         line = process.stderr.readline()
         while not ANNOUNCED.match(line):
             assert line, "it has ended without a reading"
@@ -216,10 +192,7 @@ def test_kill_and_resume_by_the_command(
     assert "The run goes on at" in result.stderr
     text = (tmp_path / "report" / "report.json").read_text(encoding="utf-8")
     record = RunRecord.model_validate_json(text)
-    told = [
-        (float(t), task, int(id), float(value))
-        for t, task, id, value in ANNOUNCED.findall(line + result.stderr)
-    ]
+    told = announced(line + result.stderr)
     reference = simulated(PLAN, navigator, **settings(3))
     require_complete(record, reference, told)
     assert len(record.resumed) == 1

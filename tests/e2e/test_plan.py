@@ -3,8 +3,6 @@
 import os
 import re
 import signal
-import subprocess
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,7 +11,7 @@ from urllib.parse import parse_qs, urlsplit
 import httpx
 import pytest
 
-from tests.e2e.conftest import answer_signals
+from tests.e2e.conftest import started, told_until
 
 AREAS = ("--start-area", "1", "--end-area", "2")
 
@@ -21,20 +19,9 @@ AREAS = ("--start-area", "1", "--end-area", "2")
 @contextmanager
 def planning(*options: object, environment: dict[str, str] | None = None) -> Iterator[str]:
     """A process of `argo plan`; the address that it names. Ended with Ctrl-C."""
-    command = [sys.executable, "-m", "argo_planner", "plan", *map(str, options), "--port", "0"]
-    process = subprocess.Popen(
-        command,
-        stderr=subprocess.PIPE,
-        text=True,
-        env=os.environ | (environment or {}),
-        preexec_fn=answer_signals,
-    )
-    assert process.stderr is not None
-    said = ""
-    while "Ctrl-C" not in said:
-        line = process.stderr.readline()
-        assert line, said
-        said += line
+    environment = os.environ | (environment or {})
+    process = started("plan", *options, "--port", 0, stdout=None, env=environment)
+    said = told_until(process, "Ctrl-C")
     try:
         found = re.search(r"http://\S+", said)
         assert found, said

@@ -2,39 +2,25 @@
 
 import re
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-import yaml
 
-from argo_compiler.files.mission_file import write_mission
-from argo_compiler.il import Group
 from argo_env.recording.reader import read_recording
+from tests.e2e.conftest import started
 from tests.e2e.test_errors import refused
-from tests.yard import SITE, measure, mission, waypoint
+from tests.e2e.test_full_disk import results, rounds
+from tests.yard import measure, mission, waypoint, write_yard
 
 SHORT = mission(measure(1), waypoint("A", 2.05, 2.05))
-LONG = mission(
-    measure(1),
-    waypoint("A", 2.05, 2.05),
-    measure(2),
-    groups=(Group(name="Round", start="A", end="MEASURE 2", max_repeat_count=400),),
-)
+LONG = rounds(400)
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("replay")
-    (folder / "yard.yaml").write_text(yaml.safe_dump(SITE), encoding="utf-8")
-    write_mission(SHORT, folder / "short.json")
-    write_mission(LONG, folder / "long.json")
+    write_yard(folder, short=SHORT, long=LONG)
     return folder
-
-
-def results(output: str) -> str:
-    """What a command printed of the run, without what it says of its own time and files."""
-    return output[: output.index("Success: ")]
 
 
 def same_files(a: Path, b: Path) -> bool:
@@ -51,8 +37,7 @@ def test_replay_shows_and_makes_again_what_the_run_did(argo, folder: Path) -> No
     )
     assert first.returncode == 0, first.stderr
     assert "Recording: run.mcap" in first.stdout
-    again = argo("run", "short.json", "--site", "yard.yaml", "--seed", 3, "--record", "2.mcap",
-                 cwd=folder)  # fmt: skip
+    again = argo(*run, "--record", "2.mcap", cwd=folder)
     assert again.returncode == 0, again.stderr
     assert (folder / "2.mcap").read_bytes() == (folder / "run.mcap").read_bytes()
     # Without the files of the mission and the site: the recording has all of it.
@@ -77,17 +62,10 @@ def test_replay_shows_and_makes_again_what_the_run_did(argo, folder: Path) -> No
 
 
 def test_a_run_that_is_killed_can_be_replayed_up_to_there(argo, folder: Path) -> None:
-    command = (
+    with started(
         "run", "long.json", "--site", "yard.yaml", "--record", "killed.mcap",
-        "--journal", "killed.journal",
-    )  # fmt: skip
-    with subprocess.Popen(
-        [sys.executable, "-m", "argo_planner", *command],
-        cwd=folder,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        text=True,
-    ) as process:
+        "--journal", "killed.journal", cwd=folder, stdout=subprocess.DEVNULL,
+    ) as process:  # fmt: skip
         told = 0
         while told < 5:
             line = process.stderr.readline()

@@ -5,8 +5,6 @@ import json
 import os
 import signal
 import socket
-import subprocess
-import sys
 import time
 from collections import Counter
 from pathlib import Path
@@ -20,7 +18,7 @@ from argo_compiler.il import Mission
 from argo_planner.service.core.commands import Revision
 from tests.argo_planner.service.test_plan import Follower, mission
 from tests.conftest import examples
-from tests.e2e.conftest import answer_signals
+from tests.e2e.conftest import started, told_until
 from tests.e2e.test_errors import refused
 
 TOKEN = "token-of-the-test-of-kills"
@@ -37,21 +35,13 @@ class Serving:
         self.folder = folder
 
     def begin(self) -> None:
-        command = [sys.executable, "-m", "argo_planner", "serve", str(self.folder)]
-        self.process = subprocess.Popen(
-            [*command, "--port", str(self.port)],
-            stderr=subprocess.PIPE,
-            text=True,
+        self.process = started(
+            *("serve", self.folder, "--port", self.port),
+            stdout=None,
             env=os.environ | {"ARGO_TOKEN": TOKEN},
             start_new_session=True,  # a group of its own, as in a terminal
-            preexec_fn=answer_signals,
         )
-        assert self.process.stderr is not None
-        said = ""
-        while "Ctrl-C" not in said:
-            line = self.process.stderr.readline()
-            assert line, said
-            said += line
+        told_until(self.process, "Ctrl-C")
 
     def end(self, number: int) -> str:
         """Ends it by a signal; what it has said."""

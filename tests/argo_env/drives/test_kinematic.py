@@ -23,13 +23,10 @@ from argo_env.drives.kinematic import (
 )
 from argo_env.navigation import Path
 from argo_env.navigation.path import Motion, wrap
-from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import Calibration, MotionKind
 from argo_env.site.shapes import Box
-
-
-def body(pose):
-    return BodyPose(pose.x, pose.y, pose.z, pose.yaw)
+from tests.argo_env.drives.test_route import follow as follow_path
+from tests.argo_env.drives.test_route import level
 
 
 def as_told(robot):
@@ -40,16 +37,7 @@ def as_told(robot):
 def follow(world, robot, path, velocity=None, time_step=0.1):
     """The poses from the start on after every step, and the drive."""
     drive = KinematicDrive(world, robot, time_step)
-    drive.place(body(path.start))
-    drive.begin(path, velocity)
-    poses = [drive.pose]
-    status = DriveStatus.MOVING
-    while status is DriveStatus.MOVING:
-        assert len(poses) < 100_000
-        status = drive.step()
-        poses.append(drive.pose)
-    assert status is DriveStatus.ARRIVED
-    return poses, drive
+    return follow_path(drive, path, velocity), drive
 
 
 @pytest.fixture(scope="module")
@@ -161,7 +149,7 @@ def test_body_neither_sinks_nor_hovers(simulation, robot, paths, way):
 def test_touches_nothing_on_the_way(simulation, robot, paths, way):
     path = paths[way]
     drive = KinematicDrive(simulation, robot)
-    drive.place(body(path.start))
+    drive.place(level(path.start))
     drive.begin(path, None)
     while drive.step() is DriveStatus.MOVING:
         assert simulation.touches() == ()
@@ -198,13 +186,13 @@ def test_turns_over_the_seam_of_angles(simulation, robot):
 def test_arrives_at_once_without_motions(simulation, robot):
     here = Pose(x=8.05, y=-2.05, z=-0.03, yaw=1.0)
     poses, _ = follow(simulation, robot, Path(here, ()))
-    assert poses == [body(here), body(here)]
+    assert poses == [level(here), level(here)]
 
 
 def test_halt_stops_at_once(simulation, robot, paths):
     path = paths["flat"]
     drive = KinematicDrive(simulation, robot)
-    drive.place(body(path.start))
+    drive.place(level(path.start))
     drive.begin(path, None)
     for _ in range(60):
         drive.step()
@@ -218,7 +206,7 @@ def test_halt_stops_at_once(simulation, robot, paths):
 
 def test_goes_on_from_where_it_was_halted(simulation, robot, paths, navigator, catalog):
     drive = KinematicDrive(simulation, robot)
-    drive.place(body(paths["flat"].start))
+    drive.place(level(paths["flat"].start))
     drive.begin(paths["flat"], None)
     lattice = navigator.lattice.poses()[:, :2]
     while not 0.03 < np.hypot(*(lattice - (drive.pose.x, drive.pose.y)).T).min() < 0.1:

@@ -28,13 +28,17 @@ from tests.yard import mission as in_the_yard
 ROBOT = load_robot()
 
 
+def level(pose):
+    return BodyPose(pose.x, pose.y, pose.z, pose.yaw)
+
+
 def follow(drive, path, velocity=None):
     """The drive's poses from the start on, after every step."""
-    start = path.start
-    drive.place(BodyPose(start.x, start.y, start.z, start.yaw))
+    drive.place(level(path.start))
     drive.begin(path, velocity)
     poses, status = [drive.pose], DriveStatus.MOVING
     while status is DriveStatus.MOVING:
+        assert len(poses) < 100_000
         status = drive.step()
         poses.append(drive.pose)
     assert status is DriveStatus.ARRIVED

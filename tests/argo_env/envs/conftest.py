@@ -5,11 +5,10 @@ from contextlib import ExitStack
 
 import gymnasium as gym
 import pytest
-import yaml
 
 from argo_env.envs import ENVIRONMENTS
 from argo_env.planning import open_site
-from tests.yard import SITE
+from tests.yard import AWAY_FROM_THE_EDGE, write_site
 
 
 @pytest.fixture(scope="session")
@@ -21,11 +20,7 @@ def navigator():
 @pytest.fixture(scope="session")
 def yard_file(tmp_path_factory):
     """A site on one level, for what does not depend on the site."""
-    path = tmp_path_factory.mktemp("yard") / "site.yaml"
-    # Away from the edge, so that it turns in its dock.
-    site = SITE | {"areas": [{"number": 1, "dock": [2.05, 2.05, 0]}]}
-    path.write_text(yaml.safe_dump(site), encoding="utf-8")
-    return str(path)
+    return write_site(tmp_path_factory.mktemp("yard") / "site.yaml", areas=AWAY_FROM_THE_EDGE)
 
 
 @pytest.fixture(params=sorted(ENVIRONMENTS))

@@ -2,9 +2,6 @@
 
 import copy
 import pickle
-import subprocess
-import sys
-from pathlib import Path
 
 import gymnasium as gym
 import numpy as np
@@ -19,6 +16,7 @@ from argo_env.pictures.scene import Scene
 from argo_env.site import load_site
 from argo_env.world.world import World
 from tests.argo_env.envs import rollouts
+from tests.processes import run_python
 
 SEED, STEPS = 23, 5
 
@@ -193,13 +191,7 @@ def test_elsewhere(make, tmp_path):
         "import pickle, sys; from tests.argo_env.envs.test_copies import following; "
         "print(following(*pickle.load(open(sys.argv[1], 'rb'))))"
     )
-    run = subprocess.run(
-        [sys.executable, "-c", code, str(tmp_path / "env")],
-        capture_output=True,
-        text=True,
-        check=True,
-        cwd=Path(__file__).parents[3],
-    )
+    run = run_python("-c", code, tmp_path / "env")
     assert run.stdout.strip() == following(env, observation)
 
 

@@ -23,6 +23,17 @@ def make(closing):
     )
 
 
+@pytest.fixture
+def begin(make):
+    """Makes an environment and resets it with a fault; it, the observation and what is told."""
+
+    def one(fault, drive="route", **options):
+        env = make(drive=drive)
+        return env, *env.reset(seed=2, options={"faults": [fault]} | options)
+
+    return one
+
+
 def end_dock(observation):
     """The action that ends the episode: the only dock that has points."""
     docks = np.flatnonzero(observation["points"][CHECKPOINTS:])
@@ -70,10 +81,8 @@ def test_the_time_limit_truncates(make):
     assert (reward, info["time"]) == (0.0, 20.0)
 
 
-def test_an_empty_battery_terminates(make):
-    env = make()
-    faults = [{"kind": "worn_battery", "capacity": 0.01}]
-    observation, _ = env.reset(seed=2, options={"faults": faults})
+def test_an_empty_battery_terminates(begin):
+    env, observation, _ = begin({"kind": "worn_battery", "capacity": 0.01})
     over = False
     while not over:
         observation, _, over, truncated, info = env.step(nearest(observation))
@@ -81,19 +90,16 @@ def test_an_empty_battery_terminates(make):
     assert info["terms"]["dead"] == DEAD
 
 
-def test_an_abnormal_value_is_worth_more(make):
-    env = make()
-    faults = [{"kind": "abnormal_value", "checkpoint": 1, "at": 0.0}]
-    env.reset(seed=2, options={"faults": faults})
+def test_an_abnormal_value_is_worth_more(begin):
+    env, _, _ = begin({"kind": "abnormal_value", "checkpoint": 1, "at": 0.0})
     _, reward, _, _, info = env.step(0)
     assert info["terms"]["abnormal"] == ABNORMAL
     assert reward == READING + ABNORMAL + info["terms"]["finding"]
 
 
-def test_a_camera_that_fails_is_noticed_and_checkpoints_are_given_up(make):
-    env = make()
-    faults = [{"kind": "sensor_dysfunction", "effect": "fails", "at": 0.0}]
-    observation, _ = env.reset(seed=2, options={"faults": faults, "floor": 1})
+def test_a_camera_that_fails_is_noticed_and_checkpoints_are_given_up(begin):
+    fails = {"kind": "sensor_dysfunction", "effect": "fails", "at": 0.0}
+    env, observation, _ = begin(fails, floor=1)
     k = nearest(observation)
     for _ in range(2):
         assert observation["mask"][k] == 1
@@ -106,10 +112,8 @@ def test_a_camera_that_fails_is_noticed_and_checkpoints_are_given_up(make):
     assert FINDING > 0
 
 
-def test_what_was_stopped_and_released_is_noticed_once(make):
-    env = make()
-    faults = [{"kind": "emergency_stop", "at": 30.0, "until": 40.0}]
-    observation, _ = env.reset(seed=2, options={"faults": faults})
+def test_what_was_stopped_and_released_is_noticed_once(begin):
+    env, observation, _ = begin({"kind": "emergency_stop", "at": 30.0, "until": 40.0})
     farthest = int(np.argmax(np.where(observation["mask"], observation["travel"], 0)[:CHECKPOINTS]))
     _, _, _, _, info = env.step(farthest)
     assert info["time"] > 100
@@ -124,10 +128,9 @@ def test_a_site_with_too_many_checkpoints_is_refused():
         gym.make("argo/Inspect-v0", drive="flying", disable_env_checker=True)
 
 
-def test_the_kinematic_drive_finds_what_blocks_the_stairs(make):
-    env = make(drive="kinematic")
-    faults = [{"kind": "blocked_stairs", "tower": "west tower", "floor": 1}]
-    observation, info = env.reset(seed=2, options={"faults": faults, "floor": 2})
+def test_the_kinematic_drive_finds_what_blocks_the_stairs(begin):
+    blocked = {"kind": "blocked_stairs", "tower": "west tower", "floor": 1}
+    env, observation, info = begin(blocked, drive="kinematic", floor=2)
     assert info["settings"]["drive"] == "kinematic"
     k = 4  # the checkpoint on floor 2 that the fastest way to leads over the western stairs
     expected = observation["travel"][k] * 1800
@@ -139,10 +142,9 @@ def test_the_kinematic_drive_finds_what_blocks_the_stairs(make):
     assert observation["noticed"].sum() == 1
 
 
-def test_after_the_platform_alarm_only_docks_are_legal(make):
-    env = make(drive="kinematic")
-    faults = [{"kind": "platform_alarm", "at": 5.0}]
-    observation, _ = env.reset(seed=2, options={"faults": faults, "floor": 1})
+def test_after_the_platform_alarm_only_docks_are_legal(begin):
+    alarm = {"kind": "platform_alarm", "at": 5.0}
+    env, observation, _ = begin(alarm, drive="kinematic", floor=1)
     observation, _, _, _, info = env.step(nearest(observation))
     assert "platform_alarm" in info["found"]
     assert np.flatnonzero(observation["mask"]).tolist() == [20, 21]

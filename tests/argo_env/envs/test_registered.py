@@ -3,8 +3,6 @@
 import gc
 import json
 import pickle
-import subprocess
-import sys
 from pathlib import Path
 
 import gymnasium as gym
@@ -17,6 +15,7 @@ import argo_env  # noqa: F401
 from argo_compiler.base.errors import ArgoError
 from argo_env.envs import ENVIRONMENTS
 from tests.argo_env.envs import rollouts
+from tests.processes import run_python
 
 IDS = sorted(ENVIRONMENTS)
 SEED, STEPS = 11, 6
@@ -28,13 +27,7 @@ PAGE = 4096  # bytes
 @pytest.fixture(scope="module")
 def elsewhere():
     """The digests of rollouts in another process, by id."""
-    run = subprocess.run(
-        [sys.executable, "-m", "tests.argo_env.envs.rollouts", str(SEED), str(FEWER), *IDS],
-        capture_output=True,
-        text=True,
-        check=True,
-        cwd=Path(__file__).parents[3],
-    )
+    run = run_python("-m", "tests.argo_env.envs.rollouts", SEED, FEWER, *IDS)
     return json.loads(run.stdout)
 
 
@@ -48,8 +41,7 @@ def test_registration_loads_no_environment():
         "print([m for m in ('pybullet', 'scipy', 'PIL', 'matplotlib', 'argo_env.envs.route') "
         "if m in sys.modules])"
     )
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert run.stdout.strip() == "[]"
+    assert run_python("-c", code).stdout.strip() == "[]"
 
 
 def test_gymnasium_finds_nothing(make, monkeypatch):

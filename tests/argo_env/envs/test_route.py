@@ -31,6 +31,17 @@ def equal(a, b):
     return a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
 
 
+def choose(env, rng, far=False):
+    """A legal checkpoint, if there is one; with `far` the one that leaves the least time."""
+    allowed = np.flatnonzero(env.action_masks())[1:]
+    if not len(allowed):
+        return DOCK
+    if far:
+        known = env.instance.at(env._time())
+        return int(allowed[np.argmax(known.need[env._place, allowed])])
+    return int(rng.choice(allowed))
+
+
 @settings(max_examples=examples(60), deadline=None)
 @given(NUMBERS, st.integers(1, 25), st.integers(0, 2**32), st.booleans())
 def test_return_is_the_evaluators_score(number, checkpoints, seed, legal):
@@ -56,21 +67,24 @@ def test_return_is_the_evaluators_score(number, checkpoints, seed, legal):
         assert score.illegal is None
 
 
+@pytest.mark.parametrize(
+    ("checkpoints", "noise"), [(12, None), (10, {"failing": 0.3, "blocked": 3})]
+)
 @settings(max_examples=examples(30), deadline=None)
-@given(NUMBERS, st.integers(0, 2**32))
-def test_mask_is_what_the_evaluator_allows(number, seed):
-    env = RouteEnv(checkpoints=12)
+@given(NUMBERS, st.integers(0, 2**32), st.booleans())
+def test_mask_is_what_the_evaluator_allows(checkpoints, noise, number, seed, short):
+    env = RouteEnv(checkpoints=checkpoints, noise=noise)
     rng = np.random.default_rng(seed)
     observation, _ = env.reset(options={"instance": number})
     route, over = [], False
     while not over:
         allowed = [
             node == DOCK or score_route(env.instance, [*route, node]).illegal is None
-            for node in range(13)
+            for node in range(checkpoints + 1)
         ]
         assert env.action_masks().tolist() == allowed
         assert observation["mask"].tolist() == allowed
-        route.append(int(rng.choice(np.flatnonzero(allowed))))
+        route.append(int(rng.choice(np.flatnonzero(allowed))) if short else choose(env, rng))
         observation, _, over, _, _ = env.step(route[-1])
 
 

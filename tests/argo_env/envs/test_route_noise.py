@@ -10,24 +10,11 @@ from argo_compiler.base.errors import ArgoError
 from argo_env.envs.route import RouteEnv
 from argo_env.envs.route_instance import DOCK, TICK, score_route
 from argo_env.envs.route_noise import RouteNoise
-from argo_env.envs.route_sources import TEST, TRAINING, RandomRoutes, RouteFaults, SiteRoutes
-from tests.argo_env.envs.test_route import equal, make_batch
+from argo_env.envs.route_sources import RandomRoutes, RouteFaults, SiteRoutes
+from tests.argo_env.envs.test_route import NUMBERS, choose, equal, make_batch
 from tests.conftest import examples
 
-NOISE = {"failing": 0.3, "blocked": 3}
-NUMBERS = st.sampled_from(TRAINING) | st.sampled_from(TEST)
 NOISES = st.builds(RouteNoise, failing=st.floats(0.01, 0.9), blocked=st.integers(0, 5))
-
-
-def choose(env, rng, far=False):
-    """A legal checkpoint, if there is one; with `far` the one that leaves the least time."""
-    allowed = np.flatnonzero(env.action_masks())[1:]
-    if not len(allowed):
-        return DOCK
-    if far:
-        known = env.instance.at(env._time())
-        return int(allowed[np.argmax(known.need[env._place, allowed])])
-    return int(rng.choice(allowed))
 
 
 @settings(max_examples=examples(40), deadline=None)
@@ -67,23 +54,6 @@ def test_some_routes_are_late_and_lose_their_prize():
         late.append(info["late"])
         env.reset()
     assert 2 < sum(late) < 50
-
-
-@settings(max_examples=examples(30), deadline=None)
-@given(NUMBERS, st.integers(0, 2**32))
-def test_mask_is_what_the_evaluator_allows(number, seed):
-    env = RouteEnv(checkpoints=10, noise=NOISE)
-    rng = np.random.default_rng(seed)
-    env.reset(options={"instance": number})
-    route, over = [], False
-    while not over:
-        allowed = [
-            node == DOCK or score_route(env.instance, [*route, node]).illegal is None
-            for node in range(11)
-        ]
-        assert env.action_masks().tolist() == allowed
-        route.append(choose(env, rng))
-        over = env.step(route[-1])[2]
 
 
 def test_batch_is_what_single_environments_are():

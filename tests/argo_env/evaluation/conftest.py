@@ -22,6 +22,18 @@ def short_mission(limit: float | None = None) -> Mission:
     return from_place(start, gauge, max_duration=limit)
 
 
+def plan_of(mission, seeds, faults=("none",), drive="route", name="m", **options) -> EvaluationPlan:
+    """A plan of the mission in these worlds, with a case for each name of faults, or each name and
+    its weight."""
+    spec = RunSpec(mission=mission, drive=drive)
+    weights = faults if isinstance(faults, dict) else dict.fromkeys(faults, 1.0)
+    cases = tuple(
+        EvaluationCase(mission=name, faults=one, spec=spec, weight=weight)
+        for one, weight in weights.items()
+    )
+    return EvaluationPlan(cases=cases, seeds=tuple(seeds), **options)
+
+
 @pytest.fixture(scope="session")
 def mission() -> Mission:
     return short_mission()
@@ -30,8 +42,7 @@ def mission() -> Mission:
 @pytest.fixture(scope="session")
 def plan(mission) -> EvaluationPlan:
     """The short mission in ten worlds, by travel times."""
-    case = EvaluationCase(mission="short", spec=RunSpec(mission=mission, drive="route"))
-    return EvaluationPlan(cases=(case,), seeds=tuple(range(10)))
+    return plan_of(mission, range(10), name="short")
 
 
 PACKAGES = {"processes": "loky", "ray": "ray", "dask": "distributed"}

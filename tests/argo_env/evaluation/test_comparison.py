@@ -2,21 +2,18 @@
 
 import pytest
 
-from argo_env.evaluation.case import EvaluationCase
 from argo_env.evaluation.comparison import compare_plans
-from argo_env.evaluation.plan import EvaluationPlan, Stopping
+from argo_env.evaluation.plan import Stopping
 from argo_env.evaluation.report.page import comparison_page
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome, row_without_end
-from argo_env.run.spec import RunSpec
+from tests.argo_env.evaluation.conftest import plan_of
 
 
 def results_of(mission, seeds, faults=("none",), failing=(), stopping=None):
     """Results in which the runs of some worlds fail."""
-    spec = RunSpec(mission=mission, drive="route")
-    cases = tuple(EvaluationCase(mission="m", faults=name, spec=spec) for name in faults)
-    plan = EvaluationPlan(cases=cases, seeds=tuple(seeds), stopping=stopping or Stopping())
+    plan = plan_of(mission, seeds, faults, stopping=stopping or Stopping())
     rows = []
     for run in plan.runs():
         came = RunOutcome.FAILURE if run.seed in failing else RunOutcome.SUCCESS

@@ -12,6 +12,7 @@ from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome, RunRow, row_without_end
 from argo_env.run.spec import RunSpec
+from tests.argo_env.evaluation.conftest import plan_of
 
 MEAN = 700.0  # s that the expensive drive takes on average
 
@@ -54,8 +55,7 @@ class Made:
 
 @pytest.fixture(scope="module")
 def expensive(mission) -> EvaluationPlan:
-    case = EvaluationCase(mission="m", spec=RunSpec(mission=mission, drive="kinematic"))
-    return EvaluationPlan(cases=(case,), seeds=tuple(range(200)))
+    return plan_of(mission, range(200), drive="kinematic")
 
 
 def test_cheap_runs_that_tell_much_make_the_interval_narrow(expensive, tmp_path):

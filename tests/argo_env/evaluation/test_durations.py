@@ -2,11 +2,9 @@
 
 import pytest
 
-from argo_env.evaluation.case import EvaluationCase
-from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.results import EvaluationResults, duration_curve, failure_places_of
 from argo_env.evaluation.row import RunOutcome, RunRow
-from argo_env.run.spec import RunSpec
+from tests.argo_env.evaluation.conftest import plan_of
 
 
 def row(seed, duration=None, faults="none", **other) -> RunRow:
@@ -19,10 +17,8 @@ def row(seed, duration=None, faults="none", **other) -> RunRow:
     return RunRow(**(fields | other))
 
 
-def results_of(mission, rows, weights=(("none", 1.0),)) -> EvaluationResults:
-    spec = RunSpec(mission=mission, drive="route")
-    cases = tuple(EvaluationCase(mission="m", faults=f, spec=spec, weight=w) for f, w in weights)
-    return EvaluationResults(EvaluationPlan(cases=cases, seeds=tuple(range(9))), tuple(rows))
+def results_of(mission, rows, faults=("none",)) -> EvaluationResults:
+    return EvaluationResults(plan_of(mission, range(9), faults), tuple(rows))
 
 
 def test_what_fails_never_ends(mission):
@@ -38,7 +34,7 @@ def test_what_fails_never_ends(mission):
 
 def test_cases_count_by_weight(mission):
     rows = [row(k, 10.0) for k in range(2)] + [row(k, 50.0, "rare") for k in range(8)]
-    results = results_of(mission, rows, (("none", 0.9), ("rare", 0.1), ("not yet run", 1.0)))
+    results = results_of(mission, rows, {"none": 0.9, "rare": 0.1, "not yet run": 1.0})
     curve = duration_curve(results, results.plan.plans[0])
     assert curve.shares[1] == pytest.approx(0.9)
     assert curve.last == pytest.approx(1.0)

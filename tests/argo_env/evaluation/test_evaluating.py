@@ -16,7 +16,7 @@ from argo_env.evaluation.worlds import Variation
 from argo_env.faults.reading import decode_faults
 from argo_env.run.spec import RunSpec
 from tests.argo_env.evaluation import work
-from tests.argo_env.evaluation.conftest import short_mission
+from tests.argo_env.evaluation.conftest import plan_of, short_mission
 from tests.conftest import examples
 
 EMERGENCY = decode_faults(b"faults: [{kind: emergency_stop, at: 10}]", "test").faults
@@ -158,15 +158,10 @@ def test_what_is_stopped_for_does_not_depend_on_how_many_work(plan):
     assert 150 < len(rows[0]) < 400
 
 
-def test_strata_get_runs_where_they_tell_most(processes, plan):
-    spec = plan.cases[0].spec
-    cases = tuple(
-        EvaluationCase(mission="m", faults=name, spec=spec, weight=weight)
-        for name, weight in (("nothing", 0.95), ("rare", 0.05))
-    )
-    strata = EvaluationPlan(
-        cases=cases, seeds=tuple(range(501, 801)), strata=True, stopping=Stopping(every=20)
-    )
+def test_strata_get_runs_where_they_tell_most(processes, mission):
+    weights = {"nothing": 0.95, "rare": 0.05}
+    stopping = Stopping(every=20)
+    strata = plan_of(mission, range(501, 801), weights, strata=True, stopping=stopping)
     results = evaluated(strata, processes, call=work.invented)
     assert len(results.rows) == 300
     assert len({row.seed for row in results.rows}) == 300
@@ -175,11 +170,9 @@ def test_strata_get_runs_where_they_tell_most(processes, plan):
     assert rate.low < 6 / 7 < rate.high
 
 
-def test_runs_of_one_world_are_no_independent_runs(processes, plan):
+def test_runs_of_one_world_are_no_independent_runs(processes, mission, plan):
     """The interval of several faults in the same worlds is that over worlds."""
-    spec = plan.cases[0].spec
-    cases = tuple(EvaluationCase(mission="m", faults=name, spec=spec) for name in "abc")
-    several = EvaluationPlan(cases=cases, seeds=tuple(range(100)))
+    several = plan_of(mission, range(100), "abc")
     single = plan.model_copy(update={"seeds": tuple(range(100))})
     rate = evaluated(several, processes, call=work.invented).rate(several.plans[0])
     alone = evaluated(single, processes, call=work.invented).rate(single.plans[0])
@@ -196,8 +189,7 @@ def test_the_frame_has_a_line_for_each_row(processes, faulty, alone):
 
 
 def test_a_limit_that_is_missed_is_a_failure(processes):
-    spec = RunSpec(mission=short_mission(limit=5.0), drive="route")
-    plan = EvaluationPlan(cases=(EvaluationCase(mission="hurried", spec=spec),), seeds=(1, 2))
+    plan = plan_of(short_mission(limit=5.0), (1, 2), name="hurried")
     results = evaluated(plan, processes)
     assert results.outcomes == {RunOutcome.FAILURE: 2}
     assert "late" not in results.rows[0].reason
@@ -220,11 +212,8 @@ def simulated(plan, rng, share):
 @pytest.mark.parametrize(("share", "asked"), [(0.85, 0.8), (0.9, 0.95)])
 def test_the_interval_covers_where_a_requirement_decides_when_to_stop(mission, share, asked):
     """An exact interval covers the rate in 93 of 100 of the first ones only."""
-    plan = EvaluationPlan(
-        cases=(EvaluationCase(mission="m", spec=RunSpec(mission=mission, drive="route")),),
-        seeds=tuple(range(400)),
-        stopping=Stopping(require=(parse_requirement(f"success >= {asked}"),)),
-    )
+    stopping = Stopping(require=(parse_requirement(f"success >= {asked}"),))
+    plan = plan_of(mission, range(400), stopping=stopping)
     evaluations = examples(400)
     rng = np.random.default_rng(9)
     held = groups = early = 0
@@ -241,9 +230,7 @@ def test_the_interval_covers_where_a_requirement_decides_when_to_stop(mission, s
 
 
 def test_the_world_of_a_run_that_was_lost_is_left_out_and_not_counted(mission):
-    spec = RunSpec(mission=mission, drive="route")
-    cases = tuple(EvaluationCase(mission="m", faults=name, spec=spec) for name in "ab")
-    plan = EvaluationPlan(cases=cases, seeds=tuple(range(10)))
+    plan = plan_of(mission, range(10), "ab")
     rows = []
     for run in plan.runs():
         lost = run.seed == 3 and run.case == 1

@@ -3,23 +3,21 @@
 import pytest
 
 from argo_compiler.base.errors import Conflict
-from argo_env.evaluation.case import EvaluationCase
 from argo_env.evaluation.controlled import with_drive
 from argo_env.evaluation.evaluating import WorkOrder
 from argo_env.evaluation.folder import digest_of, kept_plan, open_rows, read_results
 from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.rates import IntervalMethod
 from argo_env.evaluation.store import read_rows
-from argo_env.run.spec import RunSpec
 from tests.argo_env.evaluation import work
+from tests.argo_env.evaluation.conftest import plan_of
 
 DIGEST = digest_of(b"")
 
 
 @pytest.fixture(scope="module")
 def plan(mission) -> EvaluationPlan:
-    case = EvaluationCase(mission="short", spec=RunSpec(mission=mission))
-    return EvaluationPlan(cases=(case,), seeds=tuple(range(12)))
+    return plan_of(mission, range(12), drive="kinematic", name="short")
 
 
 def rows_of(plan, seeds=None):

@@ -1,8 +1,5 @@
 """Plans of evaluations: keys, seeds, requirements, and worlds that are the same for all."""
 
-import subprocess
-import sys
-
 import pytest
 
 from argo_compiler.base.errors import Conflict, Invalid
@@ -11,6 +8,7 @@ from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.worlds import Variation
 from argo_env.faults.reading import FaultDistribution
 from argo_env.run.spec import RunSpec
+from tests.processes import run_python
 
 
 def key_of(plan, **changes):
@@ -43,12 +41,7 @@ def test_a_key_is_the_same_in_another_process(plan, tmp_path):
         "plan = EvaluationPlan.model_validate_json(open(sys.argv[1]).read())\n"
         "print(plan.key(plan.run(0, 5)))"
     )
-    said = subprocess.run(
-        [sys.executable, "-c", program, tmp_path / "plan.json"],
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    said = run_python("-c", program, tmp_path / "plan.json")
     assert said.stdout.strip() == plan.key(plan.run(0, 5))
 
 

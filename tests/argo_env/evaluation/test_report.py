@@ -10,10 +10,9 @@ from matplotlib.figure import Figure
 
 import argo_compiler
 from argo_env.evaluation import plots
-from argo_env.evaluation.case import EvaluationCase
 from argo_env.evaluation.comparison import compare_plans
 from argo_env.evaluation.detection import FaultDetection
-from argo_env.evaluation.plan import EvaluationPlan, Stopping
+from argo_env.evaluation.plan import Stopping
 from argo_env.evaluation.report.page import (
     comparison_page,
     evaluation_page,
@@ -25,15 +24,13 @@ from argo_env.evaluation.report.sections import reasons
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome, RunRow
-from argo_env.run.spec import RunSpec
+from tests.argo_env.evaluation.conftest import plan_of
 
 HOSTILE = "<script>alert('$x$')</script>"
 
 
 def results_of(mission, name="mission", faults=("none", "brick"), fail=(3, 7), died=(), **plan):
     """Twenty worlds with some failures in them, at one place."""
-    spec = RunSpec(mission=mission, drive="route")
-    cases = tuple(EvaluationCase(mission=name, faults=one, spec=spec) for one in faults)
     rows = []
     for seed in range(20):
         for number, one in enumerate(faults):
@@ -53,9 +50,7 @@ def results_of(mission, name="mission", faults=("none", "brick"), fail=(3, 7), d
                     floor=1 if outcome is RunOutcome.FAILURE else None,
                 )
             )  # fmt: skip
-    return EvaluationResults(
-        EvaluationPlan(cases=cases, seeds=tuple(range(20)), **plan), tuple(rows)
-    )
+    return EvaluationResults(plan_of(mission, range(20), faults, name=name, **plan), tuple(rows))
 
 
 def joined(first, second):

@@ -30,15 +30,13 @@ from argo_env.robot.pose import BodyPose
 from argo_env.run.spec import RunSpec
 from argo_env.sensing.ideal import IdealSensor
 from argo_env.sensing.onboard import OnboardSensor
-from argo_env.site import make_site
 from argo_env.site.shapes import Box, Role
-from argo_env.site.spec import SiteSpec
 from argo_env.surroundings import Surroundings
 from argo_env.surroundings.surroundings import RadioNetwork
 from argo_env.world.paper_world import PaperWorld
 from argo_env.world.world import World
 from tests.conftest import examples
-from tests.yard import SITE, faults_of, gauged, measure, mission
+from tests.yard import faults_of, gauged, measure, mission, site_of
 
 SCENARIOS = sorted((resources.scenarios() / "umad" / "faults").glob("*.yaml"))
 
@@ -157,7 +155,7 @@ class TestFiles:
 
     def test_no_brick_lies_over_a_dock(self):
         """In the yard the robot is docked on the slab."""
-        site = make_site(SiteSpec.model_validate(SITE))
+        site = site_of()
         dock = site.docks[1]
         for away, size, fits in ((0.0, 0.1, False), (0.9, 1.5, False), (2.3, 1.5, True)):
             brick = {"kind": "brick", "floor": 1, "place": [dock.x + away, dock.y + away],

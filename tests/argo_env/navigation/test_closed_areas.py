@@ -13,6 +13,7 @@ from argo_compiler.base.model import Pose
 from argo_env.navigation import Blockage, Path
 from argo_env.navigation.path import wrap
 from argo_env.navigation.retreat import driven, recent, way_back
+from benchmarks.paths import poses
 from tests.conftest import examples
 
 FLIGHT = Blockage((3.0, 1.0, 3.5, 2.1), 1.0, "the stairs are blocked")
@@ -45,13 +46,10 @@ def test_no_way_leads_over_what_is_closed(hall, robot, x, y, width, depth, seed)
     avoiding = hall.avoiding([Blockage(rect, 0.0, "a brick")])
     random = np.random.default_rng(seed)
     ground = np.flatnonzero(hall.lattice.surface.z[hall.lattice.cell] < 0.05)
-    poses = [
-        Pose(x=px, y=py, z=pz, yaw=yaw)
-        for px, py, pz, yaw in hall.lattice.poses(random.choice(ground, 3)).tolist()
-    ]
+    places = poses(hall, random.choice(ground, 3))
     # A robot that is on what is closed can only go off it.
-    for start in (p for p in poses if not over(p, robot.footprint, rect)):
-        for goal in poses:
+    for start in (p for p in places if not over(p, robot.footprint, rect)):
+        for goal in places:
             try:
                 path = avoiding.plan(start, goal)
             except Unreachable:
@@ -129,8 +127,7 @@ def test_states_over_it_are_closed_and_no_others(hall, robot):
     for (k, heading), was in np.ndenumerate(states):
         if was < 0 or not -0.1 < lattice.surface.z[near[k]] < 0.1:
             continue
-        ((x, y, z, yaw),) = lattice.poses(np.array([was])).tolist()
-        pose = Pose(x=x, y=y, z=z, yaw=yaw)
+        (pose,) = poses(hall, np.array([was]))
         if over(pose, robot.footprint, rect):
             assert gone[k, heading], pose
         if gone[k, heading]:

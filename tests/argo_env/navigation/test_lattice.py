@@ -7,8 +7,7 @@ from argo_env.navigation.lattice import LEVEL
 from argo_env.navigation.raster import CELL
 from argo_env.navigation.surface import DIRECTIONS
 from argo_env.site.shapes import Role
-
-FLOOR_MATERIALS = {"grating", "concrete", "gravel"}
+from tests.argo_env.navigation.conftest import FLOOR_MATERIALS, footprint_box
 
 
 @pytest.fixture(scope="module")
@@ -29,20 +28,17 @@ def test_every_cell_lies_on_the_site(surface, umad_world):
     assert np.abs(heights - surface.z).max() < 0.01
 
 
-def obstacles(world, center, headroom):
+def in_the_way(world, center, headroom, obstacles):
     """What stands in a cell above what the robot climbs."""
     half = CELL / 2 + 0.003  # PyBullet's cylinders are prisms, and 4 mm thinner between the edges
-    materials = set(world.links) - FLOOR_MATERIALS
-    found = world.touched(
-        (-half, -half, 0.02), (half, half, headroom), center, materials=sorted(materials)
-    )
+    found = world.touched((-half, -half, 0.02), (half, half, headroom), center, 0.0, obstacles)
     step = world.touched(
         (-half, -half, 0.21), (half, half, headroom), center, materials=sorted(FLOOR_MATERIALS)
     )
     return found | step
 
 
-def test_cells_are_free_of_obstacles(surface, umad_world, robot):
+def test_cells_are_free_of_obstacles(surface, umad_world, robot, obstacles):
     for center in surface.positions()[some(1500, surface.size, seed=1)]:
         # A rail's corner may reach into a cell between two samples.
         half = CELL / 2 - 0.015
@@ -50,11 +46,11 @@ def test_cells_are_free_of_obstacles(surface, umad_world, robot):
             (-half, -half, 0.02),
             (half, half, robot.driving_height - 0.01),
             center,
-            materials=sorted(set(umad_world.links) - FLOOR_MATERIALS),
+            materials=obstacles,
         ), center
 
 
-def test_what_is_not_walkable_on_a_deck_has_a_reason(umad, surface, umad_world, robot):
+def test_what_is_not_walkable_on_a_deck_has_a_reason(umad, surface, umad_world, robot, obstacles):
     """Everywhere on the floors the surface goes on, or something stands there."""
     grid, unexplained, obstructed = surface.grid, [], 0
     for floor in umad.spec.floors:
@@ -72,7 +68,7 @@ def test_what_is_not_walkable_on_a_deck_has_a_reason(umad, surface, umad_world, 
         obstructed += len(missing)
         for n in missing[some(120, len(missing), seed=floor.number)]:
             center = (x[n], y[n], floor.z)
-            if not obstacles(umad_world, center, robot.driving_height):
+            if not in_the_way(umad_world, center, robot.driving_height, obstacles):
                 unexplained.append(center)
     assert unexplained == []
     assert obstructed > 500
@@ -131,13 +127,7 @@ def lattice(navigator):
     return navigator.lattice
 
 
-def footprint_box(robot, low, high):
-    foot = robot.footprint
-    return (-foot.rear, -foot.half_width, low), (foot.front, foot.half_width, high)
-
-
-def test_the_whole_footprint_is_free_in_every_state(lattice, umad_world, robot):
-    obstacles = sorted(set(umad_world.links) - FLOOR_MATERIALS)
+def test_the_whole_footprint_is_free_in_every_state(lattice, umad_world, robot, obstacles):
     flat = np.flatnonzero(np.abs(lattice.rise) < 1e-6)
     chosen = np.random.default_rng(2).choice(flat, 1500, replace=False)
     low, high = footprint_box(robot, 0.06, robot.driving_height - 0.01)
@@ -222,9 +212,8 @@ def test_backwards_up_and_forwards_down(lattice):
     assert (ahead[down] > 0).all()
 
 
-def test_turns_need_their_whole_circle(lattice, umad_world, robot):
+def test_turns_need_their_whole_circle(lattice, umad_world, robot, obstacles):
     """Half-way through a turn, between two headings of the lattice, the robot touches nothing."""
-    obstacles = sorted(set(umad_world.links) - FLOOR_MATERIALS)
     moves = lattice.costs.tocoo()
     source, target = moves.coords
     turns = np.flatnonzero(

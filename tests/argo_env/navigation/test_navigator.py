@@ -12,14 +12,17 @@ from argo_compiler.base.model import Pose
 from argo_env.navigation import Navigator
 from argo_env.navigation.navigator import SNAP_DISTANCE
 from argo_env.navigation.views import camera_positions, sight_target
+from tests.argo_env.navigation.conftest import footprint_box
 
-FLOOR_MATERIALS = {"grating", "concrete", "gravel"}
+
+def pose_of(navigator, state):
+    ((x, y, z, yaw),) = navigator.lattice.poses(np.array([state])).tolist()
+    return Pose(x=round(x, 6), y=round(y, 6), z=round(z, 6), yaw=yaw)
 
 
 def random_pose(navigator, rng):
     """A pose anywhere, with any heading that the robot can take there."""
-    x, y, z, yaw = navigator.lattice.poses()[rng.integers(navigator.lattice.size)].tolist()
-    return Pose(x=round(x, 6), y=round(y, 6), z=round(z, 6), yaw=yaw)
+    return pose_of(navigator, rng.integers(navigator.lattice.size))
 
 
 @pytest.fixture(scope="module")
@@ -134,14 +137,10 @@ def test_durations_are_the_sum_of_the_motions(routes, robot):
 def test_smoothed_paths_beat_the_lattice(navigator, robot):
     """A plan takes no longer than the cheapest way from state to state, and ends where that does"""
     rng = np.random.default_rng(6)
-    poses = navigator.lattice.poses()
     for source in rng.integers(navigator.lattice.size, size=3):
         costs = dijkstra(navigator.lattice.costs, indices=source)
         for target in rng.integers(navigator.lattice.size, size=4):
-            start, goal = (
-                Pose(x=round(x, 6), y=round(y, 6), z=round(z, 6), yaw=yaw)
-                for x, y, z, yaw in poses[[source, target]].tolist()
-            )
+            start, goal = (pose_of(navigator, state) for state in (source, target))
             path = navigator.plan(start, goal)
             # The lattice counts the time lost with each motion by its turns only.
             lost = sum(robot.calibration.pace(m.kind).lost for m in path.motions)
@@ -151,9 +150,7 @@ def test_smoothed_paths_beat_the_lattice(navigator, robot):
                 assert turned(end.yaw, wanted.yaw) < 1e-6
 
 
-def test_driven_paths_touch_nothing(routes, umad_world, robot):
-    obstacles = sorted(set(umad_world.links) - FLOOR_MATERIALS)
-    foot = robot.footprint
+def test_driven_paths_touch_nothing(routes, umad_world, robot, obstacles):
     checked = 0
     for path in routes[::4]:
         for motion in path.motions:
@@ -163,8 +160,7 @@ def test_driven_paths_touch_nothing(routes, umad_world, robot):
             for share in np.linspace(0.0, 1.0, count):
                 pose = motion.at(share)
                 touched = umad_world.touched(
-                    (-foot.rear, -foot.half_width, low),
-                    (foot.front, foot.half_width, high),
+                    *footprint_box(robot, low, high),
                     (pose.x, pose.y, pose.z),
                     pose.yaw,
                     ["railing"] if motion.on_stairs else obstacles,
@@ -277,22 +273,15 @@ def test_from_here_to_here(navigator, umad):
     assert path.end == path.start
 
 
-def test_turning_places_have_room_all_round(navigator, umad, umad_world, robot):
-    obstacles = sorted(set(umad_world.links) - FLOOR_MATERIALS)
-    foot = robot.footprint
+def test_turning_places_have_room_all_round(navigator, umad, umad_world, robot, obstacles):
+    low, high = footprint_box(robot, 0.06, 0.99)
     for floor in umad.spec.floors:
         places = navigator.turning_places(floor.number)
         assert len(places)
         assert np.abs(places[:, 2] - floor.z).max() <= 0.01
         for x, y, z, _ in np.random.default_rng(7).permutation(places)[:25]:
             for yaw in np.radians(np.arange(0, 360, 7.5)):
-                touched = umad_world.touched(
-                    (-foot.rear, -foot.half_width, 0.06),
-                    (foot.front, foot.half_width, 0.99),
-                    (x, y, z),
-                    yaw,
-                    obstacles,
-                )
+                touched = umad_world.touched(low, high, (x, y, z), yaw, obstacles)
                 assert not touched, (x, y, z, yaw, touched)
 
 

@@ -11,6 +11,7 @@ from argo_compiler.base.model import Pose
 from argo_env.navigation import Blockage
 from argo_env.navigation.regions import find_cuts, make_partition
 from argo_env.navigation.routes import Routes
+from benchmarks.paths import poses
 from tests.conftest import examples
 
 
@@ -176,8 +177,7 @@ def test_from_everywhere_it_takes_as_long_as_from_each_place(hall, seed):
     everywhere = hall.travel_times_to([hall.site.docks[1], *ids])
     assert everywhere.shape == (len(ids) + 1, hall.lattice.size)
     for state in some_states(hall.lattice, seed, 8):
-        x, y, z, yaw = hall.lattice.poses(np.array([state]))[0].tolist()
-        here = Pose(x=x, y=y, z=z, yaw=yaw)
+        (here,) = poses(hall, np.array([state]))
         assert hall.state_at(here) == state
         row = hall.travel_times_from(here, [hall.site.docks[1], *ids])
         assert everywhere[:, state] == pytest.approx(row, rel=0.02, abs=1e-4)

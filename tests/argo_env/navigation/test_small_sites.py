@@ -8,8 +8,7 @@ from argo_compiler.base.errors import ArgoError, Unreachable
 from argo_compiler.base.model import Pose
 from argo_env.navigation import Navigator
 from argo_env.robot.spec import Calibration, load_robot
-from argo_env.site import make_site
-from argo_env.site.spec import SiteSpec
+from tests.yard import site_of
 
 
 @pytest.fixture(scope="module")
@@ -19,19 +18,13 @@ def robot():
 
 
 def navigator(robot, floors, ground=(0, 0, 12, 12), towers=(), areas=None):
-    spec = SiteSpec.model_validate(
-        {
-            "name": "yard",
-            "title": "Yard",
-            "storey": 2.5,
-            "ground": ground,
-            "ground_z": 0.0,
-            "towers": towers,
-            "floors": [{"number": n, **floor} for n, floor in enumerate(floors, 1)],
-            "areas": areas or [{"number": 1, "dock": [1.05, 1.05, 180]}],
-        }
+    site = site_of(
+        ground=ground,
+        towers=towers,
+        floors=[{"number": n, **floor} for n, floor in enumerate(floors, 1)],
+        areas=areas or [{"number": 1, "dock": [1.05, 1.05, 180]}],
     )
-    return Navigator(make_site(spec), robot)
+    return Navigator(site, robot)
 
 
 def pose(x, y, degrees=0.0, z=0.02):

@@ -14,8 +14,7 @@ from argo_compiler.isar import from_isar, to_isar
 from argo_env.navigation import Navigator
 from argo_env.planning.catalog import make_catalog, patrol
 from argo_env.planning.reading_places import inspection_views
-from argo_env.site import make_site
-from argo_env.site.spec import SiteSpec
+from tests.yard import site_of
 
 
 def test_six_floors(catalog):
@@ -82,19 +81,13 @@ def test_same_site_same_catalogue(catalog, navigator):
 
 
 def test_floor_that_is_too_small_to_patrol(robot):
-    spec = SiteSpec.model_validate(
-        {
-            "name": "nook",
-            "title": "Nook",
-            "storey": 2.5,
-            "ground": (0, 0, 6, 6),
-            "ground_z": 0.0,
-            "towers": [],
-            "floors": [{"number": 1, "z": 0.0, "railed": False, "walkways": {"a": [2, 2, 4, 4]}}],
-            "areas": [{"number": 1, "dock": [3.05, 3.05, 0]}],
-        }
+    nook = site_of(
+        name="nook",
+        ground=(0, 0, 6, 6),
+        floors=[{"number": 1, "z": 0.0, "railed": False, "walkways": {"a": [2, 2, 4, 4]}}],
+        areas=[{"number": 1, "dock": [3.05, 3.05, 0]}],
     )
-    navigator = Navigator(make_site(spec), robot)
+    navigator = Navigator(nook, robot)
     with pytest.raises(ArgoError, match="site nook: floor 1 has no three places"):
         patrol(navigator, 1)
 

@@ -11,10 +11,8 @@ import subprocess
 import sys
 import weakref
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import pytest
-import yaml
 
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound
 from argo_compiler.base.model import Pose
@@ -29,10 +27,9 @@ from argo_env.planning.opening import forget_sites
 from argo_env.planning.travel import SiteTravel
 from argo_env.robot.spec import load_robot
 from argo_env.site import load_site, make_site
-from argo_env.site.spec import SiteSpec
-from tests.yard import SITE
+from tests.processes import ROOT, run_python
+from tests.yard import AWAY_FROM_THE_EDGE, SITE, site_of, write_site
 
-ROOT = Path(__file__).parents[3]
 DRAWN = "generated:floors=1,size=12x12,checkpoints=2,seed=1"
 
 
@@ -52,10 +49,7 @@ def yard_file(tmp_path):
 
 
 def written(path, **changes):
-    # Away from the edge, so that the robot turns in its dock.
-    site = SITE | {"areas": [{"number": 1, "dock": [2.05, 2.05, 0]}]} | changes
-    path.write_text(yaml.safe_dump(site), encoding="utf-8")
-    return str(path)
+    return write_site(path, areas=AWAY_FROM_THE_EDGE, **changes)
 
 
 def found(navigator):
@@ -347,7 +341,7 @@ def test_copies_are_the_same_site(yard_file):
 def test_another_process_opens_it_itself(yard_file, tmp_path, kind):
     opened = open_site(yard_file)
     if kind == "made":
-        opened = OpenedSite.of(make_site(SiteSpec.model_validate(SITE | {"name": "made"})))
+        opened = OpenedSite.of(site_of(name="made"))
     content = pickle.dumps(opened)
     assert len(content) < 10_000
     (tmp_path / "pickle").write_bytes(content)
@@ -355,10 +349,7 @@ def test_another_process_opens_it_itself(yard_file, tmp_path, kind):
         "import pickle, sys; opened = pickle.load(open(sys.argv[1], 'rb'));"
         "print(opened.name, opened.reference, opened.digest, len(opened.catalog.checkpoints))"
     )
-    said = subprocess.run(
-        [sys.executable, "-c", code, tmp_path / "pickle"],
-        cwd=ROOT, capture_output=True, text=True, check=True,
-    )  # fmt: skip
+    said = run_python("-c", code, tmp_path / "pickle")
     assert said.stdout.split() == [opened.name, opened.reference, opened.digest, "3"]
 
 
@@ -402,7 +393,7 @@ def test_what_is_not_there_is_named(umad):
         umad.checkpoint(99)
     with pytest.raises(NotFound, match="no floor 9; there are: 1 to 6"):
         umad.floor(9)
-    yard = OpenedSite.of(make_site(SiteSpec.model_validate(SITE)))
+    yard = OpenedSite.of(site_of())
     with pytest.raises(NotFound, match="no checkpoint 4; there are: 1 to 3"):
         yard.navigator.viewing_pose(4)
     with pytest.raises(NotFound, match="no floor 2; there are: 1"):

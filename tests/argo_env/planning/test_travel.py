@@ -6,7 +6,7 @@ from argo_compiler.analysis import Leg, NoWay, analyse, unproved_bounds
 from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, Mission, Task
 from argo_env.planning.travel import SiteTravel
-from tests.yard import in_order, simulated
+from tests.yard import in_order, measure, simulated
 
 STEP = 0.1  # s of the drive, within which a sum of times may be rounded differently
 
@@ -14,17 +14,6 @@ STEP = 0.1  # s of the drive, within which a sum of times may be rounded differe
 @pytest.fixture(scope="module")
 def travel(navigator):
     return SiteTravel(navigator)
-
-
-def chain(*tasks, **more):
-    """The tasks one after the other."""
-    return Mission(tasks=in_order(*tasks), **more)
-
-
-def measure(checkpoint, **more):
-    return Task(
-        name=f"MEASURE {checkpoint}", action=Action.MEASURE, object_id=str(checkpoint), **more
-    )
 
 
 def test_mission_1_takes_as_long_as_planned(shipped, catalog, travel, sheet_run):
@@ -62,7 +51,8 @@ def test_what_the_sheets_take_at_least_is_shown(shipped, catalog, travel, sheet,
 
 def test_velocities_count_for_the_way_to_the_task(navigator, catalog, travel):
     start = Task(name="S", action=Action.START)
-    mission = chain(start, measure(1, velocity=0.2), measure(4, velocity=0.8), start_area=1)
+    tasks = in_order(start, measure(1, velocity=0.2), measure(4, velocity=0.8))
+    mission = Mission(tasks=tasks, start_area=1)
     found = analyse(mission, catalog, travel)
     record = simulated(mission, navigator)
     assert found.duration.most.value == pytest.approx(record.result.duration, abs=STEP)

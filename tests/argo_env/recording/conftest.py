@@ -4,14 +4,13 @@ from types import SimpleNamespace
 
 import pytest
 
-from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import Occurred, Pause, Resume
-from argo_compiler.il import Afterwards, EventKind, Group, Reaction, Response
+from argo_compiler.il import EventKind, Group
 from argo_env.recording.files import recording_to
 from argo_env.recording.reader import read_recording
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec, logged
-from tests.yard import measure, mission, opened, waypoint
+from tests.yard import measure, mission, opened, shelter, waypoint
 
 PLAN = mission(
     measure(1),
@@ -20,15 +19,7 @@ PLAN = mission(
     waypoint("B", 3.05, 2.05),
     measure(3),
     groups=(Group(name="Round", start="A", end="B", max_repeat_count=2),),
-    reactions=(
-        Reaction(
-            event=EventKind.GAS_LEAK,
-            response=Response.SAFE_AREA,
-            pose=Pose(x=2.05, y=1.55, z=0.02),
-            until=EventKind.ALL_CLEAR,
-            afterwards=Afterwards.RESUME,
-        ),
-    ),
+    reactions=(shelter(2.05, 1.55),),
 )
 SPEC = RunSpec(
     mission=PLAN,

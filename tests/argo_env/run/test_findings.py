@@ -4,9 +4,8 @@ import json
 
 import pytest
 
-from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import Occurred, Pause
-from argo_compiler.il import Afterwards, EventKind, Reaction, Response
+from argo_compiler.il import EventKind, Reaction, Response
 from argo_env.drives.drive import Trouble
 from argo_env.run.record import Anomaly, Contact, Mishap, RunRecord
 from argo_env.run.spec import RunSpec, logged
@@ -19,6 +18,7 @@ from tests.yard import (
     opened,
     run,
     run_with,
+    shelter,
     simulation_of,
     waypoint,
 )
@@ -26,10 +26,7 @@ from tests.yard import (
 PLAN = mission(measure(1), waypoint("A", 4.05, 2.05))
 LEAK = Occurred(EventKind.GAS_LEAK, "a hiss")
 CLEAR = Occurred(EventKind.ALL_CLEAR)
-SHELTER = Reaction(
-    event=EventKind.GAS_LEAK, response=Response.SAFE_AREA, pose=Pose(x=3.05, y=1.55, z=0.02),
-    until=EventKind.ALL_CLEAR, afterwards=Afterwards.RESUME,
-)  # fmt: skip
+SHELTER = shelter(3.05, 1.55)
 
 
 @pytest.fixture(scope="module")

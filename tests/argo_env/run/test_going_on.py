@@ -36,9 +36,14 @@ def stopped_after(simulation, reached):
     """Taken over and at rest, once the record has so many tasks that are done."""
     while sum(t.outcome == "done" for t in simulation.record().tasks) < reached:
         simulation.step()
-    for _ in range(3):
-        simulation.step()
-    take_over(simulation)
+    take_over(simulation, after=3)
+
+
+def handed_over(site, plan, reached, **fields):
+    """A simulation that was stopped there and closed, and the spec of how its plan goes on."""
+    with simulation_of(spec_of(plan, **fields), site) as first:
+        stopped_after(first, reached)
+        return first, first.going_on(plan)
 
 
 def ended(progress):
@@ -128,9 +133,7 @@ def names_left(plan, simulation):
 
 class TestRecord:
     def test_the_verdict_tells_what_was_done_before(self, site):
-        with simulation_of(spec_of(PLAN), site) as first:
-            stopped_after(first, 2)
-            spec = first.going_on(PLAN)
+        first, spec = handed_over(site, PLAN, 2)
         record = simulate(spec, site)
         assert record.result.outcome is Outcome.COMPLETED
         assert record.result.verdict == (
@@ -158,9 +161,7 @@ class TestRecord:
         window = TimeWindow(earliest=60.0)
         plan = mission(measure(1), measure(2), waypoint("B", 2.05, 1.55, window=window),
                        max_duration=65.0)  # fmt: skip
-        with simulation_of(spec_of(plan), site) as first:
-            stopped_after(first, 1)
-            spec = first.going_on(plan)
+        _, spec = handed_over(site, plan, 1)
         record = simulate(spec, site)
         run = record.tasks[-1]
         assert run.end == pytest.approx(60.0, abs=0.2)
@@ -172,9 +173,7 @@ class TestRecord:
     def test_a_window_that_was_kept_before_is_not_said_to_be_open(self, site):
         window = TimeWindow(earliest=0.0, latest=500.0)
         plan = mission(measure(1, window=window), measure(2, window=window))
-        with simulation_of(spec_of(plan), site) as first:
-            stopped_after(first, 1)
-            spec = first.going_on(plan)
+        _, spec = handed_over(site, plan, 1)
         (run,) = simulate(spec, site).windows
         assert (run.task, run.kept) == ("MEASURE 2", WindowKept.KEPT)
 
@@ -210,9 +209,7 @@ class TestEdited:
                 steps += 1
         # It has looked already, and the value counts though a person takes over.
         with simulation_of(spec_of(short), site) as first:
-            for _ in range(steps - 1):
-                first.step()
-            take_over(first)
+            take_over(first, after=steps - 1)
             assert not first.over
             with pytest.raises(Conflict, match="nothing is left"):
                 first.going_on(mission(measure(1), measure(2)))
@@ -230,9 +227,7 @@ class TestEdited:
 
 def test_what_was_found_before_is_known(site):
     fault = AbnormalValue(checkpoint=1, value=9.0)
-    with simulation_of(spec_of(PLAN, faults=(fault,)), site) as first:
-        stopped_after(first, 1)
-        spec = first.going_on(PLAN)
+    first, spec = handed_over(site, PLAN, 1, faults=(fault,))
     (known,) = spec.beginning.known
     assert known.anomaly == first.record().anomalies[0]
     told = Anomaly(t=1.0, kind=EventKind.POSITIVE_OBSTACLE, detail="a box", source="camera",
@@ -267,9 +262,7 @@ class TestRefusals:
                 first.going_on(PLAN, [ByHand(task="MEASURE 9")])
 
     def test_another_machine(self, site):
-        with simulation_of(spec_of(PLAN), site) as first:
-            stopped_after(first, 1)
-            spec = first.going_on(PLAN)
+        _, spec = handed_over(site, PLAN, 1)
         with pytest.raises(Conflict, match="machine"):
             Simulation(Executor(lower(PLAN)), site, spec)
         machine = Executor(lower(PLAN, spec.beginning.progress))
@@ -279,9 +272,7 @@ class TestRefusals:
 
 @pytest.mark.parametrize("share", [0.2, 0.5, 0.8, 1.0])
 def test_its_journal_goes_on_from_anywhere(site, tmp_path, share):
-    with simulation_of(spec_of(PLAN), site) as first:
-        stopped_after(first, 1)
-        spec = first.going_on(PLAN)
+    _, spec = handed_over(site, PLAN, 1)
     path = tmp_path / "run.journal"
     with journaled(path, spec, site) as rest:
         record = rest.run()

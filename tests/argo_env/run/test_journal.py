@@ -15,7 +15,6 @@ from hypothesis import strategies as st
 
 import argo_env.run.journal
 from argo_compiler.base.errors import ArgoError, Conflict, Remedy, Unavailable
-from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import (
     ActionFailed,
     ActionStopped,
@@ -27,7 +26,7 @@ from argo_compiler.hfsm import (
     Resume,
     Tick,
 )
-from argo_compiler.il import Afterwards, EventKind, Group, Reaction, Response
+from argo_compiler.il import EventKind, Group
 from argo_env.navigation import Navigator
 from argo_env.run.journal import (
     Header,
@@ -39,12 +38,9 @@ from argo_env.run.observer import Observer
 from argo_env.run.session import resume
 from argo_env.run.simulation import SAMPLE_PERIOD
 from argo_env.run.spec import RunSpec, logged
-from argo_env.site import make_site
-from argo_env.site.spec import SiteSpec
 from argo_env.world.world import Touch
 from tests.conftest import examples
 from tests.yard import (
-    SITE,
     EmptyWorld,
     Watching,
     fast_rig,
@@ -52,22 +48,17 @@ from tests.yard import (
     mission,
     opened,
     run_with,
+    shelter,
     simulated,
     simulation_of,
+    site_of,
     waypoint,
 )
 
 CAMPAIGN = examples(1) > 1
 """whether to try all cuts, and not only some"""
 
-AWAY = Pose(x=3.05, y=1.55, z=0.02)
-SHELTER = Reaction(
-    event=EventKind.GAS_LEAK,
-    response=Response.SAFE_AREA,
-    pose=AWAY,
-    until=EventKind.ALL_CLEAR,
-    afterwards=Afterwards.RESUME,
-)
+SHELTER = shelter(3.05, 1.55)
 PLAN = mission(
     measure(1, retries=1),
     waypoint("A", 2.05, 2.05),
@@ -520,7 +511,7 @@ class TestRefusals:
 
     def test_a_changed_site(self, yard, path):
         create_journal(path, header(yard)).close()
-        other = make_site(SiteSpec.model_validate({**SITE, "title": "Yard 2", "storey": 3.0}))
+        other = site_of(title="Yard 2", storey=3.0)
         with open_journal(path) as journal, pytest.raises(ArgoError) as refused:
             resume(journal, opened(Navigator(other, yard.robot)))
         assert "site's storey" in str(refused.value)

@@ -344,6 +344,11 @@ class TestResumed:
         assert [s.t for s in second.trace if "hot spot" in s.cause] == hot
 
 
+LOST = Reaction(
+    event=EventKind.CONNECTION_LOST, response=Response.PAUSE, until=EventKind.CONNECTION_RESTORED
+)
+
+
 class TestResumedWhileItWaits:
     """With the drive `route`: cut where a reaction waits for what ends it."""
 
@@ -351,13 +356,10 @@ class TestResumedWhileItWaits:
         event=EventKind.LOW_BATTERY, response=Response.RETURN, until=EventKind.BATTERY_CHARGED,
         afterwards=Afterwards.RESUME,
     )  # fmt: skip
-    LOST = Reaction(
-        event=EventKind.CONNECTION_LOST, response=Response.PAUSE,
-        until=EventKind.CONNECTION_RESTORED,
-    )  # fmt: skip
 
-    def cut_where(self, yard, path, reaction, faults, wanted):
+    def cut_where(self, yard, tmp_path, reaction, faults, wanted):
         """The record of the whole run, and of one that is cut at the wanted entry and resumed."""
+        path = tmp_path / "run.journal"
         plan = mission(waypoint("A", 5.05, 2.55), reactions=(reaction,), dock=DOCK)
         whole = simulated(plan, yard, drive="route", faults=faults_of(*faults), journal=path)
         assert whole.result.success
@@ -370,9 +372,8 @@ class TestResumedWhileItWaits:
     def test_charging(self, yard, tmp_path, charge):
         low = [{"kind": "low_battery", "charge": 0.202}, {"kind": "worn_battery", "capacity": 0.1}]
         whole, again = self.cut_where(
-            yard, tmp_path / "run.journal", self.LOW, low,
-            lambda e: e.charge > charge and e.t > 5,
-        )  # fmt: skip
+            yard, tmp_path, self.LOW, low, lambda e: e.charge > charge and e.t > 5
+        )
         assert again.result.success
         kinds = [EventKind.LOW_BATTERY, EventKind.BATTERY_CHARGED]
         assert [a.kind for a in again.anomalies] == kinds
@@ -381,9 +382,7 @@ class TestResumedWhileItWaits:
     @pytest.mark.parametrize("cut", [5.0, 11.9, 12.1])
     def test_the_connection_is_back_before_or_after(self, yard, tmp_path, cut):
         loss = [{"kind": "connection_loss", "at": 2, "until": 12}]
-        whole, again = self.cut_where(
-            yard, tmp_path / "run.journal", self.LOST, loss, lambda e: e.t >= cut
-        )
+        whole, again = self.cut_where(yard, tmp_path, LOST, loss, lambda e: e.t >= cut)
         kinds = [EventKind.CONNECTION_LOST, EventKind.CONNECTION_RESTORED]
         assert [a.kind for a in again.anomalies] == kinds
         assert again.result.success
@@ -394,9 +393,7 @@ class TestResumedWhileItWaits:
             {"kind": "connection_loss", "at": 1, "until": 4},
             {"kind": "connection_loss", "at": 7, "until": 12},
         ]
-        _, again = self.cut_where(
-            yard, tmp_path / "run.journal", self.LOST, losses, lambda e: e.t >= 6
-        )
+        _, again = self.cut_where(yard, tmp_path, LOST, losses, lambda e: e.t >= 6)
         kinds = [EventKind.CONNECTION_LOST, EventKind.CONNECTION_RESTORED]
         assert [a.kind for a in again.anomalies] == 2 * kinds
 
@@ -405,19 +402,13 @@ class TestResumedWhileItWaits:
             {"kind": "emergency_stop", "at": 1, "until": 9},
             {"kind": "emergency_stop", "at": 10.1, "until": 16},
         ]
-        whole, again = self.cut_where(
-            yard, tmp_path / "run.journal", self.LOST, stops, lambda e: e.t >= 10
-        )
+        whole, again = self.cut_where(yard, tmp_path, LOST, stops, lambda e: e.t >= 10)
         assert [a.t for a in again.anomalies] == [a.t for a in whole.anomalies] == [1.0, 10.1]
 
 
 class TestStandingStill:
     def test_a_robot_that_waits_is_given_time_for_what_faults_lead_to(self, yard):
-        pause = Reaction(
-            event=EventKind.CONNECTION_LOST, response=Response.PAUSE,
-            until=EventKind.CONNECTION_RESTORED,
-        )  # fmt: skip
-        plan = mission(waypoint("A", 5.05, 2.55), reactions=(pause,))
+        plan = mission(waypoint("A", 5.05, 2.55), reactions=(LOST,))
         faults = faults_of({"kind": "connection_loss", "at": 2, "until": 200})
         record = simulated(plan, yard, faults=faults)
         assert record.result.success

@@ -6,7 +6,6 @@ from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier
 
 import pytest
-import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -42,7 +41,6 @@ from argo_env.run.spec import RunSpec, logged, read_spec
 from argo_env.run.steering import ReachIn, StopRun
 from tests.conftest import examples
 from tests.yard import (
-    SITE,
     Entries,
     cut,
     journaled,
@@ -53,6 +51,7 @@ from tests.yard import (
     take_over,
     until,
     waypoint,
+    write_site,
 )
 
 PLAN = mission(measure(1), waypoint("A", 4.05, 2.05), measure(2), measure(3), end_area=1)
@@ -514,9 +513,8 @@ class TestSpec:
 
     def test_a_worker_runs_it(self, site, tmp_path):
         """What a worker process is sent opens the site by its reference."""
-        file = tmp_path / "yard.yaml"
-        file.write_text(yaml.safe_dump(SITE), encoding="utf-8")
-        spec = spec_of("route").model_copy(update={"site": str(file)})
+        file = write_site(tmp_path / "yard.yaml")
+        spec = spec_of("route").model_copy(update={"site": file})
         sent = pickle.loads(pickle.dumps((run, spec)))
         assert sent[0](sent[1]) == simulate(spec, site)
 

@@ -2,14 +2,11 @@
 
 import gc
 import math
-import subprocess
 import sys
 import threading
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import pytest
-import yaml
 
 from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.script import import_script
@@ -20,7 +17,8 @@ from argo_env.run.record import RunRecord
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_env.world.world import World, pybullet
-from tests.yard import SITE
+from tests.processes import run_python
+from tests.yard import write_site
 
 pytestmark = pytest.mark.long
 
@@ -59,9 +57,7 @@ def run(file: str, k: int) -> RunRecord:
 
 @pytest.fixture
 def site(tmp_path):
-    file = tmp_path / "yard.yaml"
-    file.write_text(yaml.safe_dump(SITE), encoding="utf-8")
-    return str(file)
+    return write_site(tmp_path / "yard.yaml")
 
 
 @pytest.fixture
@@ -151,13 +147,7 @@ print(written, flush=True)
 
 def test_what_others_print_meanwhile_is_not_lost(site):
     """From the first import on; and nothing is printed besides."""
-    done = subprocess.run(
-        [sys.executable, "-c", _BESIDE, site],
-        capture_output=True,
-        text=True,
-        check=True,
-        cwd=Path(__file__).parents[3],
-    )
+    done = run_python("-c", _BESIDE, site)
     *lines, from_c, count = done.stdout.splitlines()
     assert from_c == "from C"
     assert lines == ["out"] * int(count)

@@ -14,7 +14,7 @@ from argo_env.faults.robot import LowBattery
 from argo_env.planning.opening import OpenedSite
 from argo_planner.service.web.access import AccessRole
 from tests.argo_planner.service.served import SECRETS, Served, served
-from tests.argo_planner.service.test_http import problem
+from tests.argo_planner.service.test_http import begun, problem
 from tests.argo_planner.service.test_jobs import imported, over
 
 FAULTS = [{"kind": "low_battery", "charge": 0.01}]
@@ -32,10 +32,7 @@ def asked(service: Served, id: str, revision: str = "*", **said: object):
 
 
 def begin(service: Served, id: str, **said: object) -> str:
-    begun = asked(service, id, **said)
-    assert begun.status_code == 202, begun.text
-    assert begun.headers["location"] == f"/api/jobs/{begun.json()['id']}"
-    return begun.json()["id"]
+    return begun(asked(service, id, **said), 202, "/api/jobs")["id"]
 
 
 def until(service: Served, job: str, holds: Callable[[dict], bool]) -> dict:

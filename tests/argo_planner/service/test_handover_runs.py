@@ -13,6 +13,7 @@ from argo_env.planning.opening import OpenedSite
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
 from tests.argo_planner.service.served import Served
+from tests.argo_planner.service.test_http import begun
 from tests.argo_planner.service.test_runs import ask, settled, state, wait
 from tests.conftest import examples
 from tests.yard import from_place
@@ -48,9 +49,7 @@ def play(service: Served, site: OpenedSite, seed: int) -> str:
     mission = random_mission(rng, site)
     expected = visits(mission, site)
     id = service.create(f"Run {seed}", mission.model_dump(mode="json"))
-    begun = service.run(id, drive="route", speed=60.0)
-    assert begun.status_code == 201, begun.text
-    run = begun.json()["id"]
+    run = begun(service.run(id, drive="route", speed=60.0), 201, "/api/runs")["id"]
     until = rng.uniform(0.0, 60.0)
     while (now := state(service, run))["t"] < until and now["status"] != "ended":
         time.sleep(0.02)

@@ -26,13 +26,17 @@ def problem(answer: httpx.Response, status: int, code: str) -> dict:
     return answer.json()
 
 
+def begun(answer: httpx.Response, status: int, place: str) -> dict:
+    """What an answer says of something new, which is at that place under its id."""
+    assert answer.status_code == status, answer.text
+    assert answer.headers["location"] == f"{place}/{answer.json()['id']}"
+    return answer.json()
+
+
 def test_a_mission_from_its_making_to_its_end(service: Served) -> None:
     client = service.client
-    made = client.post("/api/missions", json={"name": "Round"})
-    assert made.status_code == 201
-    id = made.json()["id"]
-    assert made.headers["location"] == f"/api/missions/{id}"
-    read = client.get(made.headers["location"])
+    id = begun(client.post("/api/missions", json={"name": "Round"}), 201, "/api/missions")["id"]
+    read = client.get(f"/api/missions/{id}")
     assert read.headers["etag"] == '"1"'
     assert read.json()["mission"]["tasks"] == []
     assert client.put(f"/api/missions/{id}/name", json={"name": "Tour"}).json()["name"] == "Tour"

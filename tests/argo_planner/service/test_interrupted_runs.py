@@ -9,7 +9,6 @@ import pytest
 
 from argo_compiler.base.errors import Conflict, NotFound, Unavailable
 from argo_planner.service.runs import requests as asked
-from argo_planner.service.runs.host import RunHost
 from argo_planner.service.runs.state import RunMode, RunStatus
 from tests.argo_planner.service.served import taken
 from tests.argo_planner.service.test_run_host import (
@@ -17,6 +16,7 @@ from tests.argo_planner.service.test_run_host import (
     done,
     ended,
     hosted,
+    interrupted,
     order,
     reported,
     send_signal,
@@ -24,12 +24,6 @@ from tests.argo_planner.service.test_run_host import (
 )
 
 pytestmark = [pytest.mark.long, pytest.mark.anyio]
-
-
-async def interrupted(host: RunHost) -> None:
-    """Kills the process of the run, and waits until that is known."""
-    send_signal(signal.SIGKILL)
-    await until(host, lambda: host.state.status is RunStatus.INTERRUPTED)
 
 
 def damage(folder: Path, run: str) -> None:
@@ -59,7 +53,7 @@ async def test_a_hung_process_delays_nobody(tmp_path, site) -> None:
         assert [state.id for state in await host.all()] == [run]
         assert (await host.history(run, 0, 1)).entries
         send_signal(signal.SIGCONT)
-        await until(host, lambda: all(host.request(run, id).over for id in taken))
+        await until(lambda: all(host.request(run, id).over for id in taken))
         assert {host.request(run, id).progress for id in taken} == {"confirmed"}
         assert await done(host, asked.PauseRun(id="p")) == "confirmed"
 
@@ -103,8 +97,8 @@ async def test_a_stop_that_was_kept_is_done_after_a_restart(tmp_path, site) -> N
         send_signal(signal.SIGSTOP)
         assert (await host.ask(run, asked.EndRun(id="s"), "ann")).progress == "accepted"
     async with hosted(tmp_path, "go-on") as host:
-        await until(host, ended(host))
-        await until(host, lambda: host.request(host.state.id, "s").over)
+        await until(ended(host))
+        await until(lambda: host.request(host.state.id, "s").over)
         assert host.request(host.state.id, "s").progress == "confirmed"
         assert "stopped by a person" in (await reported(host)).result.verdict
 
@@ -119,7 +113,7 @@ async def test_an_interrupted_run_goes_on_or_stops_and_nothing_else(tmp_path, si
         follower = host.follow("1", host.state.entries)
         accepted = await host.ask(run, asked.EndRun(id="s"), "ann")
         assert accepted.progress == "accepted"
-        await until(host, lambda: host.request(run, "s").over)
+        await until(lambda: host.request(run, "s").over)
         assert host.state.status is RunStatus.ENDED
         assert host.state.headline is not None
         steps = [m["request"]["progress"] for m in await taken(follower, "request")]
@@ -143,7 +137,7 @@ async def test_a_damaged_journal_keeps_a_run_from_going_on_and_not_from_ending(
         last = {one.id: one.progress for one in host.state.requests}
         assert last == {"g": "failed", "s": "confirmed"}
         await host.start(order(site), "bob")
-        await until(host, ended(host))
+        await until(ended(host))
 
 
 async def test_a_process_that_can_not_begin(tmp_path, site, monkeypatch) -> None:
@@ -163,7 +157,7 @@ async def test_a_process_that_can_not_begin(tmp_path, site, monkeypatch) -> None
             await host.start(order(site), "bob")
             assert host.state.status is RunStatus.ENDED
         await host.start(order(site), "eve")
-        await until(host, ended(host))
+        await until(ended(host))
         assert host.state.headline is not None
 
 
@@ -194,7 +188,7 @@ async def test_what_was_skipped_is_known_after_the_process_and_the_service_died(
         assert await done(host, request) == "confirmed"
         assert host.state.revision == 4
         assert host.state.skipped == ()
-        await until(host, ended(host))
+        await until(ended(host))
         made = {t.task: (t.done, t.by_hand) for t in host.state.tasks}
         assert made[first.name] == (0, 1)
         assert made[second.name] == (1, 0), "it is another task, under the same name"
@@ -206,7 +200,7 @@ async def test_a_run_that_was_killed_before_its_report_says_so(tmp_path, site) -
         with pytest.raises(NotFound, match="it is running"):
             await host.report(run, "report.html")
         assert await done(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
-        await until(host, ended(host))
+        await until(ended(host))
         await reported(host)
     [kept] = tmp_path.glob("*/run.json")
     as_killed = json.loads(kept.read_text())

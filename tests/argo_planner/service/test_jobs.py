@@ -8,7 +8,7 @@ from argo_env.planning.opening import OpenedSite
 from argo_planner.use_cases.importing import ImportedMission
 from argo_planner.use_cases.routing import suggest_order
 from tests.argo_planner.service.served import Served
-from tests.argo_planner.service.test_http import problem
+from tests.argo_planner.service.test_http import begun, problem
 
 SCRIPT = (
     "Mission Protocol #2\nOrder: any\n"
@@ -23,10 +23,8 @@ def imported(service: Served) -> str:
 
 
 def begin(service: Served, id: str, time_limit: float = 5) -> str:
-    begun = service.client.post(f"/api/missions/{id}/orders", json={"time_limit": time_limit})
-    assert begun.status_code == 202, begun.text
-    assert begun.headers["location"] == f"/api/jobs/{begun.json()['id']}"
-    return begun.json()["id"]
+    answer = service.client.post(f"/api/missions/{id}/orders", json={"time_limit": time_limit})
+    return begun(answer, 202, "/api/jobs")["id"]
 
 
 def over(service: Served, job: str) -> dict:

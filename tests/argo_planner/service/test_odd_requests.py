@@ -12,6 +12,7 @@ from websockets.exceptions import InvalidStatus
 from argo_planner.service.rooms import mailbox
 from argo_planner.service.storage import folder, plan_file
 from tests.argo_planner.service.served import ALL, Served
+from tests.argo_planner.service.test_http import problem
 
 TASK = {"name": "a", "action": "WAYPOINT", "pose": {"x": 3.05, "y": 1.55, "z": 0.0}}
 CHANGE = {"kind": "change_task", "name": "a", "retries": 3}
@@ -68,7 +69,7 @@ def test_the_list_says_what_the_mission_is(service, plan) -> None:
 )
 def test_odd_origins_are_refused(service, origin) -> None:
     answer = service.client.get("/api/service", headers={b"origin": origin.encode()})
-    assert (answer.status_code, answer.json()["code"]) == (403, "foreign-origin")
+    problem(answer, 403, "foreign-origin")
 
 
 def test_a_body_of_unsaid_size_that_is_too_large_is_called_so(service) -> None:
@@ -78,7 +79,7 @@ def test_a_body_of_unsaid_size_that_is_too_large_is_called_so(service) -> None:
 
     told = {"content-type": "application/json"}
     answer = service.client.post("/api/missions", content=parts(), headers=told)
-    assert (answer.status_code, answer.json()["code"]) == (413, "too-large")
+    problem(answer, 413, "too-large")
 
 
 def test_what_is_wrong_with_an_edit_is_said_of_that_kind_of_edit(service, plan) -> None:
@@ -103,9 +104,9 @@ def test_a_socket_asked_for_since_no_number_says_so(service, plan, since) -> Non
         with pytest.raises(InvalidStatus) as refused:
             service.socket(f"{path}?since={since}", {"authorization": f"Bearer {ALL}"})
         assert refused.value.response.status_code == 422
-        problem = json.loads(refused.value.response.body)
-        assert problem["code"] == "invalid"
-        assert problem["detail"].startswith("query.since: ")
+        told = json.loads(refused.value.response.body)
+        assert told["code"] == "invalid"
+        assert told["detail"].startswith("query.since: ")
 
 
 def test_what_a_socket_says_to_know_and_nobody_can_know_gets_a_snapshot(service, plan) -> None:
@@ -116,9 +117,9 @@ def test_what_a_socket_says_to_know_and_nobody_can_know_gets_a_snapshot(service,
 def test_a_stale_version_says_what_was_done_since(service, plan) -> None:
     url = f"/api/missions/{plan}/versions"
     answer = service.client.post(url, json={"name": "v"}, headers={"if-match": '"1"'})
-    problem = answer.json()
-    assert (answer.status_code, problem["newest"]) == (412, 2)
-    assert [made["number"] for made in problem["since"]] == [2]
+    told = problem(answer, 412, "stale-revision")
+    assert told["newest"] == 2
+    assert [made["number"] for made in told["since"]] == [2]
 
 
 def test_putting_a_version_back_is_answered_again_when_the_version_is_gone(service, plan) -> None:
@@ -136,7 +137,7 @@ def test_putting_a_version_back_is_answered_again_when_the_version_is_gone(servi
     other = service.client.post(restore, json={"id": "another"}, headers=made_on)
     assert other.status_code == 404
     taken = service.client.post(f"{url}/7/restore", json=body, headers=made_on)
-    assert (taken.status_code, taken.json()["code"]) == (409, "command-id-taken")
+    problem(taken, 409, "command-id-taken")
     assert service.command(plan, 4, {**CHANGE, "retries": 9}).status_code == 200
     second = service.client.post(url, json={"name": "w"}, headers={"if-match": "*"}).json()
     assert second["number"] == kept["number"]
@@ -169,9 +170,9 @@ def test_odd_obstacles_are_refused(service, change, said) -> None:
         content=json.dumps({"obstacles": [box | change]}),  # NaN too, which httpx does not send
         headers={"if-match": "*", "content-type": "application/json"},
     )
-    assert answer.status_code == 422
-    assert answer.json()["detail"].startswith("body.obstacles.0.")
-    assert said in answer.json()["detail"]
+    detail = problem(answer, 422, "invalid")["detail"]
+    assert detail.startswith("body.obstacles.0.")
+    assert said in detail
 
 
 @pytest.mark.parametrize(
@@ -193,8 +194,7 @@ def test_odd_obstacles_are_refused(service, change, said) -> None:
 )
 def test_a_way_of_what_makes_no_sense_is_refused(service, asked, said) -> None:
     answer = service.client.post("/api/world/way", json={"start": TASK["pose"]} | asked)
-    assert answer.status_code == 422, answer.text
-    assert said in answer.json()["detail"]
+    assert said in problem(answer, 422, "invalid")["detail"]
 
 
 def test_a_way_to_a_task_does_not_ask_what_comes_behind_it(service) -> None:
@@ -225,8 +225,7 @@ def test_a_way_leads_to_one_thing(service) -> None:
     start = TASK["pose"]
     for ends in ({}, {"goal": start, "task": TASK}):
         answer = service.client.post("/api/world/way", json={"start": start, **ends})
-        assert answer.status_code == 422
-        assert "either" in answer.json()["detail"]
+        assert "either" in problem(answer, 422, "invalid")["detail"]
 
 
 @pytest.mark.parametrize(
@@ -244,8 +243,7 @@ def test_an_order_of_what_is_not_there_is_refused_at_once(service, plan, require
     answer = service.client.post(
         f"/api/missions/{plan}/orders", json={"requirements": requirements, "time_limit": 1}
     )
-    assert (answer.status_code, answer.json()["code"]) == (422, "invalid")
-    assert "'nothing'" in answer.json()["detail"]
+    assert "'nothing'" in problem(answer, 422, "invalid")["detail"]
 
 
 def test_a_file_of_few_large_records_does_not_grow_without_end(service, plan, monkeypatch) -> None:

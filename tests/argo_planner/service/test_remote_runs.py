@@ -6,33 +6,29 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 
 import pytest
 from websockets.exceptions import InvalidStatus
 
 from tests.argo_planner.service.served import ALL, SECRETS, Served
 from tests.argo_planner.service.test_run_host import SCRIPT, send_signal
-from tests.argo_planner.service.test_runs import ask, state, wait
+from tests.argo_planner.service.test_runs import ask, start, state, wait
+from tests.processes import ROOT
 
-ROOT = Path(__file__).parents[3]
 FAKE = "tests.argo_planner.service.fake_robot"
 
 
 def begin(service: Served) -> str:
     """Begins a run of a mission of its own."""
-    begun = service.run(service.imported(SCRIPT, start_area=1), drive="remote")
-    assert begun.status_code == 201, begun.text
-    return begun.json()["id"]
+    return start(service, service.imported(SCRIPT, start_area=1), drive="remote")["id"]
 
 
 @contextmanager
 def a_robot(service: Served) -> Iterator[subprocess.Popen[bytes]]:
     dock = service.client.get("/api/world").json()["docks"][0]["pose"]
     place = [str(dock[axis]) for axis in ("x", "y", "z", "yaw")]
-    robot = subprocess.Popen(
-        [sys.executable, "-m", FAKE, service.address, ALL, "1", *place], cwd=ROOT
-    )
+    command = [sys.executable, "-m", FAKE, service.address, ALL, "1", *place]
+    robot = subprocess.Popen(command, cwd=ROOT)
     try:
         yield robot
     finally:

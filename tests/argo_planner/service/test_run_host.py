@@ -64,7 +64,7 @@ def send_signal(number: signal.Signals, run: str = "") -> None:
     os.kill(process.pid, number)
 
 
-async def until(_: RunHost, so: Callable[[], bool]) -> None:
+async def until(so: Callable[[], bool]) -> None:
     while not so():
         await asyncio.sleep(0.01)
 
@@ -74,15 +74,21 @@ async def done(host: RunHost, request: asked.RunRequest, by: str = "ann") -> str
     state = host.state
     assert state is not None
     await host.ask(state.id, request, by)
-    await until(host, lambda: host.request(state.id, request.id).over)
+    await until(lambda: host.request(state.id, request.id).over)
     return host.request(state.id, request.id).progress
 
 
 async def begun(host: RunHost, site: OpenedSite, after: float = 3.0, **other: object) -> str:
     """Begins a run, and waits until some of its time is over."""
     run = (await host.start(order(site, **({"speed": 20.0} | other)), "ann")).id
-    await until(host, lambda: bool(host.state and host.state.t > after))
+    await until(lambda: bool(host.state and host.state.t > after))
     return run
+
+
+async def interrupted(host: RunHost) -> None:
+    """Kills the process of the run, and waits until that is known."""
+    send_signal(signal.SIGKILL)
+    await until(lambda: host.state.status is RunStatus.INTERRUPTED)
 
 
 def ended(host: RunHost) -> Callable[[], bool]:
@@ -100,7 +106,7 @@ async def reported(host: RunHost) -> RunRecord:
 
 
 async def done_by_itself(host: RunHost) -> str:
-    await until(host, ended(host))
+    await until(ended(host))
     assert host.state is not None
     assert host.state.headline is not None
     return host.state.headline.word
@@ -116,7 +122,7 @@ async def test_a_run_is_that_of_the_simulation(tmp_path, site) -> None:
         follower = host.follow("1")
         begun = await host.start(wanted, "ann")
         assert begun.status is RunStatus.PREPARING
-        await until(host, ended(host))
+        await until(ended(host))
         state = host.state
         assert state is not None
         assert state.headline == alone.headline
@@ -136,11 +142,11 @@ async def test_a_second_run_is_refused_with_who_has_the_robot(tmp_path, site) ->
         with pytest.raises(Conflict, match="ann has begun run"):
             await host.start(order(site), "bob")
         assert host.state is not None
-        await until(host, lambda: host.state.status is RunStatus.RUNNING)
+        await until(lambda: host.state.status is RunStatus.RUNNING)
         assert await done(host, asked.EndRun(id="s")) == "confirmed"
-        await until(host, ended(host))
+        await until(ended(host))
         await host.start(order(site), "bob")
-        await until(host, ended(host))
+        await until(ended(host))
         assert host.state.by == "bob"
         assert [state.by for state in await host.all()] == ["bob", "ann"]
 
@@ -149,14 +155,14 @@ async def test_a_second_run_is_refused_with_who_has_the_robot(tmp_path, site) ->
 async def test_paused_is_said_only_when_nothing_moves(tmp_path, site) -> None:
     async with hosted(tmp_path) as host:
         await host.start(order(site, speed=20.0), "ann")
-        await until(host, lambda: bool(host.state and host.state.moving and host.state.t > 5))
+        await until(lambda: bool(host.state and host.state.moving and host.state.t > 5))
         run = host.state.id
         follower = host.follow("1", host.state.entries)
         accepted = await host.ask(run, asked.PauseRun(id="p"), "ann")
         assert accepted.progress == "accepted"
         again = await host.ask(run, asked.PauseRun(id="p"), "ann")
         assert again.id == "p"
-        await until(host, lambda: host.request(run, "p").over)
+        await until(lambda: host.request(run, "p").over)
         steps = [m["request"]["progress"] for m in await taken(follower, "request")]
         assert steps == ["accepted", "under way", "confirmed"]
         assert host.state.mode is RunMode.PAUSED
@@ -168,7 +174,7 @@ async def test_paused_is_said_only_when_nothing_moves(tmp_path, site) -> None:
         await asyncio.sleep(0.5)
         assert host.state.t < at + 5, "time runs away while a person is waited for"
         assert await done(host, asked.GoOnWithRun(id="g")) == "confirmed"
-        await until(host, ended(host))
+        await until(ended(host))
         assert host.state.headline is not None
         assert host.state.headline.word == "Success"
         with pytest.raises(Conflict, match="is over"):
@@ -179,7 +185,7 @@ async def test_a_person_takes_over_drives_measures_skips_and_gives_back(tmp_path
     async with hosted(tmp_path) as host:
         wanted = order(site, speed=None)
         await host.start(order(site, speed=20.0), "ann")
-        await until(host, lambda: bool(host.state and host.state.moving and host.state.t > 3))
+        await until(lambda: bool(host.state and host.state.moving and host.state.t > 3))
         refused = [
             asked.SkipTask(id="1", task="MEASURE 1"),
             asked.DoTask(id="2", task="MEASURE 1"),
@@ -199,7 +205,7 @@ async def test_a_person_takes_over_drives_measures_skips_and_gives_back(tmp_path
         assert len(host.state.readings) == 2
         assert await done(host, asked.GoOnWithRun(id="8")) == "refused"
         assert await done(host, asked.GiveRobotBack(id="9")) == "confirmed"
-        await until(host, ended(host))
+        await until(ended(host))
         assert {t.task: (t.done, t.by_hand) for t in host.state.tasks if t.by_hand} == {
             first.name: (0, 1),
             second.name: (0, 1),
@@ -214,17 +220,15 @@ async def test_a_run_goes_on_when_its_process_was_killed(tmp_path, site) -> None
     alone = simulate(spec, site)
 
     async with hosted(tmp_path) as host:
-        await host.start(order(site, speed=50.0), "ann")
-        await until(host, lambda: bool(host.state and host.state.t > 10))
-        send_signal(signal.SIGKILL)
-        await until(host, lambda: host.state.status is RunStatus.INTERRUPTED)
+        await begun(host, site, after=10.0, speed=50.0)
+        await interrupted(host)
         assert "signal 9" in host.state.problem
         with pytest.raises(Conflict, match="interrupted"):
             await host.ask(host.state.id, asked.PauseRun(id="p"), "ann")
         with pytest.raises(Conflict, match="ann has begun"):
             await host.start(order(site), "bob")
         assert await done(host, asked.GoOnWithRun(id="g")) == "confirmed"
-        await until(host, ended(host))
+        await until(ended(host))
         record = await reported(host)
         assert [(r.task, r.value) for r in record.readings] == [
             (r.task, r.value) for r in alone.readings
@@ -236,8 +240,7 @@ async def test_a_run_goes_on_when_its_process_was_killed(tmp_path, site) -> None
 @pytest.mark.parametrize("after", ["go-on", "wait"])
 async def test_a_service_that_begins_again_finds_its_run(tmp_path, site, after: str) -> None:
     async with hosted(tmp_path) as host:
-        await host.start(order(site, speed=50.0), "ann")
-        await until(host, lambda: bool(host.state and host.state.t > 10))
+        await begun(host, site, after=10.0, speed=50.0)
     async with hosted(tmp_path, after) as host:
         state = host.state
         assert state is not None
@@ -256,12 +259,12 @@ async def test_a_service_that_begins_again_finds_its_run(tmp_path, site, after: 
 async def test_what_can_not_be_run_has_ended_with_its_reason(tmp_path, site) -> None:
     async with hosted(tmp_path) as host:
         run = (await host.start(order(site, drive="flying"), "ann")).id
-        await until(host, ended(host))
+        await until(ended(host))
         assert "no drive `flying`" in host.state.problem
         with pytest.raises(NotFound, match="before anything had happened"):
             await host.report(run, "report.html")
         await host.start(order(site), "bob")
-        await until(host, ended(host))
+        await until(ended(host))
         assert host.state.problem is None
 
 

@@ -8,7 +8,7 @@ import pytest
 from websockets.exceptions import InvalidStatus
 
 from tests.argo_planner.service.served import ALL, SECRETS, Served
-from tests.argo_planner.service.test_http import problem
+from tests.argo_planner.service.test_http import begun, problem
 from tests.argo_planner.service.test_run_host import SCRIPT
 
 
@@ -18,10 +18,7 @@ def id(service: Served) -> str:
 
 
 def start(service: Served, id: str, **other: object) -> dict:
-    begun = service.run(id, 1, **({"drive": "route", "seed": 4} | other))
-    assert begun.status_code == 201, begun.text
-    assert begun.headers["location"] == f"/api/runs/{begun.json()['id']}"
-    return begun.json()
+    return begun(service.run(id, 1, **({"drive": "route", "seed": 4} | other)), 201, "/api/runs")
 
 
 def state(service: Served, run: str) -> dict:

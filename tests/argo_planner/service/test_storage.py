@@ -44,11 +44,15 @@ def folder(tmp_path):
         yield opened
 
 
-def edit(file: PlanFile, id: str, velocity: float, author: str = "ann") -> None:
+def carry_out(file: PlanFile, command: EditPlan | UndoEdit) -> None:
     document = file.document
-    command = EditPlan(id=id, edits=(edits.ChangeTask(name="a", velocity=velocity),))
-    plan = document.plan.carried_out(command, author, document.plan.revision, AT)
+    plan = document.plan.carried_out(command, "ann", document.plan.revision, AT)
     file.append(*document.made(plan))
+
+
+def edit(file: PlanFile, id: str, velocity: float) -> None:
+    change = edits.ChangeTask(name="a", velocity=velocity)
+    carry_out(file, EditPlan(id=id, edits=(change,)))
 
 
 def filled(folder: PlanFolder, revisions: int = 6) -> tuple[str, PlanDocument]:
@@ -70,9 +74,7 @@ def test_what_was_written_is_there_again(folder):
         document = file.document
         file.append(document.after(r := document.keep_version("first", "ann", AT)), r)
         edit(file, "c2", 0.3)
-        document = file.document
-        undone = document.plan.carried_out(UndoEdit(id="u"), "ann", 3, AT)
-        file.append(*document.made(undone))
+        carry_out(file, UndoEdit(id="u"))
         written = file.document
     with folder.open(written.id) as again:
         assert again.document == written
@@ -254,11 +256,8 @@ def test_what_was_acknowledged_survives_a_kill(folder):
 
 
 def write_much(file: PlanFile, k: int, characters: int) -> None:
-    document = file.document
-    text = f"{k}" + "x" * characters
-    command = EditPlan(id=f"m{k}", edits=(edits.SetHeader(anomaly_specification=text),))
-    plan = document.plan.carried_out(command, "ann", document.plan.revision, AT)
-    file.append(*document.made(plan))
+    change = edits.SetHeader(anomaly_specification=f"{k}" + "x" * characters)
+    carry_out(file, EditPlan(id=f"m{k}", edits=(change,)))
 
 
 def test_a_file_of_few_large_records_stays_small_however_often_it_is_opened(folder, monkeypatch):

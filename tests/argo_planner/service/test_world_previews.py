@@ -24,13 +24,10 @@ from argo_env.run.journal import open_journal
 from argo_env.run.session import resume, simulate
 from argo_env.run.spec import RunSpec
 from argo_planner.service.world.description import describe, world_digest
-from argo_planner.service.world.obstacles import Obstacle, with_obstacles
+from argo_planner.service.world.obstacles import with_obstacles
 from argo_planner.service.world.previews import WayKind, preview_mission, preview_way
+from tests.argo_planner.service.test_world_standing import crate
 from tests.yard import in_order
-
-
-def crate(id, x, y, z, size=(0.4, 0.4, 0.8), yaw=0.3):
-    return Obstacle(id=id, name=f"crate {id}", pose=Pose(x=x, y=y, z=z, yaw=yaw), size=size)
 
 
 def chain(*tasks, **fields):
@@ -155,7 +152,7 @@ def test_ways_and_runs_go_round_an_obstacle_alike(site):
     middle = next(p for p in free.points if p[0] > free.time / 2)
     before = free.points[free.points.index(middle) - 1]
     x, y = ((a + b) / 2 for a, b in zip(before[1:3], middle[1:3], strict=True))
-    crates = (crate("a", x, y, 0.0),)
+    crates = (crate("a", x, y, 0.0, (0.4, 0.4, 0.8), 0.3),)
     round_it = preview_way(site, start, goal, crates)
     assert round_it.time > free.time
     tasks = (

@@ -21,7 +21,7 @@ from argo_planner.service.world.standing import Ground, read_standing_map, stand
 FLOORS = range(1, 7)
 
 
-def obstacle(id, x, y, z, size=(0.5, 0.4, 1.0), yaw=0.0):
+def crate(id, x, y, z, size=(0.5, 0.4, 1.0), yaw=0.0):
     return Obstacle(id=id, name=f"crate {id}", pose=Pose(x=x, y=y, z=z, yaw=yaw), size=size)
 
 
@@ -32,7 +32,7 @@ def crates(site):
     places = site.navigator.turning_places(2)
     chosen = places[rng.choice(len(places), 4, replace=False)]
     return tuple(
-        obstacle(str(k), x, y, z, yaw=0.4 * k) for k, (x, y, z, _) in enumerate(chosen.tolist())
+        crate(str(k), x, y, z, yaw=0.4 * k) for k, (x, y, z, _) in enumerate(chosen.tolist())
     )
 
 
@@ -158,24 +158,24 @@ def test_with_obstacles_the_map_says_what_plans_say(site, crates):
 
 def test_an_obstacle_closes_no_more_than_what_the_robot_would_touch(site):
     x, y, z, _ = site.navigator.turning_places(3)[40].tolist()
-    crate = obstacle("a", x, y, z, (0.6, 0.3, 0.5), yaw=0.7)
+    box = crate("a", x, y, z, (0.6, 0.3, 0.5), yaw=0.7)
     robot = site.robot.footprint
     reach, inner = robot.radius + 0.6, robot.half_width
     for heading in range(HEADINGS):
-        before, after = (standing_map(site, 3, heading, o) for o in ((), (crate,)))
+        before, after = (standing_map(site, 3, heading, o) for o in ((), (box,)))
         changed = before.codes != after.codes
         assert set(np.unique(after.codes[changed])) <= {Ground.CLOSED, Ground.CUT_OFF}
         places, codes = cells_of(after)
         away = np.hypot(places[:, 0] - x, places[:, 1] - y)
         assert away[codes == Ground.CLOSED].max(initial=0) < reach
         assert not (codes[away < inner] == Ground.REACHED).any()
-        places, codes = cells_of(standing_map(site, 2, heading, (crate,)))
+        places, codes = cells_of(standing_map(site, 2, heading, (box,)))
         assert (codes[places[:, 2] < z - 1.0] != Ground.CLOSED).all()
 
 
 def test_what_lies_over_the_robot_closes_nothing(site):
     x, y, z, _ = site.navigator.turning_places(6)[10].tolist()
-    beam = obstacle("beam", x, y, z + site.robot.driving_height + 0.1, (1.0, 1.0, 0.3))
+    beam = crate("beam", x, y, z + site.robot.driving_height + 0.1, (1.0, 1.0, 0.3))
     assert (standing_map(site, 6, 0, (beam,)).codes == standing_map(site, 6, 0).codes).all()
 
 
@@ -186,7 +186,7 @@ def test_what_is_not_there_is_refused(site):
         standing_map(site, 1, 8)
     with pytest.raises(Invalid, match="no map"):
         read_standing_map(b"{}\nnothing")
-    twice = obstacle("a", 0, 0, 0), obstacle("a", 1, 1, 0)
+    twice = crate("a", 0, 0, 0), crate("a", 1, 1, 0)
     with pytest.raises(Invalid, match="two obstacles"):
         with_obstacles(site, twice)
 

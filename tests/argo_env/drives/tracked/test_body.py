@@ -1,9 +1,6 @@
 """The body on its tracks: rest, speed, turns, flights, and the same again bit by bit."""
 
 import math
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
 
@@ -11,6 +8,7 @@ from argo_env.drives.tracked.belts import Traction
 from argo_env.drives.tracked.body import TrackedBody
 from argo_env.navigation.path import wrap
 from argo_env.robot.pose import BodyPose
+from tests.processes import run_python
 
 GRAVEL = BodyPose(5.0, -2.05, -0.03, 0.0)
 RISE, GOING = 0.178571, 0.28
@@ -180,19 +178,10 @@ from argo_env.robot.spec import load_robot
 from argo_env.drives.tracked.body import TrackedBody
 from argo_env.site import load_site
 from argo_env.world.world import World
-import sys
-sys.path.insert(0, sys.argv[1])
-from test_body import WEST, dance
+from tests.argo_env.drives.tracked.test_body import WEST, dance
 robot = load_robot()
 body = TrackedBody(World(load_site("umad"), robot), robot)
 body.reset(WEST)
 print(repr(dance(body)))
 """
-    there = subprocess.run(
-        [sys.executable, "-c", code, str(Path(__file__).parent)],
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=120,
-    )
-    assert there.stdout.strip() == here
+    assert run_python("-c", code).stdout.strip() == here

@@ -10,13 +10,9 @@ from argo_env.drives.drive import DriveStatus, Trouble
 from argo_env.drives.tracked.drive import WINDOW, StallWatch, TrackedDrive
 from argo_env.navigation.path import Motion, Path, wrap
 from argo_env.robot.pose import BodyPose
+from benchmarks.tracked import path_of
+from tests.argo_env.drives.test_route import level
 from tests.yard import simulated
-
-TOWERS = {"west": ((1.9, 2.8), (1.9, 7.95)), "east": ((12.3, 5.55), (12.3, 5.55))}
-
-
-def level(pose):
-    return BodyPose(pose.x, pose.y, pose.z, pose.yaw)
 
 
 def at(x, y, z, degrees=0.0):
@@ -58,9 +54,7 @@ def follow(drive, path, velocity=None, most=2000, start=None, world=None, touche
 )
 def test_takes_a_storey_of_each_tower(drive, ground, navigator, robot, tower, up):
     """The west tower has one long flight, the east tower two and a landing with a turn."""
-    (ax, ay), (bx, by) = TOWERS[tower]
-    low, high = at(ax, ay, 2.5), at(bx, by, 5.0)
-    path = navigator.plan(low, high) if up else navigator.plan(high, low)
+    path = path_of(navigator, f"{tower} tower", 2, up)
     start = path.start
     begun = BodyPose(start.x + 0.03, start.y - 0.03, start.z, start.yaw + math.radians(4))
     touched = set()

@@ -16,6 +16,7 @@ from argo_env.evaluation.pool.backends import BACKENDS, make_backend
 from argo_env.evaluation.pool.pool import Pool
 from tests.argo_env.evaluation.conftest import PACKAGES
 from tests.argo_env.evaluation.pool import work
+from tests.processes import run_python
 
 
 def carried_out(backend, call, arguments):
@@ -164,9 +165,7 @@ def test_a_ray_cluster_that_is_there_is_used_by_its_address(monkeypatch):
             assert head.poll() is None, "the cluster has not begun"
             time.sleep(0.1)
         # In a process of its own, as a process has one Ray cluster at a time.
-        used = subprocess.run(
-            [sys.executable, "-c", BY_ADDRESS, port], capture_output=True, text=True, check=True
-        )
+        used = run_python("-c", BY_ADDRESS, port)
         assert used.stdout.split() == ["2", *(str(k * k) for k in range(10))]
     finally:
         head.terminate()

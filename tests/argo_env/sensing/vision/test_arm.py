@@ -18,6 +18,7 @@ from argo_env.sensing.vision.align import FacePose
 from argo_env.sensing.vision.arm import JOINTS, forward, inverse
 from argo_env.sensing.vision.views import plan_views, solids_near
 from argo_env.site.shapes import Box
+from tests.argo_env.robot.test_models import load
 from tests.conftest import examples
 
 LENS = 0.07  # m ahead of the camera's link
@@ -35,13 +36,7 @@ poses = st.builds(
 
 @pytest.fixture(scope="module")
 def tracker(client, robot):
-    path = robot_folder() / robot.urdf
-    body = pybullet.loadURDF(str(path), useFixedBase=True, physicsClientId=client)
-    infos = [
-        pybullet.getJointInfo(body, k, physicsClientId=client)
-        for k in range(pybullet.getNumJoints(body, physicsClientId=client))
-    ]
-    return client, body, {info[1].decode(): info for info in infos}
+    return client, *load(client, robot_folder() / robot.urdf)
 
 
 def by_pybullet(tracker, joints, pose):

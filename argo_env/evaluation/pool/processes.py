@@ -4,10 +4,11 @@ import os
 import re
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
-from multiprocessing.context import BaseContext
+from multiprocessing.context import ForkServerContext
 from typing import Any
 
 from loky import ProcessPoolExecutor
+from loky.backend.context import LokyContext
 from loky.process_executor import BrokenProcessPool
 
 from argo_env.evaluation.pool.backend import WorkerDiedError
@@ -18,15 +19,18 @@ class Processes:
     """Workers that are processes of this machine. If one dies, all of them are begun anew, and with
     it the calls that were under way.
 
-    Each is begun as the context says; without one each loads anew what it needs.
+    Each is begun as a process of the context is; without one it loads anew what it needs.
     """
 
     name = "processes"
     names_the_dead = False
 
-    def __init__(self, workers: int, context: BaseContext | None = None) -> None:
+    def __init__(self, workers: int, context: ForkServerContext | None = None) -> None:
         self.workers = workers
-        self._context = context
+        # Its semaphores are cleared away without a word even where this process is killed.
+        self._context = LokyContext()
+        if context is not None:
+            self._context.Process = context.Process
         self._broken = False
         self._executor = self._begun()
 

@@ -35,7 +35,7 @@ from tests.e2e.test_errors import refused
 from tests.yard import measure, mission, opened, shelter, simulated, waypoint, write_yard
 
 KILLS = examples(32)
-LONGEST = 4.0  # s that a process lives; a whole run takes about as long
+LONGEST = 1.2  # s that a process lives; a whole run takes somewhat longer
 
 PLAN = mission(
     Task(name="Rest", action=Action.WAIT, wait=WaitRule(duration=6.0)),

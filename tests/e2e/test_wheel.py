@@ -31,10 +31,12 @@ def test_a_mission_runs_from_the_wheel(tmp_path: Path, missions: Path) -> None:
     build = (sys.executable, "-m", "build", "--wheel", "--no-isolation")
     call(*build, "--outdir", tmp_path, ROOT, cwd=tmp_path)
     (wheel,) = tmp_path.glob("*.whl")
-    call(sys.executable, "-m", "venv", tmp_path / "venv", cwd=tmp_path)
+    uv = Path(sys.executable).with_name("uv")
+    call(uv, "venv", "--quiet", "--python", sys.executable, tmp_path / "venv", cwd=tmp_path)
     python = tmp_path / "venv" / "bin" / "python"
-    pip = (python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile")
-    call(*pip, "--constraint", ROOT / "constraints.txt", wheel, cwd=tmp_path)
+    install = (uv, "pip", "install", "--quiet", "--python", python)
+    install += ("--constraint", ROOT / "constraints.txt")
+    call(*install, wheel, cwd=tmp_path)
     away = tmp_path / "away"
     away.mkdir()
     (away / "script.txt").write_bytes((missions / "mission_1.txt").read_bytes())
@@ -46,7 +48,7 @@ def test_a_mission_runs_from_the_wheel(tmp_path: Path, missions: Path) -> None:
     assert "Success" in output
     assert (away / "report" / "report.html").is_file()
     built = "from argo_planner.service.web.page import page_folder as f; print(*f().glob('*'))"
-    call(*pip, "--constraint", ROOT / "constraints.txt", f"{wheel}[planner]", cwd=tmp_path)
+    call(*install, f"{wheel}[planner]", cwd=tmp_path)
     assert "index.html" in call(python, "-c", built, cwd=away)
     location = call(python, "-c", "import argo_env; print(argo_env.__file__)", cwd=away)
     assert str(tmp_path) in location

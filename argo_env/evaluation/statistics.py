@@ -1,5 +1,8 @@
-"""Statistics of evaluations: what is counted of each run, such as successes. A new one is listed
-here; how sure an estimate is, `estimates/` says."""
+"""Statistics of evaluations: what is counted of each run, such as successes.
+
+A new one is listed here. Its words are in `report/sections.py` and, for the page, in
+`argo_planner/page/src/texts/evaluate.ts`; how sure an estimate is, `estimates/` says.
+"""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING

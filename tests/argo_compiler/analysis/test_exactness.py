@@ -1,7 +1,9 @@
 """What the analysis calls possible does happen, in most cases: random missions, run many times."""
 
+import random
 from collections import Counter
 
+import hypothesis
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
@@ -10,47 +12,80 @@ from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.hfsm import Cause, lower
 from tests.argo_compiler.analysis.worlds import MadeUpTravel, catalogs, missions, run
+from tests.conftest import EXAMPLES, examples
 
-RUNS = 50
+NOMINAL = 25
+"""runs of each mission in which nothing happens but what it waits for: as bounds are meant"""
+EVENTFUL = 50
+"""further runs at most, until all that is called possible has happened"""
+
+SHARES = (
+    ("tasks entered", "tasks", 0.89, 0.04),
+    ("ways taken", "ways", 0.66, 0.09),
+    ("least met", "bounds", 0.84, 0.10),
+    ("most met", "bounds", 0.85, 0.10),
+)
+"""What is counted, of what, its share as it was measured with 1,440 examples, and the standard
+deviation of the share between samples of 40 of them: the more examples, the less it is.
+
+Of 88 ways that no nominal run took, 47 were taken by eventful ones, if need be by thousands. Of the
+others some can't be taken, as the analysis does not look at how ages exclude each other, at windows
+and rounds that are too short, or at what a WAIT awaits in vain; and it takes readings of cancelled
+measurements to come from tasks that are never reached, and by ways that only a failure opens."""
 
 
 def test_most_of_what_is_called_possible_happens():
-    counts = Counter()
+    counts, seen = Counter(), set()
 
-    @settings(
-        max_examples=40,
-        deadline=None,
-        database=None,
-        derandomize=True,
-        suppress_health_check=list(HealthCheck),
-    )
+    # Ten at a time: the first ones of Hypothesis are drawn anew, each of the others varies one of
+    # them, so that what is counted of them is hardly more than of one.
+    @settings(max_examples=10, suppress_health_check=list(HealthCheck))
     @given(missions(least=4, most=6), catalogs(), st.integers(0, 1000))
     def explore(mission, catalog, seed):
         assume(not has_errors(check(mission)))
-        travel = MadeUpTravel(seed)
-        analysis = analyse(mission, catalog, travel)
-        hfsm = lower(mission)
-        runs = [run(mission, hfsm, catalog, travel, seed + k, steps=40) for k in range(RUNS)]
-        entries = [e for done in runs for e in done.executor.trace]
-        entered = {e.target for e in entries}
-        taken = {(e.source, e.target) for e in entries if e.cause is Cause.CONDITION}
-        for facts in analysis.tasks:
-            if facts.verdict is Verdict.POSSIBLE:
-                counts["tasks"] += 1
-                counts["tasks entered"] += facts.task in entered
-            for way in facts.transitions:
-                conditional = mission.task(facts.task).transitions[way.index].conditions
-                if conditional and facts.task in entered and way.verdict is Verdict.POSSIBLE:
-                    counts["ways"] += 1
-                    counts["ways taken"] += (facts.task, way.target) in taken
-        ended = [done.now for done in runs if done.executor.outcome == "completed"]
-        if ended and analysis.duration and analysis.duration.most.value is not None:
-            counts["bounds"] += 1
-            counts["least met"] += min(ended) == analysis.duration.least.value
-            counts["most met"] += max(ended) == analysis.duration.most.value
+        if mission not in seen:
+            seen.add(mission)
+            counts.update(happening(mission, catalog, seed))
 
-    explore()
-    assert counts["tasks entered"] >= 0.75 * counts["tasks"] > 30
-    assert counts["ways taken"] >= 0.65 * counts["ways"] > 5
-    assert counts["least met"] >= 0.6 * counts["bounds"] > 5
-    assert counts["most met"] >= 0.6 * counts["bounds"]
+    first = random.randrange(2**32) if EXAMPLES else 0
+    for tens in range(-(-examples(160) // 10)):
+        hypothesis.seed(first + tens)(explore)()
+    for what, of, measured, spread in SHARES:
+        least = measured - 4 * spread * (40 / examples(160)) ** 0.5
+        assert counts[what] >= least * counts[of] > 0, (what, counts)
+
+
+def happening(mission, catalog, seed):
+    """Count what is called possible of a mission, and what of it happens."""
+    counts = Counter()
+    travel = MadeUpTravel(seed)
+    analysis = analyse(mission, catalog, travel)
+    tasks = {facts.task for facts in analysis.tasks if facts.verdict is Verdict.POSSIBLE}
+    ways = [
+        (facts.task, way.target)
+        for facts in analysis.tasks
+        for way in facts.transitions
+        if way.verdict is Verdict.POSSIBLE
+        and mission.task(facts.task).transitions[way.index].conditions
+    ]
+    hfsm = lower(mission)
+    ended, entered, taken = [], set(), set()
+    for k in range(NOMINAL + EVENTFUL):
+        if k >= NOMINAL and tasks <= entered and taken.issuperset(ways):
+            break
+        mode = "nominal" if k < NOMINAL else "eventful"
+        done = run(mission, hfsm, catalog, travel, seed + k, mode=mode, steps=40)
+        entered |= {e.target for e in done.executor.trace}
+        taken |= {(e.source, e.target) for e in done.executor.trace if e.cause is Cause.CONDITION}
+        if mode == "nominal" and done.executor.outcome == "completed":
+            ended.append(done.now)
+    looked_at = [way for way in ways if way[0] in entered]
+    counts["tasks"] = len(tasks)
+    counts["tasks entered"] = len(tasks & entered)
+    counts["ways"] = len(looked_at)
+    counts["ways taken"] = sum(way in taken for way in looked_at)
+    if ended and analysis.duration and analysis.duration.most.value is not None:
+        counts["bounds"] = 1
+        counts["least met"] = min(ended) == analysis.duration.least.value
+        counts["most met"] = max(ended) == analysis.duration.most.value
+    return counts

@@ -240,12 +240,16 @@ class _World:
     def __init__(self, mission, hfsm, catalog, travel, seed, mode):
         self.travel = travel
         self.mode = mode
+        self.fails = mode in ("failing", "wild")
+        self.pauses = {"wild": 0.05, "eventful": 0.1}.get(mode, 0.0)
         self.rng = Random(seed)
         self.checkpoints = {str(c.id): c for c in catalog.checkpoints}
         self.done = Run(Executor(hfsm))
         self.place = _At(travel.start(mission))
         self.way = None
         self.stop_at = None
+        self.outside = []
+        """what may also occur or be told at any moment: events, and objects by their names"""
         self.coming = self._from_outside(mission, hfsm)
 
     def _from_outside(self, mission, hfsm):
@@ -253,17 +257,19 @@ class _World:
         waits = [t.wait for t in mission.tasks if t.wait is not None]
         awaited = {w.event for w in waits if w.event is not None}
         reacting = {r.event for r in mission.reactions} - {EventKind.TIME_UP}
-        if self.mode == "nominal":
+        if self.mode in ("nominal", "eventful"):
             awaited -= reacting
         else:
             awaited |= reacting | {r.until for r in mission.reactions if r.until is not None}
-        told = told_by_others(Flow.of(hfsm, mission))
+        told = told_by_others(Flow.of(hfsm, mission)) & self.checkpoints.keys()
+        if self.mode == "eventful":
+            self.outside = [*sorted(awaited), *sorted(told)]
         rng, coming = self.rng, []
         for event in sorted(awaited):
             coming += [
                 (rng.randint(0, HORIZON) / 2, Occurred(event)) for _ in range(rng.randint(0, 4))
             ]
-        for o in sorted(told & self.checkpoints.keys()):
+        for o in sorted(told):
             for _ in range(rng.randint(0, 5)):
                 value, abnormal = self._value(o)
                 coming.append((rng.randint(0, HORIZON) / 2, ReadingGiven(o, value, abnormal)))
@@ -282,12 +288,16 @@ class _World:
             times += [ends, self.coming[-1][0] if self.coming else None]
             known = [t for t in times if t is not None]
             if executor.paused and self.way is None:
+                if self.mode == "eventful":
+                    done.now += self.rng.choice([0, 1, 3, 7])
                 self._note(executor.handle(Resume(), done.now))
                 continue
             if not known:
                 break
             self._pass(max(done.now, min(known)))
-            if self.mode == "wild" and self.stop_at is None and self.rng.random() < 0.05:
+            if self.outside and self.rng.random() < 0.3:
+                self._note(executor.handle(self._anything(), done.now))
+            elif self.pauses and self.stop_at is None and self.rng.random() < self.pauses:
                 self._note(executor.handle(Pause(), done.now))
             elif self.coming and self.coming[-1][0] <= done.now:
                 self._note(executor.handle(self.coming.pop()[1], done.now))
@@ -298,6 +308,13 @@ class _World:
         done.finished = executor.finished
         done.nominal = done.nominal and not any(e.failure for e in executor.trace)
         return done
+
+    def _anything(self):
+        """Something from outside that may happen at any moment."""
+        what = self.rng.choice(self.outside)
+        if isinstance(what, EventKind):
+            return Occurred(what)
+        return ReadingGiven(what, *self._value(what))
 
     def _pass(self, now):
         """Time passes; the robot may draw power while nothing is under way."""
@@ -360,7 +377,7 @@ class _World:
         value, abnormal = None, False
         if task.action is Action.MEASURE:
             value, abnormal = self._value(task.object_id)
-            if self.mode != "nominal" and rng.random() < 0.2:
+            if self.fails and rng.random() < 0.2:
                 value, abnormal = None, False
         self.way = None
         if self.stop_at is not None:
@@ -374,7 +391,7 @@ class _World:
             )
         else:
             done.energy += way.energy
-            failed = self.mode != "nominal" and rng.random() < 0.25
+            failed = self.fails and rng.random() < 0.25
             self.place = self._on_the_way(way) if failed else _At(way.arrival)
             event = ActionSucceeded(task.name, value, abnormal)
             if failed:
@@ -393,7 +410,8 @@ class _World:
 def run(mission: Mission, hfsm: Hfsm, catalog, travel, seed, mode="nominal", steps=STEPS) -> Run:
     """One run at the travel's times.
 
-    `mode` *failing*: actions fail, measurements have no value, events occur. *wild*: besides, times
-    are any, and a person pauses.
+    `mode` *eventful*: no action fails, but a person pauses, and what others tell and what is waited
+    for comes at any moment. *failing*: actions fail, measurements have no value, events occur.
+    *wild*: besides, times are any, and a person pauses.
     """
     return _World(mission, hfsm, catalog, travel, seed, mode).run(steps)

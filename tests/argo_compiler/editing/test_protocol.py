@@ -18,7 +18,7 @@ from argo_compiler.editing import (
     replace_task,
     wrap_tasks,
 )
-from argo_compiler.il import Action, EventKind, Group, Mission, Reaction, Response, Task
+from argo_compiler.il import Action, EventKind, Group, Mission, Reaction, Response, Task, Transition
 from argo_compiler.script import format_script, import_script
 from tests.argo_compiler.script.conftest import make_catalog
 from tests.conftest import examples
@@ -73,10 +73,14 @@ def plain(mission: Mission) -> Mission:
 
 
 def following(mission):
+    """Return what a script that says no more comes to after each task. It passes over a START,
+    unless that leads elsewhere: what stands before such a START comes to where that leads."""
     after, name = {}, None
     for t in reversed(mission.tasks):
         after[t.name] = name
-        name = name if t.action is Action.START else t.name
+        usual = () if name is None else (Transition(target=name),)
+        if t.action is not Action.START or t.transitions != usual:
+            name = t.name
     return after
 
 
@@ -84,18 +88,10 @@ def default(task):
     return next((w.target for w in task.transitions if not w.conditions), None)
 
 
-def elsewhere(mission):
-    """The tasks of which a script says where they lead, as that is not to what follows."""
+def stated(mission):
+    """Return where the tasks lead of which a script says it, as that is not to what follows."""
     after = following(mission)
-    return {t.name for t in mission.tasks if default(t) != after[t.name]}
-
-
-def out_of_endless(mission):
-    """Return where the tasks lead that end an endless round: a script says it of each of them."""
-    endless = (
-        g for g in mission.groups if not (g.max_repeat_count or g.max_repeat_duration or g.until)
-    )
-    return {g.end: default(mission.task(g.end)) for g in endless}
+    return {t.name: w for t in mission.tasks if (w := default(t)) != after[t.name]}
 
 
 class Editor:
@@ -103,7 +99,7 @@ class Editor:
 
     def __init__(self, mission: Mission, rng: random.Random) -> None:
         self.mission, self.rng = mission, rng
-        self.said = elsewhere(mission)
+        self.stated = stated(mission)
         self.lines: list[str] = []
 
     def step(self) -> None:
@@ -117,12 +113,9 @@ class Editor:
         if proposed is None:
             return
         line, mission = proposed
-        # A way that a script gives in words stays, even where it now leads to what follows.
-        if out_of_endless(mission).items() - out_of_endless(self.mission).items():
-            return
-        if elsewhere(mission) & {t.name for t in mission.tasks} != self.said & {
-            t.name for t in mission.tasks
-        }:
+        # A way that a script gives in words stays, even where it now leads to what follows, and
+        # one that it leaves unsaid follows the order, even where an edit keeps it by its target.
+        if stated(mission) != self.stated:
             return
         made[kind] += 1
         self.mission = mission
@@ -141,6 +134,8 @@ class Editor:
 
     def delete(self):
         task = self.task()
+        if sum(t.action is not Action.START for t in self.mission.tasks) == 1:
+            return None
         led = [t.name for t in self.mission.tasks for w in t.transitions if w.target == task.name]
         by_order = [n for n, f in following(self.mission).items() if f == task.name]
         if (
@@ -149,7 +144,7 @@ class Editor:
             or len(led) != len(set(led))
         ):
             return None
-        if task.name in self.said or any(w.conditions for w in task.transitions):
+        if task.name in self.stated or any(w.conditions for w in task.transitions):
             return None
         if any(
             w.target == task.name for t in self.mission.tasks for w in t.transitions if w.conditions
@@ -191,7 +186,7 @@ class Editor:
             return None
         # There `otherwise` leaves the round at once, and here what is unconditional ends it.
         end = self.mission.task(names[last])
-        if end.name in self.said and any(w.conditions for w in end.transitions):
+        if end.name in self.stated and any(w.conditions for w in end.transitions):
             return None
         wrapped = wrap_tasks(self.mission, group).mission
         return f'"{name}": repeat steps "{names[first]}" to "{names[last]}" twice', wrapped

@@ -183,7 +183,7 @@ class Executor:
                 self._succeed(event)
             elif isinstance(event, _OTHER_ENDS):
                 self._end_action(event)
-            else:
+            elif type(event) is not Tick:
                 self._hear(event, now)
             control.settle()
             return self._command()

@@ -5,8 +5,6 @@ from dataclasses import dataclass
 
 from argo_compiler.hfsm.tables import LeafNode
 
-_NEVER = math.inf
-
 
 @dataclass(slots=True, eq=False)
 class TaskVisit:
@@ -34,7 +32,7 @@ class TaskVisit:
         self.since = self.look_at = now
         self.attempt = 0
         self.occurred = False
-        self.action_due = _NEVER
+        self.action_due = math.inf
 
     def wait_at(self, began: float) -> float:
         """When a WAIT may end (s), its conditions apart. `began`: the mission's start (s)."""

@@ -67,6 +67,6 @@ def registered_solvers() -> tuple[RouteSolver, ...]:
 
 
 def solver_names() -> tuple[str, ...]:
-    """Of all solvers that there are."""
+    """Return the names of all solvers: Argo's own, then those that are registered."""
     groups = FIRST, SMALL, IMPROVING, PROVING, registered_solvers()
     return tuple(solver.name for group in groups for solver in group)

@@ -15,7 +15,7 @@ from argo_env.evaluation.case import AS_WRITTEN, NO_FAULTS, EvaluationCase
 from argo_env.evaluation.file import DrawnFaults, EvaluationFile, MissionEntry
 from argo_env.evaluation.plan import EvaluationPlan, Stopping, parse_seeds
 from argo_env.evaluation.pool.backend import WorkerBackend
-from argo_env.evaluation.pool.backends import PROCESSES, make_backend
+from argo_env.evaluation.pool.backends import make_backend
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.faults.kinds import AnyFault
 from argo_env.faults.reading import (
@@ -112,11 +112,8 @@ def make_workers(
         workers = usable_processors()
     if workers is not None:
         workers = min(workers, runs)
-    if backend == PROCESSES and address is None and workers:
-        from argo_env.evaluation.pool.processes import Processes
-
-        return Processes(workers, context_with("argo_env.evaluation.evaluating"))
-    return make_backend(backend, workers, address)
+    context = context_with("argo_env.evaluation.evaluating")
+    return make_backend(backend, workers, address, context)
 
 
 def _cases(

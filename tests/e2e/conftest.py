@@ -28,7 +28,7 @@ def answer_signals() -> None:
 
 
 def started(*arguments: object, **options: Any) -> subprocess.Popen[str]:
-    """A process of the command, with pipes for what it prints."""
+    """Begin a process of the command, with pipes for what it prints, and return it."""
     return subprocess.Popen(
         [sys.executable, "-m", "argo_planner", *map(str, arguments)],
         **{
@@ -44,7 +44,7 @@ def started(*arguments: object, **options: Any) -> subprocess.Popen[str]:
 
 
 def told_until(process: subprocess.Popen[str], words: str) -> str:
-    """What a process says up to the line with these words."""
+    """Return what a process prints as errors, up to the line that has these words."""
     assert process.stderr
     said = ""
     while words not in said:
@@ -157,7 +157,7 @@ def argo_process() -> Argo:
 
 @pytest.fixture(scope="module")
 def navigator() -> Navigator:
-    """That of the yard."""
+    """Return the navigator of the yard."""
     return yard()
 
 

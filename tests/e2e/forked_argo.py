@@ -30,6 +30,7 @@ stage_display.AFTER = float("inf")
 # Most of what a report takes is the picture of the site, and these tests do not look at pictures.
 overview.SIZE, overview._FINER, overview._SHADOW_MAP = (400, 300), 1, 200
 film.MP4_SIZE = film.GIF_SIZE = (128, 80)
+# Workers of an evaluation are forked from the command, which has loaded all that they need.
 evaluating.context_with = lambda *_: multiprocessing.get_context("fork")
 
 LOADED_LATE = (

@@ -37,7 +37,7 @@ def reference(argo, folder: Path) -> str:
 
 
 def results(output: str) -> str:
-    """What a command printed of the run, without what it says of its own time and files."""
+    """Return what a command printed of the run, without the lines on its own time and files."""
     return output[: output.index("Success: ")]
 
 

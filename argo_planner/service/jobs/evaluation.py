@@ -18,7 +18,7 @@ from argo_env.evaluation.evaluating import Evaluating, WorkOrder, carry_out
 from argo_env.evaluation.evaluation import Evaluation
 from argo_env.evaluation.folder import digest_of, keep_plan, kept_plan, write_failing
 from argo_env.evaluation.plan import EvaluationPlan
-from argo_env.evaluation.pool.processes import Processes
+from argo_env.evaluation.pool.backends import make_backend
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
@@ -27,7 +27,6 @@ from argo_env.evaluation.worlds import NO_VARIATION, Variation
 from argo_env.faults.kinds import AnyFault
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.run.drives_and_sensors import IDEAL, ROUTE
-from argo_env.worker_processes import usable_processors
 from argo_planner.service.jobs.standing import EvaluationStanding, RunCount
 from argo_planner.service.processes.context import CONTEXT
 from argo_planner.service.processes.work import Tell
@@ -142,7 +141,7 @@ def evaluate_mission(order: EvaluationOrder, folder: Path, tell: Tell) -> Evalua
     keep_plan(folder, plan, digest_of(order.model_dump_json().encode()))
     standing = RunCount(plan)
     call = partial(_carried_out, order.site, order.obstacles)
-    workers = Processes(usable_processors(), CONTEXT)
+    workers = make_backend(context=CONTEXT)
     with RowStore(folder) as store:
         try:
             evaluating = Evaluating(plan, workers, store, limit=_LONGEST_RUN, call=call)

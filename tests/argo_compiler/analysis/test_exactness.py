@@ -20,14 +20,14 @@ EVENTFUL = 50
 """further runs at most, until all that is called possible has happened"""
 
 SHARES = (
-    ("tasks entered", "tasks", 0.75, 0.89, 0.04),
-    ("ways taken", "ways", 0.65, 0.66, 0.09),
-    ("least met", "bounds", 0.6, 0.84, 0.10),
-    ("most met", "bounds", 0.6, 0.85, 0.10),
+    ("tasks entered", "tasks", 30, 0.75, 0.89, 0.04),
+    ("ways taken", "ways", 5, 0.65, 0.66, 0.09),
+    ("least met", "bounds", 5, 0.6, 0.84, 0.10),
+    ("most met", "bounds", 5, 0.6, 0.85, 0.10),
 )
-"""What is counted, of what, the share that the suite's 40 examples have at least, which are always
-the same; and for other examples the share of 1,440 of them, and the standard deviation between
-samples of 40: the more examples, the less it is.
+"""Counts: of what happens, of all that may, and how many of these there are more than; the least
+share for the suite's 40 examples, which are always the same; and for others the share among 1,440
+examples, with the standard deviation between samples of 40, which is less for more examples.
 
 Of 88 ways that no nominal run took, 47 were taken by eventful ones, if need be by thousands. Of the
 others some can't be taken, as the analysis does not look at how ages exclude each other, at windows
@@ -51,10 +51,10 @@ def test_most_of_what_is_called_possible_happens():
     first = random.randrange(2**32) if EXAMPLES else 0
     for tens in range(-(-examples(160) // 10)):
         hypothesis.seed(first + tens)(explore)()
-    for what, of, least, measured, spread in SHARES:
+    for what, of, fewest, least, measured, spread in SHARES:
         if EXAMPLES:
             least = measured - 4 * spread * (40 / examples(160)) ** 0.5
-        assert counts[what] >= least * counts[of] > 0, (what, counts)
+        assert counts[what] >= least * counts[of] > fewest, (what, counts)
 
 
 def happening(mission, catalog, seed):

@@ -27,7 +27,7 @@ def problem(answer: httpx.Response, status: int, code: str) -> dict:
 
 
 def begun(answer: httpx.Response, status: int, place: str) -> dict:
-    """What an answer says of something new, which is at that place under its id."""
+    """Return the body of an answer, which says that something new is at `place` under its id."""
     assert answer.status_code == status, answer.text
     assert answer.headers["location"] == f"{place}/{answer.json()['id']}"
     return answer.json()

@@ -281,7 +281,7 @@ def resets(given: argparse.Namespace) -> None:
             return int(Path("/proc/self/statm").read_text().split()[1]) * 4096 / 1e6
 
         # Caches of the ways fill up first.
-        for seed in range(150):
+        for seed in range(min(150, count)):
             env.reset(seed=seed)
         before, begun = resident(), time.perf_counter()
         for _ in range(count):
@@ -297,7 +297,8 @@ def resets(given: argparse.Namespace) -> None:
 
 def expert(given: argparse.Namespace) -> None:
     """Print how often the expert gets to its goal on UMAD, by where the goal is."""
-    env: Any = gym.make("argo/Drive-v0", disable_env_checker=True).unwrapped
+    made = gym.make("argo/Drive-v0", max_way=given.max_way, disable_env_checker=True)
+    env: Any = made.unwrapped
     ways: dict[str, list[tuple[bool, float, float, bool]]] = {}
     begun, steps = time.perf_counter(), 0
     for seed in range(1_000_000, 1_000_000 + (given.count or 16)):
@@ -384,6 +385,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("parts", nargs="*", metavar="part", help=", ".join(PARTS))
     parser.add_argument("--window", type=float, default=1.0, help="s of each window of time")
     parser.add_argument("--count", type=int, help="of resets, episodes or environments of a batch")
+    parser.add_argument("--max-way", type=float, default=120.0, help="s that the expert drives")
     parser.add_argument("--rounds", type=int, default=5, help="of batches")
     given = parser.parse_args(arguments)
     for name in given.parts or ("route", "drive", "inspect"):

@@ -14,10 +14,10 @@ import numpy as np
 from scipy.sparse.csgraph import dijkstra
 
 from argo_compiler.base.model import Pose
-from argo_env.navigation import Blockage, Navigator
+from argo_env.navigation import Blockage, Navigator, Path
 from argo_env.planning.generated import generate
+from argo_env.planning.opening import open_site
 from argo_env.robot.spec import load_robot
-from argo_env.site import load_site
 from argo_env.site.family import TEST_SEEDS, Family, parse_family
 
 LARGE = str(Family(floors=12, size=(30, 20), checkpoints=500, seed=TEST_SEEDS))
@@ -66,13 +66,13 @@ def poses(navigator: Navigator, states: np.ndarray) -> list[Pose]:
     ]
 
 
-def paths_on_umad(count: int) -> Navigator:
-    """Prints what single paths on UMAD take."""
-    site, robot = load_site("umad"), load_robot()
+def measure_paths(name: str, count: int) -> Navigator:
+    """Print what single paths on a site take."""
+    site, robot = open_site(name).site, load_robot()
     navigator = Navigator(site, robot)
     took = timed(lambda: navigator.lattice)
     states, moves = navigator.lattice.size, navigator.lattice.costs.nnz
-    print(f"UMAD: lattice of {states} states and {moves} moves built in {took:.1f} s", end="")
+    print(f"{name}: lattice of {states} states and {moves} moves built in {took:.1f} s", end="")
     print(
         f", ways between its portals and landmarks in {timed(navigator.prepare):.1f} s; {memory()}"
     )
@@ -88,17 +88,18 @@ def paths_on_umad(count: int) -> Navigator:
         np.array([random.choice(floors[k]) for k in random.integers(len(floors), size=2 * count)]),
     )
     on_the_ground = poses(navigator, random.choice(floors[0], size=2 * count))
-    print("Paths on UMAD, median/95th percentile/worst, cold and again:")
+    print("Single paths, median/95th percentile/worst, cold and again:")
     measure_queries(navigator, "from docks and checkpoints to checkpoints", legs)
     measure_queries(navigator, "random poses, floors drawn evenly", pairs(spread))
     measure_queries(navigator, "random states (most lie on open ground)", pairs(anywhere))
     measure_queries(navigator, "random poses, both on the ground floor", pairs(on_the_ground))
-    compare(navigator, random)
+    compare(navigator, random, min(12, count))
     for _ in range(2):
         took = timed(lambda: navigator.turning_places(1))
         print(f"  places to turn on the ground floor: {1e3 * took:.1f} ms")
-    brick = Blockage((6.4, 5.0, 7.2, 5.4), 2.5, "a brick")
-    took = timed(lambda: navigator.avoiding([brick]).plan_to_view(site.docks[1], 8))
+    dock, goal = site.docks[1], ids[min(7, len(ids) - 1)]
+    brick = brick_on(navigator.plan_to_view(dock, goal))
+    took = timed(lambda: navigator.avoiding([brick]).plan_to_view(dock, goal))
     print(f"  avoiding a blockage, and the first path round it: {1e3 * took:.0f} ms")
     return navigator
 
@@ -108,10 +109,10 @@ def pairs(places: list[Pose]) -> list[Query]:
     return list(zip(places[::2], places[1::2], strict=True))
 
 
-def compare(navigator: Navigator, random: np.random.Generator) -> None:
-    """Prints how far travel times are from those of one search over the whole lattice, and from
-    the durations of the paths."""
-    states = random.integers(navigator.lattice.size, size=12)
+def compare(navigator: Navigator, random: np.random.Generator, count: int) -> None:
+    """Print how far travel times between `count` poses are from those of one search over the whole
+    lattice, and from the durations of the paths."""
+    states = random.integers(navigator.lattice.size, size=count)
     places = poses(navigator, states)
     found = navigator.travel_times(places)
     paths = [[navigator.plan(a, b).duration(navigator.robot) for b in places] for a in places]
@@ -129,14 +130,24 @@ def _range(values: np.ndarray) -> str:
     return f"{values.min():.3f} to {values.max():.3f}"
 
 
-def matrices(umad: Navigator, name: str) -> None:
-    """Prints what travel times between all checkpoints take, on UMAD and on a large site."""
-    fresh = Navigator(umad.site, umad.robot)
+def brick_on(path: Path) -> Blockage:
+    """Return a rectangle of 0.8 m by 0.4 m in the middle of the longest drive of a path."""
+    middle = max(path.motions, key=lambda motion: motion.length).at(0.5)
+    x, y = middle.x, middle.y
+    return Blockage((x - 0.4, y - 0.2, x + 0.4, y + 0.2), middle.z, "a brick")
+
+
+def matrices(known: Navigator, name: str) -> None:
+    """Print what travel times between all checkpoints take, on a known and on a large site."""
+    fresh = Navigator(known.site, known.robot)
     fresh.prepare()
     ids = [c.id for c in fresh.site.checkpoints]
     first = timed(lambda: fresh.travel_times(ids))
     again = timed(lambda: fresh.travel_times(ids))
-    print(f"Travel times of {len(ids)} checkpoints on UMAD: {first:.2f} s, again {again:.2f} s")
+    print(
+        f"Travel times of {len(ids)} checkpoints on {fresh.site.name}: {first:.2f} s, "
+        f"again {again:.2f} s"
+    )
     print(f"{name}:")
     started = time.process_time()
     large = generate(parse_family(name))
@@ -152,9 +163,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Print all of it."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--pairs", type=int, default=100, help="of poses of each kind")
-    parser.add_argument("--large", default=LARGE, help="a generated site, beside UMAD")
+    parser.add_argument("--site", default="umad", help="on which single paths are planned")
+    parser.add_argument("--large", default=LARGE, help="a generated site with many")
     given = parser.parse_args(arguments)
-    matrices(paths_on_umad(given.pairs), given.large)
+    matrices(measure_paths(given.site, given.pairs), given.large)
 
 
 if __name__ == "__main__":

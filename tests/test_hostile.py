@@ -20,6 +20,7 @@ from argo_compiler.il import Mission
 from argo_compiler.script import format_script, import_script, read_script
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.campaigns.hostile import MEMORY_BYTES, Json, condition, measure, mission, way
+from tests.conftest import examples
 
 pytestmark = pytest.mark.long
 
@@ -98,7 +99,9 @@ SCRIPTS = {
 FILES = {
     "groups a thousand deep": partial(nested, 1000),
     "a name of a megabyte": lambda: mission([measure("A" * 1_000_000)]),
-    "a hundred thousand tasks": lambda: mission([*chain(99_999), measure("T99999")]),
+    "a hundred thousand tasks, a quarter of them in the suite": lambda: mission(
+        [*chain(examples(100_000)), measure(f"T{examples(100_000)}")]
+    ),
     "ten thousand transitions from one task": lambda: mission(
         [measure("A", *(way("A", condition(1, i)) for i in range(10_000)))]
     ),

@@ -33,12 +33,12 @@ COMMANDS = {
     "startup --repeats 1 --only import,": r"argo import, mission #1 +[\d.]+ +[\d.]+ +[\d.]+ s",
     "tracked --laps slab --repeats 1": r"slab +[\d.]+ s in ",
     "against . import --repeats 1": r"import +[\d.]+ +[\d.]+ +[\d.]+ ",
-    "drives --missions 1 --site darmstadt --workers 1": r"tracked +0.00 % ",
+    f"drives --missions 1 --seed 12 --site {SMALL} --workers 1": r"tracked +0.00 % ",
     "env resets --count 2": r"Inspect-v0 +2 resets: ",
-    "env expert --count 1": r"upwards +1 of 1 reached",
+    "env expert --count 1 --max-way 10": r"same floor +1 of 1 reached",
     "env batches --count 1 --rounds 1": r"Inspect-v0: [\d.]+ times as many with \d+ processes",
     "evaluate --runs 2 --kinematic 0 --backend processes": r"processes +route +2 runs: ",
-    f"paths --pairs 2 --large {SMALL}": r"travel times of 2 checkpoints: [\d.]+ s",
+    f"paths --pairs 2 --site {SMALL} --large {SMALL}": r"travel times of 2 checkpoints: [\d.]+ s",
     "service --tasks 10 --edits 3 --subscribers 2 --seconds 3": (
         r"2 followers of a run: (.|\n)*one hears nothing: seen by all +[\d.]+ "
     ),
@@ -47,7 +47,7 @@ COMMANDS = {
 """what is printed by each, which is the name of a module and its arguments"""
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", COMMANDS, ids=lambda command: command.replace(SMALL, "SMALL"))
 def test_runs_to_its_end(command, capfd, monkeypatch):
     monkeypatch.chdir(ROOT)
     monkeypatch.setenv("ARGO_CACHE_DIR", os.environ["ARGO_CACHE_DIR"])  # one of them changes it

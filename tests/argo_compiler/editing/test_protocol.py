@@ -207,7 +207,7 @@ def test_the_same_edits_written_as_a_protocol_give_the_same_mission(mission, see
 
 
 @pytest.mark.long
-@settings(max_examples=examples(800))
+@settings(max_examples=examples(200))
 @given(sound_missions(CATALOG), st.integers(0, 2**32))
 def test_two_hundred_sequences_of_edits_give_the_same_mission(mission, seed):
     edit_both(mission, seed)

@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -17,6 +17,7 @@ from argo_env.evaluation.estimates.rates import (
 )
 from argo_env.evaluation.estimates.sequences import ConfidenceSequence
 from argo_env.evaluation.plan import EvaluationPlan
+from argo_env.evaluation.requirement import RateRequirement
 from argo_env.evaluation.row import RunOutcome, RunRow
 
 
@@ -159,8 +160,17 @@ def judge_requirements(
 
     Runs that could not be carried out count against the requirement.
     """
+    return tuple(
+        RequirementVerdict(plan, str(requirement), verdict, *sequence.interval, sequence.runs)
+        for plan, requirement, sequence, verdict in _decisions(evaluation, rows)
+    )
+
+
+def _decisions(
+    evaluation: EvaluationPlan, rows: Sequence[RunRow]
+) -> Iterator[tuple[PlanName, RateRequirement, ConfidenceSequence, Decision]]:
+    """Yield what is shown by now of each plan and requirement, with what it is shown by."""
     required = evaluation.stopping.require
-    found = []
     for plan in evaluation.plans:
         own = [row for row in rows if row.plan == plan]
         weights = {case.faults: case.weight for case in evaluation.cases if case.plan == plan}
@@ -172,20 +182,15 @@ def judge_requirements(
             verdict = Decision.OPEN
             if above or below:
                 verdict = Decision.MET if above == requirement.at_least else Decision.MISSED
-            low, high = sequence.interval
-            found.append(
-                RequirementVerdict(plan, str(requirement), verdict, low, high, sequence.runs)
-            )
-    return tuple(found)
+            yield plan, requirement, sequence, verdict
 
 
 def is_enough(plan: EvaluationPlan, rows: Sequence[RunRow]) -> bool:
     """Whether all that one stops for is reached."""
     stopping = plan.stopping
-    if stopping.require:
-        verdicts = judge_requirements(plan, rows)
-        if any(one.verdict is Decision.OPEN for one in verdicts):
-            return False
+    # Intervals take far longer than what is shown, and nobody looks at them here.
+    if any(verdict is Decision.OPEN for *_, verdict in _decisions(plan, rows)):
+        return False
     if stopping.width is not None:
         rates = [rate_of(plan, name, rows) for name in plan.plans]
         if any(rate.high - rate.low > stopping.width for rate in rates):

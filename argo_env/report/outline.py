@@ -1,6 +1,7 @@
 """The outlines of solids as they are seen along an axis of the site."""
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,13 +25,15 @@ DRAWING_ORDER = (
 
 _ROUND = 16
 """corners that a disc is drawn with"""
+_CORNERS = np.array([[a, b, c] for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)])
+_SOLIDS = 1 << 13
+"""whose heights are kept: each floor asks for those of all solids of a site"""
 
 
 def outline(solid: Solid, axes: tuple[int, int]) -> list[Point]:
     """The outline in m of the solid on the plane of two axes of the site, counter-clockwise."""
     if isinstance(solid, Box):
-        signs = np.array([[a, b, c] for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)])
-        local = signs * np.array(solid.size) / 2
+        local = _CORNERS * np.array(solid.size) / 2
     else:
         turn = np.arange(_ROUND) * 2 * math.pi / _ROUND
         disc = solid.radius * np.column_stack([np.cos(turn), np.sin(turn), np.zeros(_ROUND)])
@@ -40,6 +43,7 @@ def outline(solid: Solid, axes: tuple[int, int]) -> list[Point]:
     return _hull(corners[:, list(axes)])
 
 
+@lru_cache(maxsize=_SOLIDS)
 def heights(solid: Solid) -> tuple[float, float]:
     """The lowest and the highest z (m) of the solid."""
     half = float(half_extents(solid)[2])

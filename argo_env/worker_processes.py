@@ -10,6 +10,14 @@ from functools import partial
 from multiprocessing.connection import wait
 from multiprocessing.context import ForkServerContext
 
+NEEDED_TO_DRIVE = (
+    "argo_env.site.build",
+    "scipy.ndimage",
+    "scipy.sparse.csgraph",
+    "scipy.spatial.transform",
+)
+"""modules that are loaded with the first path, as little else needs them: for `context_with`, where
+each process is to drive"""
 _PERIOD = 1.0  # s between two looks whether the parent is there
 
 

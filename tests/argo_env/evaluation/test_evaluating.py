@@ -15,6 +15,7 @@ from argo_env.evaluation.store import RowStore, read_rows
 from argo_env.evaluation.worlds import Variation
 from argo_env.faults.reading import decode_faults
 from argo_env.run.spec import RunSpec
+from argo_env.worker_processes import NEEDED_TO_DRIVE, context_with
 from tests.argo_env.evaluation import work
 from tests.argo_env.evaluation.conftest import plan_of, short_mission
 from tests.conftest import examples
@@ -24,7 +25,10 @@ EMERGENCY = decode_faults(b"faults: [{kind: emergency_stop, at: 10}]", "test").f
 
 @pytest.fixture(scope="module")
 def processes():
-    made = make_backend("processes", 2)
+    """Return processes that are forked from one that has loaded all, as `argo evaluate` has them;
+    those of `backend` load it themselves."""
+    context = context_with("argo_env.evaluation.evaluating", *NEEDED_TO_DRIVE)
+    made = make_backend("processes", 2, context=context)
     yield made
     made.close()
 

@@ -89,6 +89,10 @@ class ForkedArgo:
         """Makes a site ready for all later commands."""
         assert self._ask({"open": str(site)}) == 0
 
+    def drive(self, mission: object, start_area: int, end_area: int) -> None:
+        """Make the ways of a mission on UMAD known to all later commands."""
+        assert self._ask({"drive": [str(mission), start_area, end_area]}) == 0
+
     def _carry_out(
         self,
         arguments: tuple[object, ...],

@@ -1,7 +1,8 @@
 """`argo` again and again without loading anew: for tests of what it does, not of how it starts.
 
 Loads the commands once. Then each line of standard input is a JSON object: `{"open": site}` makes
-a site ready for all that follow; any other is a command that a forked process carries out:
+a site ready for all that follow, `{"drive": [mission, area, area]}` finds the ways of a mission on
+UMAD, from one starting area to another; any other is a command that a forked process carries out:
 `arguments`, `cwd`, `environment`, the files that `stdout` and `stderr` are added to, and `after`
 how many seconds it is sent the `signal` if it still runs (null: never). The answer is the exit
 status.
@@ -15,15 +16,22 @@ import time
 import traceback
 from collections.abc import Callable
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 from argo_compiler.script import parse
+from argo_env.evaluation.report import page as evaluation_report
 from argo_env.pictures import film, overview
 from argo_env.planning import open_site
+from argo_env.report import html as run_report
+from argo_env.run.session import simulate
+from argo_env.run.spec import RunSpec
 from argo_planner.cli import ArgoCommands, main
 from argo_planner.terminal import stage_display
+from argo_planner.terminal.files import read_upload
 from argo_planner.terminal.signals import end_at_once
 from argo_planner.use_cases import evaluating
+from argo_planner.use_cases.importing import import_mission
 
 # On a busy machine anything may take so long that it is shown.
 stage_display.AFTER = float("inf")
@@ -35,9 +43,10 @@ evaluating.context_with = lambda *_: multiprocessing.get_context("fork")
 
 LOADED_LATE = (
     "argo_env.drives.kinematic",
-    "argo_env.evaluation.report.page",
     "matplotlib.backends.backend_svg",
+    "pandas",
     "pyarrow.parquet",
+    "scipy.stats",
 )
 """what commands load only where they need it"""
 
@@ -48,6 +57,9 @@ def serve() -> None:
     for module in LOADED_LATE:
         import_module(module)
     parse("Mission Protocol #1\n1. Check checkpoint #1")
+    run_report._template()
+    for name in ("evaluation.html.j2", "comparison.html.j2"):
+        evaluation_report._template(name)
     end_at_once()  # as `argo` itself begins
     kept = []
     for line in sys.stdin:
@@ -55,6 +67,10 @@ def serve() -> None:
         if "open" in request:
             kept.append(open_site(request["open"]))
             kept[-1].navigator.prepare()
+            print(0, flush=True)
+            continue
+        if "drive" in request:
+            _drive(*request["drive"])
             print(0, flush=True)
             continue
         child = os.fork()
@@ -65,6 +81,13 @@ def serve() -> None:
             os.waitstatus_to_exitcode(_end_of(child, request["after"], request["signal"])),
             flush=True,
         )
+
+
+def _drive(path: str, start_area: int, end_area: int) -> None:
+    """Run a mission as evaluations do: the site keeps the ways that it has found."""
+    site = open_site("umad")
+    mission = import_mission(read_upload(Path(path)), site, start_area, end_area).mission
+    simulate(RunSpec(mission=mission, site=site.reference, drive="route"), site)
 
 
 def _carry_out(request: dict[str, Any]) -> None:

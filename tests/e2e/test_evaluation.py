@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from argo_compiler.base.errors import NotFound
-from argo_env.evaluation.store import read_rows
+from argo_env.evaluation.store import LOG, read_rows
 from tests.conftest import examples
 from tests.e2e.conftest import ROOT, started
 
@@ -43,6 +43,12 @@ def written(folder: Path, last: int = 4) -> Path:
     path = folder / "evaluation.yaml"
     path.write_text(FILE.format(mission=ROOT / MISSION, last=last))
     return path
+
+
+@pytest.fixture(scope="module", autouse=True)
+def known_ways(argo) -> None:
+    """Let no command and no worker of one look for the ways of the mission again."""
+    argo.drive(ROOT / MISSION, 1, 2)
 
 
 @pytest.fixture
@@ -283,7 +289,8 @@ def test_more_seeds_go_on_from_the_rows_that_are_there(argo, file, out):
 
 def begun(file: Path, out: Path, stderr: int = subprocess.DEVNULL) -> subprocess.Popen[str]:
     options = {"stdout": subprocess.DEVNULL, "stderr": stderr, "start_new_session": True}
-    return started("evaluate", file, "--out", out, "--workers", 2, cwd=ROOT, **options)
+    arguments = ("evaluate", file, "--out", out, "--workers", 2, "--no-report")
+    return started(*arguments, cwd=ROOT, **options)
 
 
 def processes_of(session: int) -> list[int]:
@@ -307,44 +314,51 @@ def long_file(tmp_path_factory) -> Path:
     return written(tmp_path_factory.mktemp("long"), last=59)
 
 
+KILLS = examples(20)
+WORLDS = max(30, 3 * KILLS)
+"""as many as leave some rows between two kills, and after the last one"""
+
+
 @pytest.fixture(scope="module")
-def undisturbed(long_file, tmp_path_factory):
+def killed_file(tmp_path_factory) -> Path:
+    return written(tmp_path_factory.mktemp("killed"), last=WORLDS - 1)
+
+
+@pytest.fixture(scope="module")
+def undisturbed(killed_file, tmp_path_factory):
     out = tmp_path_factory.mktemp("undisturbed") / "out"
-    assert begun(long_file, out).wait(300) == 0
+    assert begun(killed_file, out).wait(300) == 0
     return sorted(read_rows(out), key=lambda row: row.key)
 
 
-KILLS = examples(20)
-
-
 def test_killed_and_begun_again_the_rows_are_those_of_an_undisturbed_one(
-    long_file, undisturbed, tmp_path
+    killed_file, undisturbed, tmp_path
 ):
     """SIGKILL to the command, at any moment; each row that it had told stays, once."""
     chosen, out = random.Random(KILLS), tmp_path / "out"
     done = 0
     for _ in range(KILLS):
-        process = begun(long_file, out)
+        process = begun(killed_file, out)
         wanted = done + chosen.randint(1, max(1, 2 * len(undisturbed) // KILLS - 1))
-        while process.poll() is None and count(out) < min(wanted, len(undisturbed)):
+        while process.poll() is None and logged(out) < min(wanted, len(undisturbed)):
             time.sleep(0.01)
         time.sleep(chosen.random() * 0.05)
         os.kill(process.pid, signal.SIGKILL)
         process.wait()
         before, done = done, count(out)
         assert done >= before
-    assert begun(long_file, out).wait(300) == 0
+    assert begun(killed_file, out).wait(300) == 0
     assert sorted(read_rows(out), key=lambda row: row.key) == undisturbed
 
 
-def test_killed_workers_change_nothing_of_the_rows(long_file, undisturbed, tmp_path):
+def test_killed_workers_change_nothing_of_the_rows(killed_file, undisturbed, tmp_path):
     chosen, out = random.Random(100 + KILLS), tmp_path / "out"
-    process = begun(long_file, out)
+    process = begun(killed_file, out)
     killed, wanted = 0, 1
     while process.poll() is None and killed < KILLS:
         # Some rows between two kills, so that it ever comes to an end.
-        if count(out) >= wanted and (workers := processes_of(process.pid)):
-            wanted = count(out) + chosen.randint(1, max(1, len(undisturbed) // KILLS - 3))
+        if logged(out) >= wanted and (workers := processes_of(process.pid)):
+            wanted = logged(out) + chosen.randint(1, max(1, len(undisturbed) // KILLS // 2))
             with suppress(ProcessLookupError):  # it has ended by itself meanwhile
                 os.kill(chosen.choice(workers), signal.SIGKILL)
                 killed += 1
@@ -362,9 +376,18 @@ def count(out: Path) -> int:
         return 0
 
 
+def logged(out: Path) -> int:
+    """Rows on disk while an evaluation is under way: those in its log, which are not read."""
+    try:
+        lines = (out / LOG).read_bytes().count(b"\n")
+    except FileNotFoundError:  # yet
+        return 0
+    return lines or count(out)  # they have been moved
+
+
 def test_no_worker_is_left_behind(long_file, tmp_path):
     process = begun(long_file, tmp_path / "out")
-    while count(tmp_path / "out") < 3:
+    while logged(tmp_path / "out") < 3:
         time.sleep(0.02)
     assert processes_of(process.pid)
     os.kill(process.pid, signal.SIGKILL)
@@ -378,7 +401,7 @@ def test_no_worker_is_left_behind(long_file, tmp_path):
 def test_ctrl_c_keeps_the_rows(long_file, tmp_path):
     out = tmp_path / "out"
     process = begun(long_file, out, subprocess.PIPE)
-    while count(out) < 3:
+    while logged(out) < 3:
         time.sleep(0.02)
     os.killpg(process.pid, signal.SIGINT)
     _, told = process.communicate(timeout=60)

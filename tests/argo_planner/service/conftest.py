@@ -3,7 +3,14 @@
 import pytest
 
 from argo_env.planning.opening import OpenedSite, open_site
+from argo_planner.service.processes.context import CONTEXT
 from tests.argo_planner.service.served import Served, served
+
+
+@pytest.fixture(scope="session", autouse=True)
+def loaded() -> None:
+    """Let services begin processes that have loaded all that they need."""
+    CONTEXT.set_forkserver_preload(["tests.argo_planner.service.loaded"])
 
 
 @pytest.fixture(scope="session")

@@ -325,14 +325,14 @@ def killed_file(tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def undisturbed(killed_file, tmp_path_factory):
+def undisturbed(argo, killed_file, tmp_path_factory):
     out = tmp_path_factory.mktemp("undisturbed") / "out"
-    assert begun(killed_file, out).wait(300) == 0
+    assert argo("evaluate", killed_file, "--out", out, "--no-report").returncode == 0
     return sorted(read_rows(out), key=lambda row: row.key)
 
 
 def test_killed_and_begun_again_the_rows_are_those_of_an_undisturbed_one(
-    killed_file, undisturbed, tmp_path
+    argo, killed_file, undisturbed, tmp_path
 ):
     """SIGKILL to the command, at any moment; each row that it had told stays, once."""
     chosen, out = random.Random(KILLS), tmp_path / "out"
@@ -347,7 +347,7 @@ def test_killed_and_begun_again_the_rows_are_those_of_an_undisturbed_one(
         process.wait()
         before, done = done, count(out)
         assert done >= before
-    assert begun(killed_file, out).wait(300) == 0
+    assert argo("evaluate", killed_file, "--out", out, "--no-report").returncode == 0
     assert sorted(read_rows(out), key=lambda row: row.key) == undisturbed
 
 
@@ -398,7 +398,7 @@ def test_no_worker_is_left_behind(long_file, tmp_path):
     assert not processes_of(process.pid)
 
 
-def test_ctrl_c_keeps_the_rows(long_file, tmp_path):
+def test_ctrl_c_keeps_the_rows(argo, long_file, tmp_path):
     out = tmp_path / "out"
     process = begun(long_file, out, subprocess.PIPE)
     while logged(out) < 3:
@@ -409,6 +409,5 @@ def test_ctrl_c_keeps_the_rows(long_file, tmp_path):
     kept = count(out)
     assert f"argo: interrupted; {kept} runs are kept in {out}" in told
     assert kept >= 3
-    again = begun(long_file, out)
-    assert again.wait(300) == 0
+    assert argo("evaluate", long_file, "--out", out, "--no-report").returncode == 0
     assert count(out) == 120

@@ -8,7 +8,7 @@ import { taskKey } from "../model/outline";
 import { floorOf } from "../model/standing";
 import { mission, planId, select, selection } from "../state/plan";
 import { preview } from "../state/preview";
-import { shownRun } from "../state/run";
+import { type ShownRun, shownRun } from "../state/run";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { figure } from "../ui/figures";
@@ -58,7 +58,14 @@ const told = computed(() => {
   const now = shownRun.value;
   return now !== null && now.plan === planId.value ? now : null;
 });
-const readings = computed(() => new Map(told.value?.readings.map((one) => [one.checkpoint, one])));
+/** As text, which is the same until something else has been read: all marks are made anew then, and
+ * not with each pose and state. */
+const toldReadings = computed(() => told.value?.readings);
+const readingsText = computed(() => JSON.stringify(toldReadings.value ?? []));
+const readings = computed(() => {
+  const all = JSON.parse(readingsText.value) as ShownRun["readings"];
+  return new Map(all.map((one) => [one.checkpoint, one]));
+});
 const active = computed(() => told.value?.task ?? null);
 
 export const marks = computed<readonly Mark[]>(() => {

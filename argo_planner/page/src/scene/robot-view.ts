@@ -1,6 +1,6 @@
 /** The robot of the run that is shown, or at the start of the mission, and the ghost of the tool. */
 
-import { effect, signal } from "@preact/signals-core";
+import { computed, effect, signal } from "@preact/signals-core";
 import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, Vector3 } from "three";
 
 import { fetched, Unreached } from "../api/client";
@@ -33,12 +33,19 @@ const TRAIL_Z = 0.06;
 /** m, of its top above the ground */
 const TOP = 1.1;
 
+// They stay the same with most poses.
+const trailPlan = computed(() => shownRun.value?.plan);
+const trailLength = computed(() => shownRun.value?.entries ?? 0);
+
 export class RobotView {
   private body: RobotBody | null = null;
   private ghost: Ghost | null = null;
   private target: Vector5 | null = null;
   private now: Vector5 | null = null;
   private mode: ShownMode | null = null;
+  /** What it was drawn by last. */
+  private aimed: readonly unknown[] = [];
+  private drawnTrail: readonly unknown[] = [];
   private readonly trail = new Line(new BufferGeometry(), new LineBasicMaterial());
   private readonly stops: (() => void)[] = [];
   /** Where the robot is drawn, and how its run stands; null: there is none. */
@@ -107,7 +114,11 @@ export class RobotView {
     this.target = tells ? now.pose : startOf(site);
     this.mode = tells ? shownMode(state) : null;
     this.body?.mark(this.mode && ringColour(this.mode, colours.value));
-    heed(shownFloor, following);
+    // Poses come several times a second, also of a robot that stands: it is not drawn anew.
+    const pose = this.target ?? [];
+    const aimed = [this.body, this.mode, now === null, ...heed(colours, shownFloor, following), ...pose];
+    if (same(aimed, this.aimed)) return;
+    this.aimed = aimed;
     this.view.stage.need();
   }
 
@@ -145,15 +156,20 @@ export class RobotView {
 
   /** The way that was driven so far, on the floors that are shown. */
   private showTrail(): void {
-    const now = shownRun.value;
     const highest = shownFloor.value;
     const site = world.value;
-    const shown = now === null || now.plan !== planId.value ? [] : shownEntries.value.slice(0, now.entries);
+    const shown = trailPlan.value !== planId.value ? [] : shownEntries.value.slice(0, trailLength.value);
     const points: number[] = [];
     for (const { pose } of shown) {
       const floor = floorOf(site?.floors ?? [], pose[2])?.number ?? 1;
-      if (highest === null || floor <= highest) points.push(pose[0], pose[1], pose[2] + TRAIL_Z);
+      const point = [pose[0], pose[1], pose[2] + TRAIL_Z];
+      const stays = point.every((value, i) => value === points.at(i - 3));
+      if (!stays && (highest === null || floor <= highest)) points.push(...point);
     }
+    // A robot that stands tells how it is as well.
+    const drawn = [colours.value, ...points];
+    if (same(drawn, this.drawnTrail)) return;
+    this.drawnTrail = drawn;
     this.trail.geometry.dispose();
     this.trail.geometry = new BufferGeometry();
     this.trail.geometry.setAttribute("position", new BufferAttribute(new Float32Array(points), 3));
@@ -161,6 +177,10 @@ export class RobotView {
     this.trail.material.color.set(colours.value.text);
     this.view.stage.need();
   }
+}
+
+function same(one: readonly unknown[], other: readonly unknown[]): boolean {
+  return one.length === other.length && one.every((value, i) => value === other[i]);
 }
 
 /** Where the robot is before it has been started. */

@@ -78,7 +78,10 @@ def test_rates_close_in_and_a_failing_run_is_replayed(browsers, address, plan, s
     ann.key("F9")
     expect(told).to_have_count(0)
     expect(page.locator("argo-run-band")).to_contain_text("You have the robot")
-    service.client.post(f"/api/runs/{begun.json()['id']}/requests", json={"kind": "stop"})
+    stopped = service.client.post(
+        f"/api/runs/{begun.json()['id']}/requests", json={"kind": "stop", "id": "end"}
+    )
+    assert stopped.status_code == 202, stopped.text
     page.locator("#tab-evaluate").click()
     with ann.context.expect_page() as opening:
         ann.click(page.get_by_role("link", name="Report with all tables and pictures"))

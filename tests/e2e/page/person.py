@@ -124,9 +124,11 @@ class Person:
 class Browsers:
     """Chromium, and the people who use it."""
 
-    def __init__(self, scale: float = 1.0) -> None:
-        """`scale`: px that are drawn for one of the page."""
+    def __init__(self, scale: float = 1.0, scene: float | None = None) -> None:
+        """`scale`: px that are drawn for one of the page, `scene`: for one of the picture of the
+        site (None: as the page has it)."""
         self._scale = scale
+        self._scene = scene
         self._playwright = sync_playwright().start()
         self._browser: Browser = self._playwright.chromium.launch(
             executable_path=CHROMIUM, args=_OPTIONS
@@ -146,6 +148,9 @@ class Browsers:
             f"localStorage.getItem('argo.author') ?? localStorage.setItem('argo.author', '{name}')"
         )
         opened.add_init_script(kept)
+        if self._scene is not None:
+            told = f"Object.defineProperty(window, 'devicePixelRatio', {{ value: {self._scene} }})"
+            opened.add_init_script(told)
         page = opened.new_page()
         page.set_default_timeout(PATIENCE_S * 1000)
         person = Person(page, opened, address)

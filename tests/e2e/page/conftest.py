@@ -8,7 +8,7 @@ from playwright.sync_api import expect
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_planner.service.web.page import page_folder
 from tests.argo_planner.service.served import ALL, Served, served
-from tests.e2e.page.person import CHROMIUM, NO_CHROMIUM, PATIENCE_S, Browsers
+from tests.e2e.page.person import CHROMIUM, NO_CHROMIUM, PATIENCE_S, Browsers, Person
 
 expect.set_options(timeout=1000 * PATIENCE_S)
 
@@ -45,7 +45,29 @@ def browsers(chromium: Browsers) -> Iterator[Browsers]:
     chromium.leave()
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def address(service: Served) -> str:
     """Where the page is, with the token."""
     return f"http://{service.address}/?token={ALL}"
+
+
+@pytest.fixture(scope="module")
+def window(chromium: Browsers, address: str) -> Person:
+    """Somebody whose window stays open for all tests of a file."""
+    return chromium.person(address, stays=True)
+
+
+@pytest.fixture
+def resident(browsers: Browsers, window: Person, request: pytest.FixtureRequest) -> Person:  # noqa: ARG001
+    """Somebody at the list of missions. The page is loaded once for all tests of a file, and again
+    after a test that failed; with a mission it forgets what was seen and in hand there."""
+    failed = request.session.testsfailed
+    if window.loaded_after is None:
+        window.open()
+    elif window.loaded_after != failed:
+        window.page.reload()
+    window.loaded_after = failed
+    window.go("")
+    expect(window.page.locator("argo-home button.main")).to_be_enabled()
+    window.inputs = 0
+    return window

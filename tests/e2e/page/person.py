@@ -48,6 +48,10 @@ class Person:
     page: Page
     context: BrowserContext
     address: str
+    stays: bool = False
+    """whether the window is open from test to test"""
+    loaded_after: int | None = None
+    """how many tests had failed when the page was loaded in a window that stays"""
     inputs: int = 0
     complaints: list[str] = field(default_factory=list)
     """what the browser or the service found wrong"""
@@ -55,6 +59,10 @@ class Person:
     def open(self, place: str = "") -> None:
         """Opens the page; `place` is what follows the `#`."""
         self.page.goto(f"{self.address}{'#' + place if place else ''}")
+
+    def go(self, place: str) -> None:
+        """Goes from what is open to another place, and the page is not loaded anew."""
+        self.ask("place => { location.hash = place }", place)
 
     def click(self, target: Any, **options: Any) -> None:
         """A click on what is named: a locator, or a point of the page."""
@@ -135,7 +143,9 @@ class Browsers:
         )
         self.people: list[Person] = []
 
-    def person(self, address: str, name: str = "ann", **context: Any) -> Person:
+    def person(
+        self, address: str, name: str = "ann", stays: bool = False, **context: Any
+    ) -> Person:
         """Somebody new, who has not opened the page yet."""
         options: dict[str, Any] = {
             "viewport": {"width": 1400, "height": 850},
@@ -153,7 +163,7 @@ class Browsers:
             opened.add_init_script(told)
         page = opened.new_page()
         page.set_default_timeout(PATIENCE_S * 1000)
-        person = Person(page, opened, address)
+        person = Person(page, opened, address, stays)
         page.on("console", person.heard)
         page.on("pageerror", lambda error: person.complaints.append(f"error: {error}"))
         page.on("request", person.asked)
@@ -165,11 +175,13 @@ class Browsers:
         return person
 
     def leave(self) -> None:
-        """All of them close their windows. What was complained of fails the test."""
+        """All but those who stay close their windows. What was complained of fails the test."""
         complaints = [said for person in self.people for said in person.complaints]
         for person in self.people:
-            person.context.close()
-        self.people.clear()
+            person.complaints.clear()
+            if not person.stays:
+                person.context.close()
+        self.people = [person for person in self.people if person.stays]
         assert complaints == []
 
     def close(self) -> None:

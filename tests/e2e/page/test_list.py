@@ -25,12 +25,11 @@ def plan(service: Served) -> str:
 
 
 @pytest.fixture
-def ann(browsers, address, plan) -> Person:
-    ann = browsers.person(address)
-    ann.open(f"/missions/{plan}")
-    expect(ann.page.get_by_role("treeitem")).to_have_count(4)
-    expect(ann.button("Add")).to_be_enabled()
-    return ann
+def ann(resident, plan) -> Person:
+    resident.go(f"/missions/{plan}")
+    expect(resident.page.get_by_role("treeitem")).to_have_count(4)
+    expect(resident.button("Add")).to_be_enabled()
+    return resident
 
 
 def tasks(service: Served, plan: str) -> list[str]:

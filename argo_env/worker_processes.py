@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 from functools import partial
 from multiprocessing.connection import wait
-from multiprocessing.context import ForkServerContext
+from multiprocessing.context import ForkServerContext, ForkServerProcess
 
 NEEDED_TO_DRIVE = (
     "argo_env.site.build",
@@ -18,6 +18,8 @@ NEEDED_TO_DRIVE = (
 )
 """modules that are loaded with the first path, as little else needs them: for `context_with`, where
 each process is to drive"""
+_ATTEMPTS = 5
+_PAUSE = 0.1  # s between two of them
 _PERIOD = 1.0  # s between two looks whether the parent is there
 
 
@@ -32,6 +34,25 @@ def usable_processors() -> int:
     return os.cpu_count() or 1
 
 
+class _Process(ForkServerProcess):
+    """A process that begins even where the one that it is forked from was killed meanwhile: that is
+    begun again then."""
+
+    def start(self) -> None:
+        for attempts_left in reversed(range(_ATTEMPTS)):
+            try:
+                super().start()
+                return
+            except (EOFError, ConnectionError):
+                if not attempts_left:
+                    raise
+                time.sleep(_PAUSE)  # it may not be known yet that it has ended
+
+
+class _Context(ForkServerContext):
+    Process = _Process
+
+
 def context_with(*modules: str) -> ForkServerContext:
     """Return a context in which each process is forked from one that has loaded these modules, so
     that it begins at once rather than after seconds.
@@ -39,7 +60,7 @@ def context_with(*modules: str) -> ForkServerContext:
     That one is begun with the first of them, does nothing else, and ends with this process, which
     has one of this kind only.
     """
-    context = multiprocessing.get_context("forkserver")
+    context = _Context()
     context.set_forkserver_preload(list(modules))
     return context
 

@@ -162,7 +162,7 @@ def test_it_outlives_the_service(tmp_path: Path, site: OpenedSite) -> None:
         id = imported(first)
         done = begin(first, id, worlds=3)
         assert over(first, done)["state"] == "done"
-        cut_short = begin(first, id, worlds=80)
+        cut_short = begin(first, id, worlds=150)
         known = until(first, cut_short, lambda read: read["standing"] is not None)["standing"]
     with served(tmp_path, site) as second:
         states = {job["id"]: job["state"] for job in second.client.get("/api/jobs").json()["jobs"]}
@@ -174,8 +174,8 @@ def test_it_outlives_the_service(tmp_path: Path, site: OpenedSite) -> None:
         assert second.client.get(f"/api/jobs/{done}/report").status_code == 200
         assert second.client.post(f"/api/jobs/{cut_short}/go_on").status_code == 202
         whole = over(second, cut_short)
-        assert (whole["state"], whole["standing"]["done"]) == ("done", 80)
-        assert len(read_rows(tmp_path / "evaluations" / cut_short)) == 80
+        assert (whole["state"], whole["standing"]["done"]) == ("done", 150)
+        assert len(read_rows(tmp_path / "evaluations" / cut_short)) == 150
 
 
 @pytest.mark.long

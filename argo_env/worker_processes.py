@@ -10,16 +10,16 @@ from functools import partial
 from multiprocessing.connection import wait
 from multiprocessing.context import ForkServerContext, ForkServerProcess
 
-NEEDED_TO_DRIVE = (
+_NEEDED_TO_DRIVE = (
     "argo_env.site.build",
     "scipy.ndimage",
     "scipy.sparse.csgraph",
     "scipy.spatial.transform",
 )
-"""modules that are loaded with the first path, as little else needs them: for `context_with`, where
-each process is to drive"""
+"""modules that a process otherwise loads with its first path, as little else needs them"""
 _ATTEMPTS = 5
-_PAUSE = 0.1  # s between two of them
+"""to begin a process"""
+_PAUSE = 0.1  # s between two attempts
 _PERIOD = 1.0  # s between two looks whether the parent is there
 
 
@@ -35,8 +35,8 @@ def usable_processors() -> int:
 
 
 class _Process(ForkServerProcess):
-    """A process that begins even where the one that it is forked from was killed meanwhile: that is
-    begun again then."""
+    """A process that begins even if the one that it is forked from is killed meanwhile: that one is
+    begun again."""
 
     def start(self) -> None:
         for attempts_left in reversed(range(_ATTEMPTS)):
@@ -54,14 +54,14 @@ class _Context(ForkServerContext):
 
 
 def context_with(*modules: str) -> ForkServerContext:
-    """Return a context in which each process is forked from one that has loaded these modules, so
-    that it begins at once rather than after seconds.
+    """Return a context in which each process is forked from one that has loaded these modules and
+    what driving needs, so that it begins at once rather than after seconds.
 
     That one is begun with the first of them, does nothing else, and ends with this process, which
     has one of this kind only.
     """
     context = _Context()
-    context.set_forkserver_preload(list(modules))
+    context.set_forkserver_preload([*modules, *_NEEDED_TO_DRIVE])
     return context
 
 

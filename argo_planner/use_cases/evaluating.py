@@ -30,7 +30,7 @@ from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.robot.spec import load_robot
 from argo_env.run.rig import check_spec
 from argo_env.run.spec import RunSpec
-from argo_env.worker_processes import NEEDED_TO_DRIVE, context_with, usable_processors
+from argo_env.worker_processes import context_with, usable_processors
 from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
 from argo_planner.use_cases.no_order import require_order
 from argo_planner.use_cases.routing import suggest_order
@@ -112,7 +112,7 @@ def make_workers(
         workers = usable_processors()
     if workers is not None:
         workers = min(workers, runs)
-    context = context_with("argo_env.evaluation.evaluating", *NEEDED_TO_DRIVE)
+    context = context_with("argo_env.evaluation.evaluating")
     return make_backend(backend, workers, address, context)
 
 

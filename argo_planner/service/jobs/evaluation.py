@@ -27,7 +27,7 @@ from argo_env.evaluation.worlds import NO_VARIATION, Variation
 from argo_env.faults.kinds import AnyFault
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.run.drives_and_sensors import IDEAL, ROUTE
-from argo_env.worker_processes import NEEDED_TO_DRIVE, context_with
+from argo_env.worker_processes import context_with
 from argo_planner.service.jobs.standing import EvaluationStanding, RunCount
 from argo_planner.service.processes.work import Tell
 from argo_planner.service.world.obstacles import Obstacle, with_obstacles
@@ -141,8 +141,8 @@ def evaluate_mission(order: EvaluationOrder, folder: Path, tell: Tell) -> Evalua
     keep_plan(folder, plan, digest_of(order.model_dump_json().encode()))
     standing = RunCount(plan)
     call = partial(_carried_out, order.site, order.obstacles)
-    # They are forked from a process of this one, which needs less than that of the service.
-    workers = make_backend(context=context_with(__name__, *NEEDED_TO_DRIVE))
+    # Forked from a process that has loaded less than the one of the service.
+    workers = make_backend(context=context_with(__name__))
     with RowStore(folder) as store:
         try:
             evaluating = Evaluating(plan, workers, store, limit=_LONGEST_RUN, call=call)

@@ -1,11 +1,10 @@
 """The context in which the service begins processes."""
 
-from argo_env.worker_processes import NEEDED_TO_DRIVE, context_with
+from argo_env.worker_processes import context_with
 
 CONTEXT = context_with(
     *(
         f"argo_planner.service.{module}"
         for module in ("runs.worker", "jobs.analysis", "jobs.evaluation", "jobs.order")
-    ),
-    *NEEDED_TO_DRIVE,
+    )
 )

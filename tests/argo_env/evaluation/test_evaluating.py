@@ -15,7 +15,7 @@ from argo_env.evaluation.store import RowStore, read_rows
 from argo_env.evaluation.worlds import Variation
 from argo_env.faults.reading import decode_faults
 from argo_env.run.spec import RunSpec
-from argo_env.worker_processes import NEEDED_TO_DRIVE, context_with
+from argo_env.worker_processes import context_with
 from tests.argo_env.evaluation import work
 from tests.argo_env.evaluation.conftest import plan_of, short_mission
 from tests.conftest import examples
@@ -27,7 +27,7 @@ EMERGENCY = decode_faults(b"faults: [{kind: emergency_stop, at: 10}]", "test").f
 def processes():
     """Return processes that are forked from one that has loaded all, as `argo evaluate` has them;
     those of `backend` load it themselves."""
-    context = context_with("argo_env.evaluation.evaluating", *NEEDED_TO_DRIVE)
+    context = context_with("argo_env.evaluation.evaluating")
     made = make_backend("processes", 2, context=context)
     yield made
     made.close()

@@ -21,7 +21,7 @@ from typing import Any
 
 from argo_compiler.script import parse
 from argo_env.evaluation.report import page as evaluation_report
-from argo_env.pictures import film, overview
+from argo_env.pictures import film
 from argo_env.planning import open_site
 from argo_env.report import html as run_report
 from argo_env.run.session import simulate
@@ -32,30 +32,21 @@ from argo_planner.terminal.files import read_upload
 from argo_planner.terminal.signals import end_at_once
 from argo_planner.use_cases import evaluating
 from argo_planner.use_cases.importing import import_mission
+from tests.forking import draw_small_overviews, load_late_modules
 
 # On a busy machine anything may take so long that it is shown.
 stage_display.AFTER = float("inf")
-# Most of what a report takes is the picture of the site, and these tests do not look at pictures.
-overview.SIZE, overview._FINER, overview._SHADOW_MAP = (400, 300), 1, 200
+# These tests do not look at pictures.
+draw_small_overviews()
 film.MP4_SIZE = film.GIF_SIZE = (128, 80)
 # Workers of an evaluation are forked from the command, which has loaded all that they need.
 evaluating.context_with = lambda *_: multiprocessing.get_context("fork")
-
-LOADED_LATE = (
-    "argo_env.drives.kinematic",
-    "matplotlib.backends.backend_svg",
-    "pandas",
-    "pyarrow.parquet",
-    "scipy.stats",
-)
-"""what commands load only where they need it"""
 
 
 def serve() -> None:
     for command in ArgoCommands.lazy_commands:
         import_module(command.module)
-    for module in LOADED_LATE:
-        import_module(module)
+    load_late_modules()
     parse("Mission Protocol #1\n1. Check checkpoint #1")
     run_report._template()
     for name in ("evaluation.html.j2", "comparison.html.j2"):

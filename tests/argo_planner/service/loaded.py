@@ -1,33 +1,22 @@
-"""What processes of services under test are forked with: all that each of them would load late and
-work out anew. Without this they do the same, and take longer.
+"""Module whose import prepares the process that those of a service under test are forked from.
+
+Without it they do the same, and take longer: each loads modules late and finds its paths anew.
 """
 
-from importlib import import_module
-
 from argo_compiler.script import import_script
-from argo_env.pictures import overview
 from argo_env.planning import open_site
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_planner.use_cases.reporting import report_files
+from tests.forking import draw_small_overviews, load_late_modules
 
-LOADED_LATE = (
-    "argo_env.evaluation.report.page",
-    "argo_env.remote.robot",
-    "matplotlib.backends.backend_svg",
-    "pandas",
-    "pyarrow.parquet",
-)
 SCRIPT = (
     "Mission Protocol #1\n1. Set the starting point in starting area 1.\n2. Check valve R18.\n"
     "3. Check valve R25.\n4. Return to the docking station in starting area 1.\n"
 )
 
-# Most of what a report takes is the picture of the site, and these tests do not look at pictures.
-overview.SIZE, overview._FINER, overview._SHADOW_MAP = (400, 300), 1, 200
-
-for _module in LOADED_LATE:
-    import_module(_module)
+draw_small_overviews()  # at which these tests do not look
+load_late_modules()
 _site = open_site("umad").prepare()
 _mission = import_script(SCRIPT, _site.catalog).mission
 _spec = RunSpec(mission=_mission, site=_site.reference, drive="route")

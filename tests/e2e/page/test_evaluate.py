@@ -126,7 +126,7 @@ def test_an_evaluation_is_ended_and_goes_on(browsers, address, plan, service) ->
     assert runs_in(done) >= before
     service.client.post(  # by somebody else, in another way
         f"/api/missions/{plan}/evaluations", json={"worlds": 3}, headers={"if-match": "*"}
-    )
+    ).raise_for_status()
     expect(page.locator("#done")).to_have_text("3 of 3 runs")
     expect(result).to_contain_text("No run failed.")
     # The one before can still be looked at, and deleted.

@@ -143,7 +143,9 @@ def test_obstacles_that_were_put_up_meanwhile_are_heard_of(
         lambda: ann.ask("() => window.argo.standing(8, 1.6, 0, 0)") == "closed",
         "the ground is closed there",
     )
-    service.client.put("/api/world/obstacles", json={"obstacles": []}, headers={"if-match": "*"})
+    service.client.put(
+        "/api/world/obstacles", json={"obstacles": []}, headers={"if-match": "*"}
+    ).raise_for_status()
 
 
 def away(browsers: Any, service: Served, plan: str, seconds: float) -> None:

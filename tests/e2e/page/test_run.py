@@ -73,5 +73,7 @@ def test_the_run_of_another_mission_does_not_offer_this_one_s_tasks(
     ann.click(take_over)
     expect(ann.button("Give back")).to_be_enabled()
     expect(ann.page.locator("argo-run-hand #task")).to_have_count(0)
-    service.client.post(f"/api/runs/{run}/requests", json={"kind": "stop", "id": "end"})
+    service.client.post(
+        f"/api/runs/{run}/requests", json={"kind": "stop", "id": "end"}
+    ).raise_for_status()
     ann.until(lambda: runs(service)[0]["status"] == "ended", "the run ends")

@@ -129,7 +129,9 @@ def test_an_obstacle_closes_the_ground(ann, service) -> None:
         lambda: ann.ask("() => window.argo.standing(8.5, 1.6, 0, 0)") == "closed",
         "the ground is closed there",
     )
-    service.client.put("/api/world/obstacles", json={"obstacles": []}, headers={"if-match": "*"})
+    service.client.put(
+        "/api/world/obstacles", json={"obstacles": []}, headers={"if-match": "*"}
+    ).raise_for_status()
 
 
 @pytest.mark.long
@@ -145,7 +147,9 @@ def test_an_obstacle_is_put_up_by_keys_alone(ann, service) -> None:
     )
     assert box["name"] == "Box"
     assert box["size"][:2] == [0.5, 0.5]
-    service.client.put("/api/world/obstacles", json={"obstacles": []}, headers={"if-match": "*"})
+    service.client.put(
+        "/api/world/obstacles", json={"obstacles": []}, headers={"if-match": "*"}
+    ).raise_for_status()
 
 
 @pytest.mark.long

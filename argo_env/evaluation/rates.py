@@ -169,7 +169,7 @@ def judge_requirements(
 def _decisions(
     evaluation: EvaluationPlan, rows: Sequence[RunRow]
 ) -> Iterator[tuple[PlanName, RateRequirement, ConfidenceSequence, Decision]]:
-    """Yield what is shown by now of each plan and requirement, with what it is shown by."""
+    """Yield each plan and requirement with its confidence sequence and what that decides so far."""
     required = evaluation.stopping.require
     for plan in evaluation.plans:
         own = [row for row in rows if row.plan == plan]
@@ -188,8 +188,8 @@ def _decisions(
 def is_enough(plan: EvaluationPlan, rows: Sequence[RunRow]) -> bool:
     """Whether all that one stops for is reached."""
     stopping = plan.stopping
-    # Intervals take far longer than what is shown, and nobody looks at them here.
-    if any(verdict is Decision.OPEN for *_, verdict in _decisions(plan, rows)):
+    # Not by `judge_requirements`, which also searches for intervals and takes far longer.
+    if stopping.require and any(verdict is Decision.OPEN for *_, verdict in _decisions(plan, rows)):
         return False
     if stopping.width is not None:
         rates = [rate_of(plan, name, rows) for name in plan.plans]

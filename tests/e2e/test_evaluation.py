@@ -369,7 +369,7 @@ def test_killed_workers_change_nothing_of_the_rows(killed_file, undisturbed, tmp
 
 
 def count(out: Path) -> int:
-    """Rows on disk."""
+    """Read the rows on disk and return how many there are."""
     try:
         return len(read_rows(out))
     except NotFound:  # yet
@@ -377,7 +377,7 @@ def count(out: Path) -> int:
 
 
 def logged(out: Path) -> int:
-    """Rows on disk while an evaluation is under way: those in its log, which are not read."""
+    """Return how many rows are on disk while an evaluation is under way, without reading them."""
     try:
         lines = (out / LOG).read_bytes().count(b"\n")
     except FileNotFoundError:  # yet

@@ -1,6 +1,6 @@
-"""Whether one plan is better than another, in the same worlds: paired comparisons.
+"""Paired comparisons of two plans in the same worlds.
 
-scipy.stats is imported where it is needed: who evaluates compares nothing, and waits a second less.
+Functions import scipy.stats, as an evaluation that compares nothing begins sooner without it.
 """
 
 import math

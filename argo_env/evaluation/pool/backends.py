@@ -41,8 +41,9 @@ BACKENDS: dict[str, Callable[[int | None, str | None, ForkServerContext | None],
     "ray": _ray,
     "dask": _dask,
 }
-"""What makes the back ends, with a number of workers (None: all that there are), the address of a
-cluster (None: this machine), and the context in which processes of this machine begin."""
+"""Functions that make the back ends. They take a number of workers (None: all that there are), the
+address of a cluster (None: this machine), and the context in which processes of this machine
+begin."""
 
 
 def make_backend(

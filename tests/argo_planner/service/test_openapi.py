@@ -52,18 +52,12 @@ def cases(service: Served, folder: Path, *options: str) -> int:
 
 
 @pytest.mark.long
-def test_values_at_the_limits_are_answered_as_documented(service: Served, tmp_path: Path) -> None:
-    """Operations are asked with values at and beyond the limits of their parameters."""
+def test_cases_with_links_are_answered_as_documented(service: Served, tmp_path: Path) -> None:
+    """Operations are asked with values at and beyond the limits of their parameters; and each of
+    them at random, also with what another operation has answered."""
     paths = json.loads(DOCUMENT.read_text(encoding="utf-8"))["paths"].values()
     ids = [operation["operationId"] for methods in paths for operation in methods.values()]
-    asked = list(sample(ids))
-    options = [word for id in asked for word in ("--include-operation-id", id)]
-    assert cases(service, tmp_path, "--phases", "coverage", *options) >= 100 * len(asked)
-
-
-@pytest.mark.long
-def test_cases_with_links_are_answered_as_documented(service: Served, tmp_path: Path) -> None:
-    """Each operation is asked at random, also with what another operation has answered."""
-    count = examples(80)
-    made = cases(service, tmp_path, "--phases", "fuzzing,stateful", "-n", str(count))
-    assert made >= 60 * count
+    asked = [word for id in sample(ids) for word in ("--include-operation-id", id)]
+    at_limits = cases(service, tmp_path, "--phases", "coverage", *asked)
+    random = ("--phases", "fuzzing,stateful", "-n", str(examples(100)))
+    assert at_limits + cases(service, tmp_path, *random) >= examples(10_000)

@@ -8,6 +8,8 @@ LOADED_LATE = (
     "argo_env.drives.kinematic",
     "argo_env.evaluation.report.page",
     "argo_env.remote.robot",
+    "argo_planner.service.web.access",
+    "argo_planner.service.web.serving",
     "matplotlib.backends.backend_svg",
     "pandas",
     "pyarrow.parquet",

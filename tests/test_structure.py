@@ -7,11 +7,11 @@ import sys
 from collections import defaultdict
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
-from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
+from tests import source
+
 KNOWS = {
     "argo_compiler": set(),
     "argo_env": {"argo_compiler"},
@@ -20,33 +20,37 @@ KNOWS = {
 }
 """What each package may import of the others."""
 FRONT_DOORS = {"argo_compiler", "argo_env"}
-# Written into exported behaviours, and imported by FlexBE only.
-EXPORTED = ROOT / "argo_compiler" / "export" / "flexbe_states"
 
 
 def dotted(path):
-    parts = path.relative_to(ROOT).with_suffix("").parts
+    parts = path.with_suffix("").parts
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
 @cache
 def trees():
     """The syntax tree of each module, by its dotted name; made when the first test asks."""
-    return {
-        dotted(path): ast.parse(path.read_text(encoding="utf-8"))
-        for package in KNOWS
-        for path in sorted((ROOT / package).rglob("*.py"))
-        if EXPORTED not in path.parents
-    }
+    return {dotted(path): tree for path, tree in source.trees().items()}
 
 
-PACKAGES = {dotted(path) for package in KNOWS for path in (ROOT / package).rglob("__init__.py")}
+@cache
+def nodes_of(module):
+    """All nodes of a module's syntax tree."""
+    return tuple(ast.walk(trees()[module]))
 
 
+PACKAGES = {
+    dotted(path.relative_to(source.ROOT))
+    for package in KNOWS
+    for path in (source.ROOT / package).rglob("__init__.py")
+}
+
+
+@cache
 def imports_of(module):
     """The modules of the project that a module imports, wherever in it."""
     found = set()
-    for node in ast.walk(trees()[module]):
+    for node in nodes_of(module):
         if isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{module} imports relatively"
             for alias in node.names:
@@ -154,7 +158,7 @@ def test_each_module_is_found_where_its_name_says():
     """By `import a.b.c as x`, whatever of the project has been imported before."""
     modules = sorted(module for module in trees() if not module.endswith(".__main__"))
     said = subprocess.run(
-        [sys.executable, "-c", IMPORTS, *modules], cwd=ROOT, capture_output=True, text=True
+        [sys.executable, "-c", IMPORTS, *modules], cwd=source.ROOT, capture_output=True, text=True
     )
     assert (said.returncode, said.stdout) == (0, ""), said.stderr
 
@@ -169,11 +173,12 @@ def test_the_checkers_of_witnesses_share_no_code_with_the_analysis():
         assert others <= forms | checkers, module
 
 
+@cache
 def imported_into(module):
     """The names that a module has from other modules of the project."""
     return {
         alias.name
-        for node in ast.walk(trees()[module])
+        for node in nodes_of(module)
         if isinstance(node, ast.ImportFrom) and node.module in trees()
         for alias in node.names
         if f"{node.module}.{alias.name}" not in trees()
@@ -187,7 +192,7 @@ def test_names_are_imported_from_their_home_or_from_the_package_that_offers_them
         f"{module} imports {alias.name} from {node.module}, which has it from elsewhere"
         for module in trees()
         if module.split(".")[0] == package
-        for node in ast.walk(trees()[module])
+        for node in nodes_of(module)
         if isinstance(node, ast.ImportFrom) and node.module in trees()
         if node.module not in PACKAGES or module.startswith(f"{node.module}.")
         for alias in node.names
@@ -228,10 +233,10 @@ def test_libraries_do_not_print():
     """Nor do the use cases; what a person sees is printed by commands, the terminal and scripts."""
     prints = {
         module
-        for module, tree in trees().items()
+        for module in trees()
         if not module.startswith(("argo_planner.commands", "argo_planner.terminal"))
         if module != "argo_planner.cli" and not is_script(module)
-        for node in ast.walk(tree)
+        for node in nodes_of(module)
         if isinstance(node, ast.Call) and ast.unparse(node.func) in {"print", "sys.stdout.write"}
     }
     assert not prints
@@ -245,7 +250,7 @@ def test_no_command_imports_another():
 
 
 def test_use_cases_know_no_terminal():
-    for module, tree in trees().items():
+    for module in trees():
         if module.startswith("argo_planner.use_cases"):
             assert not {
                 m
@@ -254,7 +259,7 @@ def test_use_cases_know_no_terminal():
             }, module
             names = {
                 alias.name if isinstance(node, ast.Import) else node.module
-                for node in ast.walk(tree)
+                for node in nodes_of(module)
                 if isinstance(node, ast.Import | ast.ImportFrom)
                 for alias in node.names
             }
@@ -266,18 +271,18 @@ OPTION = re.compile(r"(^|[\s(`])--[a-z]|`argo ")
 
 def test_messages_of_the_libraries_name_the_thing_and_no_option():
     """The command line adds its own words; scripts of the libraries are command lines."""
-    for module, tree in trees().items():
+    for module in trees():
         library = module.startswith(("argo_compiler", "argo_env", "argo_planner.use_cases"))
         if not library or is_script(module):
             continue
         docstrings = {
             id(node.value)
-            for node in ast.walk(tree)
+            for node in nodes_of(module)
             if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
         }
         said = [
             node.value
-            for node in ast.walk(tree)
+            for node in nodes_of(module)
             if isinstance(node, ast.Constant)
             and isinstance(node.value, str)
             and id(node) not in docstrings
@@ -291,10 +296,12 @@ def test_what_goes_wrong_is_of_a_kind(package):
     """`ArgoError` is what all kinds are; by itself it tells a program nothing."""
     bare = [
         f"{module}, line {node.lineno}"
-        for module, tree in trees().items()
+        for module in trees()
         if module.split(".")[0] == package
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Call) and ast.unparse(node.func) == "ArgoError"
+        for node in nodes_of(module)
+        if isinstance(node, ast.Call)
+        and isinstance(node.func, ast.Name)
+        and node.func.id == "ArgoError"
     ]
     assert not bare
 
@@ -311,8 +318,8 @@ def test_paths_of_users_are_asked_for_by_what_never_raises():
     """Unlike `os.path`, a `Path` raises where a folder can't be read or links go round."""
     asking = {
         module
-        for module, tree in trees().items()
-        for node in ast.walk(tree)
+        for module in trees()
+        for node in nodes_of(module)
         if isinstance(node, ast.Call)
         and isinstance(node.func, ast.Attribute)
         and node.func.attr in {"exists", "is_file", "is_dir", "resolve"}

@@ -73,7 +73,9 @@ def complete(shell: str, words: str) -> str:
     return ran.stdout
 
 
-@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+@pytest.mark.parametrize(
+    "shell", ["bash", *(pytest.param(name, marks=pytest.mark.long) for name in ("zsh", "fish"))]
+)
 def test_a_shell_completes_commands_and_options(shell: str) -> None:
     assert "check" in complete(shell, "argo ch")
     assert "compile" not in complete(shell, "argo ch")

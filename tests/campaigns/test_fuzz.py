@@ -87,6 +87,7 @@ def bounded_time() -> Iterator[None]:
         signal.signal(signal.SIGALRM, before)
 
 
+@pytest.mark.long
 def test_mutated_scripts_and_files_end_in_missions_or_diagnostics(tmp_path: Path) -> None:
     outcomes: Counter[str] = Counter()
 

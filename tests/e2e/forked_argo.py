@@ -8,6 +8,7 @@ how many seconds it is sent the `signal` if it still runs (null: never). The ans
 status.
 """
 
+import gc
 import json
 import multiprocessing
 import os
@@ -51,6 +52,7 @@ def serve() -> None:
     run_report._template()
     for name in ("evaluation.html.j2", "comparison.html.j2"):
         evaluation_report._template(name)
+    gc.freeze()  # forked processes need not look through what is loaded
     end_at_once()  # as `argo` itself begins
     kept = []
     for line in sys.stdin:

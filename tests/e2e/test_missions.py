@@ -86,6 +86,7 @@ def test_the_original_of_mission_1_runs_to_success(argo, originals: Path, tmp_pa
     require_mission_1(record_in(tmp_path))
 
 
+@pytest.mark.long
 def test_the_same_seed_gives_the_same_report(argo, first, missions: Path, tmp_path: Path) -> None:
     _, folder = first
     script = missions / "mission_1.txt"

@@ -86,8 +86,8 @@ def test_the_browser_is_opened_at_the_page(tmp_path: Path) -> None:
         ((__file__,), "test_plan.py"),
     ],
 )
-def test_what_can_not_be_planned_is_said(argo_process, tmp_path, options, said) -> None:
-    ended = argo_process("plan", *options, "--no-browser", "--folder", str(tmp_path / "m"))
+def test_what_can_not_be_planned_is_said(argo, tmp_path, options, said) -> None:
+    ended = argo("plan", *options, "--no-browser", "--folder", tmp_path / "m")
     assert ended.returncode in (1, 2)
     assert said in ended.stderr
     assert "Traceback" not in ended.stderr

@@ -83,8 +83,8 @@ def test_the_service_begins_says_where_it_is_and_ends(serving: Serving) -> None:
         (["--host", "no.such.host.invalid", "--token", "x" * 20], "can't be listened at"),
     ],
 )
-def test_what_can_not_be_served_is_said(argo_process, tmp_path, options, said) -> None:
-    ended = argo_process("serve", str(tmp_path / "m"), *options)
+def test_what_can_not_be_served_is_said(argo, tmp_path, options, said) -> None:
+    ended = argo("serve", tmp_path / "m", *options)
     assert said in refused(ended)
 
 

@@ -8,11 +8,10 @@ same part of a package, are the codes.
 import ast
 from collections import defaultdict
 from collections.abc import Iterator
-from pathlib import Path
 from typing import NamedTuple
 
-ROOT = Path(__file__).parents[3]
-PACKAGES = ("argo_compiler", "argo_env", "argo_planner")
+from tests.source import trees
+
 SHARED = frozenset(["diagnostic_of", "parse_yaml", "refusal"])
 """functions that pass codes on for other folders as well"""
 
@@ -68,19 +67,18 @@ def codes_in_source() -> set[str]:
 def all_calls() -> dict[str, list[Call]]:
     """All calls in the packages, by the name of what is called."""
     found: dict[str, list[Call]] = defaultdict(list)
-    for package in PACKAGES:
-        for path in sorted((ROOT / package).rglob("*.py")):
-            folder = "/".join(path.parent.relative_to(ROOT).parts[:2])
-            inside: dict[ast.AST, Function | None] = {}
-            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-                function = node if isinstance(node, Function) else inside.get(node)
-                inside |= dict.fromkeys(ast.iter_child_nodes(node), function)
-                if isinstance(node, ast.Call):
-                    called = node.func
-                    name = called.attr if isinstance(called, ast.Attribute) else None
-                    name = called.id if isinstance(called, ast.Name) else name
-                    if name:
-                        found[name].append(Call(folder, inside.get(node), node))
+
+    def search(node: ast.AST, folder: str, function: Function | None) -> None:
+        match node:
+            case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name)):
+                found[name].append(Call(folder, function, node))
+            case ast.FunctionDef() | ast.AsyncFunctionDef():
+                function = node
+        for child in ast.iter_child_nodes(node):
+            search(child, folder, function)
+
+    for path, tree in trees().items():
+        search(tree, "/".join(path.parent.parts[:2]), None)
     return found
 
 

@@ -200,6 +200,7 @@ class Editor:
         return f"On {words}: pause", add_reaction(self.mission, reaction).mission
 
 
+@pytest.mark.long
 @settings(max_examples=examples(120))
 @given(sound_missions(CATALOG, most=5), st.integers(0, 2**32))
 def test_the_same_edits_written_as_a_protocol_give_the_same_mission(mission, seed):

@@ -116,6 +116,7 @@ def test_the_expert_is_for_this_environment():
         Expert(gym.make("argo/Route-v0"))
 
 
+@pytest.mark.long
 def test_on_a_flight_a_restored_state_goes_on_the_same(env, descent):
     middle, outcomes = descent
     heard = []

@@ -49,9 +49,12 @@ PACKAGES = {"processes": "loky", "ray": "ray", "dask": "distributed"}
 NEEDED = [
     pytest.param(
         name,
-        marks=pytest.mark.skipif(
-            find_spec(package) is None, reason=f"needs `{package}`: pip install '.[cluster]'"
-        ),
+        marks=[
+            *([pytest.mark.long] if name != "processes" else []),
+            pytest.mark.skipif(
+                find_spec(package) is None, reason=f"needs `{package}`: pip install '.[cluster]'"
+            ),
+        ],
     )
     for name, package in PACKAGES.items()
 ]

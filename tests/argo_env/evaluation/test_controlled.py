@@ -95,6 +95,7 @@ def test_what_was_measured_outlives_an_interruption(expensive, tmp_path):
     assert made.known == known
 
 
+@pytest.mark.long
 def test_of_few_failures_no_interval_is_told(expensive, tmp_path):
     def never_late(plan: EvaluationPlan) -> EvaluationResults:
         found = made(plan)

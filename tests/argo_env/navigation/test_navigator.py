@@ -208,6 +208,7 @@ def test_checkpoint_that_does_not_exist(navigator, umad):
         navigator.plan_to_view(umad.docks[1], 99)
 
 
+@pytest.mark.long
 def test_same_query_same_path(navigator, umad, robot):
     again = Navigator(umad, robot)
     goal = Pose(x=12.4, y=1.6, z=7.5, yaw=1.0)

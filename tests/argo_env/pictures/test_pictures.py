@@ -186,6 +186,7 @@ def test_several_processes_draw_the_same_film(record, umad, robot, tmp_path, mon
     assert (tmp_path / "alone.gif").read_bytes() == (tmp_path / "together.gif").read_bytes()
 
 
+@pytest.mark.long
 def test_a_process_that_draws_and_is_killed_is_told(record, umad, robot, tmp_path, monkeypatch):
     monkeypatch.setattr(film, "usable_processors", lambda: 2)
     monkeypatch.setattr(film, "_WORTH_IT", 2)
@@ -199,6 +200,7 @@ def killed(_):
     os.kill(os.getpid(), signal.SIGKILL)
 
 
+@pytest.mark.long
 def test_the_last_frames_show_the_verdict(record, umad, robot, tmp_path):
     failed = record.result.model_copy(
         update={"success": False, "verdict": "the robot is not docked; " + "failed: a task, " * 99}

@@ -27,6 +27,7 @@ def test_mission_1_takes_as_long_as_planned(shipped, catalog, travel, sheet_run)
     assert ends == {t.task: pytest.approx(t.end, abs=STEP) for t in record.tasks}
 
 
+@pytest.mark.long
 def test_protocol_2_lies_between_the_bounds(shipped, catalog, travel, protocol_record):
     found = analyse(shipped("protocol_2.txt").mission, catalog, travel)
     simulated = protocol_record.result.duration

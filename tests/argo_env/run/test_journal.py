@@ -267,6 +267,7 @@ def test_a_run_that_has_ended_can_be_told_nothing(yard, whole, path):
     assert path.read_bytes() == whole.content
 
 
+@pytest.mark.long
 def test_cut_at_every_byte_of_the_last_lines(yard, path):
     """The end of a short run: its last lines hold the end of an action and that of the run."""
     plan = mission(measure(1))

@@ -134,7 +134,10 @@ def outcome(spec, **options) -> str:
 
 EXAMPLES = examples(60)
 CASES = [
-    *((seed, "route") for seed in range(EXAMPLES)),
+    *(
+        pytest.param(seed, "route", marks=pytest.mark.long if seed >= 8 else ())
+        for seed in range(EXAMPLES)
+    ),
     *(
         pytest.param(1000 + seed, "kinematic", marks=pytest.mark.long if seed >= 1 else ())
         for seed in range(max(4, EXAMPLES // 5))

@@ -446,6 +446,7 @@ class KilledError(Exception):
     """The process is gone."""
 
 
+@pytest.mark.long
 def test_goes_back_along_the_way_that_it_came(navigator, tmp_path):
     plan = from_place(navigator.site.docks[1], measure(15))
     place = tmp_path / "run.journal"

@@ -93,6 +93,7 @@ def test_a_site_without_stairs_to_the_upper_floor_is_not_given_out(monkeypatch):
         generate(Family(floors=2, size=(12, 12), clutter=0.0, checkpoints=0, seed=5))
 
 
+@pytest.mark.long
 def test_checkpoints_that_can_not_be_read_are_moved(monkeypatch):
     """One that is far too high, in the first draw."""
 

@@ -97,6 +97,7 @@ def test_training_says_what_it_does_and_how_far_it_is(heard: list[Told]) -> None
     assert last[2].startswith(f"{steps} of {steps} steps")
 
 
+@pytest.mark.long
 def test_a_training_that_was_cut_off_ends_with_the_same_weights(
     trained: tuple[Path, State], tmp_path: Path
 ) -> None:

@@ -58,6 +58,7 @@ def test_a_script_that_is_wrong_says_where(ann, tmp_path) -> None:
     assert ann.page.url.endswith("/")
 
 
+@pytest.mark.long
 def test_hostile_names_are_text(ann, service) -> None:
     id = service.create(HOSTILE)
     task = {"kind": "add_task", "task": {"name": HOSTILE, "action": "WAYPOINT", "pose": POSE}}
@@ -102,6 +103,7 @@ def test_german_is_spoken_where_the_browser_does(browsers, address) -> None:
 POSE = json.loads('{"x": 3.05, "y": 1.55, "z": 0.0, "yaw": 0.0}')
 
 
+@pytest.mark.long
 def test_the_focus_is_never_lost(ann) -> None:
     """Where what has the focus goes, it goes to what is beside it."""
     focused = """() => {

@@ -137,6 +137,7 @@ def test_what_was_done_is_undone_and_done_again(ann) -> None:
     order(ann, "START", "A1", "B2", "C4")
 
 
+@pytest.mark.long
 def test_tasks_are_copied_and_pasted(ann) -> None:
     ann.context.grant_permissions(["clipboard-read", "clipboard-write"])
     ann.click(row(ann, "A1"))
@@ -162,6 +163,7 @@ def test_a_group_is_copied_with_what_it_says(ann, service, plan) -> None:
     assert [group["max_repeat_count"] for group in groups] == [3, 3]
 
 
+@pytest.mark.long
 def test_a_task_is_renamed_in_its_place_once(ann, service, plan) -> None:
     before = service.client.get(f"/api/missions/{plan}").json()["revision"]
     ann.click(row(ann, "B2"))
@@ -176,6 +178,7 @@ def test_a_task_is_renamed_in_its_place_once(ann, service, plan) -> None:
     expect(row(ann, "C4")).to_have_attribute("aria-selected", "true")
 
 
+@pytest.mark.long
 def test_a_name_that_is_refused_stays_in_the_field(ann) -> None:
     ann.click(row(ann, "B2"))
     ann.key("F2", "Control+a")
@@ -192,6 +195,7 @@ def test_a_name_that_is_refused_stays_in_the_field(ann) -> None:
     expect(row(ann, "B2")).to_have_attribute("aria-selected", "true")
 
 
+@pytest.mark.long
 def test_a_place_is_a_waypoint_where_something_is_planned(ann, service, plan) -> None:
     gone = {"kind": "remove_task", "name": "START"}
     assert service.command(plan, "*", gone).status_code == 200

@@ -47,7 +47,7 @@ def follow(drive, path, velocity=None, most=2000, start=None, world=None, touche
     ("tower", "up"),
     [
         ("west", True),
-        ("east", False),
+        pytest.param("east", False, marks=pytest.mark.long),
         pytest.param("west", False, marks=pytest.mark.long),
         pytest.param("east", True, marks=pytest.mark.long),
     ],
@@ -136,6 +136,7 @@ def test_halt_brakes_then_says_arrived(drive, seconds):
     assert math.dist((rest.x, rest.y), (drive.pose.x, drive.pose.y)) < 1e-3
 
 
+@pytest.mark.long
 def test_halts_on_a_flight_and_goes_on(drive, navigator):
     path = navigator.plan(at(1.9, 2.8, 2.5), at(1.9, 7.95, 5.0))
     drive.place(level(path.start))

@@ -115,6 +115,7 @@ def test_what_is_not_installed_says_how_to_install_it(name, monkeypatch):
         make_backend(name)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(find_spec("distributed") is None, reason="needs `distributed`")
 def test_a_cluster_that_is_there_is_used_by_its_address(tmp_path):
     from distributed import LocalCluster
@@ -189,6 +190,7 @@ def test_a_cluster_that_is_not_there_is_said(name):
             make_backend(name, address=nowhere)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["ray", "dask"])
 def test_what_is_no_cluster_is_not_waited_for(name, monkeypatch):
     module = pytest.importorskip(f"argo_env.evaluation.pool.on_{name}")

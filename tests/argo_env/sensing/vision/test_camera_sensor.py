@@ -47,7 +47,14 @@ def stage(simulation, navigator, umad, robot):
         simulation.remove_screen(screen)
 
 
-@pytest.mark.parametrize("id", [DIAL, LEVEL, VALVE])
+@pytest.mark.parametrize(
+    "id",
+    [
+        DIAL,
+        pytest.param(LEVEL, marks=pytest.mark.long),
+        pytest.param(VALVE, marks=pytest.mark.long),
+    ],
+)
 def test_reads_any_value_where_planned(stage, umad, id):
     scale = umad.checkpoint(id).range
     rng = np.random.default_rng(id)

@@ -157,7 +157,7 @@ def test_a_mission_over_its_time_is_no_success(argo, missions: Path, tmp_path: P
     assert not record_in(tmp_path).result.within_max_duration
 
 
-@pytest.mark.parametrize("name", ["run.gif", "run.mp4"])
+@pytest.mark.parametrize("name", ["run.gif", pytest.param("run.mp4", marks=pytest.mark.long)])
 def test_a_run_is_filmed_without_a_display(argo, tmp_path: Path, name: str) -> None:
     script = tmp_path / "short.txt"
     script.write_text(

@@ -228,6 +228,7 @@ def edit_both(mission, seed):
     assert plain(import_script(text, CATALOG).mission) == plain(editor.mission)
 
 
+@pytest.mark.long
 def test_all_kinds_of_edits_were_written():
     """The sequences above are long and have all that a protocol can say."""
     if not made:

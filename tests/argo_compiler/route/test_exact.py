@@ -98,6 +98,7 @@ def test_the_time_that_is_given_is_kept_to_and_something_is_always_known() -> No
     assert bounds == sorted(bounds)
 
 
+@pytest.mark.long
 def test_a_large_problem_gets_a_route_and_a_bound() -> None:
     problem = _grid(400)
     made = suggest_route(problem, time_limit=2.0, explain=False)

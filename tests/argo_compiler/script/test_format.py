@@ -230,7 +230,7 @@ def test_what_a_reaction_has_no_use_for_is_refused_by_name(catalog: Catalog) -> 
     assert "`pose`" in refused(mission, catalog)
 
 
-@pytest.mark.parametrize("tangled", [True, False])
+@pytest.mark.parametrize("tangled", [pytest.param(True, marks=pytest.mark.long), False])
 def test_any_mission_is_kept_or_refused_by_name(tangled: bool, catalog: Catalog) -> None:
     kept = 0
 

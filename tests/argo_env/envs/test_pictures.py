@@ -273,6 +273,7 @@ def inspect():
     env.close()
 
 
+@pytest.mark.long
 def test_an_inspection_is_drawn_as_it_is(inspect, navigator):
     inspect.reset(seed=2, options={})
     before = inspect.render()

@@ -148,6 +148,7 @@ def test_it_stops_when_a_requirement_is_decided(processes, plan, required, verdi
     assert len(results.rows) % 50 == 0
 
 
+@pytest.mark.long
 def test_what_is_stopped_for_does_not_depend_on_how_many_work(plan):
     stopping = Stopping(width=0.1, every=20)
     many = plan.model_copy(update={"seeds": tuple(range(501, 3_000)), "stopping": stopping})

@@ -148,7 +148,9 @@ def test_pictures_are_drawn_on_the_axes_that_are_given(results, mission):
 ODD_NAMES = ("$x^{$", "_hidden", "漢字 ☃", "bell\a", "two\nlines", "\\$", "<&>", "W" * 300)
 
 
-@pytest.mark.parametrize("name", ODD_NAMES)
+@pytest.mark.parametrize(
+    "name", [*ODD_NAMES[:2], *(pytest.param(n, marks=pytest.mark.long) for n in ODD_NAMES[2:])]
+)
 def test_any_name_can_be_drawn(mission, tmp_path, name):
     results = joined(results_of(mission, name, ("none", name)), results_of(mission, "other"))
     page = evaluation_page(results, tmp_path)

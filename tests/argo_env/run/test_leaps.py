@@ -135,7 +135,7 @@ def outcome(spec, **options) -> str:
 EXAMPLES = examples(60)
 CASES = [
     *(
-        pytest.param(seed, "route", marks=pytest.mark.long if seed >= 8 else ())
+        pytest.param(seed, "route", marks=pytest.mark.long if seed >= 4 else ())
         for seed in range(EXAMPLES)
     ),
     *(

@@ -36,6 +36,7 @@ def a_robot(service: Served) -> Iterator[subprocess.Popen[bytes]]:
         robot.wait()
 
 
+@pytest.mark.long
 def test_a_robot_somewhere_else_carries_a_mission_out(service: Served) -> None:
     with a_robot(service) as robot:
         run = begin(service)

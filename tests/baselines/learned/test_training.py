@@ -67,6 +67,7 @@ def trained(tmp_path_factory: pytest.TempPathFactory, heard: list[Told]) -> tupl
     return folder, state
 
 
+@pytest.mark.long
 def test_training_changes_weights_and_saves_them(trained: tuple[Path, State]) -> None:
     folder, state = trained
     assert state.part == 3
@@ -82,6 +83,7 @@ def test_training_changes_weights_and_saves_them(trained: tuple[Path, State]) ->
     LearnedPolicy.load(folder / WEIGHTS)
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("trained")
 def test_training_says_what_it_does_and_how_far_it_is(heard: list[Told]) -> None:
     stages = list(dict.fromkeys(stage for stage, _, _ in heard if stage))
@@ -115,6 +117,7 @@ def test_a_training_that_was_cut_off_ends_with_the_same_weights(
     assert str(resumed.optimiser) == str(whole.optimiser)
 
 
+@pytest.mark.long
 def test_the_curve_is_drawn_from_the_logs(trained: tuple[Path, State], tmp_path: Path) -> None:
     picture = tmp_path / "curve.png"
     assert curve.main([str(trained[0]), str(picture)]) == 0
@@ -124,6 +127,7 @@ def test_the_curve_is_drawn_from_the_logs(trained: tuple[Path, State], tmp_path:
     assert "rollout/ep_rew_mean" in logs
 
 
+@pytest.mark.long
 def test_what_can_not_be_done_is_said(
     trained: tuple[Path, State], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -235,6 +235,7 @@ def test_watch_compares_turns(turned, trouble):
     assert look(StallWatch(0.05), 0.0, 0.0, rate=0.4, turned=turned) is trouble
 
 
+@pytest.mark.long
 def test_twins_drive_the_same_bit_by_bit(drive, ground, robot, navigator):
     path = navigator.plan(at(12.3, 5.55, 2.5), at(12.3, 5.55, 5.0))
     twin = TrackedDrive(ground, robot)

@@ -73,7 +73,13 @@ def test_reads_any_value_where_planned(stage, umad, id):
     [
         (DIAL, 7.3, Placement((0.05, 0.03, -0.06), math.radians(40), math.radians(-70)), 1.0),
         (DIAL, 1.2, Placement((-0.07, 0.0, 0.05), math.radians(-35), math.radians(85)), 0.35),
-        (LEVEL, 81.0, Placement((0.04, -0.05, 0.06), math.radians(-45)), 0.4),
+        pytest.param(
+            LEVEL,
+            81.0,
+            Placement((0.04, -0.05, 0.06), math.radians(-45)),
+            0.4,
+            marks=pytest.mark.long,
+        ),
         (VALVE, 62.0, Placement((0.0, 0.06, 0.04), math.radians(30), math.radians(-80)), 0.5),
     ],
 )

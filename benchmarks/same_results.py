@@ -159,12 +159,12 @@ def route_cases() -> Iterator[Case]:
 
 def journal_cases() -> Iterator[Case]:
     """Yield the cases that keep runs in journals and reports, and resume runs that were cut off."""
-    areas = ("--start-area", "1", "--end-area", "2")
+    first = ("missions/mission_1.txt", "--start-area", "1", "--end-area", "2")
     ground, upstairs = "faults/ground.txt", "faults/upstairs.txt"
     for name, options in {
-        "mission_1": ("missions/mission_1.txt", *areas),
-        "mission_1, other values": ("missions/mission_1.txt", "--value", "8=9.5", "--seed", "3"),
-        "mission_1, events": ("missions/mission_1.txt", "--event", "60=gas_leak"),
+        "mission_1": first,
+        "mission_1, other values": (*first, "--value", "8=9.5", "--seed", "3"),
+        "mission_1, events": (*first, "--event", "60=gas_leak"),
         "protocol_2": ("missions/protocol_2.txt",),
         "protocol_3": ("missions/protocol_3.txt", "--seed", "2"),
         "rounds_and_windows": ("missions/rounds_and_windows.json",),
@@ -221,11 +221,15 @@ def _load_commands() -> None:
 def _carry_out(command: Sequence[str], folder: Path) -> int:
     """Run a command of `argo` in a forked process, with what it prints in the file `printed`.
 
-    `CUT FILE` cuts a file of lines off after the first half. Returns the exit status.
+    `CUT FILE` cuts a file of lines off after the first half. Returns the exit status; that of CUT
+    is 2 if there is no such file, as after a run that was refused.
     """
     if command[0] == "CUT":
-        lines = (folder / command[1]).read_bytes().splitlines(keepends=True)
-        (folder / command[1]).write_bytes(b"".join(lines[: max(1, len(lines) // 2)]))
+        file = folder / command[1]
+        if not file.exists():
+            return 2
+        lines = file.read_bytes().splitlines(keepends=True)
+        file.write_bytes(b"".join(lines[: max(1, len(lines) // 2)]))
         return 0
     sys.stdout.flush()
     child = os.fork()
@@ -256,6 +260,8 @@ def _carry_out(command: Sequence[str], folder: Path) -> int:
 def _timeless(path: Path, folder: Path) -> bytes:
     """Return the content of a file without names of temporary folders and wall-clock times."""
     content = path.read_bytes().replace(str(folder).encode(), b"FOLDER")
+    if path.suffix == ".journal":
+        content = re.sub(rb"(?m)^[0-9a-f]{8} (?=.*FOLDER)", b"CHECKSUM ", content)
     if path.name == "printed":
         content = re.sub(rb"\d+(\.\d+)? s\b.*", b"TIME", content)
     return content

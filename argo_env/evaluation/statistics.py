@@ -1,7 +1,8 @@
 """Statistics of evaluations: what is counted of each run, such as successes.
 
-A new one is listed here. Its words are in `report/sections.py` and, for the page, in
-`argo_planner/page/src/texts/evaluate.ts`; how sure an estimate is, `estimates/` says.
+A new one is listed here. Its words are in `report/sections.py`, for the page in
+`argo_planner/page/src/texts/evaluate.ts`, and for the terminal, whose tables have columns of their
+own, in `argo_planner/terminal/evaluation_tables.py`; how sure an estimate is, `estimates/` says.
 """
 
 from collections.abc import Callable

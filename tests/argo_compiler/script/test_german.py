@@ -9,6 +9,14 @@ from argo_compiler.il import EventKind
 from argo_compiler.script import import_script
 from tests.argo_compiler.script.conftest import measured, refusals
 
+Pairs = list[tuple[str, str]]
+
+
+def filled(frames: dict[tuple[str, str], Pairs]) -> Pairs:
+    """Return pairs of sentences that share words with others: frames, each with what fills it."""
+    return [(a.format(x), b.format(y)) for (a, b), rows in frames.items() for x, y in rows]
+
+
 PAIRS = [
     ("Prüfe Kontrollpunkt 3.", "Check checkpoint 3."),
     ("Pruefe Kontrollpunkt 3.", "Check checkpoint 3."),
@@ -28,10 +36,6 @@ PAIRS = [
     (
         "Kontrollpunkt 3 prüfen, Ventil R25 ablesen und zur Dockingstation zurückkehren.",
         "Check checkpoint 3, check valve R25 and return to the docking station.",
-    ),
-    (
-        "Prüfe Kontrollpunkt 3 und kehre zur Dockingstation zurück.",
-        "Check checkpoint 3 and return to the docking station.",
     ),
     ("Prüfe Kontrollpunkt 3 und fahre nach Hause.", "Check checkpoint 3 and go home."),
     ("Prüfe Kontrollpunkt 3 und kehre zurück.", "Check checkpoint 3 and return."),
@@ -57,14 +61,6 @@ PAIRS = [
     (
         "Danach geht es in den zweiten Stock zu Ventil R12, das ebenfalls geprüft wird.",
         "Then go to the second floor to valve R12, which is checked as well.",
-    ),
-    (
-        "Prüfe Kontrollpunkt 1. Bei mehr als 5 bar prüfe Kontrollpunkt 4.",
-        "Check checkpoint 1. At more than 5 bar, check checkpoint 4.",
-    ),
-    (
-        "Prüfe Kontrollpunkt 1. Auf jeden Fall prüft er dann Kontrollpunkt 4.",
-        "Check checkpoint 1. In any case it checks checkpoint 4.",
     ),
     ("Prüfe Ventil R12 im zweiten Stock.", "Check valve R12 on the second floor."),
     (
@@ -98,28 +94,12 @@ PAIRS = [
     ("Prüfe Kontrollpunkt 3 3x.", "Check checkpoint 3 three times."),
     ("Prüfe Kontrollpunkt 3 3-mal.", "Check checkpoint 3 three times."),
     (
-        "Prüfe Kontrollpunkt 3 alle 10 Minuten eine Stunde lang.",
-        "Check checkpoint 3 every 10 minutes for an hour.",
-    ),
-    (
         "Eine Stunde lang alle 10 Minuten Kontrollpunkt 3 prüfen.",
         "Check checkpoint 3 every 10 minutes for an hour.",
     ),
     (
-        "Prüfe Kontrollpunkt 3 alle halbe Stunde viermal.",
-        "Check checkpoint 3 every half hour four times.",
-    ),
-    (
         "Prüfe Kontrollpunkt 3 anderthalb Stunden lang alle zehn Minuten.",
         "Check checkpoint 3 every ten minutes for one and a half hours.",
-    ),
-    (
-        "Prüfe Kontrollpunkt 3, bis der Wert unter 3 bar fällt.",
-        "Check checkpoint 3 until the value is below 3.",
-    ),
-    (
-        "Prüfe Kontrollpunkt 3 alle 10 Minuten, bis er unter 3 fällt.",
-        "Check checkpoint 3 every 10 minutes until it is below 3.",
     ),
     (
         "Kontrollpunkt 3 alle 5 Minuten prüfen, bis der Wert unter 3 fällt, dann zur "
@@ -152,23 +132,6 @@ PAIRS = [
         "Check checkpoint 1. If checkpoint 1 is abnormal, check checkpoint 4.",
     ),
     (
-        "Prüfe Kontrollpunkt 1. Liegt der Wert über 4,5 bar, prüfe Kontrollpunkt 8.",
-        "Check checkpoint 1. If the value is above 4.5 bar, check checkpoint 8.",
-    ),
-    (
-        "Prüfe Kontrollpunkt 1. Ist der Wert auffällig, prüfe Kontrollpunkt 8.",
-        "Check checkpoint 1. If the value is abnormal, check checkpoint 8.",
-    ),
-    (
-        "Prüfe Kontrollpunkt 1. Ist der Wert nicht zwischen 3 und 5 bar, prüfe Kontrollpunkt 8.",
-        "Check checkpoint 1. If the value is not between 3 and 5 bar, check checkpoint 8.",
-    ),
-    (
-        "Prüfe Kontrollpunkt 1. Wenn der Wert nicht zwischen 3 und 5 bar liegt, "
-        "Kontrollpunkt 8 prüfen.",
-        "Check checkpoint 1. If the value is not between 3 and 5 bar, check checkpoint 8.",
-    ),
-    (
         "Prüfe Kontrollpunkte 1 und 3. Wenn Kontrollpunkt 1 über 5 bar und "
         "Kontrollpunkt 3 unter 4 bar liegt, prüfe Ventil R25.",
         "Check checkpoints 1 and 3. If checkpoint 1 is above 5 bar and checkpoint 3 is "
@@ -180,16 +143,8 @@ PAIRS = [
         "Check checkpoints 1 and 3. If checkpoint 1 or checkpoint 3 is abnormal, check valve R25.",
     ),
     (
-        "Prüfe Kontrollpunkt 1. Wenn der Druck mindestens 5 bar beträgt, prüfe Ventil R25.",
-        "Check checkpoint 1. If the pressure is at least 5 bar, check valve R25.",
-    ),
-    (
         "Prüfe Kontrollpunkt 1 und Kontrollpunkt 3, wenn Kontrollpunkt 6 über 5 bar liegt.",
         "Check checkpoint 1 and checkpoint 3 if checkpoint 6 is above 5 bar.",
-    ),
-    (
-        "Prüfe Kontrollpunkt 1. Wenn das fehlschlägt, versuche es noch einmal.",
-        "Check checkpoint 1. If this fails, try again.",
     ),
     ("Fahre zu Startbereich 2.", "Go to starting area 2."),
     ("Fahre in den zweiten Stock.", "Go to the second floor."),
@@ -211,33 +166,12 @@ PAIRS = [
     ("Patrouilliere den ersten Stock 10 Minuten lang.", "Patrol the first floor for 10 minutes."),
     ("Den ersten Stock zweimal patrouillieren.", "Patrol the first floor twice."),
     (
-        "Prüfe Kontrollpunkt 3. Wenn ein Gasleck erkannt wird, kehre zur "
-        "Dockingstation zurück und beende die Mission.",
-        "Check checkpoint 3. If a gas leak is detected, return to the docking station "
-        "and end the mission.",
-    ),
-    (
-        "Prüfe Kontrollpunkt 3. Bei Gasleck zur Dockingstation zurückkehren und die "
-        "Mission beenden.",
-        "Check checkpoint 3. If a gas leak is detected, return to the docking station "
-        "and end the mission.",
-    ),
-    (
-        "Prüfe Kontrollpunkt 3. Bei einem Gasleck oder einer heißen Stelle: nach Hause "
-        "fahren und Mission beenden.",
-        "Check checkpoint 3. If a gas leak or a hot spot is detected, go home and end the mission.",
-    ),
-    (
         "Prüfe Kontrollpunkt 3. Wird ein Gasleck erkannt, fahre nach Hause und beende die Mission.",
         "Check checkpoint 3. If a gas leak is detected, go home and end the mission.",
     ),
     (
         "Prüfe Kontrollpunkt 3. Bei Plattformalarm die Mission abbrechen.",
         "Check checkpoint 3. If a platform alarm sounds, abort the mission.",
-    ),
-    (
-        "Prüfe Kontrollpunkt 3. Wenn der Akku schwach ist, lade ihn auf.",
-        "Check checkpoint 3. If the battery is low, recharge.",
     ),
     (
         "Prüfe Kontrollpunkt 3. Wenn der Akku unter 30 % fällt, lade den Akku auf.",
@@ -251,30 +185,9 @@ PAIRS = [
     ("Prüfe Kontrollpunkt 3 mit Priorität 5.", "Check checkpoint 3 with priority 5."),
     ("Prüfe Kontrollpunkt 3 innerhalb von 10 Minuten.", "Check checkpoint 3 within 10 minutes."),
     (
-        "Prüfe Kontrollpunkt 3 spätestens 10 Minuten nach dem Start.",
-        "Check checkpoint 3 not later than 10 minutes after the start.",
-    ),
-    (
         "1. Prüfe Kontrollpunkt 3.\n2. Prüfe Kontrollpunkt 4.\n3. Wiederhole Schritte 1 "
         "bis 2 zweimal.",
         "1. Check checkpoint 3.\n2. Check checkpoint 4.\n3. Repeat steps 1 to 2 twice.",
-    ),
-    (
-        "1. Kontrollpunkt 3 prüfen.\n2. Kontrollpunkt 4 prüfen.\n3. Schritte 1 und 2 "
-        "zweimal wiederholen.",
-        "1. Check checkpoint 3.\n2. Check checkpoint 4.\n3. Repeat steps 1 and 2 twice.",
-    ),
-    (
-        "1. Kontrollpunkt 3 prüfen.\n2. Kontrollpunkt 4 prüfen.\n3. Lösche Schritt 2.",
-        "1. Check checkpoint 3.\n2. Check checkpoint 4.\n3. Delete step 2.",
-    ),
-    (
-        "1. Kontrollpunkt 3 prüfen.\n2. Füge Kontrollpunkt 5 nach Schritt 1 ein.",
-        "1. Check checkpoint 3.\n2. Add checkpoint 5 after step 1.",
-    ),
-    (
-        "1. Kontrollpunkt 3 prüfen.\n2. Ersetze Schritt 1 durch Kontrollpunkt 5.",
-        "1. Check checkpoint 3.\n2. Replace step 1 by checkpoint 5.",
     ),
     ("Prüfe Kontrollpunkt 3 und melde es.", "Check checkpoint 3 and report it."),
     (
@@ -329,25 +242,10 @@ PAIRS = [
         "checkpoint 3 is abnormal, check valve R25 and valve R12.",
     ),
     (
-        "Prüfe Kontrollpunkt 1. Prüfe Kontrollpunkt 3. Falls er höher als 5 bar ist, "
-        "prüfe Ventil R25.",
-        "Check checkpoint 1. Check checkpoint 3. If it is higher than 5 bar, check valve R25.",
-    ),
-    (
         "Prüfe Kontrollpunkt 1. Prüfe Kontrollpunkt 3. Wenn es nicht normal ist, dann "
         "Ventil R25 prüfen, ansonsten Kontrollpunkt 8 prüfen.",
         "Check checkpoint 1. Check checkpoint 3. If it is not normal, then check valve "
         "R25, otherwise check checkpoint 8.",
-    ),
-    (
-        "Prüfe Kontrollpunkt 1. Prüfe Kontrollpunkt 3. Wenn der Wert unlesbar ist, "
-        "prüfe Kontrollpunkt 3 nochmals.",
-        "Check checkpoint 1. Check checkpoint 3. If the value is unreadable, check "
-        "checkpoint 3 again.",
-    ),
-    (
-        "Prüfe Kontrollpunkt 1. Prüfe Kontrollpunkt 3. Prüfe beide nochmals.",
-        "Check checkpoint 1. Check checkpoint 3. Check both again.",
     ),
     (
         "Prüfe Kontrollpunkt 1. Prüfe Kontrollpunkt 3. Prüfe ihn noch einmal.",
@@ -375,10 +273,6 @@ PAIRS = [
         "Check all checkpoints on the second and third deck.",
     ),
     (
-        "Prüfe Kontrollpunkt 3 höchstens 5 Minuten lang.",
-        "Check checkpoint 3 for at most 5 minutes.",
-    ),
-    (
         "Warte 1 h 15, dann fahre zur Dockingstation.",
         "Wait 1 h 15, then go to the docking station.",
     ),
@@ -393,10 +287,6 @@ PAIRS = [
         "Check checkpoint 12. If the level drops below 20 %, check valve R25.",
     ),
     ("Lies den Füllstand an Füllstandsanzeige 2 ab.", "Read the level on liquid level gauge 2."),
-    (
-        "Prüfe Kontrollpunkt 3. Bei einer Störung anhalten und warten.",
-        "Check checkpoint 3. If a dysfunction occurs, pause and wait.",
-    ),
     (
         "Prüfe Kontrollpunkt 3. Wenn ein Gasleck auftritt, kehre zur Dockingstation "
         "zurück, warte auf Entwarnung und fahre dann fort.",
@@ -416,39 +306,6 @@ PAIRS = [
         "Check checkpoint 3. When the time is up, go home and end the mission.",
     ),
     (
-        "1. Kontrollpunkt 3 prüfen.\n2. Kontrollpunkt 6 prüfen. Wenn der Druck über 5 "
-        "bar liegt, springe zu Schritt 4.\n3. Kontrollpunkt 8 prüfen.\n4. Ventil R7 "
-        "prüfen.",
-        "1. Check checkpoint 3.\n2. Check checkpoint 6. If the pressure is above 5 bar, "
-        "skip to step 4.\n3. Check checkpoint 8.\n4. Check valve R7.",
-    ),
-    (
-        "1. Kontrollpunkt 3 prüfen.\n2. Kontrollpunkt 6 prüfen. Wenn der Druck über 5 "
-        "bar liegt, fahre mit Schritt 4 fort.\n3. Kontrollpunkt 8 prüfen.\n4. Ventil R7 "
-        "prüfen.",
-        "1. Check checkpoint 3.\n2. Check checkpoint 6. If the pressure is above 5 bar, "
-        "continue with step 4.\n3. Check checkpoint 8.\n4. Check valve R7.",
-    ),
-    (
-        "1. Kontrollpunkt 3 prüfen.\n2. Kontrollpunkt 4 prüfen.\n3. Führe die Schritte 1 "
-        "bis 2 dreimal aus.",
-        "1. Check checkpoint 3.\n2. Check checkpoint 4.\n3. Run steps 1 to 2 three times.",
-    ),
-    (
-        "1. Kontrollpunkt 3 prüfen.\n2. Kontrollpunkt 4 prüfen.\n3. Verschiebe Schritt 2 "
-        "vor Schritt 1.",
-        "1. Check checkpoint 3.\n2. Check checkpoint 4.\n3. Move step 2 before step 1.",
-    ),
-    (
-        "1. Kontrollpunkt 3 prüfen.\n2. Kontrollpunkt 4 prüfen.\n3. Alles zweimal wiederholen.",
-        "1. Check checkpoint 3.\n2. Check checkpoint 4.\n3. Repeat everything twice.",
-    ),
-    (
-        "Prüfe Kontrollpunkt 3. Falls das misslingt, fahre zur Dockingstation zurück "
-        "und beende die Mission.",
-        "Check checkpoint 3. If this fails, return to the docking station and end the mission.",
-    ),
-    (
         "Zunächst Kontrollpunkt 3, danach Kontrollpunkt 5 prüfen.",
         "First check checkpoint 3, then checkpoint 5.",
     ),
@@ -460,18 +317,6 @@ PAIRS = [
     (
         "Es müssen die Kontrollpunkte 3 und 5 geprüft werden.",
         "Checkpoints 3 and 5 must be checked.",
-    ),
-    (
-        "Prüfe Kontrollpunkt 3. Die Reihenfolge ist egal.",
-        "Check checkpoint 3. The order does not matter.",
-    ),
-    (
-        "Prüfe Kontrollpunkt 3. Bei einem positiven Hindernis anhalten.",
-        "Check checkpoint 3. If a positive obstacle is detected, pause.",
-    ),
-    (
-        "Prüfe Kontrollpunkt 1. Wenn der Wert 5 bar oder mehr beträgt, prüfe Ventil R25.",
-        "Check checkpoint 1. If the value is 5 bar or more, check valve R25.",
     ),
     (
         "Kontrollpunkt 3 muss vor Kontrollpunkt 5 geprüft werden. Prüfe Kontrollpunkt 3 und 5.",
@@ -541,12 +386,100 @@ PAIRS = [
 ]
 """in German and in English; `!` stands before a script that says itself where it starts"""
 
+FRAMED_PAIRS = {
+    ("Prüfe Kontrollpunkt 3. {}", "Check checkpoint 3. {}"): [
+        (
+            "Wenn ein Gasleck erkannt wird, kehre zur Dockingstation zurück und beende die "
+            "Mission.",
+            "If a gas leak is detected, return to the docking station and end the mission.",
+        ),
+        (
+            "Bei Gasleck zur Dockingstation zurückkehren und die Mission beenden.",
+            "If a gas leak is detected, return to the docking station and end the mission.",
+        ),
+        (
+            "Bei einem Gasleck oder einer heißen Stelle: nach Hause fahren und Mission beenden.",
+            "If a gas leak or a hot spot is detected, go home and end the mission.",
+        ),
+        ("Wenn der Akku schwach ist, lade ihn auf.", "If the battery is low, recharge."),
+        ("Bei einer Störung anhalten und warten.", "If a dysfunction occurs, pause and wait."),
+        (
+            "Falls das misslingt, fahre zur Dockingstation zurück und beende die Mission.",
+            "If this fails, return to the docking station and end the mission.",
+        ),
+        ("Die Reihenfolge ist egal.", "The order does not matter."),
+        ("Bei einem positiven Hindernis anhalten.", "If a positive obstacle is detected, pause."),
+    ],
+    ("Prüfe Kontrollpunkt 1. {}", "Check checkpoint 1. {}"): [
+        ("Bei mehr als 5 bar prüfe Kontrollpunkt 4.", "At more than 5 bar, check checkpoint 4."),
+        ("Auf jeden Fall prüft er dann Kontrollpunkt 4.", "In any case it checks checkpoint 4."),
+        (
+            "Wenn der Wert nicht zwischen 3 und 5 bar liegt, Kontrollpunkt 8 prüfen.",
+            "If the value is not between 3 and 5 bar, check checkpoint 8.",
+        ),
+        ("Wenn das fehlschlägt, versuche es noch einmal.", "If this fails, try again."),
+        (
+            "Prüfe Kontrollpunkt 3. Falls er höher als 5 bar ist, prüfe Ventil R25.",
+            "Check checkpoint 3. If it is higher than 5 bar, check valve R25.",
+        ),
+        (
+            "Prüfe Kontrollpunkt 3. Wenn der Wert unlesbar ist, prüfe Kontrollpunkt 3 nochmals.",
+            "Check checkpoint 3. If the value is unreadable, check checkpoint 3 again.",
+        ),
+        ("Prüfe Kontrollpunkt 3. Prüfe beide nochmals.", "Check checkpoint 3. Check both again."),
+    ],
+    ("Prüfe Kontrollpunkt 1. {}, prüfe Ventil R25.", "Check checkpoint 1. {}, check valve R25."): [
+        ("Wenn der Druck mindestens 5 bar beträgt", "If the pressure is at least 5 bar"),
+        ("Wenn der Wert 5 bar oder mehr beträgt", "If the value is 5 bar or more"),
+    ],
+    (
+        "Prüfe Kontrollpunkt 1. {}, prüfe Kontrollpunkt 8.",
+        "Check checkpoint 1. {}, check checkpoint 8.",
+    ): [
+        ("Liegt der Wert über 4,5 bar", "If the value is above 4.5 bar"),
+        ("Ist der Wert auffällig", "If the value is abnormal"),
+        ("Ist der Wert nicht zwischen 3 und 5 bar", "If the value is not between 3 and 5 bar"),
+    ],
+    ("1. Kontrollpunkt 3 prüfen.\n2. {}", "1. Check checkpoint 3.\n2. {}"): [
+        ("Kontrollpunkt 4 prüfen.\n3. Lösche Schritt 2.", "Check checkpoint 4.\n3. Delete step 2."),
+        ("Füge Kontrollpunkt 5 nach Schritt 1 ein.", "Add checkpoint 5 after step 1."),
+        ("Ersetze Schritt 1 durch Kontrollpunkt 5.", "Replace step 1 by checkpoint 5."),
+    ],
+    (
+        "1. Kontrollpunkt 3 prüfen.\n2. Kontrollpunkt 4 prüfen.\n3. {}",
+        "1. Check checkpoint 3.\n2. Check checkpoint 4.\n3. {}",
+    ): [
+        ("Schritte 1 und 2 zweimal wiederholen.", "Repeat steps 1 and 2 twice."),
+        ("Führe die Schritte 1 bis 2 dreimal aus.", "Run steps 1 to 2 three times."),
+        ("Verschiebe Schritt 2 vor Schritt 1.", "Move step 2 before step 1."),
+        ("Alles zweimal wiederholen.", "Repeat everything twice."),
+    ],
+    ("Prüfe Kontrollpunkt {}", "Check checkpoint {}"): [
+        ("3 und kehre zur Dockingstation zurück.", "3 and return to the docking station."),
+        ("3 alle 10 Minuten eine Stunde lang.", "3 every 10 minutes for an hour."),
+        ("3 alle halbe Stunde viermal.", "3 every half hour four times."),
+        ("3, bis der Wert unter 3 bar fällt.", "3 until the value is below 3."),
+        ("3 alle 10 Minuten, bis er unter 3 fällt.", "3 every 10 minutes until it is below 3."),
+        ("3 spätestens 10 Minuten nach dem Start.", "3 not later than 10 minutes after the start."),
+        ("3 höchstens 5 Minuten lang.", "3 for at most 5 minutes."),
+    ],
+    (
+        "1. Kontrollpunkt 3 prüfen.\n2. Kontrollpunkt 6 prüfen. Wenn der Druck über 5 bar liegt, "
+        "{}.\n3. Kontrollpunkt 8 prüfen.\n4. Ventil R7 prüfen.",
+        "1. Check checkpoint 3.\n2. Check checkpoint 6. If the pressure is above 5 bar, {}.\n"
+        "3. Check checkpoint 8.\n4. Check valve R7.",
+    ): [
+        ("springe zu Schritt 4", "skip to step 4"),
+        ("fahre mit Schritt 4 fort", "continue with step 4"),
+    ],
+}
+
 
 def script(text: str, start: str) -> str:
     return text[1:] if text.startswith("!") else f"{start}\n{text}"
 
 
-@pytest.mark.parametrize(("german_text", "english_text"), PAIRS)
+@pytest.mark.parametrize(("german_text", "english_text"), PAIRS + filled(FRAMED_PAIRS))
 def test_german_means_what_english_means(
     german_text: str, english_text: str, meaning_of: Callable[[str], object]
 ) -> None:
@@ -556,55 +489,11 @@ def test_german_means_what_english_means(
 
 PHRASES = [
     ("Wenn die Funkverbindung ausfällt, warte.", "If the radio link is lost, wait."),
-    (
-        "Wenn die Verbindung wiederhergestellt wird, melde es.",
-        "If the connection is restored, report it.",
-    ),
     ("Wenn ein Gegenstand im Weg liegt, halte an.", "If an object is in the way, stop."),
     ("Wenn ein Hindernis den Weg versperrt, halte an.", "If an object blocks the way, stop."),
     (
-        "Wenn der Akku fast leer ist, kehre zur Dockingstation zurück.",
-        "If the battery is almost empty, return to the docking station.",
-    ),
-    (
-        "Wenn die Batterie zu niedrig ist, kehre zur Dockingstation zurück.",
-        "If the battery is too low, return to the docking station.",
-    ),
-    (
         "Bei einer technischen Störung brich alles ab.",
         "In case of a technical fault abort the mission.",
-    ),
-    (
-        "Wenn ein Fehler am Roboter festgestellt wurde, brich die Mission ab.",
-        "If a fault of the robot was found, abort the mission.",
-    ),
-    (
-        "Wenn Kontrollpunkt 4 nicht in Ordnung ist, prüfe Kontrollpunkt 8.",
-        "If checkpoint 4 is abnormal, check checkpoint 8.",
-    ),
-    (
-        "Wenn Kontrollpunkt 4 im grünen Bereich ist, prüfe Kontrollpunkt 8.",
-        "If checkpoint 4 is in the green, check checkpoint 8.",
-    ),
-    (
-        "Wenn Kontrollpunkt 4 außerhalb der Toleranz liegt, prüfe Kontrollpunkt 8.",
-        "If checkpoint 4 is abnormal, check checkpoint 8.",
-    ),
-    (
-        "Wenn Kontrollpunkt 4 unleserlich ist, prüfe Kontrollpunkt 8.",
-        "If checkpoint 4 is illegible, check checkpoint 8.",
-    ),
-    (
-        "Wenn Kontrollpunkt 4 nicht unter 5 liegt, prüfe Kontrollpunkt 8.",
-        "If checkpoint 4 is not below 5, check checkpoint 8.",
-    ),
-    (
-        "Wenn Kontrollpunkt 4 im Bereich von 3 bis 5 liegt, prüfe Kontrollpunkt 8.",
-        "If checkpoint 4 is in the range of 3 to 5, check checkpoint 8.",
-    ),
-    (
-        "Wenn Kontrollpunkt 4 einen Wert über 5 aufweist, prüfe Kontrollpunkt 8.",
-        "If checkpoint 4 has a value above 5, check checkpoint 8.",
     ),
     (
         "Prüfe Kontrollpunkt 4. Wenn das nicht möglich ist, prüfe Kontrollpunkt 8.",
@@ -615,26 +504,10 @@ PHRASES = [
         "Prüfe alle Manometer, egal in welcher Reihenfolge.",
         "Check all pressure gauges in any order.",
     ),
-    (
-        "Prüfe Kontrollpunkt 4, falls noch genug Zeit ist.",
-        "Check checkpoint 4 if there is enough time.",
-    ),
     ("Prüfe Kontrollpunkt 4, wenn es noch Zeit gibt.", "Check checkpoint 4 if there is time."),
     ("Wenn Gefahr gebannt ist, melde es.", "If the danger is over, report it."),
     ("Warte, bis der Alarm aufgehoben ist.", "Wait until the alarm is cleared."),
     ("Warte, bis der Akku vollgeladen ist.", "Wait until the battery is fully charged."),
-    (
-        "Wenn das Zeitlimit erreicht ist, kehre zur Dockingstation zurück.",
-        "If the time limit is reached, return to the docking station.",
-    ),
-    (
-        "Wenn die maximale Dauer überschritten ist, kehre zur Dockingstation zurück.",
-        "If the maximum duration is over, return to the docking station.",
-    ),
-    (
-        "Wenn ein Gasleck entdeckt wurde, brich die Mission ab.",
-        "If a gas leak was detected, abort the mission.",
-    ),
     ("Wenn seltsame Geräusche zu hören sind, halte an.", "If strange noises are heard, stop."),
     ("Die maximale Gesamtdauer beträgt 40 Minuten.", "The maximum duration is 40 minutes."),
     ("Der Rundgang darf höchstens 40 Minuten dauern.", "The round may take at most 40 minutes."),
@@ -648,24 +521,46 @@ PHRASES = [
         "Go to starting area 2 at 0.3 m/s. Go on.",
     ),
     (
-        "Prüfe Kontrollpunkt 4, außer falls Kontrollpunkt 2 auffällig ist.",
-        "Check checkpoint 4 unless checkpoint 2 is abnormal.",
-    ),
-    (
         "Prüfe alle zwei Minuten Kontrollpunkt 4, bis er unter 3 liegt.",
         "Check checkpoint 4 every two minutes until it is below 3.",
     ),
     ("Wenn ein Loch im Boden erkannt wird, halte an.", "If a hole in the floor is detected, stop."),
-    (
-        "Wenn ein Messwert außerhalb des Normalbereichs liegt, melde es.",
-        "If a reading is out of range, report it.",
-    ),
     ("Prüfe Kontrollpunkt 4. Das war es.", "Check checkpoint 4. That is all."),
     ("Wiederhole den ganzen Rundgang zweimal.", "Repeat the whole tour twice."),
 ]
 
+FRAMED_PHRASES = {
+    ("Wenn {}, prüfe Kontrollpunkt 8.", "If {}, check checkpoint 8."): [
+        ("Kontrollpunkt 4 nicht in Ordnung ist", "checkpoint 4 is abnormal"),
+        ("Kontrollpunkt 4 im grünen Bereich ist", "checkpoint 4 is in the green"),
+        ("Kontrollpunkt 4 außerhalb der Toleranz liegt", "checkpoint 4 is abnormal"),
+        ("Kontrollpunkt 4 unleserlich ist", "checkpoint 4 is illegible"),
+        ("Kontrollpunkt 4 nicht unter 5 liegt", "checkpoint 4 is not below 5"),
+        ("Kontrollpunkt 4 im Bereich von 3 bis 5 liegt", "checkpoint 4 is in the range of 3 to 5"),
+        ("Kontrollpunkt 4 einen Wert über 5 aufweist", "checkpoint 4 has a value above 5"),
+    ],
+    ("Wenn {}, kehre zur Dockingstation zurück.", "If {}, return to the docking station."): [
+        ("der Akku fast leer ist", "the battery is almost empty"),
+        ("die Batterie zu niedrig ist", "the battery is too low"),
+        ("das Zeitlimit erreicht ist", "the time limit is reached"),
+        ("die maximale Dauer überschritten ist", "the maximum duration is over"),
+    ],
+    ("Wenn {}, melde es.", "If {}, report it."): [
+        ("die Verbindung wiederhergestellt wird", "the connection is restored"),
+        ("ein Messwert außerhalb des Normalbereichs liegt", "a reading is out of range"),
+    ],
+    ("Wenn {}, brich die Mission ab.", "If {}, abort the mission."): [
+        ("ein Fehler am Roboter festgestellt wurde", "a fault of the robot was found"),
+        ("ein Gasleck entdeckt wurde", "a gas leak was detected"),
+    ],
+    ("Prüfe Kontrollpunkt 4, {}.", "Check checkpoint 4 {}."): [
+        ("falls noch genug Zeit ist", "if there is enough time"),
+        ("außer falls Kontrollpunkt 2 auffällig ist", "unless checkpoint 2 is abnormal"),
+    ],
+}
 
-@pytest.mark.parametrize(("german_text", "english_text"), PHRASES)
+
+@pytest.mark.parametrize(("german_text", "english_text"), PHRASES + filled(FRAMED_PHRASES))
 def test_phrases_of_german_mean_what_english_ones_mean(
     german_text: str, english_text: str, meaning_of: Callable[[str], object]
 ) -> None:

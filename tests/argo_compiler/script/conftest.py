@@ -101,6 +101,14 @@ def measured(text: str, catalog: Catalog) -> list[str]:
     return measured_in(import_script(text, catalog).mission)
 
 
+Pairs = list[tuple[str, str]]
+
+
+def filled(frames: dict[tuple[str, str], Pairs]) -> Pairs:
+    """Return pairs of sentences that share words with others: frames, each with what fills it."""
+    return [(a.format(x), b.format(y)) for (a, b), rows in frames.items() for x, y in rows]
+
+
 @pytest.fixture(scope="session")
 def meaning_of() -> Callable[[str], object]:
     """What a script means: its mission, whatever its words and places."""

@@ -7,15 +7,7 @@ import pytest
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.il import EventKind
 from argo_compiler.script import import_script
-from tests.argo_compiler.script.conftest import measured, refusals
-
-Pairs = list[tuple[str, str]]
-
-
-def filled(frames: dict[tuple[str, str], Pairs]) -> Pairs:
-    """Return pairs of sentences that share words with others: frames, each with what fills it."""
-    return [(a.format(x), b.format(y)) for (a, b), rows in frames.items() for x, y in rows]
-
+from tests.argo_compiler.script.conftest import filled, measured, refusals
 
 PAIRS = [
     ("Prüfe Kontrollpunkt 3.", "Check checkpoint 3."),

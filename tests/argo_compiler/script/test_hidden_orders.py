@@ -40,18 +40,6 @@ def test_it_is_asked_about(text: str, catalog: Catalog) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "checkpoints"),
-    [
-        (f"Check checkpoint 5 first\n{START}.", ["5", "1"]),
-        (f"Hi Sam, check valve R25!\n{START}.", ["4", "1"]),
-        (f"{START}.\nRegards\nPaul\n\nand valve R25", ["1", "4"]),
-    ],
-)
-def test_it_is_read(text: str, checkpoints: list[str], catalog: Catalog) -> None:
-    assert measured(text, catalog) == checkpoints
-
-
-@pytest.mark.parametrize(
     "remark",
     [
         "Note: check checkpoint 5",
@@ -90,6 +78,9 @@ def test_a_number_is_never_put_right(catalog: Catalog) -> None:
 @pytest.mark.parametrize(
     ("text", "checkpoints"),
     [
+        (f"Check checkpoint 5 first\n{START}.", ["5", "1"]),
+        (f"Hi Sam, check valve R25!\n{START}.", ["4", "1"]),
+        (f"{START}.\nRegards\nPaul\n\nand valve R25", ["1", "4"]),
         (f"{START} (twice). Should checkpoint 1 be above 5, check #8.", ["1", "8"]),
         ("area 2 start\nvalve r31 and valve r7", ["10", "11"]),
         ("Can you check valve R25? Start in starting area 1.", ["4"]),

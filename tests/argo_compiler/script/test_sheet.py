@@ -38,12 +38,6 @@ def test_case_and_blanks_make_no_difference(catalog: Catalog) -> None:
     assert [t.name for t in mission(SHEET.replace("\n", " \r\n\r\n"), catalog).tasks] == expected
 
 
-@pytest.mark.parametrize("said", ["0'", "10 min 20 min", "5 s 1 h"])
-def test_durations_that_make_no_sense(said: str, catalog: Catalog) -> None:
-    text = SHEET.replace("20'", said)
-    assert only(text, catalog) == ("script.duration", 3, 33, len(said))
-
-
 def test_modes_and_orders(catalog: Catalog) -> None:
     assert mission(SHEET.replace("Autonomous", "Supervisory"), catalog).mode is Mode.SUPERVISORY
     any_order = HEADER + "Visit the checkpoints in any order\n" + STEP
@@ -93,11 +87,6 @@ def test_an_area_that_the_sheet_does_not_offer(catalog: Catalog) -> None:
     assert import_script(either, catalog, start_area=2).mission.start_area == 2
 
 
-def test_an_area_that_the_site_does_not_have(catalog: Catalog) -> None:
-    text = SHEET.replace('area" 1', 'area" 5')
-    assert only(text, catalog) == ("script.unknown-area", 4, 45, 1)
-
-
 def test_an_or_that_leads_to_no_area(catalog: Catalog) -> None:
     text = SHEET.replace('area" 1', 'area" 1 or so')
     assert findings(text, catalog)[0].code == "script.not-understood"
@@ -109,13 +98,6 @@ def test_an_or_that_leads_to_no_area(catalog: Catalog) -> None:
 def test_numbers_of_areas(said: str, code: str, catalog: Catalog) -> None:
     codes = [d.code for d in findings(SHEET.replace('area" 1', f'area" {said}'), catalog)]
     assert codes == ([f"script.{code}"] if code else [])
-
-
-def test_a_position_without_an_area(catalog: Catalog) -> None:
-    text = SHEET.replace('docked in "Starting area" 1', "somewhere")
-    assert only(text, catalog) == ("script.unknown-place", 4, 19, 9)
-    docked = SHEET.replace('docked in "Starting area" 1', "docked in its docking station")
-    assert only(docked, catalog) == ("script.no-area", 4, 19, 29)
 
 
 def test_a_sheet_without_areas_takes_any_that_the_options_name(catalog: Catalog) -> None:
@@ -156,6 +138,27 @@ def test_errors_and_their_places(
     assert only(SHEET + step, catalog) == (f"script.{code}", 8, column, length)
 
 
+@pytest.mark.parametrize(
+    ("right", "wrong", "found"),
+    [
+        *(
+            ("20'", said, ("duration", 3, 33, len(said)))
+            for said in ("0'", "10 min 20 min", "5 s 1 h")
+        ),
+        ('area" 1', 'area" 5', ("unknown-area", 4, 45, 1)),
+        ('docked in "Starting area" 1', "somewhere", ("unknown-place", 4, 19, 9)),
+        ('docked in "Starting area" 1', "docked in its docking station", ("no-area", 4, 19, 29)),
+        ("#4", "#1\t4", ("ambiguous-cut", 7, 16, 3)),
+        ("the position of", "the level of", ("quantity", 7, 37, 9)),
+    ],
+)
+def test_one_change_is_one_finding(
+    right: str, wrong: str, found: tuple[str, int, int, int], catalog: Catalog
+) -> None:
+    code, *place = found
+    assert only(SHEET.replace(right, wrong), catalog) == (f"script.{code}", *place)
+
+
 def test_a_mismatch_names_both_candidates(catalog: Catalog) -> None:
     (error,) = findings(SHEET.replace("R25", "R12"), catalog)
     assert error.message == "checkpoint #4 is valve R25, and valve R12 is checkpoint #5"
@@ -178,11 +181,6 @@ def test_every_bad_step_is_one_error_in_the_order_of_the_lines(catalog: Catalog)
 
 def test_a_sheet_without_checkpoints(catalog: Catalog) -> None:
     assert [d.code for d in findings(HEADER + ORDER, catalog)] == ["script.nothing-to-do"]
-
-
-def test_an_ambiguous_cut_is_one_error(catalog: Catalog) -> None:
-    text = SHEET.replace("#4", "#1\t4")
-    assert only(text, catalog) == ("script.ambiguous-cut", 7, 16, 3)
 
 
 # ---- warnings
@@ -215,11 +213,6 @@ def test_a_misspelt_word_is_a_warning(right: str, wrong: str, catalog: Catalog) 
 def test_identifiers_are_never_respelled(catalog: Catalog) -> None:
     text = SHEET.replace("#4: read the position of valve R25", "#5: read the position of valve R13")
     assert only(text, catalog)[0] == "script.unknown-checkpoint"
-
-
-def test_a_quantity_of_another_kind_is_a_warning(catalog: Catalog) -> None:
-    text = SHEET.replace("the position of", "the level of")
-    assert only(text, catalog) == ("script.quantity", 7, 37, 9)
 
 
 def test_a_gap_in_the_numbers_is_a_warning(catalog: Catalog) -> None:

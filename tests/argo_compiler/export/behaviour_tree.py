@@ -99,22 +99,20 @@ class Interpreter:
         return (yield from getattr(self, node.tag)(node))
 
     def Sequence(self, node):  # noqa: N802
-        skipped = 0
-        for child in node:
-            result = yield from self.node(child)
-            skipped += result is None
-            if result is False:
-                return False
-        return None if skipped == len(node) else True
+        return self.in_turn(node, until=False)
 
     def Fallback(self, node):  # noqa: N802
+        return self.in_turn(node, until=True)
+
+    def in_turn(self, node, until):
+        """The children one after the other, up to the first with that result."""
         skipped = 0
         for child in node:
             result = yield from self.node(child)
             skipped += result is None
-            if result:
-                return True
-        return None if skipped == len(node) else False
+            if result is until:
+                return until
+        return None if skipped == len(node) else not until
 
     def ForceSuccess(self, node):  # noqa: N802
         result = yield from self.node(node[0])

@@ -76,6 +76,14 @@ def kept(found):
     return [p.words for p in found.problem.precedences]
 
 
+def prizes(found):
+    return [(v.mandatory, v.prize) for v in found.problem.visits]
+
+
+def windows(found):
+    return [(v.earliest, v.latest) for v in found.problem.visits]
+
+
 @pytest.mark.rule("M7")
 def test_the_order_says_what_may_move_and_nothing_to_the_machine():
     precise, free = (row(measure(4), measure(8), order=order) for order in Order)
@@ -225,9 +233,7 @@ def test_a_budget_makes_all_optional_that_is_not_mandatory():
     group = Group(name="G", start="M1", end="M2", max_repeat_count=2)
     mission = row(measure(1), measure(2), measure(3), measure(4), groups=(group,), max_duration=90)
     found = planned(mission, budget=60.0, mandatory=[3], optional=[{"what": "G", "priority": 5}])
-    assert [(v.mandatory, v.prize) for v in found.problem.visits] == [
-        (False, 5), (False, 5), (True, 0), (False, 1),
-    ]  # fmt: skip
+    assert prizes(found) == [(False, 5), (False, 5), (True, 0), (False, 1)]
     assert found.problem.max_duration == 60
     assert found.problem.words == {"max_duration": "budget 1 min"}
     alone = planned(mission)
@@ -246,16 +252,8 @@ def test_what_is_asked_for_of_tasks_is_written_into_the_mission():
         optional=[{"what": 1, "priority": 3}],
     )
     # A measurement takes 2 itself: it is begun so much before it has to have ended.
-    assert [(v.earliest, v.latest) for v in found.problem.visits] == [
-        (0, None),
-        (60, 118),
-        (5, None),
-    ]
-    assert [(v.mandatory, v.prize) for v in found.problem.visits] == [
-        (False, 3),
-        (True, 0),
-        (True, 0),
-    ]
+    assert windows(found) == [(0, None), (60, 118), (5, None)]
+    assert prizes(found) == [(False, 3), (True, 0), (True, 0)]
     one, two, three, _ = apply_route(found, found.written).tasks
     assert (one.optional, one.priority, one.window) == (True, 3, None)
     assert two.window == TimeWindow(earliest=60, latest=120, missed_target="DOCK")
@@ -272,16 +270,8 @@ def test_a_mission_says_what_is_optional_and_when():
         measure(3, window=soft),
     )
     found = planned(mission)
-    assert [(v.mandatory, v.prize) for v in found.problem.visits] == [
-        (False, 7),
-        (True, 0),
-        (True, 0),
-    ]
-    assert [(v.earliest, v.latest) for v in found.problem.visits] == [
-        (0, None),
-        (20, 38),
-        (0, None),
-    ]
+    assert prizes(found) == [(False, 7), (True, 0), (True, 0)]
+    assert windows(found) == [(0, None), (20, 38), (0, None)]
     assert list(late_visits(found, found.written)) == [
         "checkpoint 3 is done at 32 s, after its soft time window: 30 s"
     ]

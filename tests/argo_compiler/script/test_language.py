@@ -132,33 +132,33 @@ def test_comparisons(
 
 
 @pytest.mark.parametrize(
-    ("lines", "ways"),
+    ("said", "ways"),
     [
-        (["if it is above 5, go to step 2"], {"MEASURE 8": [("MEASURE 1", 1), ("WAYPOINT 1", 0)]}),
+        ("if it is above 5, go to step 2", {"MEASURE 8": [("MEASURE 1", 1), ("WAYPOINT 1", 0)]}),
         (
-            ["if it is above 5, go to step 2; otherwise end the mission"],
+            "if it is above 5, go to step 2; otherwise end the mission",
             {"MEASURE 8": [("MEASURE 1", 1)]},
         ),
         (
-            ["if it is above 5 or it is below 1, go to step 2"],
+            "if it is above 5 or it is below 1, go to step 2",
             {"MEASURE 8": [("MEASURE 1", 1), ("MEASURE 1", 1), ("WAYPOINT 1", 0)]},
         ),
         (
-            ["if it is above 5 and checkpoint #4 is below 1, go to step 2"],
+            "if it is above 5 and checkpoint #4 is below 1, go to step 2",
             {"MEASURE 8": [("MEASURE 1", 2), ("WAYPOINT 1", 0)]},
         ),
         (
-            ["in all other cases, go on; if it is above 5, go to step 2"],
+            "in all other cases, go on; if it is above 5, go to step 2",
             {"MEASURE 8": [("WAYPOINT 1", 0), ("MEASURE 1", 1)]},
         ),
-        (["then go to step 2"], {"MEASURE 8": [("MEASURE 1", 0)]}),
-        (["then end the mission"], {"MEASURE 8": []}),
+        ("then go to step 2", {"MEASURE 8": [("MEASURE 1", 0)]}),
+        ("then end the mission", {"MEASURE 8": []}),
         (
-            ["if it is above 5, return to the docking station"],
+            "if it is above 5, return to the docking station",
             {"MEASURE 8": [("DOCK", 1), ("WAYPOINT 1", 0)], "WAYPOINT 1": [], "DOCK": []},
         ),
         (
-            ["if it is above 5, check checkpoint #2 and check checkpoint #3"],
+            "if it is above 5, check checkpoint #2 and check checkpoint #3",
             {
                 "MEASURE 8": [("MEASURE 2", 1), ("WAYPOINT 1", 0)],
                 "MEASURE 2": [("MEASURE 3", 0)],
@@ -166,7 +166,7 @@ def test_comparisons(
             },
         ),
         (
-            ["if it is above 5, check checkpoint #2; otherwise check checkpoint #3"],
+            "if it is above 5, check checkpoint #2; otherwise check checkpoint #3",
             {
                 "MEASURE 8": [("MEASURE 2", 1), ("MEASURE 3", 0)],
                 "MEASURE 2": [("WAYPOINT 1", 0)],
@@ -175,12 +175,10 @@ def test_comparisons(
         ),
     ],
 )
-def test_ways_to_go_on(
-    lines: list[str], ways: dict[str, list[tuple[str, int]]], catalog: Catalog
-) -> None:
+def test_ways_to_go_on(said: str, ways: dict[str, list[tuple[str, int]]], catalog: Catalog) -> None:
     text = (
         "Mission Protocol\n1. Set a starting point in starting area 1\n2. Check checkpoint #1\n"
-        f"3. Check checkpoint #8; {lines[0]}.\n4. Go to the front of the site\n"
+        f"3. Check checkpoint #8; {said}.\n4. Go to the front of the site\n"
     )
     mission = import_script(text, catalog).mission
     for name, expected in ways.items():

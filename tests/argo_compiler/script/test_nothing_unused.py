@@ -1,5 +1,7 @@
 """What is said of an order is in the plan, or an error at its place: each clause, each order."""
 
+from itertools import product
+
 import pytest
 
 from argo_compiler.diagnostics import DiagnosticError
@@ -76,24 +78,20 @@ CLAUSES = {
     "high priority": "with high priority",
     "by importance": "by importance",
 }
+PLANNED_ONCE_MORE = (
+    "wait",
+    "wait until",
+    "measure",
+    "measure several",
+    "bare",
+    "go",
+    "home",
+    "add",
+    "case",
+)
 SAME = {
-    ("patrol", "stopping"),
-    ("patrol for", "stopping"),
-    ("repeat", "stopping"),
-    ("follow", "stopping"),
-    ("patrol", "circles"),
-    ("patrol for", "circles"),
-    ("repeat", "circles"),
-    ("follow", "circles"),
-    ("wait", "again"),
-    ("wait until", "again"),
-    ("measure", "again"),
-    ("measure several", "again"),
-    ("bare", "again"),
-    ("go", "again"),
-    ("home", "again"),
-    ("add", "again"),
-    ("case", "again"),
+    *product(("patrol", "patrol for", "repeat", "follow"), ("stopping", "circles")),
+    *((order, "again") for order in PLANNED_ONCE_MORE),
 }
 """what a plan has anyway: a round goes in circles and stops at once, and what is planned once more
 is in it once more"""

@@ -92,12 +92,6 @@ def test_original_sheet(originals: Path, catalog: Catalog) -> None:
     assert (task.source.line, task.source.column) == (17, 4)
 
 
-def test_original_protocol(originals: Path, catalog: Catalog) -> None:
-    resolved = import_script(read_script(originals / "protocol_2.txt"), catalog)
-    assert warnings(resolved) == []
-    assert_protocol_2(resolved.mission, catalog)
-
-
 def test_shipped_sheet(missions: Path, catalog: Catalog) -> None:
     text = read_script(missions / "mission_1.txt")
     resolved = import_script(text, catalog, start_area=2, end_area=1)
@@ -110,8 +104,10 @@ def test_shipped_sheet(missions: Path, catalog: Catalog) -> None:
     assert resolved.mission.after_mission_report == "All readings, and every anomaly once more"
 
 
-def test_shipped_protocol(missions: Path, catalog: Catalog) -> None:
-    resolved = import_script(read_script(missions / "protocol_2.txt"), catalog)
+@pytest.mark.parametrize("folder", ["originals", "missions"])
+def test_protocol(folder: str, catalog: Catalog, request: pytest.FixtureRequest) -> None:
+    path = request.getfixturevalue(folder) / "protocol_2.txt"
+    resolved = import_script(read_script(path), catalog)
     assert warnings(resolved) == []
     assert_protocol_2(resolved.mission, catalog)
 

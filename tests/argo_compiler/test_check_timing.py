@@ -42,11 +42,6 @@ def test_a_wait_says_how_long_in_one_way(rule):
     assert "il.wait-rule" in [finding.code for finding in findings]
 
 
-def test_a_wait_without_a_limit_is_named():
-    finding = one(wait("W", event="all_clear"))
-    assert (finding.code, finding.severity) == ("il.wait-without-limit", Severity.WARNING)
-
-
 @pytest.mark.parametrize(
     ("task", "field"),
     [
@@ -68,25 +63,6 @@ def test_what_has_no_effect_is_named(task, field):
     finding = one(task)
     assert (finding.code, finding.severity) == ("il.unused-field", Severity.WARNING)
     assert field in finding.subject
-
-
-@pytest.mark.parametrize(
-    ("code", "task"),
-    [
-        ("il.branch-without-target", measure("A", on_failure="branch")),
-        ("il.unknown-target", measure("A", on_failure="branch", failure_target="Z")),
-        ("il.unknown-target", measure("A", window=TimeWindow(latest=9, missed_target="Z"))),
-        ("il.window-order", measure("A", window=TimeWindow(earliest=9, latest=9))),
-        ("il.condition-bound", measure("A", "A", when("A", low=None))),
-        ("il.stale-without-age", measure("A", "A", when("A", ConditionType.STALE, low=None))),
-        ("il.joint-states", measure("A", joint_states=JointState(names=["a"], efforts=[1, 2]))),
-        ("il.joint-states", measure("A", joint_states=JointState(names=["a"]))),
-    ],
-)
-def test_errors_of_what_tasks_say_about_time(code, task):
-    finding = one(task)
-    assert (finding.code, finding.severity) == (code, Severity.ERROR)
-    assert finding.hint
 
 
 @pytest.mark.rule("T10")

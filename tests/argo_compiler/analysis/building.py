@@ -68,12 +68,12 @@ def mission(*tasks, groups=(), **more):
 class Steady:
     """Every way takes 10 s and 1 Wh, but none to where the robot is; a measurement takes 2 s."""
 
-    battery = 100.0
     clean_up = 1.0
     standing_power = 0.0
 
-    def __init__(self, blocked=()):
+    def __init__(self, blocked=(), battery=100.0):
         self.blocked = blocked
+        self.battery = battery
 
     def start(self, mission):  # noqa: ARG002
         return "start"

@@ -212,9 +212,7 @@ def test_a_time_out_need_not_come_after_a_whole_round():
         task("T2"),
         groups=[group("G", "T0m1", "T2", max_repeat_duration=8, max_repeat_count=3, **HARD)],
     )
-    travel = Costly()
-    travel.battery = 5.0
-    found = analyse(plan, CATALOG, travel)
+    found = analyse(plan, CATALOG, Costly(battery=5.0))
     assert found.energy.least.value <= 0.4
     assert "analysis.battery-exceeded" not in {d.code for d in found.diagnostics}
 

@@ -114,8 +114,7 @@ def test_the_maximum_duration(limit, expected):
     [(3.0, None), (2.5, "battery-maybe-exceeded"), (1.5, "battery-exceeded")],
 )
 def test_the_battery(battery, expected):
-    travel = Steady()
-    travel.battery = battery
+    travel = Steady(battery=battery)
     made = mission(task("Am1", way("C", "1 < 5"), "B"), task("B", "C"), "C")
     assert set(findings(made, travel)) == ({expected} if expected else set())
 
@@ -232,8 +231,7 @@ def test_the_time_before_a_window_opens_does_not_count_for_the_limit():
 
 
 def test_the_way_back_with_a_reserve():
-    travel = Steady()
-    travel.battery = 5.0
+    travel = Steady(battery=5.0)
     # Each way takes 1 Wh, the way back too, and 1 Wh is to be left.
     made = mission("A", "B", "C", "D", dock=DOCK)
     found = findings(made, travel)
@@ -244,7 +242,6 @@ def test_the_way_back_with_a_reserve():
 
 
 def test_a_robot_that_may_charge_meanwhile_may_go_farther():
-    travel = Steady()
-    travel.battery = 1.5
+    travel = Steady(battery=1.5)
     stays = wait("W", "B", duration=3600)
     assert set(findings(mission(task("A", "W"), stays, "B"), travel)) == {"battery-maybe-exceeded"}

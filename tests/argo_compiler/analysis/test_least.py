@@ -111,8 +111,7 @@ def test_what_usual_missions_take_at_least_is_shown(name):
 def test_what_the_battery_and_windows_need_is_shown():
     windowed = task("D", window=TimeWindow(latest=20))
     plan = mission(*COUNTED.tasks[:3], windowed, groups=COUNTED.groups)
-    travel = Steady()
-    travel.battery = 5.0
+    travel = Steady(battery=5.0)
     analysis = analyse(plan, CATALOG, travel)
     found = {d.code for d in analysis.diagnostics}
     assert {"analysis.window-missed", "analysis.battery-exceeded"} <= found

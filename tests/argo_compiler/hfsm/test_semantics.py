@@ -248,15 +248,6 @@ class TestDurations:
             stop=stop,
         )
 
-    def test_soft_completes_the_round(self):
-        executor = drive(build("A B C", self.group(Stop.SOFT, 3)))
-        assert path(executor) == "A@0 B@1 A@2 B@3 C@4 end@5"
-
-    @pytest.mark.rule("G8", "G10")
-    def test_soft_wants_no_round_exactly_at_its_time(self):
-        executor = drive(build("A B C", self.group(Stop.SOFT, 2)))
-        assert path(executor) == "A@0 B@1 C@2 end@3"
-
     @pytest.mark.rule("G10")
     def test_hard_leaves_at_once(self):
         executor = drive(build("A B C", self.group(Stop.HARD, 2.5)))
@@ -270,13 +261,18 @@ class TestDurations:
         assert path(executor) == "A@0 B@1 A@2 B@3 C@3 end@4"
         assert executor.values["A"].value == 2
 
+    @pytest.mark.rule("G8", "G10")
     @pytest.mark.parametrize(
-        ("count", "duration", "expected"),
-        [(1, 9, "A@0 B@1 C@2 end@3"), (9, 2.5, "A@0 B@1 A@2 C@2.5 end@3.5")],
+        ("stop", "duration", "count", "expected"),
+        [
+            (Stop.SOFT, 3, 0, "A@0 B@1 A@2 B@3 C@4 end@5"),
+            (Stop.SOFT, 2, 0, "A@0 B@1 C@2 end@3"),  # no round is wanted exactly at its time
+            (Stop.HARD, 9, 1, "A@0 B@1 C@2 end@3"),
+            (Stop.HARD, 2.5, 9, "A@0 B@1 A@2 C@2.5 end@3.5"),
+        ],
     )
-    def test_whichever_limit_comes_first(self, count, duration, expected):
-        executor = drive(build("A B C", self.group(Stop.HARD, duration, count)))
-        assert path(executor) == expected
+    def test_whichever_limit_comes_first(self, stop, duration, count, expected):
+        assert path(drive(build("A B C", self.group(stop, duration, count)))) == expected
 
     @pytest.mark.rule("G2")
     def test_clock_starts_at_the_entry(self):

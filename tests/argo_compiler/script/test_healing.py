@@ -62,9 +62,19 @@ def test_each_healed_word_is_a_warning_with_both_forms() -> None:
         ("Checkpoint #\t8", "Checkpoint # 8"),
         ("1.\tCheckpoint", "1. Checkpoint"),
         ("\t\tthe value\t", "\tthe value"),
+        # typographic variants
+        ("\ufeffthe value", "the value"),
+        ("the\r\nvalue\rhere", "the\nvalue\nhere"),
+        ("20′", "20'"),
+        ("“Starting area” 1", '"Starting area" 1'),
+        ("the\u00a0value", "the value"),
+        ("checkpoint **after** it", "checkpoint after it"),
+        ("val\u00adue", "value"),
+        ("ﬁrst ﬂoor", "first floor"),
+        ("value  \t ", "value"),
     ],
 )
-def test_a_tab_that_separates_becomes_a_blank_without_a_word(text: str, expected: str) -> None:
+def test_what_is_put_right_without_a_word(text: str, expected: str) -> None:
     result = heal(text, VOCABULARY)
     assert result.text == expected
     assert result.diagnostics == ()
@@ -100,26 +110,6 @@ def test_intact_letters_come_before_doubled_ones_and_those_before_lost_ones() ->
     assert healed("on\tne", frozenset({"onne", "one", "onxne"})) == "onne"
     assert healed("on\tne", frozenset({"one", "onxne"})) == "one"
     assert healed("on\tne", frozenset({"onxne"})) == "onxne"
-
-
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("\ufeffthe value", "the value"),
-        ("the\r\nvalue\rhere", "the\nvalue\nhere"),
-        ("20′", "20'"),
-        ("“Starting area” 1", '"Starting area" 1'),
-        ("the\u00a0value", "the value"),
-        ("checkpoint **after** it", "checkpoint after it"),
-        ("val\u00adue", "value"),
-        ("ﬁrst ﬂoor", "first floor"),
-        ("value  \t ", "value"),
-    ],
-)
-def test_typographic_variants(text: str, expected: str) -> None:
-    result = heal(text, VOCABULARY)
-    assert result.text == expected
-    assert result.diagnostics == ()
 
 
 def test_a_line_that_is_too_long_is_refused_alone() -> None:

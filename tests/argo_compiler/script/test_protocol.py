@@ -201,13 +201,16 @@ def test_an_edit_of_what_was_not_understood_is_no_second_error(catalog: Catalog)
     assert only(text, catalog)[1] == 3
 
 
-@pytest.mark.parametrize("text", ["Mission Protocol #2", START, START + "2. Done!"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Mission Protocol #2",
+        START,
+        START + "2. Done!",
+        steps("Check checkpoint #1", "Delete checkpoint #1"),
+    ],
+)
 def test_nothing_to_do(text: str, catalog: Catalog) -> None:
-    assert [d.code for d in findings(text, catalog)] == ["script.nothing-to-do"]
-
-
-def test_a_deleted_plan_is_nothing_to_do(catalog: Catalog) -> None:
-    text = steps("Check checkpoint #1", "Delete checkpoint #1")
     assert [d.code for d in findings(text, catalog)] == ["script.nothing-to-do"]
 
 

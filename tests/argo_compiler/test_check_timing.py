@@ -21,11 +21,6 @@ from tests.mission_writing import wait
 HERE = Pose(x=0, y=0, z=0, yaw=0)
 
 
-def one(*tasks, **fields):
-    (finding,) = check(Mission(tasks=tasks, **fields))
-    return finding
-
-
 @pytest.mark.rule("T1")
 @pytest.mark.parametrize(
     "rule",
@@ -53,14 +48,11 @@ def test_a_wait_says_how_long_in_one_way(rule):
         (measure("A", window=TimeWindow(latest=9, hard=False, missed_target="A")), "window.missed"),
         (measure("A", window=TimeWindow(earliest=9, missed_target="A")), "window.missed"),
         (Task(name="A", action="WAYPOINT", pose=HERE, reading_limit=3), "reading_limit"),
-        (
-            measure("A", "A", when("A", ConditionType.FAILED, low=3)),
-            "param1",
-        ),
+        (measure("A", "A", when("A", ConditionType.FAILED, low=3)), "param1"),
     ],
 )
 def test_what_has_no_effect_is_named(task, field):
-    finding = one(task)
+    (finding,) = check(Mission(tasks=(task,)))
     assert (finding.code, finding.severity) == ("il.unused-field", Severity.WARNING)
     assert field in finding.subject
 

@@ -10,6 +10,7 @@ import time
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -320,18 +321,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
             radius, temperature = float(rng.uniform(0.08, 0.25)), float(rng.uniform(70, 150))
             return place and HotSpot(place, radius, temperature)
 
-        def pump(fault: PumpFault) -> Callable[[Track, np.random.Generator], PumpSound | None]:
-            def make(track: Track, rng: np.random.Generator) -> PumpSound | None:
-                near = [n for n, p in pump_places(site).items() if nearest(track, p) < 2.5]
-                return PumpSound(near[int(rng.integers(len(near)))], fault) if near else None
-
-            return make
+        def pump(fault: PumpFault, track: Track, rng: np.random.Generator) -> PumpSound | None:
+            near = [n for n, p in pump_places(site).items() if nearest(track, p) < 2.5]
+            return PumpSound(near[int(rng.integers(len(near)))], fault) if near else None
 
         for name, kind, watch, make in (
             ("gas leak", EventKind.GAS_LEAK, "gas", leak),
             ("hot spot", EventKind.HOT_SPOT, "heat", spot),
-            ("bearing", EventKind.ABNORMAL_SOUND, "pumps", pump(PumpFault.BEARING)),
-            ("cavitation", EventKind.ABNORMAL_SOUND, "pumps", pump(PumpFault.CAVITATION)),
+            ("bearing", EventKind.ABNORMAL_SOUND, "pumps", partial(pump, PumpFault.BEARING)),
+            ("cavitation", EventKind.ABNORMAL_SOUND, "pumps", partial(pump, PumpFault.CAVITATION)),
             ("alarm", EventKind.PLATFORM_ALARM, "alarm", lambda *_: Alarm()),
         ):
             tell(name, [source(kind, watch, make, world, tracks, k) for k in placements])

@@ -4,18 +4,10 @@ from itertools import cycle
 
 from hypothesis import strategies as st
 
-from argo_compiler.hfsm import (
-    ActionFailed,
-    ActionStopped,
-    ActionSucceeded,
-    Executor,
-    Outcome,
-    StartAction,
-    Tick,
-    lower,
-)
+from argo_compiler.hfsm import ActionFailed, ActionSucceeded, Outcome
 from argo_compiler.il import Action, OnFailure, TimeWindow, Transition, WaitRule
 from tests.argo_compiler.export.missions import structured_missions
+from tests.argo_compiler.hfsm.play import carry_out
 from tests.mission_parts import conditions_of_readings
 
 OUTCOMES = [*(o for o in Outcome if o is not Outcome.COMPLETED_WITH_FAILURES)]
@@ -29,40 +21,21 @@ def executed(mission, outcomes, steps):
     As in the stand-ins for other tools, a value of 5 or more is abnormal, and a failure that has a
     value is one of reading.
     """
-    executor, drawn = Executor(lower(mission)), cycle(outcomes)
-    now, log, running, ends = 0, [], None, None
-    commands = executor.start(now)
-    while True:
-        for command in commands:
-            if isinstance(command, StartAction):
-                if len(log) == steps:
-                    return log, None
-                log.append((now, command.task.name))
-                running, ends = command, None
-            else:
-                running = None
-                commands = executor.handle(ActionStopped(command.task, id=command.id), now)
-                break
+    drawn = cycle(outcomes)
+
+    def doing(command, now):
+        duration, value, failed = next(drawn)
+        task, id = command.task, command.id
+        measured = value if task.action is Action.MEASURE else None
+        known = measured is not None
+        if failed:
+            end = ActionFailed(task.name, "failed", unreadable=known, id=id)
         else:
-            if executor.outcome is not None:
-                return log, executor.outcome
-            due = executor.next_deadline
-            if running is not None and ends is None:
-                duration, value, failed = next(drawn)
-                ends = max(now, running.not_before or now) + duration
-            if running is None or (due is not None and due < ends):
-                assert due is not None
-                now, commands = due, executor.handle(Tick(), due)
-                continue
-            now, task, id = ends, running.task.name, running.id
-            measured = value if running.task.action is Action.MEASURE else None
-            running = None
-            if failed:
-                end = ActionFailed(task, "failed", unreadable=measured is not None, id=id)
-            else:
-                abnormal = measured is not None and measured >= 5
-                end = ActionSucceeded(task, measured, abnormal=abnormal, id=id)
-            commands = executor.handle(end, now)
+            end = ActionSucceeded(task.name, measured, abnormal=known and measured >= 5, id=id)
+        return max(now, command.not_before or now) + duration, lambda: end
+
+    executor, log, _ = carry_out(mission, doing, steps)
+    return log, executor.outcome
 
 
 @st.composite

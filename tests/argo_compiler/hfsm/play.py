@@ -1,6 +1,6 @@
-"""Short ways to write a mission and what its machine is told, and two ways to drive one."""
+"""Short ways to write a mission and what its machine is told, and ways to drive one."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from itertools import pairwise
 
 from argo_compiler.hfsm import (
@@ -8,7 +8,7 @@ from argo_compiler.hfsm import (
     ActionStopped,
     ActionSucceeded,
     CancelAction,
-    Command,
+    Event,
     Executor,
     StartAction,
     Tick,
@@ -47,8 +47,8 @@ def well(name, value=None):
     return ActionSucceeded(name, value)
 
 
-def badly(name):
-    return ActionFailed(name, "stuck")
+def badly(name, why="stuck"):
+    return ActionFailed(name, why)
 
 
 def started(mission: Mission) -> Executor:
@@ -70,40 +70,67 @@ def build(names: str, *groups: Group, ways: Ways | None = None) -> Mission:
     )
 
 
+Ending = tuple[float, Callable[[], Event]]
+"""when an action ends, and what is then told of it"""
+
+
+def carry_out(
+    mission: Mission, doing: Callable[[StartAction, float], Ending], most: int
+) -> tuple[Executor, list[tuple[float, str]], float]:
+    """Run a mission from 0 s on, to its end or until it begins more than `most` actions.
+
+    `doing` says of an action that is begun, and when, how it ends; one that is cancelled stops at
+    once. Returns the machine, the actions with the times of their starts, and the time.
+    """
+    executor = Executor(lower(mission))
+    now, begun, running, ending = 0.0, [], None, None
+    commands = executor.start(now)
+    while True:
+        for command in commands:
+            if isinstance(command, CancelAction):
+                running = None
+                commands = executor.handle(ActionStopped(command.task, id=command.id), now)
+                break
+            if len(begun) == most:
+                return executor, begun, now
+            begun.append((now, command.task.name))
+            running, ending = command, None
+        else:
+            if executor.finished:
+                return executor, begun, now
+            due = executor.next_deadline
+            if running is not None and ending is None:
+                ending = doing(running, now)
+            if running is None or (due is not None and due < ending[0]):
+                assert due is not None
+                now, commands = due, executor.handle(Tick(), due)
+            else:
+                (now, told), running = ending, None
+                commands = executor.handle(told(), now)
+
+
 def drive(
     mission: Mission,
     takes: Mapping[str, float] | None = None,
     reads: Mapping[str, Iterable[float | None]] | None = None,
-    steps: int = 100,
+    most: int = 100,
 ) -> Executor:
     """Run a mission from 0 s on; each action takes 1 s unless `takes` says otherwise.
 
     `reads` gives, by task, the values of its executions in turn; None is a failure.
     """
-    executor = Executor(lower(mission))
     readings = {name: iter(values) for name, values in (reads or {}).items()}
-    ends_at = 0.0
 
-    def note(commands: tuple[Command, ...], now: float) -> None:
-        nonlocal ends_at
-        for command in commands:
-            if isinstance(command, CancelAction):
-                note(executor.handle(ActionStopped(command.task), now), now)
-            elif isinstance(command, StartAction):
-                ends_at = now + (takes or {}).get(command.task.name, 1.0)
+    def doing(command: StartAction, now: float) -> Ending:
+        name = command.task.name
 
-    note(executor.start(0.0), 0.0)
-    while not executor.finished and len(executor.trace) < steps:
-        deadline = executor.next_deadline
-        if deadline is not None and deadline < ends_at:
-            note(executor.handle(Tick(), deadline), deadline)
-            continue
-        assert executor.running is not None
-        name = executor.running.name
-        value = next(readings[name], 0.0) if name in readings else 0.0
-        event = ActionFailed(name, "no view") if value is None else ActionSucceeded(name, value)
-        note(executor.handle(event, ends_at), ends_at)
-    return executor
+        def told() -> Event:
+            value = next(readings[name], 0.0) if name in readings else 0.0
+            return badly(name, "no view") if value is None else well(name, value)
+
+        return now + (takes or {}).get(name, 1.0), told
+
+    return carry_out(mission, doing, most)[0]
 
 
 def path(executor: Executor) -> str:

@@ -81,7 +81,7 @@ class TestTasks:
     @pytest.mark.parametrize(("takes", "reached"), [(5.0, "A"), (5.5, "end")])
     def test_value_counts_up_to_its_greatest_age(self, takes, reached):
         mission = build("A B", ways={"B": [when("A", greater("A", 0, max_age=5))]})
-        executor = drive(mission, takes={"B": takes}, reads={"A": [1, 0]}, steps=3)
+        executor = drive(mission, takes={"B": takes}, reads={"A": [1, 0]})
         assert (executor.trace[2].target or "end") == reached
 
     @pytest.mark.parametrize("inclusive", [False, True])
@@ -306,7 +306,7 @@ class TestDurations:
     @pytest.mark.rule("G6")
     def test_time_out_back_into_the_group_enters_it_anew(self):
         mission = build("A B", self.group(Stop.HARD, 1.5), ways={"B": ["A"]})
-        executor = drive(mission, steps=6)
+        executor = drive(mission, most=5)
         assert path(executor) == "A@0 B@1 A@1.5 B@2.5 A@3 B@4"
 
 

@@ -1,22 +1,13 @@
 """Random missions as people write them: tasks in a row, detours, loops, ways home, and groups."""
 
-from collections import Counter
 from dataclasses import dataclass
-from itertools import count
+from itertools import count, cycle
 
 import numpy as np
 from hypothesis import strategies as st
 
 from argo_compiler.base.model import Pose
-from argo_compiler.hfsm import (
-    ActionFailed,
-    ActionStopped,
-    ActionSucceeded,
-    CancelAction,
-    Executor,
-    Tick,
-    lower,
-)
+from argo_compiler.hfsm import ActionFailed, ActionSucceeded
 from argo_compiler.il import (
     Action,
     Condition,
@@ -33,6 +24,7 @@ from argo_compiler.il import (
 )
 from argo_compiler.reorder.travel_matrix import TravelMatrix
 from argo_compiler.route import Tour, evaluate
+from tests.argo_compiler.hfsm import play
 from tests.mission_writing import drive, measure
 
 HERE, DOCK = Pose(x=0, y=0, z=0), Pose(x=9, y=9, z=0)
@@ -253,40 +245,28 @@ def carry_out(mission, ways, values, steps=400, fails=frozenset()):
     `values`: for each checkpoint what its measurements show, one after the other and then again
     from the first. `fails`: names of tasks whose actions fail.
     """
-    executor = Executor(lower(mission))
     number = {name: k for k, name in enumerate(ways.tasks)}
-    place, now, done = len(ways.tasks), 0.0, []
-    measured = Counter()
-    commands = executor.start(now)
-    running, ends = None, None
-    while not executor.finished and len(done) < steps:
-        for command in commands:
-            if isinstance(command, CancelAction):
-                running = None
-                commands = executor.handle(ActionStopped(command.task), now)
-                break
-            running, to = command.task, number[command.task.name]
-            work = ways.work[to]
-            there = now + (ways.time[place, to] - work) * ways.unit
-            ends = max(there, command.not_before or 0.0) + work * ways.unit
-        else:
-            due = executor.next_deadline
-            if running is None or (due is not None and due < ends):
-                assert due is not None
-                now, commands = due, executor.handle(Tick(), due)
-                continue
-            task, now, running = running, ends, None
-            place = number[task.name]
+    shown = {object_id: cycle(found) for object_id, found in values.items()}
+    done = []
+
+    def doing(command, now):
+        task, to = command.task, number[command.task.name]
+        place = number[done[-1]] if done else len(ways.tasks)
+        work = ways.work[to]
+        there = now + (ways.time[place, to] - work) * ways.unit
+
+        def told():
             done.append(task.name)
             if task.name in fails:
-                commands = executor.handle(ActionFailed(task.name, "failed"), now)
-                continue
-            value = None
-            if task.action is Action.MEASURE:
-                shown = values[task.object_id]
-                value = float(shown[measured[task.object_id] % len(shown)])
-                measured[task.object_id] += 1
-            commands = executor.handle(ActionSucceeded(task.name, value), now)
+                return ActionFailed(task.name, "failed")
+            measures = task.action is Action.MEASURE
+            return ActionSucceeded(
+                task.name, float(next(shown[task.object_id])) if measures else None
+            )
+
+        return max(there, command.not_before or 0.0) + work * ways.unit, told
+
+    executor, _, now = play.carry_out(mission, doing, steps)
     return Done(done, now, executor.finished, executor.outcome)
 
 

@@ -59,10 +59,7 @@ PAIRS = [
         "Im zweiten Stock alle Kontrollpunkte in dieser Reihenfolge prüfen, außer Ventil R12.",
         "Check all checkpoints on the second floor in this order, except valve R12.",
     ),
-    (
-        "Im zweiten Stock wird das Ventil geprüft.",
-        "On the second floor, check the valve.",
-    ),
+    ("Im zweiten Stock wird das Ventil geprüft.", "On the second floor, check the valve."),
     (
         "Mit höchstens 0,3 m/s zu Ventil R9 fahren und es prüfen.",
         "Go to valve R9 at no more than 0.3 m/s and check it.",

@@ -326,10 +326,7 @@ def test_rounds_lie_in_rounds(catalog: Catalog) -> None:
             "When the battery is low, go to the docking station, recharge and resume",
             ("low_battery", "return", "battery_charged", "resume"),
         ),
-        (
-            "In case of an emergency stop, stop and wait",
-            ("emergency_stop", "pause", None, "end"),
-        ),
+        ("In case of an emergency stop, stop and wait", ("emergency_stop", "pause", None, "end")),
         (
             "On connection loss pause until the connection is restored",
             ("connection_lost", "pause", "connection_restored", "end"),

@@ -190,10 +190,7 @@ FRAMED_ENGLISH = {
     ("Check #1. {}, check #4.", "Check #1. {}, check #4."): [
         ("If it shows more than 20 or less than 5", "If it is above 20 or below 5"),
         ("If none of them is abnormal", "If it is normal"),
-        (
-            "If it is outside the range from 3 to 4.5 bar",
-            "If it is below 3 bar or above 4.5 bar",
-        ),
+        ("If it is outside the range from 3 to 4.5 bar", "If it is below 3 bar or above 4.5 bar"),
         ("If it is not outside of 3 to 4.5 bar", "If it is from 3 to 4.5 bar"),
         ("On failure", "If it fails"),
         ("If the robot can't read it", "If it fails"),
@@ -351,10 +348,7 @@ def test_titles(title: str, rest: str, catalog: Catalog) -> None:
             "\n| Checkpoint | Needed |\n|---|---|\n| 4 | no |\n",
             "may be left out, or that it is left out",
         ),
-        (
-            "Check #8.\nWait until the operator confirms.",
-            "a mission does not wait for a person",
-        ),
+        ("Check #8.\nWait until the operator confirms.", "a mission does not wait for a person"),
     ],
 )
 def test_what_does_not_fit_is_refused(text: str, said: str, catalog: Catalog) -> None:
@@ -440,11 +434,7 @@ def test_who_stays_before_the_end_is_asked_how_long(catalog: Catalog) -> None:
 @pytest.mark.parametrize(
     ("text", "code", "said"),
     [
-        (
-            "1. Check #1.\n2. Check #4.\n3. Repeat this three times.",
-            "step-range",
-            "all steps",
-        ),
+        ("1. Check #1.\n2. Check #4.\n3. Repeat this three times.", "step-range", "all steps"),
         ("1. Prüfe #1.\n2. Prüfe #4.\n3. Wiederhole es dreimal.", "step-range", "all steps"),
         ("1. Check #1.\n2. #1 has to be read within 5 minutes.", "ambiguous-demand", "once more"),
         ("1. Check #1.\n2. Check #4.\nNote: #4 must be read before #1.", "precedence", "MEASURE"),

@@ -25,6 +25,7 @@ from argo_env.run.drives_and_sensors import DRIVES
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_env.seeding import generator
+from argo_env.site import Site
 from benchmarks.options import seed_number
 
 
@@ -34,16 +35,25 @@ def random_mission(navigator: Navigator, seed: int) -> Mission:
     start, end = (int(rng.choice(sorted(site.docks))) for _ in range(2))
     ids = [c.id for c in site.checkpoints]
     chosen = rng.choice(ids, size=min(len(ids), int(rng.integers(1, 4))), replace=False)
+    mission = _round(site, start, end, chosen.tolist())
+    return mission.model_copy(update={"start_area": start, "end_area": end})
+
+
+def _round(site: Site, start: int, end: int, checkpoints: Sequence[int]) -> Mission:
+    """A mission from dock to dock, without what a header says of them."""
     tasks = [
         Task(name="START", action=Action.START, pose=site.docks[start]),
         *(
             Task(name=f"MEASURE {id}", action=Action.MEASURE, object_id=str(id))
-            for id in chosen.tolist()
+            for id in checkpoints
         ),
         Task(name="DOCK", action=Action.WAYPOINT, pose=site.docks[end]),
     ]
-    mission = _chained(site.name, *tasks)
-    return mission.model_copy(update={"start_area": start, "end_area": end})
+    linked = [
+        a.model_copy(update={"transitions": (Transition(target=b.name),)})
+        for a, b in pairwise(tasks)
+    ]
+    return Mission(site=site.name, tasks=(*linked, tasks[-1]))
 
 
 def clean(navigator: Navigator, count: int, first_seed: int, drive: str) -> None:
@@ -80,9 +90,8 @@ def bricks(navigator: Navigator, count: int, first_seed: int, drive: str) -> Non
     for seed in range(first_seed, first_seed + count):
         rng = generator(seed, "brick mission")
         site, area = navigator.site, min(navigator.site.docks)
-        checkpoint = str(rng.choice([c.id for c in site.checkpoints]))
-        dock = site.docks[area]
-        way = navigator.plan_to_view(navigator.snap(dock), int(checkpoint))
+        checkpoint = int(rng.choice([c.id for c in site.checkpoints]))
+        way = navigator.plan_to_view(navigator.snap(site.docks[area]), checkpoint)
         floors = {f.z: f for f in site.spec.floors}
         places = [
             (floors[motion.start.z].number, motion.at(float(rng.random())))
@@ -94,12 +103,7 @@ def bricks(navigator: Navigator, count: int, first_seed: int, drive: str) -> Non
         runs += 1
         floor, pose = places[int(rng.integers(len(places)))]
         brick = Brick(floor=floor, place=(pose.x, pose.y), yaw=float(rng.uniform(-90, 90)))
-        mission = _chained(
-            site.name,
-            Task(name="START", action=Action.START, pose=dock),
-            Task(name="MEASURE", action=Action.MEASURE, object_id=checkpoint),
-            Task(name="DOCK", action=Action.WAYPOINT, pose=dock),
-        )
+        mission = _round(site, area, area, [checkpoint])
         spec = RunSpec(mission=mission, site=site.name, seed=seed, drive=drive, faults=(brick,))
         record = simulate(spec, OpenedSite.of_navigator(navigator))
         found += any(a.kind is EventKind.POSITIVE_OBSTACLE for a in record.anomalies)
@@ -115,14 +119,6 @@ def bricks(navigator: Navigator, count: int, first_seed: int, drive: str) -> Non
         f"{runs} missions with a brick in the way with the drive {drive}: found in {found}, "
         f"touched in {touched}, the mission done all the same in {reached}"
     )
-
-
-def _chained(site: str, *tasks: Task) -> Mission:
-    linked = [
-        a.model_copy(update={"transitions": (Transition(target=b.name),)})
-        for a, b in pairwise(tasks)
-    ]
-    return Mission(site=site, tasks=(*linked, tasks[-1]))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -60,6 +60,11 @@ class MissionPlan:
             return None
         return self.history[len(self.history) - count :]
 
+    def require_newest(self, made_on: int | None) -> None:
+        """Raises StaleRevision if the plan has another revision by now; None: it may have any."""
+        if made_on is not None and made_on != self.revision:
+            raise StaleRevision(made_on, self.revision, self.since(made_on))
+
     def repeated(self, command: PlanCommand | ReplaceFrom, author: str) -> Revision | None:
         """What came of the command, if it has been carried out before.
 
@@ -76,7 +81,7 @@ class MissionPlan:
         self,
         command: PlanCommand,
         author: str,
-        made_on: int,
+        made_on: int | None,
         at: datetime,
         asked: ReplaceFrom | None = None,
     ) -> "MissionPlan":
@@ -91,8 +96,7 @@ class MissionPlan:
         """
         if self.repeated(asked or command, author) is not None:
             return self
-        if made_on != self.revision:
-            raise StaleRevision(made_on, self.revision)
+        self.require_newest(made_on)
         reverts: int | None = None
         consequences: tuple[Consequence, ...] = ()
         match command:

@@ -4,22 +4,26 @@ from collections.abc import Iterable
 
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid
 from argo_compiler.diagnostics import Diagnostic
+from argo_planner.service.core.commands import Revision
 
 
 class StaleRevision(Conflict):
-    """The command was made on a revision that is not the newest one."""
+    """The command was made on a revision that is not the newest one; `since` is what was done since
+    then, None if that is not known."""
 
     code = "stale-revision"
 
-    def __init__(self, made_on: int, newest: int) -> None:
-        self.made_on, self.newest = made_on, newest
+    def __init__(
+        self, made_on: int, newest: int, since: tuple[Revision, ...] | None = None
+    ) -> None:
+        self.made_on, self.newest, self.since = made_on, newest, since
         super().__init__(
             f"the command was made on revision {made_on}, and the plan is at revision {newest}: "
             "look at what has changed since, and send it again on that"
         )
 
     def __reduce__(self) -> tuple[object, ...]:
-        return type(self), (self.made_on, self.newest), vars(self)
+        return type(self), (self.made_on, self.newest, self.since), vars(self)
 
 
 class CommandIdTaken(Conflict):

@@ -11,12 +11,7 @@ from argo_compiler.base.errors import Conflict
 from argo_compiler.base.model import Model
 from argo_compiler.checks import check
 from argo_planner.service.core.commands import PlanCommand, ReplaceFrom, Revision
-from argo_planner.service.core.document import (
-    PlanDocument,
-    PlanRecord,
-    VersionDropped,
-)
-from argo_planner.service.core.refusals import StaleRevision
+from argo_planner.service.core.document import PlanDocument, PlanRecord, VersionDropped
 from argo_planner.service.jobs.analysis import AnalysisFound, Analyst
 from argo_planner.service.jobs.job import Job
 from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
@@ -127,9 +122,8 @@ class PlanRoom:
             known = plan.repeated(asked or command, author)
             if known is not None:
                 return self._done(known, author)
-            on = plan.revision if made_on is None else made_on
             changed, record = self.document.made(
-                plan.carried_out(command, author, on, self._clock(), asked)
+                plan.carried_out(command, author, made_on, self._clock(), asked)
             )
             await self._write(changed, record)
             before, self._findings = self._findings, self._found()
@@ -149,11 +143,11 @@ class PlanRoom:
 
     @_to_the_end
     async def keep_version(self, name: str, author: str, made_on: int | None) -> VersionSummary:
-        """Keeps the present mission under a name. Raises Invalid, Conflict, Unavailable."""
+        """Keeps the present mission under a name. Raises StaleRevision, Invalid, Conflict,
+        Unavailable."""
         async with self._turn:
             self._require_open()
-            if made_on is not None and made_on != self.document.plan.revision:
-                raise StaleRevision(made_on, self.document.plan.revision)
+            self.document.plan.require_newest(made_on)
             record = self.document.keep_version(name, author, self._clock())
             await self._write(self.document.after(record), record)
             self._tell_versions()

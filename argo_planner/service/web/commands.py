@@ -18,14 +18,13 @@ from argo_planner.service.core.commands import (
     ReplacePlan,
     UndoEdit,
 )
-from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.jobs.analysis import AnalysisFound
 from argo_planner.service.rooms.messages import CommandDone
 from argo_planner.service.rooms.room import PlanRoom
 from argo_planner.service.storage.notes import keep_notes
 from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.missions import sound
-from argo_planner.service.web.problems import StaleCommand, documented
+from argo_planner.service.web.problems import documented
 from argo_planner.service.web.requests import (
     MadeOn,
     PlanId,
@@ -119,10 +118,6 @@ async def carried_out(
     made_on: int | None,
     asked: ReplaceFrom | None = None,
 ) -> Response:
-    """The answer to a command. Raises StaleCommand, which has what was done meanwhile."""
-    try:
-        done = await room.carry_out(command, author, made_on, asked)
-    except StaleRevision as stale:
-        since = room.document.plan.since(stale.made_on)
-        raise StaleCommand(stale, since) from None
+    """The answer to a command. Raises what `PlanRoom.carry_out` raises."""
+    done = await room.carry_out(command, author, made_on, asked)
     return said(done, revision=done.newest)

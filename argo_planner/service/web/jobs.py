@@ -10,13 +10,12 @@ from argo_compiler.base.model import Model
 from argo_compiler.reorder.mission import require_known
 from argo_compiler.reorder.requirements import Requirements
 from argo_planner.service.core.commands import CommandId, ReplacePlan
-from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.jobs.job import JOB_ID, AnyJob, OrderJob
 from argo_planner.service.rooms.messages import CommandDone
 from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.commands import carried_out
 from argo_planner.service.web.missions import sound_plan
-from argo_planner.service.web.problems import StaleCommand, documented
+from argo_planner.service.web.problems import documented
 from argo_planner.service.web.requests import (
     MadeOn,
     PlanId,
@@ -122,7 +121,6 @@ async def accept_order(
     )
     plan = room.document.plan
     if plan.repeated(command, visitor.author) is None:
-        for on in (job.revision, job.revision if made_on is None else made_on):
-            if on != plan.revision:
-                raise StaleCommand(StaleRevision(on, plan.revision), plan.since(on))
+        for on in (job.revision, made_on):
+            plan.require_newest(on)
     return await carried_out(room, command, visitor.author, job.revision)

@@ -22,13 +22,11 @@ from argo_planner.service.core.change import difference
 from argo_planner.service.core.commands import Revision
 from argo_planner.service.core.document import PlanDocument
 from argo_planner.service.core.plan_limits import require_fitting
-from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.rooms.messages import PlanState
 from argo_planner.service.storage.folder import summary_of
 from argo_planner.service.storage.notes import drop_notes, keep_notes
 from argo_planner.service.storage.outline import PlanSummary
 from argo_planner.service.web.bodies import Sent
-from argo_planner.service.web.problems import StaleCommand
 from argo_planner.service.web.requests import (
     NameGiven,
     PlanId,
@@ -264,11 +262,9 @@ def as_it_is(document: PlanDocument) -> ImportedMission:
 
 async def sound_plan(service: Service, id: str, made_on: int | None = None) -> PlanDocument:
     """A plan whose mission has no errors, as it was on the revision `made_on`; None: as it stands.
-    Raises StaleCommand, or DiagnosticError."""
+    Raises StaleRevision, or DiagnosticError."""
     document = (await service.rooms.open(id)).document
-    plan = document.plan
-    if made_on is not None and made_on != plan.revision:
-        raise StaleCommand(StaleRevision(made_on, plan.revision), plan.since(made_on))
+    document.plan.require_newest(made_on)
     sound(document, service.site)
     return document
 

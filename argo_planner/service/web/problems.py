@@ -53,20 +53,6 @@ class Problem(Model):
     """with a stale revision: what was done since; null: that is not known any more"""
 
 
-class StaleCommand(ArgoError):
-    """A command on a revision that is not the newest one, with what was done since."""
-
-    code = StaleRevision.code
-
-    def __init__(self, stale: StaleRevision, since: tuple[Revision, ...] | None) -> None:
-        self.made_on, self.newest, self.since = stale.made_on, stale.newest, since
-        super().__init__(str(stale))
-
-    def __reduce__(self) -> tuple[object, ...]:
-        stale = StaleRevision(self.made_on, self.newest)
-        return type(self), (stale, self.since), vars(self)
-
-
 class RevisionMissing(ArgoError):
     """A command says not on which revision it was made."""
 
@@ -83,7 +69,6 @@ _STATUS: tuple[tuple[type[ArgoError], HTTPStatus], ...] = (
     (TokenMissing, HTTPStatus.UNAUTHORIZED),
     (AccessDenied, HTTPStatus.FORBIDDEN),
     (RevisionMissing, HTTPStatus.PRECONDITION_REQUIRED),
-    (StaleCommand, HTTPStatus.PRECONDITION_FAILED),
     (StaleRevision, HTTPStatus.PRECONDITION_FAILED),
     (TooLarge, HTTPStatus.REQUEST_ENTITY_TOO_LARGE),
     (EditRefused, HTTPStatus.CONFLICT),
@@ -110,8 +95,8 @@ def problem_of(error: ArgoError) -> Problem:
         diagnostics=diagnostics,
         remedies=tuple(dict.fromkeys(map(str, remedies))),
         place=error.place if isinstance(error, EditRefused) else None,
-        newest=error.newest if isinstance(error, StaleCommand | StaleRevision) else None,
-        since=error.since if isinstance(error, StaleCommand) else None,
+        newest=error.newest if isinstance(error, StaleRevision) else None,
+        since=error.since if isinstance(error, StaleRevision) else None,
     )
 
 

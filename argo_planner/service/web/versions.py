@@ -7,11 +7,10 @@ from fastapi import Path, Response
 from argo_compiler.base.model import Model
 from argo_planner.service.core.commands import CommandId, ReplaceFrom, ReplacePlan
 from argo_planner.service.core.document import PlanVersion
-from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.rooms.messages import CommandDone, VersionSummary
 from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.commands import carried_out
-from argo_planner.service.web.problems import StaleCommand, documented
+from argo_planner.service.web.problems import documented
 from argo_planner.service.web.requests import (
     MadeOn,
     NameGiven,
@@ -72,10 +71,7 @@ async def keep_version(
 ) -> Response:
     """Keeps the mission as it stands under a name."""
     room = await service.rooms.open(id)
-    try:
-        version = await room.keep_version(given.name, visitor.author, made_on)
-    except StaleRevision as stale:
-        raise StaleCommand(stale, room.document.plan.since(stale.made_on)) from None
+    version = await room.keep_version(given.name, visitor.author, made_on)
     return said(version, 201, location=f"/api/missions/{id}/versions/{version.number}")
 
 

@@ -29,7 +29,7 @@ from argo_planner.service.core.refusals import (
     StaleRevision,
 )
 from argo_planner.service.web.access import AccessDenied, TokenMissing
-from argo_planner.service.web.problems import RevisionMissing, StaleCommand, TooLarge
+from argo_planner.service.web.problems import RevisionMissing, TooLarge
 
 FINDINGS = (
     Diagnostic(
@@ -56,7 +56,7 @@ MADE = [
     *(kind("no") for kind in (CommandIdTaken, NothingToUndo, PlanTooLarge)),
     *(kind("no") for kind in (AccessDenied, TokenMissing, RevisionMissing, TooLarge)),
     StaleRevision(3, 5),
-    StaleCommand(StaleRevision(3, 5), ()),
+    StaleRevision(3, 5, ()),
     ChangedSince("by bob", FINDINGS),
     EditRefused("no such place", 1, FINDINGS),
 ]

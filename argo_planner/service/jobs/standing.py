@@ -129,7 +129,8 @@ class RunCount:
         if not row.success:
             self._failed += 1
             if len(self._failing) < MOST_FAILING:
-                self._failing.append(_failed(row, faults))
+                told = row.model_dump(include={*FailedRun.model_fields})
+                self._failing.append(FailedRun(**told | {"faults": faults}))
         if self._outcomes.total() % self._every == 0:
             self._curve.append(RateTold.of(quick_rate(self._outcomes)))
             if len(self._curve) > _MOST_POINTS:
@@ -190,15 +191,3 @@ class RunCount:
         return TimesTold(
             least=min(self._durations), median=median(self._durations), most=max(self._durations)
         )
-
-
-def _failed(row: RunRow, faults: str) -> FailedRun:
-    return FailedRun(
-        key=row.key,
-        seed=row.seed,
-        faults=faults,
-        outcome=row.outcome,
-        reason=row.reason,
-        task=row.task,
-        duration=row.duration,
-    )

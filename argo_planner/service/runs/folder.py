@@ -15,6 +15,7 @@ from pydantic import ValidationError
 
 from argo_compiler.base.errors import NotFound, Unavailable
 from argo_compiler.base.model import Model
+from argo_compiler.files.writing import write_whole
 from argo_env.files.checked_lines import (
     checked_line,
     checked_object,
@@ -114,13 +115,8 @@ class RunFolder:
     def keep(self, kept: KeptRun) -> None:
         """Writes down how a run stands. Raises Unavailable."""
         path = self.path(kept.state.id) / _KEPT
-        draft = path.with_name(f"{path.name}.new")
         try:
-            with open(draft, "w", encoding="utf-8") as file:
-                file.write(kept.model_dump_json())
-                file.flush()
-                os.fsync(file.fileno())
-            draft.replace(path)
+            write_whole(path, kept.model_dump_json())
             sync_folder(path.parent)
         except OSError as error:
             raise Unavailable(f"{path}: can't be written: {error.strerror}") from error

@@ -9,6 +9,7 @@ from pydantic import ValidationError
 
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic
+from argo_compiler.files.writing import write_whole
 
 _log = logging.getLogger(__name__)
 MOST_NOTES = 200
@@ -24,9 +25,8 @@ def keep_notes(folder: Path, plan: str, revision: int, notes: tuple[Diagnostic, 
     path = _path(folder, plan)
     try:
         path.parent.mkdir(exist_ok=True)
-        draft = path.with_name(f"{path.name}.new")
-        draft.write_text(_Notes(revision=revision, notes=notes[:MOST_NOTES]).model_dump_json())
-        draft.replace(path)
+        notes = notes[:MOST_NOTES]
+        write_whole(path, _Notes(revision=revision, notes=notes).model_dump_json())
     except OSError as error:
         _log.warning("%s: can't be written: %s", path, error.strerror)
 

@@ -3,7 +3,7 @@
 import { svg } from "lit";
 
 import type { EvaluationJob, EvaluationStanding, FailedRun, RateTold } from "../api/types";
-import { rateCurve } from "../model/rate-curve";
+import { rateCurve } from "../model/curves";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
 import { options, valueOf } from "../ui/controls";
@@ -147,11 +147,6 @@ export class EvaluateResult extends PageElement {
       width: 3px;
       margin-left: -1px;
       background: var(--accent);
-    }
-    ul {
-      margin: 0;
-      padding: 0;
-      list-style: none;
     }
     li button {
       display: grid;

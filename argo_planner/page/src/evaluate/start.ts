@@ -22,15 +22,10 @@ export class EvaluateStart extends PageElement {
   static override styles = [
     parts,
     css`
-      form,
-      .inner {
+      form {
         display: grid;
         grid-template-columns: minmax(0, 1fr);
         gap: 10px;
-      }
-      .inner {
-        padding: 4px 0 4px 10px;
-        border-left: 2px solid var(--line);
       }
       .check {
         display: flex;

@@ -64,7 +64,11 @@ export class PropertiesPanel extends PageElement {
     }
     summary {
       padding: 6px 0;
-      cursor: pointer;
+    }
+    ul {
+      margin: 14px 0;
+      padding-left: 40px;
+      list-style: disc;
     }
     .error {
       color: var(--bad);

@@ -59,7 +59,6 @@ export class PageHome extends PageElement {
     }
     summary {
       margin-top: 20px;
-      cursor: pointer;
     }
     @media (max-width: 560px) {
       .wide {

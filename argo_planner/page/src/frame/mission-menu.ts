@@ -1,8 +1,8 @@
 /** What can be done with the mission as a whole: exported, kept as a version, copied. */
 
 import { answered, client } from "../api/client";
-import { commandId, settled } from "../state/commands";
-import { tell, telling } from "../state/notices";
+import { commandId, withPlan } from "../state/commands";
+import { tell } from "../state/notices";
 import { planId, planName, revision, take, versions } from "../state/plan";
 import { t } from "../texts";
 import { iconButton } from "../ui/controls";
@@ -29,19 +29,8 @@ export class MissionMenu extends PageElement {
       flex-wrap: wrap;
       gap: 4px 12px;
     }
-    form {
-      display: flex;
-      gap: 6px;
-    }
     ul {
-      margin: 6px 0 0;
-      padding: 0;
-      list-style: none;
-    }
-    li {
-      display: flex;
-      align-items: center;
-      gap: 4px;
+      margin-top: 6px;
     }
   `;
 
@@ -58,7 +47,7 @@ export class MissionMenu extends PageElement {
           )}
         </p>
         <h2>${texts.versions}</h2>
-        <form @submit=${this.keepVersion}>
+        <form class="row" @submit=${this.keepVersion}>
           <input
             class="grow"
             name="name"
@@ -73,7 +62,7 @@ export class MissionMenu extends PageElement {
           ? html`<ul>
               ${[...versions.value].reverse().map(
                 (version) =>
-                  html`<li>
+                  html`<li class="row">
                     <span class="grow">${version.name} <span class="dim">${version.author}</span></span>
                     <button @click=${() => this.restore(version.number)}>${texts.restore}</button>
                   </li>`,
@@ -84,10 +73,7 @@ export class MissionMenu extends PageElement {
   }
 
   private async duplicate(): Promise<void> {
-    const id = planId.value;
-    if (id === null) return;
-    await settled();
-    await telling(async () => {
+    await withPlan(async (id) => {
       const name = t().frame.copyOf(planName.value).slice(0, 200);
       const made = await answered(
         client.POST("/api/missions/{id}/duplicate", { params: { path: { id } }, body: { name } }),
@@ -100,10 +86,8 @@ export class MissionMenu extends PageElement {
     event.preventDefault();
     const form = event.target as HTMLFormElement;
     const name = (new FormData(form).get("name") as string).trim();
-    const id = planId.value;
-    if (id === null || name === "") return;
-    await settled();
-    await telling(async () => {
+    if (name === "") return;
+    await withPlan(async (id) => {
       await answered(
         client.POST("/api/missions/{id}/versions", {
           params: { path: { id }, header: { "If-Match": `"${revision.value}"` } },
@@ -116,10 +100,7 @@ export class MissionMenu extends PageElement {
   }
 
   private async restore(number: number): Promise<void> {
-    const id = planId.value;
-    if (id === null) return;
-    await settled();
-    await telling(async () => {
+    await withPlan(async (id) => {
       const done = await answered(
         client.POST("/api/missions/{id}/versions/{number}/restore", {
           params: { path: { id, number }, header: { "If-Match": `"${revision.value}"` } },

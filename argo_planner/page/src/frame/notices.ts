@@ -45,8 +45,9 @@ export class PageNotices extends PageElement {
       }
     }
     ul {
-      margin: 4px 0 0;
+      margin-top: 4px;
       padding-left: 18px;
+      list-style: disc;
       color: var(--dim);
     }
     .actions {

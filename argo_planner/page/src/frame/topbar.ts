@@ -40,9 +40,6 @@ export class PageTopbar extends PageElement {
     .people {
       display: flex;
       gap: 3px;
-      margin: 0;
-      padding: 0;
-      list-style: none;
     }
     .people li {
       display: grid;

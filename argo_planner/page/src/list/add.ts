@@ -50,10 +50,8 @@ export class AddTasks extends PageElement {
     }
     [role="listbox"] {
       max-height: 50vh;
-      margin: 4px 0 0;
-      padding: 0;
+      margin-top: 4px;
       overflow: auto;
-      list-style: none;
     }
     [role="option"] {
       padding: 4px 8px;

@@ -22,7 +22,6 @@ export class MissionProblems extends PageElement {
     }
     summary {
       padding: 5px 10px;
-      cursor: pointer;
     }
     summary.error {
       background: var(--bad-ground);
@@ -34,10 +33,8 @@ export class MissionProblems extends PageElement {
     }
     ul {
       max-height: 32vh;
-      margin: 0;
       padding: 0 6px 6px;
       overflow: auto;
-      list-style: none;
     }
     li {
       display: grid;

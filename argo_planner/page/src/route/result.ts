@@ -3,7 +3,7 @@
 import { svg } from "lit";
 
 import type { OrderJob } from "../api/types";
-import { convergence } from "../model/convergence";
+import { convergence } from "../model/curves";
 import { compared, type Placed } from "../model/reordered";
 import { taskKey } from "../model/outline";
 import { select, tasksByName } from "../state/plan";
@@ -69,7 +69,8 @@ export class RouteResult extends PageElement {
       font-weight: 600;
       color: var(--good);
     }
-    .both {
+    .both,
+    .decide {
       display: grid;
       grid-template-columns: 1fr 1fr;
       gap: 8px;
@@ -80,9 +81,7 @@ export class RouteResult extends PageElement {
       font-variant-numeric: tabular-nums;
     }
     ol {
-      margin: 4px 0 0;
-      padding: 0;
-      list-style: none;
+      margin-top: 4px;
       counter-reset: place;
     }
     li button {
@@ -119,17 +118,13 @@ export class RouteResult extends PageElement {
       background: var(--warn-ground);
       color: var(--warn);
     }
-    .decide {
-      display: grid;
-      grid-template-columns: 1fr 1fr;
-      gap: 8px;
-    }
     .decide button {
       min-height: 40px;
     }
     ul {
-      margin: 4px 0 0;
+      margin-top: 4px;
       padding-left: 18px;
+      list-style: disc;
       font-size: 13px;
     }
   `;

@@ -1,6 +1,7 @@
 /** What the best order has to keep to, and the search for it. */
 
 import { readTime, writeTime } from "../forms/times";
+import { parts } from "../run/parts";
 import { edit } from "../state/commands";
 import { broken, laterTasks, mission } from "../state/plan";
 import { mayPlan } from "../state/session";
@@ -15,78 +16,36 @@ const LIMITS = [5, 10, 30, 120, 600] as const; // s
 
 @customElement("argo-route")
 export class RoutePanel extends PageElement {
-  static override styles = css`
-    :host {
-      padding: 12px;
-    }
-    .all,
-    .inner {
-      display: grid;
-      gap: 12px;
-    }
-    .begin {
-      display: grid;
-      grid-template-columns: 1fr auto;
-      align-items: end;
-      gap: 8px;
-    }
-    .begin button {
-      min-height: 44px;
-      font-weight: 600;
-    }
-    .begin select {
-      min-height: 44px;
-    }
-    label {
-      display: grid;
-      gap: 2px;
-      font-size: 12px;
-      color: var(--dim);
-    }
-    label > * {
-      color: var(--text);
-      font-size: 14px;
-    }
-    .inner {
-      padding: 6px 0 0 10px;
-      border-left: 2px solid var(--line);
-    }
-    .line {
-      display: grid;
-      gap: 6px;
-    }
-    .pair {
-      grid-template-columns: minmax(0, 1fr) auto minmax(0, 1fr) auto;
-      align-items: center;
-    }
-    .window {
-      grid-template-columns: minmax(0, 1fr) 82px 82px auto;
-    }
-    .window input,
-    .line select {
-      min-width: 0;
-    }
-    ul {
-      margin: 0;
-      padding: 0;
-      list-style: none;
-    }
-    li {
-      display: flex;
-      align-items: center;
-      gap: 6px;
-    }
-    .reason {
-      color: var(--dim);
-      font-size: 12px;
-    }
-    h3 {
-      margin-bottom: 4px;
-    }
-    summary {
-      cursor: pointer;
-    }
-  `;
+  static override styles = [
+    parts,
+    css`
+      :host {
+        padding: 12px;
+      }
+      .all {
+        display: grid;
+        gap: 12px;
+      }
+      .line {
+        display: grid;
+        gap: 6px;
+      }
+      .pair {
+        grid-template-columns: minmax(0, 1fr) auto minmax(0, 1fr) auto;
+        align-items: center;
+      }
+      .window {
+        grid-template-columns: minmax(0, 1fr) 82px 82px auto;
+      }
+      .window input,
+      .line select {
+        min-width: 0;
+      }
+      h3 {
+        margin-bottom: 4px;
+      }
+    `,
+  ];
 
   @state() private pairsAsked: Asked["before"] = [];
   @state() private windows: Asked["windows"] = [];
@@ -178,7 +137,7 @@ export class RoutePanel extends PageElement {
   }
 
   private item(said: string, drop: () => void) {
-    return html`<li>
+    return html`<li class="row">
       <span class="grow">${said}</span>
       ${iconButton("close", t().route.remove(said), drop, { size: 16 })}
     </li>`;

@@ -5,7 +5,7 @@ import { batch, computed, effect, signal } from "@preact/signals-core";
 import { answered, client, Refusal, Unreached } from "../api/client";
 import type { operations } from "../api/schema";
 import type { OrderJob } from "../api/types";
-import { commandId, settled } from "../state/commands";
+import { commandId, settled, withPlan } from "../state/commands";
 import { tell, tellError, telling } from "../state/notices";
 import { connected, jobs, planId, revision, take, takeJob } from "../state/plan";
 import { comparedPreview } from "../state/preview";
@@ -78,10 +78,7 @@ async function preview(id: string): Promise<void> {
 }
 
 export async function search(seconds: number, asked: Asked): Promise<void> {
-  const id = planId.value;
-  if (id === null) return;
-  await settled();
-  await telling(async () => {
+  await withPlan(async (id) => {
     const body = { time_limit: seconds, requirements: asked } as unknown as SearchAsked;
     const begun = await answered(client.POST("/api/missions/{id}/orders", { params: { path: { id } }, body }));
     if (planId.value !== id) return;

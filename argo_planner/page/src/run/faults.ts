@@ -16,11 +16,6 @@ export class FaultChoice extends PageElement {
   static override styles = [
     parts,
     css`
-      li {
-        display: flex;
-        align-items: center;
-        gap: 6px;
-      }
       select {
         width: 100%;
       }
@@ -35,7 +30,7 @@ export class FaultChoice extends PageElement {
       <ul>
         ${this.chosen.map((kind, at) => {
           const drop = () => this.tell(this.chosen.filter((_, other) => other !== at));
-          return html`<li>
+          return html`<li class="row">
             <span class="grow">${texts.fault[kind]}</span>
             ${iconButton("close", texts.remove(texts.fault[kind]), drop, { size: 16 })}
           </li>`;

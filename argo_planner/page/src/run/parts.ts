@@ -1,4 +1,4 @@
-/** What the parts of the run panel share: their look, speeds, and the checkpoints to choose from. */
+/** What the panels of runs, evaluations and orders share: their look, speeds, and the checkpoints to choose from. */
 
 import { choiceOf } from "../model/checkpoint-choice";
 import { world } from "../state/world";
@@ -68,14 +68,14 @@ export const parts = css`
     color: var(--dim);
     font-size: 12px;
   }
-  ul,
-  ol {
-    margin: 0;
-    padding: 0;
-    list-style: none;
+  .inner {
+    display: grid;
+    grid-template-columns: minmax(0, 1fr);
+    gap: 10px;
+    padding: 4px 0 4px 10px;
+    border-left: 2px solid var(--line);
   }
   details > summary {
     padding: 4px 0;
-    cursor: pointer;
   }
 `;

@@ -29,20 +29,9 @@ export class RunStart extends PageElement {
       .begin button {
         font-size: 16px;
       }
-      .inner {
-        display: grid;
-        gap: 10px;
-        padding: 4px 0 4px 10px;
-        border-left: 2px solid var(--line);
-      }
       .value {
         display: grid;
         grid-template-columns: 1fr 90px auto;
-        gap: 6px;
-      }
-      li {
-        display: flex;
-        align-items: center;
         gap: 6px;
       }
     `,
@@ -95,7 +84,7 @@ export class RunStart extends PageElement {
         ${[...this.values].map(([id, value]) => {
           const checkpoint = checkpoints.find((one) => one.id === id);
           const name = checkpoint === undefined ? `#${id}` : choiceOf(checkpoint);
-          return html`<li>
+          return html`<li class="row">
             <span class="grow">${name}: ${figure(value)} ${checkpoint?.unit ?? ""}</span>
             ${iconButton("close", texts.remove(name), () => this.dropValue(id), { size: 16 })}
           </li>`;

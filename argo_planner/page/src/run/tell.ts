@@ -20,7 +20,7 @@ export class RunTell extends PageElement {
   static override styles = [
     parts,
     css`
-      .inner {
+      .all {
         display: grid;
         gap: 8px;
       }
@@ -43,7 +43,7 @@ export class RunTell extends PageElement {
     const events = Object.entries(t().words.event).filter(([kind]) => !OWN.includes(kind));
     return html`<details>
       <summary>${texts.tell}</summary>
-      <div class="inner">
+      <div class="all">
         <form @submit=${this.tellEvent}>
           <select name="event" aria-label=${texts.event}>
             ${options(events)}

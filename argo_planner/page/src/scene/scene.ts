@@ -15,20 +15,22 @@ import { customElement, html, nothing, PageElement, query } from "../ui/element"
 import "./bar";
 import { aboveRobot, besideGhost } from "./beside";
 import "./card";
+import { colours } from "./colours";
 import "./compass";
 import "./floors";
+import { box } from "./ground-marks";
 import { heed } from "./heed";
 import { type Keyed, onSceneKey } from "./keys";
 import { ghost, ghostWords, hideGhost, hover, placeGhost, setsStart, takeGhost, turnGhost, verdictWords } from "./navigate";
-import { clickCorner, corners, hideCorners, pointCorner } from "./obstacle-tool";
+import { clickCorner, corners, hideCorners, pointCorner, spanned } from "./obstacle-tool";
 import "./obstacle-form";
 import { PointerWatch } from "./pointer";
 import { edgesMove } from "./settings";
+import { dispose } from "./stage";
 import { sceneStyle } from "./style";
 import { RobotView } from "./robot-view";
 import { SceneView } from "./view";
 import { chooseWay, type Mark, opened } from "./marks";
-import { ObstacleView } from "./obstacle-view";
 import { PathsView } from "./paths-view";
 
 /** px from an edge of the picture at which the pointer moves the camera */
@@ -103,7 +105,6 @@ export class ScenePanel extends PageElement {
       view,
       robot,
       paths,
-      new ObstacleView(view),
       new PointerWatch(this.canvas, this.told(view, paths)),
       { dispose: () => sizes.disconnect() },
     ];
@@ -112,6 +113,7 @@ export class ScenePanel extends PageElement {
       effect(() => {
         if (tool.value !== "select") this.picture.focus({ preventScroll: true }); // its keys work at once
       }),
+      effect(() => this.drawSpanned(view)),
       effect(() => this.announce()),
       effect(() => besideGhost(view, this.verdict)),
       effect(() => aboveRobot(view, robot, this.robotSign)),
@@ -127,6 +129,17 @@ export class ScenePanel extends PageElement {
     if (now !== "select") opened.value = null;
     if (now !== "navigate") hideGhost();
     if (now !== "obstacle") hideCorners();
+  }
+
+  /** Draws the box of the obstacle tool, before it stands there; returns what takes it away. */
+  private drawSpanned(view: SceneView): () => void {
+    const shown = spanned.value;
+    const mesh = shown && box(shown.pose, shown.size, colours.value.warn, 0.55);
+    if (mesh) view.stage.scene.add(mesh);
+    view.stage.need();
+    return () => {
+      if (mesh) dispose(mesh);
+    };
   }
 
   private told(view: SceneView, paths: PathsView) {

@@ -8,15 +8,17 @@ export const sceneStyle = css`
     overflow: hidden;
     user-select: none;
   }
-  #picture {
+  #picture,
+  #picture:focus-visible::after,
+  #labels {
     position: absolute;
     inset: 0;
+  }
+  #picture {
     outline: none;
   }
   #picture:focus-visible::after {
     content: "";
-    position: absolute;
-    inset: 0;
     border: 2px solid var(--accent);
     pointer-events: none;
   }
@@ -38,8 +40,6 @@ export const sceneStyle = css`
     cursor: crosshair;
   }
   #labels {
-    position: absolute;
-    inset: 0;
     overflow: hidden;
     pointer-events: none;
   }
@@ -108,31 +108,28 @@ export const sceneStyle = css`
   .label.behind {
     opacity: 0.62;
   }
-  #verdict {
-    position: absolute;
-    top: 0;
-    left: 0;
-    padding: 2px 8px;
-    border-left: 4px solid var(--good);
-    border-radius: 4px;
-    background: var(--raised);
-    box-shadow: var(--shadow);
-    font-size: 13px;
-    white-space: nowrap;
-    pointer-events: none;
-  }
+  #verdict,
   #robot {
     position: absolute;
     top: 0;
     left: 0;
+    background: var(--raised);
+    white-space: nowrap;
+    pointer-events: none;
+  }
+  #verdict {
+    padding: 2px 8px;
+    border-left: 4px solid var(--good);
+    border-radius: 4px;
+    box-shadow: var(--shadow);
+    font-size: 13px;
+  }
+  #robot {
     padding: 1px 8px;
     border: 2px solid var(--accent);
     border-radius: 6px;
-    background: var(--raised);
     font-size: 12px;
     font-weight: 600;
-    white-space: nowrap;
-    pointer-events: none;
   }
   #robot.supervised {
     border-color: var(--person);

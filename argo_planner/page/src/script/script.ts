@@ -46,9 +46,7 @@ export class ScriptPanel extends PageElement {
       border-color: var(--warn);
     }
     ul {
-      margin: 4px 0 0;
-      padding: 0;
-      list-style: none;
+      margin-top: 4px;
     }
     li {
       padding: 3px 0;

@@ -5,9 +5,9 @@ import { signal } from "@preact/signals-core";
 import { answered, client, newId, Refusal } from "../api/client";
 import { untilReached } from "../api/trying";
 import type { RequestState, RunAsked, RunQuestion } from "../api/types";
-import { settled } from "./commands";
-import { tellError, telling } from "./notices";
-import { planId, revision } from "./plan";
+import { settled, withPlan } from "./commands";
+import { tellError } from "./notices";
+import { revision } from "./plan";
 import { quiet, run, takeState } from "./run";
 
 const RETRY_MS = 500;
@@ -18,11 +18,8 @@ const PATIENCE_TO_STOP_MS = 60_000;
 const STOPS: ReadonlySet<string> = new Set(["pause", "stop", "stop_by_hand"]);
 
 /** Begins a run of the mission as it is. Whether it has begun; a notice says why not. */
-export async function startRun(asked: Partial<RunAsked>): Promise<boolean> {
-  const id = planId.value;
-  if (id === null) return false;
-  await settled();
-  return telling(async () => {
+export function startRun(asked: Partial<RunAsked>): Promise<boolean> {
+  return withPlan(async (id) => {
     const begun = await answered(
       client.POST("/api/missions/{id}/runs", {
         params: { path: { id }, header: { "If-Match": `"${revision.value}"` } },

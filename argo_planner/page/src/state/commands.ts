@@ -7,7 +7,7 @@ import { pause } from "../api/trying";
 import type { CommandDone, Edit, Revision } from "../api/types";
 import { touched, touchedHeader } from "../model/change";
 import { t } from "../texts";
-import { messageOf, tell, tellError } from "./notices";
+import { messageOf, tell, tellError, telling } from "./notices";
 import { doneSince, planId, revision, take, takeRevision } from "./plan";
 
 /** An edit of which only what is given is sent. */
@@ -46,6 +46,15 @@ export function isOwn(made: Revision): boolean {
 /** Until all that was asked for so far is answered. */
 export async function settled(): Promise<void> {
   await queue;
+}
+
+/** Asks the service for something about the mission that is open, once all edits are answered; a notice
+ * says why it was not done. Whether it was. */
+export async function withPlan(work: (id: string) => Promise<unknown>): Promise<boolean> {
+  const id = planId.value;
+  if (id === null) return false;
+  await settled();
+  return telling(() => work(id));
 }
 
 /** Makes edits, all of them or none. Whether they were made; if not, a notice says why. */

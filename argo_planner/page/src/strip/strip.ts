@@ -110,7 +110,6 @@ export class StripPanel extends PageElement {
     summary {
       font-size: 12px;
       color: var(--dim);
-      cursor: pointer;
     }
     @media (max-width: 800px) {
       :host {

@@ -55,8 +55,6 @@ export class StripTotals extends PageElement {
       flex-wrap: wrap;
       gap: 4px;
       margin: 4px 0;
-      padding: 0;
-      list-style: none;
     }
     li button {
       min-height: 24px;

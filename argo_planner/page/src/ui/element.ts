@@ -40,8 +40,18 @@ const look = css`
   h3 {
     font-size: 13px;
   }
-  p {
+  p,
+  ul,
+  ol {
     margin: 0;
+  }
+  ul,
+  ol {
+    padding: 0;
+    list-style: none;
+  }
+  summary {
+    cursor: pointer;
   }
   button,
   input,

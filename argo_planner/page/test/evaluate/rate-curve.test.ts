@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
 
-import { rateCurve } from "../../src/model/rate-curve";
+import { rateCurve } from "../../src/model/curves";
 import { t } from "../../src/texts";
 
 test("the interval is a closed band about the rate, scaled to all runs", () => {

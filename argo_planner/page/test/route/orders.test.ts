@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
 
-import { convergence } from "../../src/model/convergence";
+import { convergence } from "../../src/model/curves";
 import { compared, longestRise } from "../../src/model/reordered";
 
 test("a longest rise of numbers", () => {

@@ -17,7 +17,6 @@ from argo_planner.service.web import (
     evaluations,
     jobs,
     live,
-    looks,
     missions,
     page,
     runs,
@@ -100,7 +99,7 @@ def make_app(opened: Opened) -> FastAPI:
     answer_problems(app)
     app.openapi = partial(_document_of, app)  # type: ignore[method-assign]
     parts = (
-        page, missions, versions, commands, jobs, evaluations, world, runs, looks, live,
+        page, missions, versions, commands, jobs, evaluations, world, runs, live,
     )  # fmt: skip
     for part in (router, *(one.router for one in parts), runs.socket_router):
         app.include_router(part)

@@ -27,6 +27,7 @@ from argo_planner.service.web.requests import (
     routes,
     said,
 )
+from argo_planner.service.world.previews import PreviewedMission, preview_mission
 
 LONGEST_SEARCH = 600.0
 """s"""
@@ -124,3 +125,11 @@ async def accept_order(
         for on in (job.revision, made_on):
             plan.require_newest(on)
     return await carried_out(room, command, visitor.author, job.revision)
+
+
+@router.get("/jobs/{id}/preview", operation_id="preview_job", response_model=PreviewedMission)
+async def preview_job(service: Service, _: Viewer, id: JobId) -> Response:
+    """The ways of the mission in the order that a search has found; 409 until there is one."""
+    mission = service.orders.ordered(id)[1]
+    obstacles = service.obstacles.present.obstacles
+    return said(await service.on_site(preview_mission, service.site, mission, obstacles))

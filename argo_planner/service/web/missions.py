@@ -24,7 +24,7 @@ from argo_planner.service.core.document import PlanDocument
 from argo_planner.service.core.plan_limits import require_fitting
 from argo_planner.service.rooms.messages import PlanState
 from argo_planner.service.storage.folder import summary_of
-from argo_planner.service.storage.notes import drop_notes, keep_notes
+from argo_planner.service.storage.notes import drop_notes, keep_notes, read_notes
 from argo_planner.service.storage.outline import PlanSummary
 from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.requests import (
@@ -86,6 +86,14 @@ class RevisionList(Model):
     """Revisions in order."""
 
     revisions: tuple[Revision, ...]
+
+
+class ImportNotes(Model):
+    """What the last import of a mission had to say."""
+
+    revision: int
+    """of the mission that it made"""
+    notes: tuple[Diagnostic, ...]
 
 
 @router.get("/missions", operation_id="list_missions", response_model=PlanList)
@@ -253,6 +261,15 @@ async def list_revisions(
             f"revision {plan.revision}"
         )
     return said(RevisionList.model_construct(revisions=found), revision=plan.revision)
+
+
+@router.get("/missions/{id}/notes", operation_id="read_notes", response_model=ImportNotes)
+async def read_import_notes(service: Service, _: Viewer, id: PlanId) -> Response:
+    """What the import of the mission, or of the last script put in its place, had to say: what was
+    healed, taken for something, or has no effect."""
+    await service.rooms.open(id)
+    revision, notes = read_notes(service.folder, id)
+    return said(ImportNotes(revision=revision, notes=notes))
 
 
 def as_it_is(document: PlanDocument) -> ImportedMission:

@@ -13,6 +13,7 @@ from argo_env.report.files import PAGE, RECORD
 from argo_env.run.drives_and_sensors import DRIVES, SENSORS
 from argo_env.site import Site
 from argo_planner.service.core.commands import CommandId
+from argo_planner.service.runs.pictures import picture_of
 from argo_planner.service.runs.requests import AskedOfRun, GoOnEdited, RequestState, RunOrder, Speed
 from argo_planner.service.runs.state import EntryList, RunState
 from argo_planner.service.runs.worker import REMOTE
@@ -196,6 +197,28 @@ async def read_report(
     content = await service.runs.report(run, file)
     headers = REPORT_POLICY if file == PAGE else None
     return Response(content, media_type=media[file], headers=headers)
+
+
+@router.get(
+    "/runs/{run}/pictures/{checkpoint}/{milliseconds}",
+    operation_id="read_picture",
+    **answers_file("the picture", "image/png"),
+)
+async def read_picture(
+    service: Service,
+    _: Viewer,
+    run: RunId,
+    checkpoint: Annotated[int, Path(ge=0, le=10**6, description="that was read")],
+    milliseconds: Annotated[int, Path(ge=0, le=10**12, description="`t` of the reading, in ms")],
+) -> Response:
+    """The picture from which a checkpoint was read. Only the sensor `camera` takes pictures."""
+    path = picture_of(service.runs.folder.path(run), checkpoint, milliseconds / 1000)
+    try:
+        content = path.read_bytes()
+    except OSError:
+        raise NotFound(f"run {run} has no picture of checkpoint {checkpoint} then") from None
+    headers = {"cache-control": "private, max-age=31536000, immutable"}
+    return Response(content, 200, headers, "image/png")
 
 
 socket_router = APIRouter()

@@ -75,6 +75,14 @@ class Served:
         used = client or self.client
         return used.post(f"/api/missions/{id}/commands", json=body, headers=_if_match(revision))
 
+    def post(self, path: str, revision: int | str | None = None, **body: Any) -> httpx.Response:
+        """Post a body, which was made on the revision if one is given."""
+        headers = {} if revision is None else _if_match(revision)
+        return self.client.post(path, json=body, headers=headers)
+
+    def mission(self, id: str) -> Any:
+        return self.client.get(f"/api/missions/{id}").json()["mission"]
+
     def imported(self, script: str, **areas: int) -> str:
         """Import a script; return the id of its mission."""
         params = {"filename": "m.txt"} | areas

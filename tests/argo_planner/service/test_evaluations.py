@@ -25,10 +25,8 @@ def id(service: Served) -> str:
     return imported(service)
 
 
-def asked(service: Served, id: str, revision: str = "*", **said: object):
-    return service.client.post(
-        f"/api/missions/{id}/evaluations", json=said, headers={"if-match": revision}
-    )
+def asked(service: Served, id: str, revision: int | str = "*", **said: object):
+    return service.post(f"/api/missions/{id}/evaluations", revision, **said)
 
 
 def begin(service: Served, id: str, **said: object) -> str:
@@ -60,9 +58,8 @@ def test_it_is_watched_says_what_the_library_says_and_its_runs_are_replayed(
     assert done["state"] == "done", done["problem"]
     assert heard[-1] == done
     standing = done["standing"]
-    mission = service.client.get(f"/api/missions/{id}").json()["mission"]
     same = Evaluation(
-        {"Protocol #2": Mission.model_validate(mission)},
+        {"Protocol #2": Mission.model_validate(service.mission(id))},
         site,
         faults={"none": (), "low_battery": (LowBattery(charge=0.01),)},
         seeds=range(12),
@@ -184,7 +181,7 @@ def test_obstacles_stand_in_the_worlds(tmp_path: Path, site: OpenedSite) -> None
         id = imported(service)
         before = over(service, begin(service, id, worlds=2))
         free = before["standing"]
-        start = service.client.get(f"/api/missions/{id}").json()["mission"]["tasks"][0]["pose"]
+        start = service.mission(id)["tasks"][0]["pose"]
         crate = {
             "id": "crate",
             "name": "the crate",
@@ -217,7 +214,7 @@ def test_what_makes_no_sense_is_refused_before_anything_runs(service: Served, id
         ({"variation": {"values": {"1": {"start": [1, 1e300]}}}}, "checkpoint 1"),
     ):
         assert why in problem(asked(service, id, **said), 422, "invalid")["detail"], said
-    problem(asked(service, id, revision='"77"'), 412, "stale-revision")
+    problem(asked(service, id, revision=77), 412, "stale-revision")
     empty = service.create()
     problem(asked(service, empty), 422, "invalid")
     viewer = service.as_("eve", SECRETS[AccessRole.VIEW])

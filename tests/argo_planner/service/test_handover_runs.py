@@ -66,10 +66,7 @@ def play(service: Served, site: OpenedSite, seed: int) -> str:
             task = rng.choice(mission.tasks[1:]).name
             edit = {"kind": "change_task", "name": task, "velocity": 0.25}
             assert service.command(id, 1, edit).status_code == 200
-            asked = service.client.post(
-                f"/api/runs/{run}/plan", json={"id": "edited"}, headers={"if-match": '"2"'}
-            )
-            found = settled(service, asked)
+            found = settled(service, service.post(f"/api/runs/{run}/plan", 2, id="edited"))
             if found["progress"] == "refused":
                 assert "nothing" in found["reason"]  # is left that could go on
                 assert ask(service, run, "give_back")["progress"] == "confirmed"

@@ -37,7 +37,7 @@ def over(service: Served, job: str) -> dict:
 
 def test_an_order_is_found_watched_accepted_and_undone(service: Served, site: OpenedSite) -> None:
     id = imported(service)
-    before = service.client.get(f"/api/missions/{id}").json()["mission"]
+    before = service.mission(id)
     page = service.follow(id)
     job = begin(service, id)
     states = []
@@ -56,31 +56,26 @@ def test_an_order_is_found_watched_accepted_and_undone(service: Served, site: Op
     last = done["progress"][-1]
     assert last["bound"] <= last["best"] + 1e-6
     at = f"/api/jobs/{job}/accept"
-    problem(service.client.post(at, json={"id": "o"}), 428, "revision-missing")
-    accepted = service.client.post(at, json={"id": "o"}, headers={"if-match": '"1"'})
+    problem(service.post(at, id="o"), 428, "revision-missing")
+    accepted = service.post(at, 1, id="o")
     assert accepted.json()["revision"]["about"] == "a suggested order"
-    again = service.client.post(at, json={"id": "o"}, headers={"if-match": '"1"'})
+    again = service.post(at, 1, id="o")
     assert again.json()["revision"] == accepted.json()["revision"]
-    after = service.client.get(f"/api/missions/{id}").json()["mission"]
-    assert after == same.mission.model_dump(mode="json")
+    assert service.mission(id) == same.mission.model_dump(mode="json")
     service.command(id, 2, kind="undo")
-    assert service.client.get(f"/api/missions/{id}").json()["mission"] == before
+    assert service.mission(id) == before
 
 
 def test_an_order_of_an_earlier_revision_is_not_accepted(service: Served) -> None:
     id = imported(service)
     job = begin(service, id)
     over(service, job)
-    early = service.client.post(
-        f"/api/jobs/{job}/accept", json={"id": "o"}, headers={"if-match": '"5"'}
-    )
+    early = service.post(f"/api/jobs/{job}/accept", 5, id="o")
     assert "made on revision 5" in problem(early, 412, "stale-revision")["detail"]
     edit = {"kind": "set_header", "designation": "other"}
     assert service.command(id, 1, edit).status_code == 200
-    for revision in ('"1"', '"2"', "*"):
-        stale = service.client.post(
-            f"/api/jobs/{job}/accept", json={"id": "o"}, headers={"if-match": revision}
-        )
+    for revision in (1, 2, "*"):
+        stale = service.post(f"/api/jobs/{job}/accept", revision, id="o")
         told = problem(stale, 412, "stale-revision")
         assert told["newest"] == 2
         assert [made["number"] for made in told["since"]] == [2]

@@ -54,10 +54,6 @@ class Page:
                 return message
 
 
-def state(service: Served, id: str) -> Any:
-    return service.client.get(f"/api/missions/{id}").json()["mission"]
-
-
 def rename(service: Served, id: str, revision: int, old: str, new: str) -> None:
     edit = {"kind": "rename_task", "name": old, "new_name": new}
     assert service.command(id, revision, edit).status_code == 200
@@ -72,7 +68,7 @@ def test_all_see_the_same(service: Served) -> None:
     for page in pages:
         page.hear(6)
         assert page.follower is not None
-        assert page.follower.state == state(service, id)
+        assert page.follower.state == service.mission(id)
         page.socket.close()
     assert pages[3].told == ["snapshot"]
 
@@ -89,7 +85,7 @@ def test_who_comes_back_hears_what_was_missed(service: Served) -> None:
     assert "snapshot" not in page.told[1:]
     assert page.told.count("revision") == 2
     assert page.follower is not None
-    assert page.follower.state == state(service, id)
+    assert page.follower.state == service.mission(id)
     page.socket.close()
     page.revision = 99  # that is not known
     page.connect()
@@ -120,9 +116,7 @@ def test_names_and_versions_are_told_and_the_end(service: Served) -> None:
     page.hear(1)
     service.client.put(f"/api/missions/{id}/name", json={"name": "Tour"})
     assert page.hear_of("name")["name"] == "Tour"
-    service.client.post(
-        f"/api/missions/{id}/versions", json={"name": "v"}, headers={"if-match": "*"}
-    )
+    service.post(f"/api/missions/{id}/versions", "*", name="v")
     assert [v["name"] for v in page.hear_of("versions")["versions"]] == ["v"]
     service.client.delete(f"/api/missions/{id}")
     assert page.hear_of("deleted")

@@ -87,14 +87,10 @@ def test_what_is_wrong_with_an_edit_is_said_of_that_kind_of_edit(service, plan) 
     detail = service.command(plan, 2, wrong).json()["detail"]
     assert "edits.0.add_task.task.pose.x" in detail
     assert "UndoEdit" not in detail
-    request = service.client.post(
-        "/api/runs/20260101-000000-0000/requests", json={"kind": "speed", "id": "x", "speed": "1"}
-    )
+    at = "/api/runs/20260101-000000-0000/requests"
+    request = service.post(at, kind="speed", id="x", speed="1")
     assert request.json()["detail"].startswith("body.speed.speed: ")
-    unknown = {"kind": "edt", "id": "x"}
-    answer = service.client.post(
-        f"/api/missions/{plan}/commands", json=unknown, headers={"if-match": "*"}
-    )
+    answer = service.post(f"/api/missions/{plan}/commands", "*", kind="edt", id="x")
     assert "'edit', 'undo', 'redo', 'replace'" in answer.json()["detail"]
 
 
@@ -204,9 +200,7 @@ def test_a_way_to_a_task_does_not_ask_what_comes_behind_it(service) -> None:
         way = service.client.post("/api/world/way", json={"start": dock, "task": task})
         assert way.status_code == 200, way.text
         assert way.json()["time"] > 0
-    slow = service.client.post(
-        "/api/world/way", json={"start": dock, "task": TASK | {"velocity": 1e-320}}
-    )
+    slow = service.post("/api/world/way", start=dock, task=TASK | {"velocity": 1e-320})
     assert slow.status_code == 200
     assert (slow.json()["time"], slow.json()["points"]) == (None, [])
     assert "takes longer than any mission" in slow.json()["problem"]
@@ -240,9 +234,8 @@ def test_a_way_leads_to_one_thing(service) -> None:
     ],
 )
 def test_an_order_of_what_is_not_there_is_refused_at_once(service, plan, requirements) -> None:
-    answer = service.client.post(
-        f"/api/missions/{plan}/orders", json={"requirements": requirements, "time_limit": 1}
-    )
+    at = f"/api/missions/{plan}/orders"
+    answer = service.post(at, requirements=requirements, time_limit=1)
     assert "'nothing'" in problem(answer, 422, "invalid")["detail"]
 
 

@@ -47,7 +47,7 @@ def test_a_robot_somewhere_else_carries_a_mission_out(service: Served) -> None:
         assert ask(service, run, "give_back")["progress"] == "confirmed"
         ended = wait(service, run, status="ended")
         counts = {t["task"]: t["done"] + t["by_hand"] for t in ended["tasks"]}
-        tasks = service.client.get(f"/api/missions/{ended['plan']}").json()["mission"]["tasks"]
+        tasks = service.mission(ended["plan"])["tasks"]
         assert counts == {t["name"]: 1 for t in tasks if t["action"] != "START"}
         assert ended["headline"]["word"] in ("Success", "Done, 1 finding", "Done, 2 findings")
         assert robot.poll() is None

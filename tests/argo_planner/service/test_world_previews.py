@@ -47,12 +47,7 @@ def random_tasks(site, rng, count):
         velocity = float(rng.choice([0.1, 0.3])) if rng.random() < 0.3 else None
         if rng.random() < 0.5:
             chosen = site.site.checkpoints[int(rng.integers(len(site.site.checkpoints)))]
-            yield Task(
-                name=f"T{k}",
-                action=Action.MEASURE,
-                object_id=str(chosen.id),
-                velocity=velocity,
-            )
+            yield measure(chosen.id, velocity=velocity).model_copy(update={"name": f"T{k}"})
         else:
             places = site.navigator.turning_places(int(rng.integers(1, 4)))
             x, y, z, _ = places[int(rng.integers(len(places)))].tolist()
@@ -177,10 +172,11 @@ def test_ways_and_runs_go_round_an_obstacle_alike(site):
 def test_checkpoints_behind_obstacles_are_told(site):
     whole = describe(site)
     assert all(c.problem is None and c.stands is not None for c in whole.checkpoints)
-    wall = tuple(
-        crate(f"{tower} {k}", x, y, 0.0, (2.5, 2.5, 2.0), 0.0)
-        for tower, k, x, y in _feet_of_stairs(site)
+    feet = (
+        (tower.name, min((flight.foot for flight in tower.flights), key=lambda foot: foot[2]))
+        for tower in site.site.spec.towers
     )
+    wall = tuple(crate(f"{name} 1", x, y, 0.0, (2.5, 2.5, 2.0), 0.0) for name, (x, y, _) in feet)
     told = describe(site, wall)
     assert told.obstacles == wall
     assert told.digest == world_digest(site, wall) != whole.digest
@@ -191,12 +187,6 @@ def test_checkpoints_behind_obstacles_are_told(site):
             way = preview_way(site, site.site.docks[1], measure(before.id), wall)
             assert way.problem
     assert any(c.stands for c in told.checkpoints if c.floor == 1)
-
-
-def _feet_of_stairs(site):
-    for tower in site.site.spec.towers:
-        foot = min(tower.flights, key=lambda f: f.foot[2])
-        yield tower.name, 1, foot.foot[0], foot.foot[1]
 
 
 def test_the_description_is_that_of_the_site(site):

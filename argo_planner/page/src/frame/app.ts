@@ -2,7 +2,7 @@
 
 import { signal } from "@preact/signals-core";
 
-import { untilReached, pause } from "../api/trying";
+import { pause, untilReached } from "../api/client";
 import "../evaluate/evaluate";
 import "../forms/properties";
 import "../list/list";

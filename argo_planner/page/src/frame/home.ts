@@ -1,7 +1,6 @@
 /** All missions: open, make, delete, take back out of the bin. */
 
-import { answered, client } from "../api/client";
-import { untilReached } from "../api/trying";
+import { answered, client, untilReached } from "../api/client";
 import type { PlanSummary } from "../api/types";
 import { freeName } from "../model/naming";
 import { tell, tellError, telling } from "../state/notices";

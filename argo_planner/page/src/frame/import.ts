@@ -38,8 +38,6 @@ export class MissionImport extends PageElement {
       color: var(--text);
     }
     label {
-      display: grid;
-      gap: 2px;
       margin: 10px 0;
     }
   `;

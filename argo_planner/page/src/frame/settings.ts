@@ -14,8 +14,6 @@ export class PageSettings extends PageElement {
       width: 260px;
     }
     label {
-      display: grid;
-      gap: 2px;
       margin-bottom: 8px;
     }
   `;

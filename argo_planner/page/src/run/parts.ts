@@ -34,8 +34,6 @@ export const parts = css`
     text-transform: none;
   }
   label {
-    display: grid;
-    gap: 2px;
     font-size: 12px;
     color: var(--dim);
   }

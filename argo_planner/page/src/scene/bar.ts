@@ -8,7 +8,7 @@ import { iconButton, options } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, property, state } from "../ui/element";
 import type { Icon } from "../ui/icons";
 import { chooseFollowing, waysToFollow } from "./following";
-import { floating } from "./panel";
+import { floating } from "./style";
 import { edgesMove, hidden, hide, labelsShown, pathsShown } from "./settings";
 import { HIDEABLE } from "./site";
 import type { SceneView } from "./view";

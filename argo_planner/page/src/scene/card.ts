@@ -13,7 +13,7 @@ import { icon } from "../ui/icons";
 import { heed } from "./heed";
 import { type Mark, opened } from "./marks";
 import { setsStart } from "./navigate";
-import { floating } from "./panel";
+import { floating } from "./style";
 import type { SceneView } from "./view";
 
 const [WIDTH, BESIDE, MARGIN] = [250, 26, 8];

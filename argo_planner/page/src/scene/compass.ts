@@ -7,7 +7,7 @@ import { css, customElement, html, nothing, PageElement, property } from "../ui/
 import { world } from "../state/world";
 import { styled } from "../ui/styled";
 import { heed } from "./heed";
-import { floating } from "./panel";
+import { floating } from "./style";
 import type { SceneView } from "./view";
 
 const LENGTHS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50];

@@ -10,7 +10,7 @@ import { checkpointsById, world } from "../state/world";
 import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement, property } from "../ui/element";
 import { measuring } from "./marks";
-import { floating } from "./panel";
+import { floating } from "./style";
 import type { SceneView } from "./view";
 
 const MANY = 8;

@@ -5,7 +5,7 @@ import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
 import { height, hideCorners, putUp, spanned, corners } from "./obstacle-tool";
 import { figure } from "../ui/figures";
-import { floating } from "./panel";
+import { floating } from "./style";
 
 @customElement("argo-obstacle-form")
 export class ObstacleForm extends PageElement {
@@ -21,10 +21,6 @@ export class ObstacleForm extends PageElement {
         gap: 8px;
         width: 230px;
         padding: 10px 12px;
-      }
-      label {
-        display: grid;
-        gap: 2px;
       }
     `,
   ];

@@ -3,8 +3,7 @@
 import { computed, effect, signal } from "@preact/signals-core";
 import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, Vector3 } from "three";
 
-import { fetched, Unreached } from "../api/client";
-import { pause } from "../api/trying";
+import { fetched, pause, Unreached } from "../api/client";
 import type { World } from "../api/types";
 import { shownMode, type ShownMode } from "../model/run-mode";
 import { floorOf } from "../model/standing";

@@ -2,8 +2,7 @@
 
 import { signal } from "@preact/signals-core";
 
-import { fetched, Unreached } from "../api/client";
-import { pause } from "../api/trying";
+import { fetched, pause, Unreached } from "../api/client";
 import type { World } from "../api/types";
 import { floorOf, readStandingMap, type Standing, type StandingMap, verdictAt } from "../model/standing";
 import { world } from "../state/world";

@@ -2,6 +2,19 @@
 
 import { css } from "../ui/element";
 
+/** What floats over the picture, in elements of its own. */
+export const floating = css`
+  :host {
+    position: absolute;
+  }
+  .panel {
+    border: 1px solid var(--line);
+    border-radius: var(--round);
+    background: color-mix(in srgb, var(--surface) 94%, transparent);
+    box-shadow: var(--shadow);
+  }
+`;
+
 export const sceneStyle = css`
   :host {
     position: relative;

@@ -3,8 +3,7 @@
 import { batch, effect, signal } from "@preact/signals-core";
 import { Ray, Vector2, Vector3 } from "three";
 
-import { Unreached } from "../api/client";
-import { pause } from "../api/trying";
+import { pause, Unreached } from "../api/client";
 import type { World } from "../api/types";
 import { offer, withdraw, type ArgoTestInterface } from "../frame/test-interface";
 import { floorOf } from "../model/standing";

@@ -2,8 +2,7 @@
 
 import { signal } from "@preact/signals-core";
 
-import { answered, client, newId, Refusal } from "../api/client";
-import { untilReached } from "../api/trying";
+import { answered, client, newId, Refusal, untilReached } from "../api/client";
 import type { RequestState, RunAsked, RunQuestion } from "../api/types";
 import { settled, withPlan } from "./commands";
 import { tellError } from "./notices";

@@ -2,8 +2,7 @@
 
 import { signal } from "@preact/signals-core";
 
-import { answered, client, newId, Refusal, Unreached } from "../api/client";
-import { pause } from "../api/trying";
+import { answered, client, newId, pause, Refusal, Unreached } from "../api/client";
 import type { CommandDone, Edit, Revision } from "../api/types";
 import { touched, touchedHeader } from "../model/change";
 import { t } from "../texts";

@@ -50,6 +50,10 @@ const look = css`
     padding: 0;
     list-style: none;
   }
+  label {
+    display: grid;
+    gap: 2px;
+  }
   summary {
     cursor: pointer;
   }

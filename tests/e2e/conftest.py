@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from argo_env.navigation import Navigator
+from argo_env.run.record import RunRecord
 from tests.yard import yard
 
 ROOT = Path(__file__).parents[2]
@@ -43,6 +44,14 @@ def started(*arguments: object, **options: Any) -> subprocess.Popen[str]:
     )
 
 
+def ended(
+    arguments: tuple[object, ...], status: int, output: str, errors: str, wanted: int | None
+) -> subprocess.CompletedProcess[str]:
+    """Return what has become of a command, whose exit status has to be the wanted one, if any."""
+    assert wanted in (None, status), f"{status}: {output}{errors}"
+    return subprocess.CompletedProcess(arguments, status, output, errors)
+
+
 def told_until(process: subprocess.Popen[str], words: str) -> str:
     """Return what a process prints as errors, up to the line that has these words."""
     assert process.stderr
@@ -52,6 +61,11 @@ def told_until(process: subprocess.Popen[str], words: str) -> str:
         assert line, said
         said += line
     return said
+
+
+def reported(folder: Path) -> RunRecord:
+    """Return the record of the run that a folder has the report of."""
+    return RunRecord.model_validate_json((folder / "report.json").read_bytes())
 
 
 class ForkedArgo:
@@ -64,15 +78,16 @@ class ForkedArgo:
         self._process, self._folder = process, folder
 
     def __call__(
-        self, *arguments: object, cwd: Path | None = None
+        self, *arguments: object, cwd: Path | None = None, status: int | None = None
     ) -> subprocess.CompletedProcess[str]:
-        """Runs a command to its end."""
+        """Runs a command to its end, which has to have that exit status, if one is given."""
         files = self._folder / "stdout", self._folder / "stderr"
         for file in files:
             file.unlink(missing_ok=True)
-        status = self._carry_out(arguments, cwd or Path.cwd(), *files, None)
-        output, errors = (file.read_text(encoding="utf-8") for file in files)
-        return subprocess.CompletedProcess(arguments, status, output, errors)
+        found = self._carry_out(arguments, cwd or Path.cwd(), *files, None)
+        return ended(
+            arguments, found, *(file.read_text(encoding="utf-8") for file in files), status
+        )
 
     def kill(
         self,
@@ -145,16 +160,12 @@ def argo(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ForkedArgo]:
 def argo_process() -> Argo:
     """Runs `argo` with arguments in a process of its own, from its start on."""
 
-    def call(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [sys.executable, "-m", "argo_planner", *map(str, arguments)],
-            cwd=cwd,
-            capture_output=True,
-            text=True,
-            timeout=300,
-            env={**os.environ, "COLUMNS": "120"},
-            check=False,
-        )
+    def call(
+        *arguments: object, cwd: Path | None = None, status: int | None = None
+    ) -> subprocess.CompletedProcess[str]:
+        process = started(*arguments, cwd=cwd)
+        output, errors = process.communicate(timeout=300)
+        return ended(arguments, process.returncode, output, errors, status)
 
     return call
 

@@ -10,8 +10,8 @@ WRONG = {"tasks": [{"name": "A", "action": "MEASURE", "object_id": "77"}]}
 
 def test_findings_are_written_for_a_code_host(argo, tmp_path: Path) -> None:
     (tmp_path / "plan.json").write_text(json.dumps(WRONG))
-    result = argo("check", "plan.json", "--format", "sarif", "-o", "f.sarif", cwd=tmp_path)
-    assert result.returncode == 2, result.stderr
+    check = ("check", "plan.json", "--format", "sarif", "-o", "f.sarif")
+    result = argo(*check, cwd=tmp_path, status=2)
     assert result.stdout == "plan.json: 1 error\n"
     (run,) = json.loads((tmp_path / "f.sarif").read_text(encoding="utf-8"))["runs"]
     assert run["results"][0]["ruleId"] == "il.unknown-object"
@@ -22,7 +22,6 @@ def test_the_version_is_printed(argo_process) -> None:
 
 
 def test_a_finding_is_not_announced_by_the_programs_name(argo, missions: Path, tmp_path) -> None:
-    result = argo("import", missions / "mission_1.txt", "-o", tmp_path / "m.json")
-    assert result.returncode == 2
+    result = argo("import", missions / "mission_1.txt", "-o", tmp_path / "m.json", status=2)
     assert not any(line.startswith("argo:") for line in result.stderr.splitlines())
     assert "2 errors" in result.stderr.splitlines()[-1]

@@ -7,6 +7,7 @@ import random
 import re
 import shlex
 import signal
+import subprocess
 import time
 from itertools import count
 from pathlib import Path
@@ -14,9 +15,8 @@ from pathlib import Path
 import pytest
 
 from argo_env.run.journal import open_journal
-from argo_env.run.record import RunRecord
 from tests.conftest import examples
-from tests.e2e.conftest import started
+from tests.e2e.conftest import reported, started
 from tests.e2e.test_journal import (
     ANNOUNCED,
     LONGEST,
@@ -35,6 +35,20 @@ FULL = Path("/dev/full")
 STATUS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 
 
+TELLING = {**os.environ, "PYTHONPROFILEIMPORTTIME": "1"}
+"""an environment in which Python says which module it has just imported"""
+
+
+def signalled_on_import(process: subprocess.Popen[str], module: str, number: int) -> list[str]:
+    """Send a process the signal when it has imported the module; return what it says as errors."""
+    said = []
+    for line in process.stderr:
+        said.append(line)
+        if line.endswith(f" {module}\n"):
+            process.send_signal(number)
+    return said
+
+
 @pytest.mark.parametrize(
     ("number", "module"),
     [
@@ -47,14 +61,8 @@ STATUS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
     ids=lambda given: getattr(given, "name", given),
 )
 def test_while_modules_are_imported(missions: Path, number, module: str) -> None:
-    """Python itself says which one it has just imported."""
-    environment = {**os.environ, "PYTHONPROFILEIMPORTTIME": "1"}
-    with started("run", missions / "protocol_3.txt", env=environment) as process:
-        said = []
-        for line in process.stderr:
-            said.append(line)
-            if line.endswith(f" {module}\n"):
-                process.send_signal(number)
+    with started("run", missions / "protocol_3.txt", env=TELLING) as process:
+        said = signalled_on_import(process, module, number)
         output = process.stdout.read()
     own = [line for line in said if not line.startswith("import time:")]
     assert process.returncode == STATUS[number]
@@ -74,14 +82,11 @@ def test_at_each_line_that_answers_signals() -> None:
 
 def test_a_signal_that_is_ignored_from_outside_stays_so(missions: Path) -> None:
     """As in a script's background jobs."""
-    environment = {**os.environ, "PYTHONPROFILEIMPORTTIME": "1"}
     with started(
-        "format", missions / "protocol_3.txt", env=environment,
+        "format", missions / "protocol_3.txt", env=TELLING,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN),
     ) as process:  # fmt: skip
-        for line in process.stderr:
-            if line.endswith(" argo_planner.terminal.importing\n"):
-                process.send_signal(signal.SIGINT)
+        signalled_on_import(process, "argo_planner.terminal.importing", signal.SIGINT)
         assert process.stdout.read().startswith("Mission Protocol")
     assert process.returncode == 0
 
@@ -121,10 +126,6 @@ def folder(tmp_path_factory, argo) -> Path:
     return folder
 
 
-def reported(folder: Path) -> RunRecord:
-    return RunRecord.model_validate_json((folder / "report.json").read_bytes())
-
-
 def interrupted_when_it_reads(number: int, *arguments: object) -> tuple[int, str, str]:
     """What comes of a run that gets the signal when it has told its first reading: the exit status,
     and what it has printed."""
@@ -157,16 +158,14 @@ def test_an_interrupted_run_is_reported_and_goes_on(argo, folder, navigator, tmp
     go_on = shlex.split(last.partition("go on with: argo ")[2])
     assert go_on == ["resume", str(report / "run.journal"), "--report", str(report)]
 
-    refused = argo(*run_of(folder), "--report", report)
-    assert refused.returncode == 2
+    refused = argo(*run_of(folder), "--report", report, status=2)
     assert f"go on with it: {last.partition('with: ')[2]}" in refused.stderr
     with open_journal(report / "run.journal"):
         refused = argo(*run_of(folder), "--report", report, "--force")
     assert (refused.returncode, refused.stderr.count("in use")) == (2, 1)
     assert reported(report) == so_far
 
-    result = argo(*go_on)
-    assert result.returncode == 0, result.stderr
+    result = argo(*go_on, status=0)
     record = reported(report)
     told = announced(said + result.stderr)
     require_complete(record, simulated(PLAN, navigator, **settings(3)), told)
@@ -207,8 +206,7 @@ def test_an_interrupted_run_that_is_recorded_only(argo, folder, tmp_path, number
     assert status == STATUS[number]
     assert "nothing is kept to go on from, as --report or --journal would have it" in said
     assert f"what was done is shown by: argo replay {recording};" in said
-    again = argo("replay", recording, "--report", tmp_path / "again")
-    assert again.returncode == 1
+    again = argo("replay", recording, "--report", tmp_path / "again", status=1)
     verdict = next(line for line in shown.splitlines() if "not at its end" in line)
     assert verdict in again.stdout
     assert not reported(tmp_path / "again").result.ended
@@ -226,21 +224,17 @@ def test_interrupted_before_the_first_step(argo, folder, navigator, tmp_path) ->
     assert (process.returncode, "Traceback" in said) == (130, False)
     assert "not at its end" in shown
     assert not reported(report).result.ended
-    result = argo("resume", report / "run.journal", "--report", report)
-    assert result.returncode == 0, result.stderr
+    argo("resume", report / "run.journal", "--report", report, status=0)
     require_complete(reported(report), simulated(PLAN, navigator, **settings(3)), ())
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda n: n.name)
 def test_a_search_for_the_best_order_is_interrupted(missions: Path, number) -> None:
-    environment = {**os.environ, "PYTHONPROFILEIMPORTTIME": "1"}
     sheet = missions / "any_order.txt"
-    with started("route", sheet, "--time-limit", 100, env=environment) as process:
-        for line in process.stderr:
-            if line.endswith(" ortools.sat.python.cp_model\n"):
-                process.send_signal(number)
-            assert "Traceback" not in line
+    with started("route", sheet, "--time-limit", 100, env=TELLING) as process:
+        said = signalled_on_import(process, "ortools.sat.python.cp_model", number)
+    assert "Traceback" not in "".join(said)
     assert process.returncode == STATUS[number]
 
 

@@ -1,6 +1,5 @@
 """Whole missions, from the script's text to the report, by the command alone."""
 
-import json
 import re
 from pathlib import Path
 
@@ -9,20 +8,16 @@ import pytest
 from argo_compiler.files.mission_file import read_mission
 from argo_compiler.hfsm import Hfsm
 from argo_env.run.record import RunRecord
+from tests.e2e.conftest import reported
+
+AREAS = ("--start-area", 1, "--end-area", 2)
 
 
 @pytest.fixture(scope="module")
 def first(argo_process, missions: Path, tmp_path_factory: pytest.TempPathFactory):
     """Mission #1, run and reported once."""
     folder = tmp_path_factory.mktemp("first")
-    result = argo_process(
-        "run", missions / "mission_1.txt", "--start-area", 1, "--end-area", 2, "--report", folder
-    )
-    return result, folder
-
-
-def record_in(folder: Path) -> RunRecord:
-    return RunRecord.model_validate_json((folder / "report.json").read_text(encoding="utf-8"))
+    return argo_process("run", missions / "mission_1.txt", *AREAS, "--report", folder), folder
 
 
 def require_mission_1(record: RunRecord) -> None:
@@ -55,7 +50,7 @@ def require_protocol_2(record: RunRecord) -> None:
 def test_mission_1_runs_to_success(first) -> None:
     result, folder = first
     assert result.returncode == 0, result.stderr
-    require_mission_1(record_in(folder))
+    require_mission_1(reported(folder))
     assert "Success" in result.stdout
     assert "pressure gauge 5" in result.stdout
     assert str(folder / "report.html") in result.stdout.replace("\n", "")
@@ -72,25 +67,24 @@ def test_every_healed_word_is_shown(first) -> None:
 @pytest.mark.parametrize("folder", ["missions", "originals"])
 def test_protocol_2_runs_to_success(argo, request, folder: str, tmp_path: Path) -> None:
     script = request.getfixturevalue(folder) / "protocol_2.txt"
-    result = argo("run", script, "--report", tmp_path)
-    assert result.returncode == 0, result.stderr
-    require_protocol_2(record_in(tmp_path))
+    argo("run", script, "--report", tmp_path, status=0)
+    require_protocol_2(reported(tmp_path))
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("area", [1, 2])
 def test_the_original_of_mission_1_runs_to_success(argo, originals: Path, tmp_path, area) -> None:
     script = originals / "mission_1.txt"
-    result = argo("run", script, "--start-area", area, "--end-area", area, "--report", tmp_path)
-    assert result.returncode == 0, result.stderr
-    require_mission_1(record_in(tmp_path))
+    areas = ("--start-area", area, "--end-area", area)
+    argo("run", script, *areas, "--report", tmp_path, status=0)
+    require_mission_1(reported(tmp_path))
 
 
 @pytest.mark.long
 def test_the_same_seed_gives_the_same_report(argo, first, missions: Path, tmp_path: Path) -> None:
     _, folder = first
     script = missions / "mission_1.txt"
-    argo("run", script, "--start-area", 1, "--end-area", 2, "--seed", 0, "--report", tmp_path)
+    argo("run", script, *AREAS, "--seed", 0, "--report", tmp_path)
     for name in ("report.json", "report.html"):
         assert (tmp_path / name).read_bytes() == (folder / name).read_bytes()
 
@@ -101,7 +95,7 @@ def test_the_same_seed_gives_the_same_picture(
 ) -> None:
     _, folder = first
     script = missions / "mission_1.txt"
-    argo_process("run", script, "--start-area", 1, "--end-area", 2, "--report", tmp_path)
+    argo_process("run", script, *AREAS, "--report", tmp_path)
     assert (tmp_path / "site.png").read_bytes() == (folder / "site.png").read_bytes()
 
 
@@ -109,26 +103,24 @@ def test_import_compile_and_run_step_by_step(argo, first, missions: Path, tmp_pa
     _, folder = first
     mission, machine, diagram = (tmp_path / n for n in ("m.json", "h.json", "h.mmd"))
     script, at_once = missions / "mission_1.txt", tmp_path / "at once"
-    areas = ("--start-area", 1, "--end-area", 2)
     steps = (
-        ("run", script, *areas, "--drive", "route", "--report", at_once),
-        ("import", script, "-o", mission, *areas),
+        ("run", script, *AREAS, "--drive", "route", "--report", at_once),
+        ("import", script, "-o", mission, *AREAS),
         ("compile", mission, "-o", machine, "--mermaid", diagram),
         ("run", mission, "--drive", "route", "--report", tmp_path / "by steps"),
     )
     for step in steps:
-        result = argo(*step)
-        assert result.returncode == 0, result.stderr
+        argo(*step, status=0)
     assert read_mission(mission).start_area == 1
     hfsm = Hfsm.model_validate_json(machine.read_text(encoding="utf-8"))
     assert [leaf.task.name for leaf in hfsm.leaves] == [
         "MEASURE 1", "MEASURE 4", "MEASURE 8", "DOCK",
     ]  # fmt: skip
     assert diagram.read_text(encoding="utf-8").startswith("stateDiagram-v2")
-    readings = record_in(tmp_path / "by steps").readings
-    assert readings == record_in(at_once).readings
+    readings = reported(tmp_path / "by steps").readings
+    assert readings == reported(at_once).readings
     # Another drive takes another time, and reads the same.
-    assert [r.value for r in readings] == [r.value for r in record_in(folder).readings]
+    assert [r.value for r in readings] == [r.value for r in reported(folder).readings]
 
 
 def test_an_abnormal_value_is_flagged_and_no_failure_and_another_seed_gives_other_readings(
@@ -137,12 +129,11 @@ def test_an_abnormal_value_is_flagged_and_no_failure_and_another_seed_gives_othe
     _, folder = first
     script, given = missions / "mission_1.txt", ("--value", "8=9.5", "--seed", 1)
     way = ("--start-area", 2, "--end-area", 2, "--drive", "route")
-    result = argo("run", script, *way, *given, "--report", tmp_path)
-    assert result.returncode == 0
+    result = argo("run", script, *way, *given, "--report", tmp_path, status=0)
     assert re.search(r"9\.50 bar.*abnormal", result.stdout)
-    readings = record_in(tmp_path).readings
+    readings = reported(tmp_path).readings
     assert [r.normal for r in readings] == [True, True, False]
-    usual = [r.value for r in record_in(folder).readings]
+    usual = [r.value for r in reported(folder).readings]
     assert all(r.value != value for r, value in zip(readings[:2], usual[:2], strict=True))
 
 
@@ -151,10 +142,9 @@ def test_a_mission_over_its_time_is_no_success(argo, missions: Path, tmp_path: P
     script = tmp_path / "hasty.txt"
     script.write_text(text, encoding="utf-8")
     areas = ("--start-area", 1, "--end-area", 1)
-    result = argo("run", script, *areas, "--drive", "route", "--report", tmp_path)
-    assert result.returncode == 1
+    result = argo("run", script, *areas, "--drive", "route", "--report", tmp_path, status=1)
     assert "of at most 120 s" in result.stdout
-    assert not record_in(tmp_path).result.within_max_duration
+    assert not reported(tmp_path).result.within_max_duration
 
 
 @pytest.mark.parametrize("name", ["run.gif", pytest.param("run.mp4", marks=pytest.mark.long)])
@@ -164,8 +154,7 @@ def test_a_run_is_filmed_without_a_display(argo, tmp_path: Path, name: str) -> N
         "Mission Protocol #3\n1. Set a starting point in front of the site\n"
         "2. Check checkpoint #3\n"
     )
-    result = argo("run", script, "--render", tmp_path / name)
-    assert result.returncode == 0, result.stderr
+    argo("run", script, "--render", tmp_path / name, status=0)
     head = (tmp_path / name).read_bytes()[:12]
     assert head.startswith(b"GIF89a") or head[4:8] == b"ftyp"
 
@@ -174,5 +163,4 @@ def test_the_report_needs_nothing_from_elsewhere(first) -> None:
     _, folder = first
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert not re.search(r"""(?:src|href)\s*=\s*["'](?!#|data:)""", page)
-    data = json.loads((folder / "report.json").read_text(encoding="utf-8"))
-    assert data["seed"] == 0
+    assert reported(folder).seed == 0

@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from argo_compiler.hfsm import Outcome
-from argo_env.run.record import RunRecord, WindowKept
+from argo_env.run.record import WindowKept
+from tests.e2e.conftest import reported
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios" / "umad"
 MISSION = SCENARIOS / "missions" / "rounds_and_windows.json"
@@ -21,13 +22,11 @@ def done(request, argo, tmp_path_factory):
         "run", MISSION, "--faults", SCENARIOS / "missions" / "falling_pressure.yaml",
         "--drive", request.param, "--report", folder,
     )  # fmt: skip
-    text = (folder / "report.json").read_text(encoding="utf-8")
-    return result, RunRecord.model_validate_json(text), folder
+    return result, reported(folder), folder
 
 
 def test_check_finds_no_error_in_it(argo) -> None:
-    result = argo("check", MISSION)
-    assert result.returncode == 0, result.stdout
+    argo("check", MISSION, status=0)
 
 
 def test_it_is_completed_with_failures(done) -> None:

@@ -9,7 +9,7 @@ from argo_compiler.files.mission_file import read_mission
 def test_a_sheet_in_any_order_is_put_in_order(argo, missions: Path, tmp_path: Path) -> None:
     sheet = (missions / "any_order.txt").read_text(encoding="utf-8").splitlines()
     (tmp_path / "sheet.txt").write_text("\n".join(sheet[:10]) + "\n", encoding="utf-8")
-    result = argo("route", "sheet.txt", "--budget", "20min", "-o", "new.json", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
+    suggest = ("route", "sheet.txt", "--budget", "20min", "-o", "new.json")
+    result = argo(*suggest, cwd=tmp_path, status=0)
     assert "Proven: no order is better" in result.stdout
     assert not check(read_mission(tmp_path / "new.json"))

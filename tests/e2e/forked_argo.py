@@ -56,24 +56,18 @@ def serve() -> None:
     end_at_once()  # as `argo` itself begins
     kept = []
     for line in sys.stdin:
-        request = json.loads(line)
+        request, status = json.loads(line), 0
         if "open" in request:
             kept.append(open_site(request["open"]))
             kept[-1].navigator.prepare()
-            print(0, flush=True)
-            continue
-        if "drive" in request:
+        elif "drive" in request:
             _drive(*request["drive"])
-            print(0, flush=True)
-            continue
-        child = os.fork()
-        if child == 0:
+        elif child := os.fork():
+            status = _end_of(child, request["after"], request["signal"])
+        else:
             # Not `exit`: the parent's buffers and handlers are not ours.
             os._exit(_status(lambda request=request: _carry_out(request)))
-        print(
-            os.waitstatus_to_exitcode(_end_of(child, request["after"], request["signal"])),
-            flush=True,
-        )
+        print(os.waitstatus_to_exitcode(status), flush=True)
 
 
 def _drive(path: str, start_area: int, end_area: int) -> None:

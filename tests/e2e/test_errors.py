@@ -71,42 +71,6 @@ def test_an_unknown_word_is_shown_in_its_line_with_what_was_expected(
     assert "hint" in message
 
 
-@pytest.mark.parametrize(
-    ("arguments", "says"),
-    [
-        (["run", "nowhere.txt"], "nowhere.txt"),
-        (["run", "."], "directory"),
-        (["run", "sheet.txt", "--site", "atlantis"], "umad"),
-        (["run", "sheet.txt", "--value", "8"], "ID=VALUE"),
-        (["run", "sheet.txt", "--value", "1=2", "--value", "1=3"], "already"),
-        (["run", "sheet.txt", "--pace", "2"], "--gui"),
-        (["run", "sheet.txt", "--site", "bad.yaml"], "bad.yaml:2:1"),
-        (["run", "sheet.txt", "--value", "99=1"], "checkpoint 99"),
-        (["run", "sheet.txt", "--value", "1=11"], "0 to 10 bar"),
-        (["run", "sheet.txt", "--value", "1=nan"], "ID=VALUE"),
-        (["run", "sheet.txt", "--drive", "rocket"], "no drive `rocket`"),
-        (["run", "sheet.txt", "--sensor", "nose"], "no sensor `nose`"),
-        (["run", "sheet.txt", "--render", "film.avi"], ".mp4"),
-        (["run", "sheet.txt", "--start-area", "2"], "area"),
-        (["run", "mission.json"], "mission.json:1:"),
-        (["import", "mission.json", "-o", "m.json"], "is not JSON"),
-        (["import", "whole.json", "-o", "m.json"], "whole.json is a mission already"),
-        (["import", "sheet.txt", "-o", "sheet.txt"], "input"),
-        (["import", "sheet.txt", "-o", "no/such/folder/m.json"], "m.json"),
-        (["run", "sheet.txt", "--seed", "x"], "seed"),
-        (["run", "sheet.txt", "--report", "sheet.txt"], "folder"),
-        (["run", "sheet.txt", "--seed", "-1"], "seed"),
-        (["launch", "sheet.txt"], "launch"),
-    ],
-)
-def test_a_bad_request_is_refused(argo, tmp_path: Path, arguments, says) -> None:
-    (tmp_path / "sheet.txt").write_text(SHEET)
-    (tmp_path / "mission.json").write_text("{not json")
-    (tmp_path / "whole.json").write_text('{"tasks": [{"name": "GO", "action": "MEASURE"}]}')
-    (tmp_path / "bad.yaml").write_text("name: bad\ntitel: Bad\n")
-    assert says in refused(argo(*arguments, cwd=tmp_path))
-
-
 def test_the_choice_of_area_is_asked_for(argo, missions: Path, tmp_path: Path) -> None:
     message = refused(argo("import", missions / "mission_1.txt", "-o", tmp_path / "m.json"))
     assert "--start-area" in message

@@ -8,6 +8,7 @@ import socket
 import time
 from collections import Counter
 from pathlib import Path
+from typing import Any
 
 import httpx
 import pytest
@@ -34,6 +35,10 @@ class Serving:
         self.address = f"127.0.0.1:{self.port}"
         self.folder = folder
 
+    def client(self, kind: Any = httpx.Client, timeout: float = 60) -> Any:
+        """Return a client that may do everything, of one of the kinds that HTTPX has."""
+        return kind(base_url=f"http://{self.address}", headers=HEADERS, timeout=timeout)
+
     def begin(self) -> None:
         self.process = started(
             *("serve", self.folder, "--port", self.port),
@@ -46,8 +51,7 @@ class Serving:
     def end(self, number: int) -> str:
         """Ends it by a signal; what it has said."""
         self.process.send_signal(number)
-        said = self.process.communicate(timeout=60)[1]
-        return said or ""
+        return self.process.communicate(timeout=60)[1] or ""
 
     def interrupt(self) -> str:
         """Ctrl-C in its terminal: the signal goes to all of its processes. What they have said."""
@@ -65,7 +69,7 @@ def serving(tmp_path):
 
 
 def test_the_service_begins_says_where_it_is_and_ends(serving: Serving) -> None:
-    with httpx.Client(base_url=f"http://{serving.address}", headers=HEADERS) as client:
+    with serving.client() as client:
         assert client.get("/api/service").json()["site"] == "umad"
     said = serving.end(signal.SIGINT)
     assert "Traceback" not in said
@@ -84,8 +88,7 @@ def test_the_service_begins_says_where_it_is_and_ends(serving: Serving) -> None:
     ],
 )
 def test_what_can_not_be_served_is_said(argo, tmp_path, options, said) -> None:
-    ended = argo("serve", tmp_path / "m", *options)
-    assert said in refused(ended)
+    assert said in refused(argo("serve", tmp_path / "m", *options))
 
 
 def evaluating(client: httpx.Client) -> str:
@@ -102,16 +105,19 @@ def evaluating(client: httpx.Client) -> str:
     )
     assert begun.status_code == 202, begun.text
     job: str = begun.json()["id"]
+    wait_for_rows(client, job)
+    return job
+
+
+def wait_for_rows(client: httpx.Client, job: str) -> None:
     while client.get(f"/api/jobs/{job}").json()["standing"] is None:
         time.sleep(0.1)
-    return job
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("end", ["Ctrl-C", "kill -9"])
 def test_an_evaluation_ends_with_the_service_and_goes_on(serving: Serving, end: str) -> None:
-    address = f"http://{serving.address}"
-    with httpx.Client(base_url=address, headers=HEADERS, timeout=60) as client:
+    with serving.client() as client:
         job = evaluating(client)
     rows = serving.folder / "evaluations" / job / "rows.log"
     if end == "Ctrl-C":
@@ -123,11 +129,10 @@ def test_an_evaluation_ends_with_the_service_and_goes_on(serving: Serving, end: 
     time.sleep(1)
     assert rows.stat().st_size == kept > 0, "nothing goes on running"
     serving.begin()
-    with httpx.Client(base_url=address, headers=HEADERS, timeout=60) as client:
+    with serving.client() as client:
         assert client.get(f"/api/jobs/{job}").json()["state"] == "interrupted"
         assert client.post(f"/api/jobs/{job}/go_on").status_code == 202
-        while client.get(f"/api/jobs/{job}").json()["standing"] is None:
-            time.sleep(0.1)
+        wait_for_rows(client, job)
     assert rows.stat().st_size >= kept
     serving.end(signal.SIGTERM)
 
@@ -179,9 +184,7 @@ async def edit_for(serving: Serving, id: str, seconds: float, acknowledged: Coun
     """Twenty edits a second, each sent again until it is acknowledged."""
     loop = asyncio.get_running_loop()
     ends, number, highest = loop.time() + seconds, 0, 1
-    async with httpx.AsyncClient(
-        base_url=f"http://{serving.address}", headers=HEADERS, timeout=10
-    ) as client:
+    async with serving.client(httpx.AsyncClient, timeout=10) as client:
         while loop.time() < ends:
             number += 1
             edit = {"kind": "change_task", "name": f"t{number % 50}", "velocity": number / 1e4}
@@ -204,9 +207,7 @@ async def edit_for(serving: Serving, id: str, seconds: float, acknowledged: Coun
 
 
 async def play(serving: Serving, seconds: float, subscribers: int, kills: int) -> None:
-    async with httpx.AsyncClient(
-        base_url=f"http://{serving.address}", headers=HEADERS, timeout=30
-    ) as client:
+    async with serving.client(httpx.AsyncClient, timeout=30) as client:
         tasks = mission(*(f"t{k}" for k in range(50))).model_dump(mode="json")
         for task in tasks["tasks"]:
             task["object_id"] = "1"
@@ -221,7 +222,7 @@ async def play(serving: Serving, seconds: float, subscribers: int, kills: int) -
         await asyncio.to_thread(serving.end, signal.SIGKILL)
         await asyncio.to_thread(serving.begin)
     highest = await editing
-    async with httpx.AsyncClient(base_url=f"http://{serving.address}", headers=HEADERS) as client:
+    async with serving.client(httpx.AsyncClient) as client:
         state = (await client.get(f"/api/missions/{id}")).json()
     assert state["revision"] == highest
     assert sorted(acknowledged.values()) == [*range(2, highest + 1)], "lost, or done twice"

@@ -1,9 +1,20 @@
 import pytest
+from click.testing import Result
+from typer.testing import CliRunner
 
 from argo_compiler.base.catalog import Catalog
 from argo_env.navigation import Navigator
 from argo_env.planning.opening import OpenedSite, open_site
+from argo_planner.cli import app
 from argo_planner.terminal import stage_display
+from tests import yard
+
+
+def argo(*words: object, status: int | None = None) -> Result:
+    """Run the command in this process, to that exit status if one is given."""
+    result = CliRunner().invoke(app, [*map(str, words)])
+    assert status in (None, result.exit_code), f"{result.output}{result.exception}"
+    return result
 
 
 @pytest.fixture(autouse=True)
@@ -24,6 +35,12 @@ def quick_picture(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture(scope="session")
 def umad() -> OpenedSite:
     return open_site("umad")
+
+
+@pytest.fixture(scope="session")
+def yard_site() -> OpenedSite:
+    """Return the yard, opened."""
+    return yard.opened(yard.yard())
 
 
 @pytest.fixture(scope="session")

@@ -4,13 +4,12 @@ import json
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.diagnostics import has_errors
-from argo_planner.cli import app
 from argo_planner.terminal.files import read_upload
 from argo_planner.use_cases.checking import check_source
+from tests.argo_planner.conftest import argo
 
 MISSIONS = Path(__file__).parents[2] / "scenarios" / "umad" / "missions"
 
@@ -82,11 +81,9 @@ def test_the_paths_of_a_sound_mission_are_analysed(catalog, tmp_path: Path):
 @pytest.mark.parametrize(
     ("name", "code"), [("none.txt", "script.unreadable"), ("none.json", "file.missing")]
 )
-def test_a_file_that_is_not_there_is_a_finding(argo, tmp_path: Path, name, code):
-    (finding,) = json.loads(argo("check", tmp_path / name, "--format", "json").stdout)[
-        "diagnostics"
-    ]
-    assert finding["code"] == code
+def test_a_file_that_is_not_there_is_a_finding(tmp_path: Path, name, code):
+    found = json.loads(argo("check", tmp_path / name, "--format", "json").stdout)
+    assert [finding["code"] for finding in found["diagnostics"]] == [code]
 
 
 SOUND = {"tasks": [{"name": "A", "action": "MEASURE", "object_id": "1"}]}
@@ -95,10 +92,10 @@ WRONG = {"tasks": [{"name": "A", "action": "MEASURE", "object_id": "77"}]}
 
 
 @pytest.fixture
-def argo(monkeypatch, tmp_path: Path):
-    """Runs a command of `argo` in this process."""
+def plan(monkeypatch, tmp_path: Path) -> Path:
+    """The file of a mission in the working folder."""
     monkeypatch.chdir(tmp_path)
-    return lambda *arguments: CliRunner().invoke(app, [*map(str, arguments)])
+    return Path("plan.json")
 
 
 @pytest.mark.parametrize(
@@ -115,34 +112,27 @@ def argo(monkeypatch, tmp_path: Path):
         (SOUND, ["--format", "xml"], 2, ""),
     ],
 )
-def test_status_and_output(argo, mission, options, status, says):
-    Path("plan.json").write_text(json.dumps(mission))
-    result = argo("check", "plan.json", *options)
-    assert result.exit_code == status
-    assert says in result.stdout
+def test_status_and_output(plan, mission, options, status, says):
+    plan.write_text(json.dumps(mission))
+    assert says in argo("check", plan, *options, status=status).stdout
 
 
 @pytest.mark.parametrize("options", [["-o", "plan.json"], ["--start-area", "1"]])
-def test_requests_that_make_no_sense(argo, options):
-    Path("plan.json").write_text(json.dumps(SOUND))
-    result = argo("check", "plan.json", *options)
-    assert isinstance(result.exception, ArgoError)
-    assert json.loads(Path("plan.json").read_text()) == SOUND
+def test_requests_that_make_no_sense(plan, options):
+    plan.write_text(json.dumps(SOUND))
+    assert isinstance(argo("check", plan, *options).exception, ArgoError)
+    assert json.loads(plan.read_text()) == SOUND
 
 
 @pytest.mark.parametrize("name", ["mission", "machine", "progress"])
-def test_schemas_are_printed(argo, name):
+def test_schemas_are_printed(name):
     assert json.loads(argo("schema", name).stdout)["title"] == f"Argo {name}"
 
 
-def test_a_file_that_is_not_there_is_named_once(argo, tmp_path: Path):
+def test_a_file_that_is_not_there_is_named_once(tmp_path: Path):
     path = tmp_path / "none.txt"
-    result = argo("check", path)
-    assert result.exit_code == 2
-    assert (
-        f"{path}: error: can't be read: it does not exist (no such file) [script.unreadable]"
-        in result.output
-    )
+    said = f"{path}: error: can't be read: it does not exist (no such file) [script.unreadable]"
+    assert said in argo("check", path, status=2).output
 
 
 def test_a_mission_to_very_many_places_is_checked_without_its_times(catalog, tmp_path: Path):

@@ -10,21 +10,16 @@ from argo_planner.terminal.conclusion import Conclusion
 from argo_planner.terminal.kept import Kept
 from argo_planner.terminal.signals import Interrupted, SignalWatch
 from argo_planner.use_cases.reporting import REPORT_FILES
-from tests.yard import fast_rig, measure, mission, run_with, yard
+from tests.yard import fast_rig, measure, mission, run_with
 
 
 @pytest.fixture(scope="module")
-def navigator():
-    return yard()
-
-
-@pytest.fixture(scope="module")
-def record(navigator):
-    return run_with(mission(measure(1)), fast_rig(navigator))
+def record(yard_site):
+    return run_with(mission(measure(1)), fast_rig(yard_site.navigator))
 
 
 @pytest.fixture
-def conclude(record, navigator, tmp_path, monkeypatch, capsys):
+def conclude(record, yard_site, tmp_path, monkeypatch, capsys):
     """Ends the run, which is kept in `run.journal`; the exit status and what is printed."""
     monkeypatch.chdir(tmp_path)
     Path("run.journal").write_text("the run")
@@ -38,7 +33,7 @@ def conclude(record, navigator, tmp_path, monkeypatch, capsys):
         try:
             Conclusion(
                 report and Path(report), render and Path(render), kept, interruption
-            ).conclude(record, navigator.site, navigator.robot, "It took no time.")
+            ).conclude(record, yard_site.site, yard_site.robot, "It took no time.")
         except typer.Exit as end:
             status = end.exit_code
         return status, *capsys.readouterr()

@@ -4,36 +4,32 @@ import tomllib
 from importlib.util import find_spec
 from pathlib import Path
 
-from typer.testing import CliRunner
-
 import argo_planner.use_cases.doctor
 from argo_compiler import __version__
 from argo_compiler.base.extras import install_line
 from argo_env.files import cache
 from argo_env.planning.opening import forget_sites, open_site
-from argo_planner.cli import app
 from argo_planner.use_cases.doctor import examine
+from tests.argo_planner.conftest import argo
 
 PROJECT = Path(__file__).parents[2] / "pyproject.toml"
 
 
-def argo(*arguments):
-    result = CliRunner().invoke(app, ["doctor", *arguments])
-    assert result.exit_code == 0, result.output
-    return result.output
+def doctor(*arguments):
+    return argo("doctor", *arguments, status=0).output
 
 
 def test_what_it_shows(tmp_path, monkeypatch):
     monkeypatch.setenv(cache.VARIABLE, str(tmp_path))
     forget_sites()
-    assert f"cache: {tmp_path}, 0 sites, 0.0 MB" in argo()
+    assert f"cache: {tmp_path}, 0 sites, 0.0 MB" in doctor()
     assert open_site("darmstadt").catalog
-    said = argo()
+    said = doctor()
     assert said.startswith(f"argo {__version__}, Python 3.11")
     size = sum(path.stat().st_size for path in tmp_path.rglob("*") if path.is_file())
     assert f"cache: {tmp_path}, 1 sites, {size / 1e6:.1f} MB of at most" in said
     assert "PyBullet: works" in said
-    emptied = argo("--empty-cache")
+    emptied = doctor("--empty-cache")
     assert f"cache: emptied, {size / 1e6:.1f} MB freed" in emptied
     assert f"cache: {tmp_path}, 0 sites, 0.0 MB" in emptied
     assert not [path for path in tmp_path.rglob("*") if path.is_file()]
@@ -44,7 +40,7 @@ def test_what_is_missing_comes_with_its_remedy(monkeypatch):
         return None if name in {"cv2", "mcap"} else find_spec(name)
 
     monkeypatch.setattr(argo_planner.use_cases.doctor, "find_spec", without)
-    said = argo()
+    said = doctor()
     assert "vision (reading gauges from pictures): not installed, cv2; pip install" in said
     assert "recording (recordings of runs): not installed, mcap; pip install" in said
     assert install_line("vision") in said
@@ -53,9 +49,9 @@ def test_what_is_missing_comes_with_its_remedy(monkeypatch):
 def test_a_folder_that_can_not_be_used_is_named_with_the_reason(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("", encoding="utf-8")
     monkeypatch.setenv(cache.VARIABLE, str(tmp_path / "file"))
-    assert "nothing can be kept there, so each command builds its site anew: " in argo()
+    assert "nothing can be kept there, so each command builds its site anew: " in doctor()
     assert examine().cache.flaw == "Not a directory"
-    refused = CliRunner().invoke(app, ["doctor", "--empty-cache"])
+    refused = argo("doctor", "--empty-cache")
     assert "the cache can't be emptied: Not a directory; name" in str(refused.exception)
     assert "emptied, " not in refused.output
 

@@ -5,13 +5,12 @@ import re
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.files.mission_file import read_mission
 from argo_compiler.il import Mission
-from argo_planner.cli import app
 from argo_planner.use_cases.schemas import FileKind, schema
+from tests.argo_planner.conftest import argo
 from tests.mission_writing import unplaced
 from tests.yard import write_yard
 
@@ -34,19 +33,12 @@ def folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
     return tmp_path
 
 
-def argo(*words: str):
-    return CliRunner().invoke(app, [*words, "--site", "yard.yaml"])
-
-
-def explained(*words: str) -> str:
-    result = argo("explain", *words)
-    assert result.exception is None, result.exception
-    return result.stdout
+def explained(*words: str, status: int = 0) -> str:
+    return argo("explain", *words, "--site", "yard.yaml", status=status).stdout
 
 
 def mission_of(source: str) -> Mission:
-    result = argo("import", source, "-o", f"{source}.json")
-    assert result.exception is None, result.exception
+    argo("import", source, "-o", f"{source}.json", "--site", "yard.yaml", status=0)
     return unplaced(read_mission(Path(f"{source}.json")))
 
 
@@ -80,7 +72,7 @@ def test_for_programs_it_is_data_with_a_schema() -> None:
 
 @pytest.mark.usefixtures("folder")
 def test_an_import_says_what_was_understood() -> None:
-    result = argo("import", "s.txt", "-o", "m.json")
+    result = argo("import", "s.txt", "-o", "m.json", "--site", "yard.yaml")
     assert "2. Check checkpoint #1, at 0.3 m/s." in result.stdout
 
 
@@ -92,13 +84,13 @@ def test_a_mission_is_explained_as_its_script_is() -> None:
 
 @pytest.mark.usefixtures("folder")
 def test_warnings_fail_only_where_that_is_asked_for() -> None:
-    assert argo("explain", "s.txt").exit_code == 0
-    assert argo("explain", "s.txt", "--strict").exit_code == 1
+    explained("s.txt", status=0)
+    explained("s.txt", "--strict", status=1)
 
 
 def test_errors_are_those_of_the_import(folder: Path) -> None:
     (folder / "s.txt").write_text("1. Fly to the moon.\n", encoding="utf-8")
-    result = argo("explain", "s.txt")
+    result = argo("explain", "s.txt", "--site", "yard.yaml")
     assert isinstance(result.exception, DiagnosticError)
 
 
@@ -106,4 +98,4 @@ def test_what_the_readme_shows():
     root = Path(__file__).parents[2]
     (said,) = re.findall(r"```explained\n(.*?)```", (root / "README.md").read_text("utf-8"), re.S)
     script = root / "scenarios" / "umad" / "missions" / "protocol_3.txt"
-    assert CliRunner().invoke(app, ["explain", str(script)]).stdout == said
+    assert argo("explain", script).stdout == said

@@ -3,14 +3,13 @@
 import xml.etree.ElementTree as ET
 
 import pytest
-from typer.testing import CliRunner
 
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.export import EXPORTERS
 from argo_compiler.files.mission_file import write_mission
 from argo_compiler.il import EventKind, Mission, Reaction, Response, Task, Transition
-from argo_planner.cli import app
+from tests.argo_planner.conftest import argo
 
 TASKS = (
     Task(name="A", action="MEASURE", object_id="1", transitions=(Transition(target="B"),)),
@@ -23,9 +22,7 @@ def export(tmp_path):
     def export(mission, to, output="out"):
         source = tmp_path / "mission.json"
         write_mission(mission, source)
-        result = CliRunner().invoke(
-            app, ["export", str(source), "--to", to, "-o", str(tmp_path / output)]
-        )
+        result = argo("export", source, "--to", to, "-o", tmp_path / output)
         if result.exception is not None and not isinstance(result.exception, SystemExit):
             raise result.exception
         return tmp_path / output

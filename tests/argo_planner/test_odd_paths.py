@@ -11,10 +11,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
 from argo_compiler.base.errors import ArgoError
-from argo_planner.cli import app
+from tests.argo_planner.conftest import argo
 
 NOBODY = 65534
 
@@ -91,7 +90,7 @@ def _fill() -> None:
 def refusal(command: str, path: str) -> str:
     """What is said about the path."""
     words = [word.format(path) for word in command.split()]
-    result = CliRunner().invoke(app, words)
+    result = argo(*words)
     if not isinstance(result.exception, ArgoError | SystemExit) or not result.exit_code:
         raise AssertionError(f"{command}: {result.output}") from result.exception
     said = f"{result.exception}" if isinstance(result.exception, ArgoError) else result.output
@@ -128,9 +127,8 @@ def test_a_script_comes_whole_through_a_pipe(name: str):
     os.mkfifo(name)
     writing = threading.Thread(target=lambda: Path(name).write_text(SCRIPT, encoding="utf-8"))
     writing.start()
-    result = CliRunner().invoke(app, ["format", name, "--site", "darmstadt"])
+    result = argo("format", name, "--site", "darmstadt", status=0)
     writing.join()
-    assert result.exit_code == 0, result.exception
     assert "2. Check checkpoint #1." in result.output
 
 

@@ -5,13 +5,12 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from typer.testing import CliRunner
 
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, Remedy
 from argo_compiler.files.writing import write_folder
-from argo_planner.cli import app
 from argo_planner.terminal.words import said
 from tests.argo_compiler.files.test_writing import contents
+from tests.argo_planner.conftest import argo
 from tests.conftest import examples
 from tests.disks import fill, small_disk
 from tests.yard import measure, mission, write_yard
@@ -47,7 +46,7 @@ def test_inputs_are_kept(monkeypatch, tmp_path: Path, command: str, says: str):
     monkeypatch.chdir(tmp_path)
     for name in ("s.txt", "m.json", "site.yaml", "r.yaml", "f.yaml", "j.mcap", "r.gif"):
         Path(name).write_text("mine", encoding="utf-8")
-    result = CliRunner().invoke(app, command.split())
+    result = argo(*command.split())
     assert isinstance(result.exception, Conflict)
     assert says in str(result.exception)
     assert {path.read_text(encoding="utf-8") for path in tmp_path.iterdir()} == {"mine"}
@@ -85,9 +84,9 @@ def folder(monkeypatch, tmp_path: Path) -> Path:
     return tmp_path
 
 
-def invoke(command: str, *more: str):
+def invoke(command: str, *more: str, status: int | None = None):
     site = [] if command.split()[0] in {"sites", "resume", "replay"} else ["--site", "yard.yaml"]
-    return CliRunner().invoke(app, [*command.split(), *site, *more])
+    return argo(*command.split(), *site, *more, status=status)
 
 
 def put(names: list[str]) -> None:
@@ -135,8 +134,7 @@ def test_the_way_out_is_said() -> None:
 def test_with_force_the_results_are_replaced_and_nothing_else(folder: Path, command: str) -> None:
     put([*OUTPUTS[command], "report/notes.txt", "bag/notes.txt", "floors/notes.txt"])
     before = contents(folder)
-    result = invoke(command, "--force")
-    assert result.exit_code == 0, result.exception
+    invoke(command, "--force", status=0)
     after = contents(folder)
     for name in OUTPUTS[command]:
         assert not after[name].startswith(b"old"), name
@@ -152,8 +150,7 @@ def test_with_force_the_results_are_replaced_and_nothing_else(folder: Path, comm
      "export m.json --to dot -o {}"],
 )  # fmt: skip
 def test_a_dash_is_standard_output(command: str) -> None:
-    shown = invoke(command.format("-"))
-    assert shown.exit_code == 0, shown.exception
+    shown = invoke(command.format("-"), status=0)
     assert not Path("-").exists()
     invoke(command.format("kept.json"))
     assert shown.stdout == Path("kept.json").read_text(encoding="utf-8")
@@ -194,7 +191,7 @@ def test_a_place_that_can_not_be_written_to_is_said_before_any_work(
     Path("taken").mkdir()
     Path("holding/report.html").mkdir(parents=True)
     # Its site is never looked at.
-    error = CliRunner().invoke(app, [*command.split(), *["--force"]]).exception
+    error = argo(*command.split(), "--force").exception
     assert isinstance(error, ArgoError)
     assert says in str(error)
 

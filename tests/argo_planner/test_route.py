@@ -5,38 +5,29 @@ import re
 
 import pytest
 from PIL import Image
-from typer.testing import CliRunner
 
 from argo_compiler.base.model import Pose
 from argo_compiler.files.mission_file import read_mission, write_mission
 from argo_compiler.hfsm import Hfsm
 from argo_compiler.il import Action, EventKind, Group, Order, Task, TimeWindow, WaitRule
 from argo_compiler.route import RouteSuggestion, Tour, evaluate
-from argo_env.planning.opening import OpenedSite
 from argo_env.run.record import RunRecord
-from argo_planner.cli import app
-from tests.yard import measure, mission, waypoint, yard
+from tests.argo_planner.conftest import argo as run_argo
+from tests.yard import measure, mission, waypoint
 
 DOCK = Pose(x=1.05, y=1.05, z=0.02)
 
 
-@pytest.fixture(scope="module")
-def built():
-    return OpenedSite.of_navigator(yard())
-
-
 @pytest.fixture
-def argo(built, monkeypatch):
+def argo(yard_site, monkeypatch):
     """Runs `argo` in this process, on the yard, to an exit status; what it says."""
     for command in ("route", "compile", "run", "check", "format", "import_script"):
-        monkeypatch.setattr(f"argo_planner.commands.{command}.open_site", lambda _: built)
+        monkeypatch.setattr(f"argo_planner.commands.{command}.open_site", lambda _: yard_site)
     monkeypatch.setenv("COLUMNS", "120")
 
     def call(*arguments, status=0):
-        result = CliRunner().invoke(app, [*map(str, arguments)])
-        text = result.output if result.exception is None else result.output + str(result.exception)
-        assert result.exit_code == status, text
-        return text
+        result = run_argo(*arguments, status=status)
+        return result.output if result.exception is None else f"{result.output}{result.exception}"
 
     return call
 

@@ -7,19 +7,14 @@ import numpy as np
 import pytest
 import yaml
 from PIL import Image
-from typer.testing import CliRunner
 
 from argo_compiler.diagnostics import Severity
 from argo_env.files import resources
 from argo_env.planning import open_site
 from argo_env.site import load_site
-from argo_planner.cli import app
 from argo_planner.terminal.files import read_upload
 from argo_planner.use_cases.checking import check_source
-
-
-def argo(*arguments):
-    return CliRunner().invoke(app, [str(a) for a in arguments])
+from tests.argo_planner.conftest import argo
 
 
 @pytest.fixture
@@ -34,18 +29,15 @@ def look_over(tmp_path):
 
     def call(site, *options):
         (tmp_path / "site.yaml").write_text(yaml.safe_dump(site, sort_keys=False), encoding="utf-8")
-        result = argo("sites", tmp_path / "site.yaml", *options)
-        assert result.exit_code == 2
-        return result.output
+        return argo("sites", tmp_path / "site.yaml", *options, status=2).output
 
     return call
 
 
 def test_list():
-    result = argo("sites")
-    assert result.exit_code == 0
-    assert "darmstadt: " in result.output
-    assert "umad: UMAD (reconstruction), floors: 6, checkpoints: 20" in result.output
+    listed = argo("sites", status=0).output
+    assert "darmstadt: " in listed
+    assert "umad: UMAD (reconstruction), floors: 6, checkpoints: 20" in listed
 
 
 def test_a_site_that_can_be_driven_and_is_written_out(tmp_path):
@@ -78,8 +70,7 @@ def test_a_generated_site_is_written_under_the_name_of_its_file(tmp_path):
     script = tmp_path / "mission.txt"
     script.write_text("Mission Protocol: one\n1. Set the starting point in starting area 1.\n"
                       "2. Check checkpoint #1.\n", encoding="utf-8")  # fmt: skip
-    checked = argo(*[script if a == "MISSION" else a for a in shlex.split(use)[1:]])
-    assert checked.exit_code == 0, checked.output
+    argo(*[script if a == "MISSION" else a for a in shlex.split(use)[1:]], status=0)
 
 
 @pytest.mark.parametrize(

@@ -3,12 +3,9 @@
 import logging
 
 import pytest
-from typer.testing import CliRunner
 
-from argo_env.planning.opening import OpenedSite
-from argo_planner.cli import app
 from argo_planner.terminal.verbosity import set_verbosity
-from tests.yard import yard
+from tests.argo_planner.conftest import argo
 
 # The misspelt word is worth a warning.
 SCRIPT = (
@@ -16,25 +13,21 @@ SCRIPT = (
 )
 
 
-@pytest.fixture(scope="module")
-def built():
-    return OpenedSite.of(yard().site)
-
-
-@pytest.fixture
-def argo(built, monkeypatch, tmp_path):
+@pytest.fixture(autouse=True)
+def folder(yard_site, monkeypatch, tmp_path):
+    """The working folder, with the script of a mission in the yard."""
     for command in ("run", "check", "import_script"):
-        monkeypatch.setattr(f"argo_planner.commands.{command}.open_site", lambda _: built)
+        monkeypatch.setattr(f"argo_planner.commands.{command}.open_site", lambda _: yard_site)
     (tmp_path / "plan.txt").write_text(SCRIPT)
     monkeypatch.chdir(tmp_path)
-    yield lambda *arguments: CliRunner().invoke(app, arguments)
+    yield tmp_path
     set_verbosity()
 
 
 RUN = ("run", "plan.txt", "--drive", "route")
 
 
-def test_a_quiet_run_shows_its_results_only(argo):
+def test_a_quiet_run_shows_its_results_only():
     usual, quiet = argo(*RUN), argo("-q", *RUN)
     assert "shows" in usual.stderr
     assert "warning: " in usual.stderr
@@ -45,19 +38,19 @@ def test_a_quiet_run_shows_its_results_only(argo):
     assert quiet.stdout.splitlines() == kept
 
 
-def test_errors_are_said_all_the_same(argo):
+def test_errors_are_said_all_the_same():
     assert "no drive `rocket`" in str(argo("-q", "run", "plan.txt", "--drive", "rocket").exception)
 
 
 @pytest.mark.parametrize("arguments", [("-v", *RUN), (*RUN, "-v"), ("run", "--verbose", *RUN[1:])])
-def test_the_stages_of_a_run_are_told_on_demand(argo, arguments):
+def test_the_stages_of_a_run_are_told_on_demand(arguments):
     result = argo(*arguments)
     assert "INFO argo_env.run.session: a run on yard: drive route" in result.stderr
     assert "INFO argo_env.run.simulation: the run has ended at" in result.stderr
     assert "Success" in result.stdout
 
 
-def test_a_command_is_as_usual_after_one_that_was_not(argo):
+def test_a_command_is_as_usual_after_one_that_was_not():
     argo("-vv", *RUN)
     assert "INFO" not in argo(*RUN).stderr
     argo(*RUN, "--quiet")

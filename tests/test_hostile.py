@@ -50,7 +50,9 @@ def read_within_limits(path: Path, answers: Connection) -> None:
         answers.send(f"refused {str(error)[-400:]}")
 
 
-def answer(path: Path) -> str:
+def answer(path: Path, content: str) -> str:
+    """What becomes of a file with this content."""
+    path.write_text(content, encoding="utf-8")
     answers, sending = PROCESSES.Pipe(duplex=False)
     process = PROCESSES.Process(target=read_within_limits, args=(path, sending))
     process.start()
@@ -110,16 +112,13 @@ FILES = {
 
 @pytest.mark.parametrize("name", SCRIPTS)
 def test_hostile_scripts(name: str, tmp_path: Path) -> None:
-    path = tmp_path / "script.txt"
-    path.write_text(SCRIPTS[name], encoding="utf-8")
-    assert answer(path).split()[0] in ("mission", "refused")
+    assert answer(tmp_path / "script.txt", SCRIPTS[name]).split()[0] in ("mission", "refused")
 
 
 @pytest.mark.parametrize("name", FILES)
 def test_hostile_files(name: str, tmp_path: Path) -> None:
-    path = tmp_path / "mission.json"
-    path.write_text(json.dumps(FILES[name]()), encoding="utf-8")
-    assert answer(path).split()[0] in ("mission", "refused")
+    content = json.dumps(FILES[name]())
+    assert answer(tmp_path / "mission.json", content).split()[0] in ("mission", "refused")
 
 
 HUGE = "1" + "0" * 400
@@ -135,15 +134,12 @@ HUGE = "1" + "0" * 400
     ],
 )
 def test_numbers_beyond_reason_are_refused(tmp_path: Path, field: str, said: str) -> None:
-    path = tmp_path / "mission.json"
     task = '{"name": "A", "action": "WAYPOINT", "pose": {"x": 0, "y": 0, "z": 0}}'
-    path.write_text(f'{{"version": 3, "tasks": [{task}], {field}}}', encoding="utf-8")
-    given = answer(path)
+    content = f'{{"version": 3, "tasks": [{task}], {field}}}'
+    given = answer(tmp_path / "mission.json", content)
     assert given.startswith("refused")
     assert said in given
 
 
 def test_json_nested_beyond_reason(tmp_path: Path) -> None:
-    path = tmp_path / "mission.json"
-    path.write_text("[" * 1_000_000, encoding="utf-8")
-    assert answer(path).startswith("refused")
+    assert answer(tmp_path / "mission.json", "[" * 1_000_000).startswith("refused")

@@ -2,8 +2,6 @@
 
 import ast
 import re
-import subprocess
-import sys
 from collections import defaultdict
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
@@ -11,6 +9,7 @@ from graphlib import CycleError, TopologicalSorter
 import pytest
 
 from tests import source
+from tests.processes import run_python
 
 KNOWS = {
     "argo_compiler": set(),
@@ -157,9 +156,7 @@ for dotted in sys.argv[1:]:
 def test_each_module_is_found_where_its_name_says():
     """By `import a.b.c as x`, whatever of the project has been imported before."""
     modules = sorted(module for module in trees() if not module.endswith(".__main__"))
-    said = subprocess.run(
-        [sys.executable, "-c", IMPORTS, *modules], cwd=source.ROOT, capture_output=True, text=True
-    )
+    said = run_python("-c", IMPORTS, *modules, check=False)
     assert (said.returncode, said.stdout) == (0, ""), said.stderr
 
 

@@ -1,16 +1,13 @@
 """Which worker runs which tests: what the suite's speed and its order hang on."""
 
 import os
-import subprocess
-import sys
 from collections import defaultdict
-from pathlib import Path
 
 import pytest
 
 from tests.conftest import _SHARED, work_unit
+from tests.processes import ROOT, run_python
 
-ROOT = Path(__file__).parents[1]
 CONFTEST = """
 from tests import conftest
 from tests.conftest import pytest_xdist_make_scheduler
@@ -36,12 +33,8 @@ def test_one_worker_runs_a_file_and_those_that_share_something_with_it(tmp_path)
     (tmp_path / "conftest.py").write_text(CONFTEST, encoding="utf-8")
     for name in "abcd":
         (tmp_path / f"test_{name}.py").write_text(TESTS, encoding="utf-8")
-    subprocess.run(
-        [sys.executable, "-m", "pytest", "-n2", "--dist=loadfile", "-c", os.devnull, "--rootdir=."],
-        cwd=tmp_path,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        check=True,
-    )
+    options = ("-n2", "--dist=loadfile", "-c", os.devnull, "--rootdir=.")
+    run_python("-m", "pytest", *options, cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)})
     ran = defaultdict(list)
     for line in (tmp_path / "ran").read_text(encoding="utf-8").splitlines():
         file, worker, k = line.split()

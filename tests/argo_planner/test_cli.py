@@ -1,8 +1,6 @@
 """The command as a whole: its list of commands, what it imports, misspelt words, completion."""
 
 import os
-import subprocess
-import sys
 
 import pytest
 from typer.testing import CliRunner
@@ -58,17 +56,9 @@ def complete(shell: str, words: str) -> str:
         "zsh": {"_TYPER_COMPLETE_ARGS": words},
         "fish": {"_TYPER_COMPLETE_ARGS": words, "_TYPER_COMPLETE_FISH_ACTION": "get-args"},
     }[shell]
-    ran = subprocess.run(
-        [
-            sys.executable,
-            "-c",
-            "import sys; sys.argv = ['argo']\nimport argo_planner.cli as c; c.main()",
-        ],
-        env={**os.environ, **asked, "_ARGO_COMPLETE": f"complete_{shell}"},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    program = "import sys; sys.argv = ['argo']\nimport argo_planner.cli as c; c.main()"
+    environment = {**os.environ, **asked, "_ARGO_COMPLETE": f"complete_{shell}"}
+    ran = run_python("-c", program, env=environment, check=False)
     assert not ran.stderr
     return ran.stdout
 

@@ -2,28 +2,21 @@
 
 import os
 import subprocess
-import sys
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from argo_env.files import resources
+from tests.processes import ROOT, run_python
 
-ROOT = Path(__file__).parents[2]
+ARGO = ("-m", "argo_planner")
 MISSION = (resources.scenarios() / "umad" / "missions" / "protocol_3.txt").read_text("utf-8")
-
-
-def said_by(*words: object, **options: Any) -> subprocess.CompletedProcess[str]:
-    """Run the command in a process of its own."""
-    command = [sys.executable, "-m", "argo_planner", *map(str, words)]
-    return subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False, **options)
 
 
 def test_letters_that_a_terminal_does_not_have_are_written_by_number(tmp_path: Path):
     environment = {**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONPATH": str(ROOT)}
     name = "V\u00e4lve \u2603.txt"
-    result = said_by("check", name, cwd=tmp_path, env=environment, stdout=subprocess.PIPE)
+    result = run_python(*ARGO, "check", name, cwd=tmp_path, env=environment, check=False)
     assert result.returncode == 2
     assert result.stdout.startswith(r"V\xe4lve \u2603.txt: error: can't be read")
     assert not result.stderr
@@ -36,6 +29,7 @@ def test_letters_that_a_terminal_does_not_have_are_written_by_number(tmp_path: P
 def test_output_that_has_no_room_is_told_to_be_lost(tmp_path: Path, command: str, text: str):
     (tmp_path / "script.txt").write_text(text, encoding="utf-8")
     with open("/dev/full", "w", encoding="utf-8") as full:
-        result = said_by(command, tmp_path / "script.txt", stdout=full)
+        streams = {"capture_output": False, "stdout": full, "stderr": subprocess.PIPE}
+        result = run_python(*ARGO, command, tmp_path / "script.txt", **streams, check=False)
     assert result.returncode == 2
     assert result.stderr.endswith("argo: the output can't be written: No space left on device\n")

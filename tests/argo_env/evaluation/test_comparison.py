@@ -6,20 +6,15 @@ from argo_env.evaluation.comparison import compare_plans
 from argo_env.evaluation.plan import Stopping
 from argo_env.evaluation.report.page import comparison_page
 from argo_env.evaluation.requirement import parse_requirement
-from argo_env.evaluation.results import EvaluationResults
-from argo_env.evaluation.row import RunOutcome, row_without_end
-from tests.argo_env.evaluation.conftest import plan_of
+from argo_env.evaluation.row import RunOutcome
+from tests.argo_env.evaluation.conftest import came_to, plan_of
 
 
 def results_of(mission, seeds, faults=("none",), failing=(), stopping=None):
     """Results in which the runs of some worlds fail."""
     plan = plan_of(mission, seeds, faults, stopping=stopping or Stopping())
-    rows = []
-    for run in plan.runs():
-        came = RunOutcome.FAILURE if run.seed in failing else RunOutcome.SUCCESS
-        row = row_without_end("", plan.cases[run.case], run.spec, came, "")
-        rows.append(row.model_copy(update={"seed": run.seed, "duration": 100.0}))
-    return EvaluationResults(plan, tuple(rows))
+    outcomes = {False: RunOutcome.SUCCESS, True: RunOutcome.FAILURE}
+    return came_to(plan, lambda r: {"outcome": outcomes[r.seed in failing], "duration": 100.0})
 
 
 @pytest.mark.parametrize("faults", [("none",), ("a", "b")])

@@ -5,16 +5,13 @@ import pytest
 from argo_env.evaluation.results import EvaluationResults, duration_curve, failure_places_of
 from argo_env.evaluation.row import RunOutcome, RunRow
 from tests.argo_env.evaluation.conftest import plan_of
+from tests.argo_env.evaluation.test_store import row as a_row
 
 
 def row(seed, duration=None, faults="none", **other) -> RunRow:
     outcome = RunOutcome.FAILURE if duration is None else RunOutcome.SUCCESS
-    fields = {
-        "key": f"{faults}{seed}", "mission": "m", "policy": "as written", "site": "umad",
-        "robot": "tracker", "drive": "route", "sensor": "ideal", "faults": faults, "seed": seed,
-        "outcome": outcome, "reason": "", "duration": duration,
-    }  # fmt: skip
-    return RunRow(**(fields | other))
+    fields = {"key": f"{faults}{seed}", "faults": faults, "outcome": outcome, "duration": duration}
+    return a_row(seed, **(fields | other))
 
 
 def results_of(mission, rows, faults=("none",)) -> EvaluationResults:

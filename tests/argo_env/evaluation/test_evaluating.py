@@ -17,7 +17,7 @@ from argo_env.faults.reading import decode_faults
 from argo_env.run.spec import RunSpec
 from argo_env.worker_processes import context_with
 from tests.argo_env.evaluation import work
-from tests.argo_env.evaluation.conftest import plan_of, short_mission
+from tests.argo_env.evaluation.conftest import came_to, plan_of, short_mission
 from tests.conftest import examples
 
 EMERGENCY = decode_faults(b"faults: [{kind: emergency_stop, at: 10}]", "test").faults
@@ -236,10 +236,7 @@ def test_the_interval_covers_where_a_requirement_decides_when_to_stop(mission, s
 
 def test_the_world_of_a_run_that_was_lost_is_left_out_and_not_counted(mission):
     plan = plan_of(mission, range(10), "ab")
-    rows = []
-    for run in plan.runs():
-        lost = run.seed == 3 and run.case == 1
-        came = RunOutcome.ERROR if lost else RunOutcome.SUCCESS
-        rows.append(row_without_end(str(len(rows)), plan.cases[run.case], run.spec, came, ""))
-    rate = EvaluationResults(plan, tuple(rows)).rate(plan.plans[0])
+    lost = {"outcome": RunOutcome.ERROR}
+    results = came_to(plan, lambda run: lost if (run.seed, run.case) == (3, 1) else {})
+    rate = results.rate(plan.plans[0])
     assert (rate.runs, rate.lost) == (18, 1)

@@ -23,8 +23,9 @@ from argo_env.evaluation.report.picture import PALETTE
 from argo_env.evaluation.report.sections import reasons
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.results import EvaluationResults
-from argo_env.evaluation.row import RunOutcome, RunRow
+from argo_env.evaluation.row import RunOutcome
 from tests.argo_env.evaluation.conftest import plan_of
+from tests.argo_env.evaluation.test_store import row
 
 HOSTILE = "<script>alert('$x$')</script>"
 
@@ -38,9 +39,8 @@ def results_of(mission, name="mission", faults=("none", "brick"), fail=(3, 7), d
             if seed in died:
                 outcome = RunOutcome.DIED
             rows.append(
-                RunRow(
-                    key=f"{seed:012x}{number:012x}", mission=name, policy="as written", site="umad",
-                    robot="tracker", drive="route", sensor="ideal", faults=one, seed=seed,
+                row(
+                    seed, key=f"{seed:012x}{number:012x}", mission=name, faults=one,
                     outcome=outcome, reason=f"because of {name}", limit=400.0,
                     duration=None if outcome is RunOutcome.DIED else 300.0 + 2.0 * seed,
                     detections=(

@@ -12,10 +12,9 @@ from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.rates import Decision
 from argo_env.evaluation.report.sections import other_rates
 from argo_env.evaluation.requirement import parse_requirement
-from argo_env.evaluation.results import EvaluationResults
-from argo_env.evaluation.row import RunOutcome, row_without_end
 from argo_env.faults.reading import decode_faults
 from argo_env.run.spec import RunSpec
+from tests.argo_env.evaluation.conftest import came_to
 
 ALARM = decode_faults(b"faults: [{kind: platform_alarm, at: 5}]", "test").faults
 FOUND = FaultDetection(fault="platform_alarm", began=5.0, delay=3.0)
@@ -39,13 +38,12 @@ def plan_of(mission, faults, **options):
 
 def results_of(plan, found_in):
     """Results in which faults are found in these of the worlds."""
-    rows = []
-    for run in plan.runs():
-        case = plan.cases[run.case]
-        row = row_without_end("", case, run.spec, RunOutcome.SUCCESS, "")
-        told = () if case.faults == "none" else (FOUND if run.seed in found_in else MISSED,)
-        rows.append(row.model_copy(update={"seed": run.seed, "detections": told}))
-    return EvaluationResults(plan, tuple(rows))
+
+    def told(run):
+        nothing = plan.cases[run.case].faults == "none"
+        return {"detections": () if nothing else (FOUND if run.seed in found_in else MISSED,)}
+
+    return came_to(plan, told)
 
 
 @pytest.mark.parametrize("faults", [["alarm"], ["none", "alarm"], ["none", "alarm", "again"]])

@@ -13,11 +13,22 @@ from argo_env.evaluation.store import LOG, RowStore, read_log, read_rows
 
 
 def row(number: int, **others) -> RunRow:
-    return RunRow(
-        key=f"{number:024x}", mission="m", policy="as written", site="umad", robot="tracker",
-        drive="route", sensor="ideal", faults="none", seed=number, outcome=RunOutcome.SUCCESS,
-        reason="done", **others,
-    )  # fmt: skip
+    """A row of the world of that number; of a success, if nothing else is said."""
+    fields = {
+        "key": f"{number:024x}", "mission": "m", "policy": "as written", "site": "umad",
+        "robot": "tracker", "drive": "route", "sensor": "ideal", "faults": "none", "seed": number,
+        "outcome": RunOutcome.SUCCESS, "reason": "done",
+    }  # fmt: skip
+    return RunRow(**(fields | others))
+
+
+def keep(folder, *rows, compact=False):
+    """Keep the rows in a folder, in the log or in a part."""
+    with RowStore(folder) as store:
+        for one in rows:
+            store.add(one)
+        if compact:
+            store.compact()
 
 
 FULL = row(
@@ -56,27 +67,21 @@ def test_rows_come_back_as_they_were(tmp_path):
 def test_other_programs_read_the_parts(tmp_path):
     import pandas
 
-    with RowStore(tmp_path) as rows:
-        rows.add(FULL)
-        rows.compact()
+    keep(tmp_path, FULL, compact=True)
     frame = pandas.read_parquet(tmp_path / "parts")
     assert frame.loc[0, "duration"] == 12.5
     assert list(frame.loc[0, "failed"]) == ["A", "B"]
 
 
 def test_a_row_is_kept_once(tmp_path):
-    with RowStore(tmp_path) as rows:
-        rows.add(row(1))
-        rows.add(row(1))
+    keep(tmp_path, row(1), row(1))
     assert len((tmp_path / LOG).read_bytes().splitlines()) == 1
 
 
 @given(st.data())
 def test_a_log_that_is_cut_anywhere_keeps_all_whole_rows(tmp_path_factory, data):
     folder = tmp_path_factory.mktemp("rows")
-    with RowStore(folder) as rows:
-        for number in range(4):
-            rows.add(row(number))
+    keep(folder, *map(row, range(4)))
     content = (folder / LOG).read_bytes()
     cut = data.draw(st.integers(0, len(content)))
     (folder / LOG).write_bytes(content[:cut])
@@ -89,9 +94,7 @@ def test_a_log_that_is_cut_anywhere_keeps_all_whole_rows(tmp_path_factory, data)
 
 
 def test_a_line_that_is_damaged_is_left_out_and_counted(tmp_path):
-    with RowStore(tmp_path) as rows:
-        for number in range(3):
-            rows.add(row(number))
+    keep(tmp_path, *map(row, range(3)))
     lines = (tmp_path / LOG).read_bytes().splitlines(keepends=True)
     lines[1] = lines[1].replace(b"umad", b"amud")
     (tmp_path / LOG).write_bytes(b"".join(lines))
@@ -103,9 +106,7 @@ def test_a_line_that_is_damaged_is_left_out_and_counted(tmp_path):
 
 
 def test_killed_between_the_part_and_the_log_no_row_is_there_twice(tmp_path):
-    with RowStore(tmp_path) as rows:
-        rows.add(row(1))
-        rows.add(row(2))
+    keep(tmp_path, row(1), row(2))
     write_part(tmp_path, read_log(tmp_path).rows)  # and then it was killed
     assert [one.seed for one in read_rows(tmp_path)] == [1, 2]
     with RowStore(tmp_path) as rows:
@@ -119,13 +120,11 @@ def test_killed_between_the_part_and_the_log_no_row_is_there_twice(tmp_path):
 
 
 def test_killed_while_a_part_is_written_the_rows_are_in_the_log(tmp_path):
-    with RowStore(tmp_path) as rows:
-        rows.add(row(1))
+    keep(tmp_path, row(1))
     (tmp_path / "parts").mkdir()
     (tmp_path / "parts" / ".part-00001.parquet").write_bytes(b"PAR1 half of it")
     assert [one.seed for one in read_rows(tmp_path)] == [1]
-    with RowStore(tmp_path) as rows:
-        rows.compact()
+    keep(tmp_path, compact=True)
     assert [one.seed for one in read_rows(tmp_path)] == [1]
 
 
@@ -140,23 +139,18 @@ def test_one_process_at_a_time(tmp_path):
 
 def test_without_pyarrow_rows_stay_in_the_log(tmp_path, monkeypatch):
     monkeypatch.setattr(store, "can_write_parts", lambda: False)
-    with RowStore(tmp_path) as rows:
-        rows.add(row(1))
-        rows.compact()
+    keep(tmp_path, row(1), compact=True)
     assert not (tmp_path / "parts").exists()
     assert read_rows(tmp_path) == (row(1),)
     monkeypatch.undo()
-    with RowStore(tmp_path) as rows:
-        rows.compact()
+    keep(tmp_path, compact=True)
     monkeypatch.setattr(parts, "can_write_parts", lambda: False)
     with pytest.raises(Unavailable, match=r"pip install .*\[results\]"):
         read_rows(tmp_path)
 
 
 def test_a_part_that_is_damaged_is_named(tmp_path):
-    with RowStore(tmp_path) as rows:
-        rows.add(row(1))
-        rows.compact()
+    keep(tmp_path, row(1), compact=True)
     path = tmp_path / "parts" / "part-00001.parquet"
     path.write_bytes(path.read_bytes()[:-8])
     with pytest.raises(Unavailable, match=r"part-00001\.parquet: can't be read"):

@@ -7,7 +7,7 @@ import yaml
 
 from argo_compiler.base.model import Pose
 from argo_compiler.files.mission_file import write_mission
-from argo_compiler.hfsm import TakeOver
+from argo_compiler.hfsm import TakeOver, lower
 from argo_compiler.il import (
     Action,
     Afterwards,
@@ -27,6 +27,7 @@ from argo_env.robot.spec import load_robot
 from argo_env.run.beginning import machine_of
 from argo_env.run.journal import Header, create_journal, open_journal
 from argo_env.run.observer import Observer
+from argo_env.run.record import RunRecord
 from argo_env.run.rig import Rig
 from argo_env.run.session import resume, simulate
 from argo_env.run.simulation import Simulation
@@ -276,6 +277,14 @@ def journaled(path, spec, site, **arguments):
         past = journal.entries if known else ()
         with simulation_of(spec, site, past=past, observers=[journal], **arguments) as simulation:
             yield simulation
+
+
+def record_of(mission, **fields):
+    """The record of a run on UMAD that never took place, and in which nothing else happened."""
+    nothing = dict.fromkeys(("diagnostics", "tasks", "readings", "contacts", "trace", "path"), ())
+    made_with = {"site": "umad", "robot": "tracker", "drive": "kinematic", "sensor": "ideal"}
+    usual = {"mission": mission, "hfsm": lower(mission), "seed": 0}
+    return RunRecord(**(usual | made_with | nothing | fields))
 
 
 def faults_of(*data):

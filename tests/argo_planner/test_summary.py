@@ -6,7 +6,6 @@ import pytest
 from rich.console import Console
 
 from argo_compiler.base.catalog import CheckpointKind, Interval
-from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Afterwards, EventKind, Mission, Reaction, Response, Task
 from argo_env.faults.plant import GasLeakFault
 from argo_env.faults.robot import ConnectionLoss
@@ -23,6 +22,7 @@ from argo_env.run.record import (
     WindowRun,
 )
 from argo_planner.terminal.record_tables import show_record
+from tests.yard import record_of
 
 
 def shown(record: RunRecord, width: int = 140) -> str:
@@ -35,15 +35,8 @@ def shown(record: RunRecord, width: int = 140) -> str:
 @pytest.fixture
 def record() -> RunRecord:
     mission = Mission(tasks=(Task(name="[bold]M[/]", action=Action.MEASURE, object_id="3"),))
-    return RunRecord(
-        mission=mission,
-        hfsm=lower(mission),
-        site="umad",
-        robot="tracker",
-        drive="kinematic",
-        sensor="ideal",
-        seed=0,
-        diagnostics=(),
+    return record_of(
+        mission,
         result=Result(
             success=False, verdict="it took 700 s of at most 600 s", duration=700.0,
             max_duration=600.0, within_max_duration=False, docked=False, distance=12.34,
@@ -69,8 +62,6 @@ def record() -> RunRecord:
                 z=0.0, depth=0.012,
             ),
         ),
-        trace=(),
-        path=(),
     )  # fmt: skip
 
 

@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from argo_compiler.base.errors import ArgoError
-from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Mission, Task
 from argo_env.files import cache
 from argo_env.pictures import check_film, film, overview, write_film, write_overview
@@ -24,9 +23,10 @@ from argo_env.pictures.scene import Scene
 from argo_env.pictures.site_plan import draw_site
 from argo_env.planning.flaws.flaw import Flaw, Mark
 from argo_env.robot.pose import BodyPose
-from argo_env.run.record import PathSample, Reading, Result, RunRecord
+from argo_env.run.record import PathSample, Reading, Result
 from argo_env.site import load_site
 from argo_env.site.storeys import storeys
+from tests.yard import record_of
 
 DURATION = 20.0
 
@@ -48,11 +48,7 @@ def record(umad):
         success=True, verdict="done", duration=DURATION, max_duration=None,
         within_max_duration=True, docked=None, distance=8.0, climbed=0.0,
     )  # fmt: skip
-    return RunRecord(
-        mission=mission, hfsm=lower(mission), site="umad", robot="tracker", drive="kinematic",
-        sensor="ideal", seed=0, diagnostics=(), result=result, tasks=(), readings=(reading,),
-        contacts=(), trace=(), path=path,
-    )  # fmt: skip
+    return record_of(mission, result=result, readings=(reading,), path=path)
 
 
 @pytest.fixture(scope="module")

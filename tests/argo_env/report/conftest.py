@@ -7,7 +7,6 @@ import pytest
 
 from argo_compiler.base.catalog import CheckpointKind, Interval
 from argo_compiler.diagnostics import Diagnostic, Severity
-from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Condition, ConditionType, Group, Mission, Task, Transition
 from argo_env.run.record import (
     Contact,
@@ -15,11 +14,11 @@ from argo_env.run.record import (
     Reading,
     Result,
     RoundRun,
-    RunRecord,
     TaskRun,
     TraceStep,
 )
 from argo_env.site import load_site
+from tests.yard import record_of
 
 CORNERS = ((3.05, -2.55, 0.0), (8.0, -2.0, 0.0), (8.0, 1.5, 0.0), (1.4, 1.5, 0.0), (0.85, 3.5, 0.0))
 STAIRS = ((0.85, 7.14, 2.5), (1.9, 7.8, 2.5), (1.9, 10.4, 2.5), (8.0, 10.4, 2.5))
@@ -72,14 +71,8 @@ def make():
             for i, run in enumerate(tasks)
         )
         fields = {
-            "mission": mission,
-            "hfsm": lower(mission),
-            "site": "umad",
-            "robot": "tracker",
-            "drive": "kinematic",
             "sensor": "geometric",
             "seed": 7,
-            "diagnostics": (),
             "result": Result(
                 success=True,
                 verdict="All checkpoints were read in time.",
@@ -91,12 +84,10 @@ def make():
                 climbed=2.5,
             ),
             "tasks": tasks,
-            "readings": (),
-            "contacts": (),
             "trace": trace,
             "path": path,
         }
-        return RunRecord(**(fields | changes))
+        return record_of(mission, **(fields | changes))
 
     return make
 

@@ -15,9 +15,8 @@ import pytest
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from argo_compiler.il import Mission
-from argo_planner.service.core.commands import Revision
-from tests.argo_planner.service.test_plan import Follower, mission
+from tests.argo_planner.service.test_live import Listener
+from tests.argo_planner.service.test_plan import mission
 from tests.conftest import examples
 from tests.e2e.conftest import started, told_until
 from tests.e2e.test_errors import refused
@@ -143,13 +142,11 @@ def test_one_service_has_a_folder(serving: Serving, argo_process) -> None:
     assert "another service has this folder" in refused(ended)
 
 
-class Subscriber:
+class Subscriber(Listener):
     """Follows a mission over all that happens to the service."""
 
     def __init__(self, serving: Serving, id: str, author: str) -> None:
         self.url = f"ws://{serving.address}/api/missions/{id}/live?author={author}"
-        self.follower: Follower | None = None
-        self.revision: int | None = None
         self.connections = 0
 
     async def follow(self) -> None:
@@ -161,23 +158,9 @@ class Subscriber:
                 ) as opened:
                     self.connections += 1
                     async for text in opened:
-                        self.hear(json.loads(text))
+                        self.told_that(json.loads(text))
             except (OSError, ConnectionClosed, InvalidStatus, EOFError):
                 await asyncio.sleep(0.2)
-
-    def hear(self, message: dict) -> None:
-        if message["kind"] == "snapshot":
-            state = message["state"]
-            assert state["revision"] >= (self.revision or 0), "what was told is not so any more"
-            self.follower = Follower(Mission.model_validate(state["mission"]))
-            self.revision = state["revision"]
-        elif message["kind"] == "revision":
-            revision = Revision.model_validate(message["revision"])
-            assert self.revision is not None
-            assert self.follower is not None
-            assert revision.number == self.revision + 1
-            self.follower.hears(revision)
-            self.revision = revision.number
 
 
 async def edit_for(serving: Serving, id: str, seconds: float, acknowledged: Counter[str]) -> int:

@@ -1,8 +1,6 @@
 """Evaluations over HTTP: begun, watched, cancelled, gone on with, replayed, reported."""
 
 import json
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -15,7 +13,7 @@ from argo_env.planning.opening import OpenedSite
 from argo_planner.service.web.access import AccessRole
 from tests.argo_planner.service.served import SECRETS, Served, served
 from tests.argo_planner.service.test_http import begun, problem
-from tests.argo_planner.service.test_jobs import imported, over
+from tests.argo_planner.service.test_jobs import imported, over, until
 
 FAULTS = [{"kind": "low_battery", "charge": 0.01}]
 
@@ -31,15 +29,6 @@ def asked(service: Served, id: str, revision: int | str = "*", **said: object):
 
 def begin(service: Served, id: str, **said: object) -> str:
     return begun(asked(service, id, **said), 202, "/api/jobs")["id"]
-
-
-def until(service: Served, job: str, holds: Callable[[dict], bool]) -> dict:
-    while True:
-        read = service.client.get(f"/api/jobs/{job}").json()
-        if holds(read):
-            return read
-        assert read["state"] == "running", read
-        time.sleep(0.05)
 
 
 @pytest.mark.long

@@ -2,6 +2,7 @@
 
 import json
 import time
+from collections.abc import Callable
 
 from argo_compiler.il import Mission
 from argo_env.planning.opening import OpenedSite
@@ -27,12 +28,17 @@ def begin(service: Served, id: str, time_limit: float = 5) -> str:
     return begun(answer, 202, "/api/jobs")["id"]
 
 
-def over(service: Served, job: str) -> dict:
+def until(service: Served, job: str, holds: Callable[[dict], bool]) -> dict:
     while True:
         read = service.client.get(f"/api/jobs/{job}").json()
-        if read["state"] != "running":
+        if holds(read):
             return read
+        assert read["state"] == "running", read
         time.sleep(0.05)
+
+
+def over(service: Served, job: str) -> dict:
+    return until(service, job, lambda read: read["state"] != "running")
 
 
 def test_an_order_is_found_watched_accepted_and_undone(service: Served, site: OpenedSite) -> None:

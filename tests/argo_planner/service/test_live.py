@@ -13,14 +13,32 @@ from tests.argo_planner.service.test_http import data
 from tests.argo_planner.service.test_plan import Follower
 
 
-class Page:
-    """Follows a mission as a page would: from a snapshot on by what is told."""
+class Listener:
+    """Knows of a mission what it was told, from a snapshot on."""
+
+    revision: int | None = None
+    follower: Follower | None = None
+
+    def told_that(self, message: dict[str, Any]) -> None:
+        if message["kind"] == "snapshot":
+            state = message["state"]
+            assert state["revision"] >= (self.revision or 0), "what was told is not so any more"
+            self.follower = Follower(Mission.model_validate(state["mission"]))
+            self.revision = state["revision"]
+        elif message["kind"] == "revision":
+            revision = Revision.model_validate(message["revision"])
+            assert revision.number == (self.revision or 0) + 1
+            assert self.follower is not None
+            self.follower.hears(revision)
+            self.revision = revision.number
+
+
+class Page(Listener):
+    """Follows a mission as a page would."""
 
     def __init__(self, service: Served, id: str, author: str = "ann") -> None:
         self.service, self.id, self.author = service, id, author
-        self.revision: int | None = None
         self.members: list[dict[str, Any]] = []
-        self.follower: Follower | None = None
         self.told: list[str] = []
         self.connect()
 
@@ -32,19 +50,8 @@ class Page:
         while (self.revision or 0) < until:
             message = json.loads(self.socket.recv(timeout=30))
             self.told.append(message["kind"])
-            match message["kind"]:
-                case "snapshot":
-                    self.follower = Follower(Mission.model_validate(message["state"]["mission"]))
-                    self.revision = message["state"]["revision"]
-                    self.members = message["members"]
-                case "revision":
-                    revision = Revision.model_validate(message["revision"])
-                    assert revision.number == (self.revision or 0) + 1
-                    assert self.follower is not None
-                    self.follower.hears(revision)
-                    self.revision = revision.number
-                case "members" | "resumed":
-                    self.members = message["members"]
+            self.told_that(message)
+            self.members = message.get("members", self.members)
 
     def hear_of(self, kind: str) -> dict[str, Any]:
         """The next message of a kind."""

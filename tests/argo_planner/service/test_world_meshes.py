@@ -36,6 +36,10 @@ def volume(solid, sides):
     return sides / 2 * np.sin(2 * np.pi / sides) * solid.radius**2 * solid.length
 
 
+def corners_of(content):
+    return np.vstack([m.vertices for meshes in upright(content).values() for m in meshes])
+
+
 @pytest.mark.parametrize("floor", range(1, 7))
 def test_each_solid_of_a_floor_is_in_its_full_mesh(site, floor):
     found = upright(floor_mesh(site, floor))
@@ -100,8 +104,7 @@ def test_a_floor_that_is_not_there_is_refused(site):
 
 
 def test_the_robot_is_as_large_as_its_footprint(site):
-    parts = upright(robot_mesh(site))
-    corners = np.vstack([m.vertices for meshes in parts.values() for m in meshes])
+    corners = corners_of(robot_mesh(site))
     low, high = corners.min(axis=0), corners.max(axis=0)
     footprint = site.robot.footprint
     assert high[0] <= footprint.front + 0.01
@@ -125,7 +128,6 @@ def test_each_link_of_the_robot_is_where_its_joints_put_it(site):
 
 @pytest.mark.parametrize("kind", CheckpointKind)
 def test_checkpoints_look_along_x(kind):
-    parts = upright(checkpoint_mesh(kind))
-    corners = np.vstack([m.vertices for meshes in parts.values() for m in meshes])
+    corners = corners_of(checkpoint_mesh(kind))
     assert corners[:, 0].max() < 0.06
     assert np.ptp(corners, axis=0).max() < 0.6

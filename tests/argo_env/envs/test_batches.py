@@ -35,6 +35,13 @@ def make(yard_file, closing):
     return one
 
 
+@pytest.fixture
+def workers():
+    """Returns the processes that have begun since the test did."""
+    before = set(multiprocessing.active_children())
+    return lambda: set(multiprocessing.active_children()) - before
+
+
 def random_actions(batch, observation, rng):
     """Random ones; legal ones where the environment tells which are."""
     if "mask" in observation:
@@ -143,25 +150,23 @@ def test_no_state_of_such_a_batch(make):
             batch.set_state(state)
 
 
-def test_closing_leaves_no_process(make):
-    before = set(multiprocessing.active_children())
+def test_closing_leaves_no_process(make, workers):
     batch = make(DRIVE, processes=2)
     batch.reset(seed=SEED)
-    assert len(set(multiprocessing.active_children()) - before) == 2
+    assert len(workers()) == 2
     batch.close()
     batch.close()
-    assert set(multiprocessing.active_children()) == before
+    assert not workers()
     with pytest.raises(gym.error.ClosedEnvironmentError):
         batch.reset()
 
 
-def test_one_that_is_forgotten_leaves_no_process(yard_file):
-    before = set(multiprocessing.active_children())
+def test_one_that_is_forgotten_leaves_no_process(yard_file, workers):
     batch = gym.make_vec(DRIVE, 2, scenario=yard_file)
     batch.reset(seed=SEED)
     del batch
     gc.collect()
-    assert set(multiprocessing.active_children()) == before
+    assert not workers()
 
 
 def test_errors_are_those_of_a_single_one_with_where_they_were_raised(make):
@@ -208,20 +213,18 @@ def test_seeds_of_another_number_are_refused(make):
         ({"max_way": -1.0}, Invalid, "max_way"),
     ],
 )
-def test_arguments_are_refused_before_any_process_starts(make, arguments, kind, words):
-    before = set(multiprocessing.active_children())
+def test_arguments_are_refused_before_any_process_starts(make, arguments, kind, words, workers):
     with pytest.raises(kind, match=words):
         make(DRIVE, **arguments)
-    assert set(multiprocessing.active_children()) == before
+    assert not workers()
 
 
-def test_a_process_that_dies_is_told_once_and_ends_the_batch(make):
-    before = set(multiprocessing.active_children())
+def test_a_process_that_dies_is_told_once_and_ends_the_batch(make, workers):
     batch = make(DRIVE, processes=2)
     batch.reset(seed=SEED)
-    [os.kill(p.pid, signal.SIGKILL) for p in set(multiprocessing.active_children()) - before][:1]
+    [os.kill(p.pid, signal.SIGKILL) for p in workers()][:1]
     with pytest.raises(Unavailable, match="environments 0 to 1 has died with exit code -9"):
         batch.step(np.zeros((3, 3), np.float32))
-    assert set(multiprocessing.active_children()) == before
+    assert not workers()
     with pytest.raises(gym.error.ClosedEnvironmentError):
         batch.reset()

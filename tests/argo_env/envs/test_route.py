@@ -42,6 +42,22 @@ def choose(env, rng, far=False):
     return int(rng.choice(allowed))
 
 
+def driven(env, next_node):
+    """The score of a route to the end of the episode, by the environment and by the evaluator."""
+    route, total, over = [], 0.0, False
+    while not over:
+        route.append(next_node())
+        observation, reward, over, truncated, info = env.step(route[-1])
+        assert not truncated
+        assert sum(info["terms"].values()) == reward
+        assert env.observation_space.contains(observation)
+        total += reward
+    score = score_route(env.instance, route)
+    assert (total, info["time"]) == (score.prize, score.time)
+    assert info["illegal"] == (score.illegal is not None)
+    return score, info
+
+
 @settings(max_examples=examples(60), deadline=None)
 @given(NUMBERS, st.integers(1, 25), st.integers(0, 2**32), st.booleans())
 def test_return_is_the_evaluators_score(number, checkpoints, seed, legal):
@@ -49,19 +65,13 @@ def test_return_is_the_evaluators_score(number, checkpoints, seed, legal):
     env = RouteEnv(source=source)
     rng = np.random.default_rng(seed)
     env.reset(options={"instance": number})
-    route, total, over = [], 0.0, False
-    while not over:
+
+    def next_node():
         allowed = np.flatnonzero(env.action_masks()) if legal else np.arange(checkpoints + 1)
         # The dock only where there is nothing else, so that routes get long.
-        node = int(rng.choice(allowed[1:] if len(allowed) > 1 else allowed))
-        _, reward, over, truncated, info = env.step(node)
-        assert not truncated
-        assert sum(info["terms"].values()) == reward
-        route.append(node)
-        total += reward
-    score = score_route(env.instance, route)
-    assert (total, info["time"]) == (score.prize, score.time)
-    assert info["illegal"] == (score.illegal is not None)
+        return int(rng.choice(allowed[1:] if len(allowed) > 1 else allowed))
+
+    score, _ = driven(env, next_node)
     assert score.time <= env.instance.budget
     if legal:
         assert score.illegal is None

@@ -38,6 +38,17 @@ class Answer:
     """s, when a person lets the mission go on"""
 
 
+CHARGED = Answer(
+    (EventKind.LOW_BATTERY, EventKind.BATTERY_CHARGED),
+    drives_to="react to low_battery",
+    interrupted=True,
+)
+GIVEN_UP = Answer(
+    (EventKind.DYSFUNCTION,),
+    outcome=Outcome.RETURNED,
+    drives_to="react to dysfunction",
+    interrupted=True,
+)
 ANSWERS = {
     "abnormal_value": Answer((EventKind.ABNORMAL_READING,)),
     # It is read all the same; nothing is wrong with the process.
@@ -56,32 +67,14 @@ ANSWERS = {
     "brick": Answer((EventKind.POSITIVE_OBSTACLE,), detour=True),
     "missing_plate": Answer((EventKind.NEGATIVE_OBSTACLE,), "upstairs", detour=True),
     "blocked_stairs": Answer((EventKind.POSITIVE_OBSTACLE,), "upstairs", detour=True),
-    "low_battery": Answer(
-        (EventKind.LOW_BATTERY, EventKind.BATTERY_CHARGED),
-        drives_to="react to low_battery",
-        interrupted=True,
-    ),
-    "worn_battery": Answer(
-        (EventKind.LOW_BATTERY, EventKind.BATTERY_CHARGED),
-        drives_to="react to low_battery",
-        interrupted=True,
-    ),
+    "low_battery": CHARGED,
+    "worn_battery": CHARGED,
     "connection_loss": Answer(
         (EventKind.CONNECTION_LOST, EventKind.CONNECTION_RESTORED), interrupted=True
     ),
     "emergency_stop": Answer((EventKind.EMERGENCY_STOP,), interrupted=True, operator=70.0),
-    "sensor_dysfunction": Answer(
-        (EventKind.DYSFUNCTION,),
-        outcome=Outcome.RETURNED,
-        drives_to="react to dysfunction",
-        interrupted=True,
-    ),
-    "drive_dysfunction": Answer(
-        (EventKind.DYSFUNCTION,),
-        outcome=Outcome.RETURNED,
-        drives_to="react to dysfunction",
-        interrupted=True,
-    ),
+    "sensor_dysfunction": GIVEN_UP,
+    "drive_dysfunction": GIVEN_UP,
 }
 
 

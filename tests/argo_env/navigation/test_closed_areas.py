@@ -152,6 +152,15 @@ def path(yard):
     return yard.plan(start, goal)
 
 
+def require_joined(motions, at):
+    """Each motion begins where and as the one before it ended, the first at a place."""
+    for motion in motions:
+        assert math.dist((motion.start.x, motion.start.y), (at.x, at.y)) < 1e-6
+        assert abs(wrap(motion.start.yaw - at.yaw)) < 1e-6
+        assert abs(wrap(motion.start.yaw + motion.turn - motion.end.yaw)) < 1e-6
+        at = motion.end
+
+
 @settings(max_examples=examples(60), deadline=None)
 @given(st.data(), st.floats(0.0, 1.0), st.floats(0.0, 8.0))
 def test_the_same_places_in_reverse(path, data, share, length):
@@ -161,16 +170,12 @@ def test_the_same_places_in_reverse(path, data, share, length):
     came = sum(m.length for m in path.motions[:k]) + share * path.motions[k].length
     assert back.length == pytest.approx(min(length, came), abs=0.06)
     assert math.dist((back.start.x, back.start.y), (here.x, here.y)) < 0.06
-    at = back.start
+    require_joined(back.motions, back.start)
     for motion in back.motions:
-        assert math.dist((motion.start.x, motion.start.y), (at.x, at.y)) < 1e-6
-        assert abs(wrap(motion.start.yaw - at.yaw)) < 1e-6
-        assert abs(wrap(motion.start.yaw + motion.turn - motion.end.yaw)) < 1e-6
         if not motion.turn:
             ahead = (motion.end.x - motion.start.x) * math.cos(motion.start.yaw)
             ahead += (motion.end.y - motion.start.y) * math.sin(motion.start.yaw)
             assert ahead * motion.gear >= -1e-9
-        at = motion.end
 
 
 def test_of_no_way_at_all():
@@ -194,13 +199,8 @@ def test_the_way_that_was_seen_is_the_way_that_was_driven(path, count, forwards)
     seen = driven(places)
     assert gears_of(seen) == gears
     assert seen.length == pytest.approx(path.length, rel=0.02)
-    at = places[0]
-    for motion in seen.motions:
-        assert math.dist((motion.start.x, motion.start.y), (at.x, at.y)) < 1e-6
-        assert abs(wrap(motion.start.yaw - at.yaw)) < 1e-6
-        assert abs(wrap(motion.start.yaw + motion.turn - motion.end.yaw)) < 1e-6
-        at = motion.end
-    assert math.dist((at.x, at.y), (places[-1].x, places[-1].y)) < 0.06
+    require_joined(seen.motions, places[0])
+    assert math.dist((seen.end.x, seen.end.y), (places[-1].x, places[-1].y)) < 0.06
 
 
 def test_stairs_are_gone_back_as_they_were_come():

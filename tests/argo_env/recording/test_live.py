@@ -22,10 +22,9 @@ SPEC = RunSpec(
 
 
 @contextmanager
-def looking(port: int):
-    with connect(
-        f"ws://127.0.0.1:{port}", subprotocols=["foxglove.sdk.v1"], max_size=None, proxy=None
-    ) as socket:
+def looking(port: int, **options):
+    usual = {"subprotocols": ["foxglove.sdk.v1"], "max_size": None, "proxy": None}
+    with connect(f"ws://127.0.0.1:{port}", **usual, **options) as socket:
         yield socket
 
 
@@ -117,13 +116,8 @@ def test_a_client_that_stays_and_reads_nothing_is_not_waited_for() -> None:
     with ExitStack() as view:
         writer = view.enter_context(served_live(0))
         writer.put("/log", Log(message="first"), 0.0)
-        with connect(
-            f"ws://127.0.0.1:{writer.server.port}",
-            subprotocols=["foxglove.sdk.v1"],
-            max_size=None,
-            close_timeout=0.1,
-            ping_interval=None,  # or it would break off by itself
-        ) as client:
+        # Without pings, or it would break off by itself.
+        with looking(writer.server.port, close_timeout=0.1, ping_interval=None) as client:
             while (told := json.loads(client.recv(timeout=5)))["op"] != "advertise":
                 pass
             wanted = [{"id": c["id"], "channelId": c["id"]} for c in told["channels"]]

@@ -77,17 +77,12 @@ def said(messages):
 
 
 def test_topics_have_the_schemas_that_foxglove_knows(messages) -> None:
-    for topic, name in FOXGLOVE.items():
+    forms = {t: (f"foxglove.{name}", "protobuf", "protobuf") for t, name in FOXGLOVE.items()}
+    forms |= {t: (f"argo.{name}", "jsonschema", "json") for t, name in OWN.items()}
+    for topic, form in forms.items():
         for schema, channel, _, _ in messages[topic]:
-            assert (schema.name, schema.encoding, channel.message_encoding) == (
-                f"foxglove.{name}", "protobuf", "protobuf",
-            )  # fmt: skip
-    for topic, name in OWN.items():
-        for schema, channel, _, _ in messages[topic]:
-            assert (schema.name, schema.encoding, channel.message_encoding) == (
-                f"argo.{name}", "jsonschema", "json",
-            )  # fmt: skip
-    assert FOXGLOVE.keys() | OWN.keys() <= messages.keys()
+            assert (schema.name, schema.encoding, channel.message_encoding) == form
+    assert forms.keys() <= messages.keys()
 
 
 def test_json_messages_keep_their_schema(messages) -> None:
@@ -310,19 +305,22 @@ def drawn(record_run, yard, tmp_path_factory):
     """The scenes of a run with the faults, with their times (s), and where gauge 3 was planned."""
     file = tmp_path_factory.mktemp("faults") / "run.mcap"
     record_run(file, SPEC.model_copy(update={"faults": (BRICK, MOVED)}))
-    with file.open("rb") as stream:
-        reader = make_reader(stream, decoder_factories=[DecoderFactory()])
-        said = [
-            (channel.topic, message.log_time / 1e9, scene)
-            for _, channel, message, scene in reader.iter_decoded_messages(
-                ("/site/floor_1", "/checkpoints")
-            )
-        ]
+    said = decoded(file, "/site/floor_1", "/checkpoints")
     return SimpleNamespace(
-        site=[scene for topic, _, scene in said if topic == "/site/floor_1"],
-        checkpoints=[(t, scene) for topic, t, scene in said if topic == "/checkpoints"],
+        site=[scene for _, scene in said["/site/floor_1"]],
+        checkpoints=[(time / 1e9, scene) for time, scene in said["/checkpoints"]],
         planned=yard.site.checkpoint(3).position,
     )
+
+
+def decoded(file, *topics):
+    """Return what is said on each of the topics, with the times (ns)."""
+    found = defaultdict(list)
+    with file.open("rb") as stream:
+        reader = make_reader(stream, decoder_factories=[DecoderFactory()])
+        for _, channel, message, said in reader.iter_decoded_messages(topics):
+            found[channel.topic].append((message.log_time, said))
+    return found
 
 
 def test_a_brick_lies_where_it_is(drawn) -> None:
@@ -369,12 +367,7 @@ def taken(yard, tmp_path_factory):
             recorder.on_begin(Rig(world, yard, drive, sensor), SPEC)
             sensor.measure(1, drive.pose)
             recorder.on_step(4.2, None)
-    messages = defaultdict(list)
-    with file.open("rb") as stream:
-        reader = make_reader(stream, decoder_factories=[DecoderFactory()])
-        topics = ("/camera/image", "/camera/calibration", "/tf_camera")
-        for _, channel, message, said in reader.iter_decoded_messages(topics):
-            messages[channel.topic].append((message.log_time, said))
+    messages = decoded(file, "/camera/image", "/camera/calibration", "/tf_camera")
     return np.array(site.checkpoint(1).position), messages
 
 

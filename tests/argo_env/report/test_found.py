@@ -34,8 +34,8 @@ def simple(simple):
     return simple.model_copy(update={"readings": simple.readings[:1]})
 
 
-def section(text, id):
-    return re.search(rf'<section id="{id}">.*?</section>', text, re.DOTALL)[0]
+def section(text, id, tag="section"):
+    return re.search(rf'<{tag} id="{id}">.*?</{tag}>', text, re.DOTALL)[0]
 
 
 def test_nothing_found(simple, site):
@@ -87,18 +87,14 @@ def test_the_headline_counts_the_rows_and_says_what_came_of_them(simple, site):
 def test_a_run_that_was_interrupted_is_not_shown_as_if_it_had_ended(simple, site):
     fields = {"success": False, "ended": False, "docked": False}
     result = simple.result.model_copy(update=fields)
-    text = section_of_summary(page(simple.model_copy(update={"result": result}), site))
+    text = section(page(simple.model_copy(update={"result": result}), site), "summary", "header")
     assert '<span class="badge notice">Interrupted</span>' in text
     assert '<div class="tile "><b>not yet</b><span>docked at the end</span></div>' in text
     assert "<dd>not at its end</dd>" in text
     stopped = result.model_copy(update={"ended": True})
-    text = section_of_summary(page(simple.model_copy(update={"result": stopped}), site))
+    text = section(page(simple.model_copy(update={"result": stopped}), site), "summary", "header")
     assert '<div class="tile bad"><b>no</b><span>docked at the end</span></div>' in text
     assert "<dd>stopped</dd>" in text
-
-
-def section_of_summary(text):
-    return re.search(r'<header id="summary">.*?</header>', text, re.DOTALL)[0]
 
 
 def test_what_tells_no_place_is_not_drawn_as_if_it_were_there(simple, site):

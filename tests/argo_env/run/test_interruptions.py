@@ -18,7 +18,7 @@ from argo_env.report.rounds import waits
 from argo_env.run.record import RunRecord
 from argo_env.run.spec import logged
 from argo_env.run.verdict_line import Tone
-from argo_env.sensing.sensor import MeasurementError
+from tests.argo_env.run.test_at_the_place import foggy
 from tests.conftest import examples
 from tests.yard import fast_rig, measure, mission, run, run_with, simulated, waypoint
 
@@ -247,33 +247,13 @@ def test_velocity_of_a_way_back_to_the_same_task(yard):
 
 
 class TestFailures:
-    class Moody:
-        """Fails as often as it is told to, then reads well."""
-
-        name = "moody"
-
-        def __init__(self, failures, good):
-            self._failures, self._good = failures, good
-
-        def measure(self, checkpoint_id, pose):
-            self._failures -= 1
-            if self._failures >= 0:
-                raise MeasurementError("fog")
-            return self._good.measure(checkpoint_id, pose)
-
-    def run(self, yard, plan, failures):
-        rig = fast_rig(yard)
-        moody = self.Moody(failures, rig.sensor)
-        rig = type(rig)(rig.world, rig.navigator, rig.drive, moody)
-        return run_with(plan, rig)
-
     def test_a_retry_that_succeeds_is_a_success(self, yard):
-        record = self.run(yard, mission(measure(1, retries=2)), 2)
+        record = run_with(mission(measure(1, retries=2)), foggy(yard, 2))
         assert [t.outcome for t in record.tasks] == ["failed", "failed", "done"]
         assert record.result.success
 
     def test_retries_that_all_fail_are_none(self, yard):
-        record = self.run(yard, mission(measure(1, retries=1), measure(2)), 2)
+        record = run_with(mission(measure(1, retries=1), measure(2)), foggy(yard, 2))
         assert [t.outcome for t in record.tasks] == ["failed", "failed", "done"]
         assert "failed: MEASURE 1" in record.result.verdict
 
@@ -286,7 +266,7 @@ class TestFailures:
     )
     def test_policies(self, yard, policy, outcome, then):
         plan = mission(measure(1, on_failure=policy), measure(2), dock=DOCK)
-        record = self.run(yard, plan, 9)
+        record = run_with(plan, foggy(yard, 9))
         assert [t.task for t in record.tasks] == ["MEASURE 1", *then]
         assert record.result.outcome is outcome
         assert "failed: MEASURE 1" in record.result.verdict

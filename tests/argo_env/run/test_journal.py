@@ -7,7 +7,6 @@ from contextlib import contextmanager
 from dataclasses import replace
 from itertools import count, pairwise
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 from hypothesis import given, settings
@@ -79,34 +78,23 @@ EVENTS = (
 
 
 def header(yard, plan=PLAN, events=EVENTS, source=None):
-    spec = RunSpec(
-        mission=plan,
-        site="yard",
-        seed=1,
-        events=logged(*events),
-        source=None if source is None else str(source),
-    )
+    spec = RunSpec(mission=plan, site="yard", seed=1, events=logged(*events), source=source)
     return Header.of(opened(yard), spec)
 
 
-def runner(yard, journal, plan=PLAN, events=EVENTS, values=None):
-    rig = fast_rig(yard, values or {2: 5.5})
-
-    def go_on(observe=None, announce=None, interrupted=lambda: False):
-        watching = [Watching(observe, announce)]
-        return run_with(
-            plan, rig, journal=journal, observers=watching, interrupted=interrupted, seed=1,
-            events=logged(*events),
-        )  # fmt: skip
-
-    return SimpleNamespace(run=go_on)
+def go_on(yard, journal, plan=PLAN, events=EVENTS, observe=None, announce=None, **options):
+    """The record of a run from where the journal ends."""
+    return run_with(
+        plan, fast_rig(yard, {2: 5.5}), journal=journal, observers=[Watching(observe, announce)],
+        seed=1, events=logged(*events), **options,
+    )  # fmt: skip
 
 
 def resumed(yard, path):
     """Goes on with a journal to the end; the record and what was announced on the way."""
     told = []
     with open_journal(path) as journal:
-        record = runner(yard, journal).run(announce=told.append)
+        record = go_on(yard, journal, announce=told.append)
     return record, told
 
 
@@ -133,7 +121,7 @@ def whole(yard, tmp_path_factory):
     path = tmp_path_factory.mktemp("whole") / "run.journal"
     told = []
     with create_journal(path, header(yard)) as journal:
-        record = runner(yard, journal).run(announce=told.append)
+        record = go_on(yard, journal, announce=told.append)
     assert tuple(told) == record.readings
     return Whole(path.read_bytes(), record)
 
@@ -187,7 +175,7 @@ def test_the_reference_has_all_that_may_happen(whole):
 
 def test_a_journal_changes_nothing(yard, whole):
     record = whole.record
-    assert runner(yard, None).run() == record
+    assert go_on(yard, None) == record
 
 
 def test_cut_at_every_line_end(yard, whole, path):
@@ -218,7 +206,7 @@ def test_interrupted_after_any_step(yard, whole, path):
         path.unlink(missing_ok=True)
         looks = count()
         with create_journal(path, header(yard)) as journal:
-            record = runner(yard, journal).run(interrupted=lambda: next(looks) >= n)  # noqa: B023
+            record = go_on(yard, journal, interrupted=lambda: next(looks) >= n)  # noqa: B023
         assert not record.result.ended
         assert not record.result.success
         assert record.result.verdict == f"the mission is not at its end after {n / 10:.0f} s"
@@ -272,12 +260,12 @@ def test_cut_at_every_byte_of_the_last_lines(yard, path):
     """The end of a short run: its last lines hold the end of an action and that of the run."""
     plan = mission(measure(1))
 
-    def go_on():
+    def to_the_end():
         with open_journal(path) as journal:
-            return runner(yard, journal, plan, ()).run()
+            return go_on(yard, journal, plan, ())
 
     with create_journal(path, header(yard, plan, ())) as journal:
-        reference = runner(yard, journal, plan, ()).run()
+        reference = go_on(yard, journal, plan, ())
     content = path.read_bytes()
     first = len(content) - sum(map(len, content.splitlines(keepends=True)[-4:]))
     for cut in range(first, len(content)):
@@ -288,13 +276,13 @@ def test_cut_at_every_byte_of_the_last_lines(yard, path):
         if (cut - first) % 10 and not CAMPAIGN:
             continue
         path.write_bytes(content[:cut])
-        record = go_on()
+        record = to_the_end()
         assert done(record) == ["MEASURE 1"]
         assert [r.value for r in record.readings] == [r.value for r in reference.readings]
         assert record.result.verdict == reference.result.verdict
         # Now it is whole, and ends as it has ended.
         ended = path.read_bytes()
-        assert go_on() == record
+        assert to_the_end() == record
         assert path.read_bytes() == ended
 
 
@@ -331,7 +319,7 @@ def test_a_reading_is_on_disk_when_it_is_told(yard, path):
 
     plan = mission(measure(1), measure(2))
     with create_journal(path, header(yard, plan, ())) as journal:
-        runner(yard, journal, plan, ()).run(observe, announce)
+        go_on(yard, journal, plan, (), observe, announce)
     assert seen == [True, True]
 
 
@@ -528,7 +516,7 @@ class TestRefusals:
     def test_a_changed_mission_file(self, yard, path, tmp_path):
         source = tmp_path / "mission.json"
         source.write_text("first")
-        create_journal(path, header(yard, source=source)).close()
+        create_journal(path, header(yard, source=str(source))).close()
         with open_journal(path) as journal:
             journal.require_unchanged(opened(yard))
             source.write_text("second")
@@ -544,7 +532,7 @@ class TestRefusals:
         create_journal(path, header(yard, other)).close()
         path.write_bytes(path.read_bytes() + content.split(b"\n", 1)[1])
         with open_journal(path) as journal, pytest.raises(ArgoError, match="does not fit"):
-            runner(yard, journal, other).run()
+            go_on(yard, journal, other)
 
 
 @contextmanager
@@ -566,7 +554,7 @@ def test_a_full_disk(yard, whole, path):
     with create_journal(path, header(yard)) as journal:
         further = r"can't be written any further"
         with files_up_to(20_000), pytest.raises(ArgoError, match=further) as caught:
-            runner(yard, journal).run()
+            go_on(yard, journal)
         assert caught.value.remedies == (Remedy.RESUME,)
     assert 19_000 < path.stat().st_size <= 20_000
     with open_journal(path) as journal:

@@ -407,41 +407,36 @@ class TestResumedWhileItWaits:
 
 
 class TestStandingStill:
+    def run(self, yard, *faults, more=(), **fields):
+        plan = mission(waypoint("A", 5.05, 2.55), *more, **fields)
+        return simulated(plan, yard, faults=faults_of(*faults))
+
     def test_a_robot_that_waits_is_given_time_for_what_faults_lead_to(self, yard):
-        plan = mission(waypoint("A", 5.05, 2.55), reactions=(LOST,))
-        faults = faults_of({"kind": "connection_loss", "at": 2, "until": 200})
-        record = simulated(plan, yard, faults=faults)
-        assert record.result.success
-        forever = faults_of({"kind": "connection_loss", "at": 2})
-        record = simulated(plan, yard, faults=forever)
+        lost = {"kind": "connection_loss", "at": 2}
+        assert self.run(yard, lost | {"until": 200}, reactions=(LOST,)).result.success
+        record = self.run(yard, lost, reactions=(LOST,))
         assert not record.result.success
         assert "nothing more occurs" in record.result.verdict
         assert record.result.duration == pytest.approx(record.anomalies[0].t + SETTLING, abs=0.2)
 
     def test_held_by_the_emergency_stop(self, yard):
-        faults = faults_of({"kind": "emergency_stop", "at": 3})
-        plan = mission(waypoint("A", 5.05, 2.55))
-        record = simulated(plan, yard, faults=faults)
+        record = self.run(yard, {"kind": "emergency_stop", "at": 3})
         assert "held by its emergency stop" in record.result.verdict
         held = [s for s in record.path if s.t >= 3]
         assert len({(s.x, s.y) for s in held}) == 1
         assert math.dist((held[0].x, held[0].y), (record.path[0].x, record.path[0].y)) > 0.1
 
     def test_an_empty_battery_ends_the_run(self, yard):
-        faults = faults_of(
-            {"kind": "low_battery", "charge": 0.01}, {"kind": "worn_battery", "capacity": 0.04}
-        )
-        plan = mission(waypoint("A", 5.05, 2.55), waypoint("B", 1.55, 1.55))
-        record = simulated(plan, yard, faults=faults)
+        low = {"kind": "low_battery", "charge": 0.01}
+        worn = {"kind": "worn_battery", "capacity": 0.04}
+        record = self.run(yard, low, worn, more=[waypoint("B", 1.55, 1.55)])
         assert "the battery was empty" in record.result.verdict
         assert record.path[-1].charge == 0.0
         assert record.anomalies[0].kind is EventKind.LOW_BATTERY
         assert record.result.duration < 15
 
     def test_a_drive_that_stops_fails_the_task(self, yard):
-        faults = faults_of({"kind": "drive_dysfunction", "at": 3, "speed": 0})
-        plan = mission(waypoint("A", 5.05, 2.55))
-        record = simulated(plan, yard, faults=faults)
+        record = self.run(yard, {"kind": "drive_dysfunction", "at": 3, "speed": 0})
         assert [a.kind for a in record.anomalies] == [EventKind.DYSFUNCTION]
         assert "has not moved for 30 s" in record.tasks[0].reason
 

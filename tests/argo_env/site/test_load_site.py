@@ -16,9 +16,12 @@ class _Plain(yaml.SafeDumper):
         return True
 
 
+UMAD = (resources.scenarios() / "umad" / "site.yaml").read_text(encoding="utf-8")
+
+
 @pytest.fixture
 def description():
-    return yaml.safe_load((resources.scenarios() / "umad" / "site.yaml").read_text("utf-8"))
+    return yaml.safe_load(UMAD)
 
 
 def refusal(path):
@@ -150,9 +153,8 @@ def test_site_of_one_slab(tmp_path):
 
 
 def test_a_ground_too_large_for_navigation_is_refused(tmp_path: Path) -> None:
-    text = (resources.scenarios() / "umad" / "site.yaml").read_text(encoding="utf-8")
     path = tmp_path / "huge.yaml"
-    path.write_text(text.replace("ground: [-2.0", "ground: [-900.0"), encoding="utf-8")
+    path.write_text(UMAD.replace("ground: [-2.0", "ground: [-900.0"), encoding="utf-8")
     with pytest.raises(ArgoError, match="larger than 200 m"):
         load_site(str(path))
 
@@ -211,8 +213,7 @@ def test_names_and_numbers_stand_once(tmp_path, description, where, thing):
 
 
 def test_mistakes_are_shown_in_their_line(tmp_path):
-    text = (resources.scenarios() / "umad" / "site.yaml").read_text(encoding="utf-8")
-    text = text.replace("storey: 2.5", "storey: -2.5\nstory: 2.5")
+    text = UMAD.replace("storey: 2.5", "storey: -2.5\nstory: 2.5")
     path = written(tmp_path, text)
     number = text.split("\n").index("storey: -2.5") + 1
     message = refusal(path)
@@ -222,11 +223,10 @@ def test_mistakes_are_shown_in_their_line(tmp_path):
 
 
 def test_keys_stand_once(tmp_path, umad):
-    text = (resources.scenarios() / "umad" / "site.yaml").read_text(encoding="utf-8")
-    path = written(tmp_path, text + "\nname: other\n")
+    path = written(tmp_path, UMAD + "\nname: other\n")
     message = refusal(path)
-    lines = text.split("\n")
+    lines = UMAD.split("\n")
     assert (
         f"`name` stands here again; it was given at line {lines.index('name: umad') + 1}" in message
     )
-    assert load_site(str(written(tmp_path, text))) == umad
+    assert load_site(str(written(tmp_path, UMAD))) == umad

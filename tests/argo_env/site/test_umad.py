@@ -1,7 +1,9 @@
 """The shipped site: what is known of it, and the norms and rules that it must keep."""
 
 import math
+from functools import partial
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -34,7 +36,6 @@ CHECKPOINTS = [
     (19, "valve", "valve R9", 6),
     (20, "liquid level gauge", "liquid level gauge 5", 6),
 ]
-UPPER_FLOORS = range(2, 7)
 
 
 def top(solid):
@@ -62,9 +63,9 @@ def inside(x, y, rect, tolerance=0.0):
     )
 
 
-def plated(floor, x, y):
-    return any(inside(x, y, r) for r in floor.walkways.values()) and not any(
-        inside(x, y, r) for r in floor.openings.values()
+def plated(deck, x, y):
+    return any(inside(x, y, r) for r in deck.walkways.values()) and not any(
+        inside(x, y, r) for r in deck.openings.values()
     )
 
 
@@ -237,21 +238,16 @@ def test_elements_have_unique_names(umad):
 
 def rim(site):
     """Points every 5 cm along the rims of all railed decks: x, y, z and the way out."""
-    decks = [(floor.z, floor.walkways, floor.openings) for floor in site.spec.floors[1:]]
+    decks = [(floor.z, floor) for floor in site.spec.floors[1:]]
     decks += [
-        (floor.z + landing.z, {"landing": landing.rect}, {})
+        (floor.z + landing.z, SimpleNamespace(walkways={"": landing.rect}, openings={}))
         for tower in site.spec.towers
         for floor in site.spec.floors[:-1]
         for landing in tower.landings
     ]
-    for z, walkways, openings in decks:
-
-        def on(x, y, walkways=walkways, openings=openings):
-            return any(inside(x, y, r) for r in walkways.values()) and not any(
-                inside(x, y, r) for r in openings.values()
-            )
-
-        for x0, y0, x1, y1 in (*walkways.values(), *openings.values()):
+    for z, deck in decks:
+        on = partial(plated, deck)
+        for x0, y0, x1, y1 in (*deck.walkways.values(), *deck.openings.values()):
             for along in np.arange(x0 + 0.025, x1, 0.05):
                 for y in (y0, y1):
                     for out in (-1.0, 1.0):

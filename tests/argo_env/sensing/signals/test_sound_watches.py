@@ -13,7 +13,6 @@ from argo_env.sensing.signals.alarm_watch import LOOKS, RECORDING, AlarmWatch, f
 from argo_env.sensing.signals.microphone import Microphone, pump_places
 from argo_env.sensing.signals.pump_watch import PumpWatch
 from argo_env.sensing.watch import Told
-from argo_env.site import load_site
 from argo_env.surroundings import Alarm, PumpFault, PumpSound, Surroundings
 from argo_env.surroundings.sound import ALARM_TONE, RATE, alarm_sound
 from tests.argo_env.sensing.signals.plant import Z, lane, told
@@ -36,11 +35,6 @@ def stand(watch, seconds, start=0.0, pose=BESIDE):
     count = round(seconds / watch.period)
     times = [start + k * watch.period for k in range(count)]
     return [(t, f) for t in times for f in watch.look(t, pose)]
-
-
-@pytest.fixture(scope="module")
-def umad():
-    return load_site("umad")
 
 
 def past(place, side, length, heading):

@@ -145,6 +145,9 @@ def test_ranges_that_make_no_sense_are_told_at_once(browsers, address, plan, ser
     ann = opened(browsers, address, plan)
     page = ann.page
     page.get_by_text("In which worlds, and how").click()
+    expect(page.get_by_label("Also where nothing goes wrong")).to_be_hidden()
+    page.locator("argo-evaluate-start argo-faults select").select_option("gas_leak")
+    expect(page.get_by_label("Also where nothing goes wrong")).to_be_visible()
     page.get_by_label("Share of its speed (%), from").fill("90")
     page.get_by_label("Share of its speed (%), to").fill("50")
     ann.click(page.locator("#evaluate"))

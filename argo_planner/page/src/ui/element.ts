@@ -16,8 +16,9 @@ const look = css`
     box-sizing: border-box;
     color: var(--text);
   }
-  :host([hidden]) {
-    display: none;
+  :host([hidden]),
+  [hidden] {
+    display: none !important; /* whatever else says how it is laid out */
   }
   *,
   *::before,

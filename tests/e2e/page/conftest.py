@@ -8,9 +8,7 @@ from playwright.sync_api import expect
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_planner.service.web.page import page_folder
 from tests.argo_planner.service.served import ALL, Served, served
-from tests.e2e.page.person import CHROMIUM, NO_CHROMIUM, PATIENCE_S, Browsers, Person
-
-expect.set_options(timeout=1000 * PATIENCE_S)
+from tests.e2e.page.person import CHROMIUM, NO_CHROMIUM, Browsers, Person
 
 
 @pytest.fixture(scope="session")

@@ -35,6 +35,7 @@ _OPTIONS = [
 ]
 PATIENCE_S = 240
 """after which a test gives up: far more than anything takes, also on a busy machine"""
+expect.set_options(timeout=1000 * PATIENCE_S)
 
 # Not the page's: what the browser says of its software renderer, and that a request was refused,
 # which the page shows as a message.

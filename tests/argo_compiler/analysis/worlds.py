@@ -32,19 +32,12 @@ from argo_compiler.il import (
     EventKind,
     Mission,
     OnFailure,
+    Reaction,
     Response,
     Task,
     Transition,
 )
-from tests.mission_parts import (
-    HERE,
-    OBJECTS,
-    groups_over,
-    reactions_to,
-    transitions,
-    wait_rules,
-    windows,
-)
+from tests.mission_parts import HERE, OBJECTS, groups_over, transitions, wait_rules, windows
 from tests.mission_writing import checkpoint
 
 STEPS = 80
@@ -112,15 +105,27 @@ def reactions(draw):
     events = [EventKind.TIME_UP] if draw(st.booleans()) else []
     others = (EventKind.GAS_LEAK, EventKind.LOW_BATTERY)
     events += draw(st.sampled_from([(), (), others[:1], others]))
-    kinds = {
-        "responses": [*Response, Response.RETURN],
-        "untils": [None, None, None, EventKind.BATTERY_CHARGED],
-        "limits": [None, 1, 4],
-        "priorities": [None, None, 40],
-        "afterwards": [Afterwards.END, Afterwards.END, *Afterwards],
-        "shelter": SHELTER,
-    }
-    return tuple(draw(reactions_to(event, **kinds)) for event in events)
+    found = []
+    for event in events:
+        response = draw(st.sampled_from([*Response, Response.RETURN]))
+        drives = response in (Response.RETURN, Response.SAFE_AREA)
+        until = EventKind.BATTERY_CHARGED if draw(st.integers(0, 3)) == 0 else None
+        holds = response is Response.PAUSE or (drives and until is not None)
+        limit = draw(st.sampled_from([None, 1, 4])) if holds else None
+        afterwards = draw(st.sampled_from([Afterwards.END, Afterwards.END, *Afterwards]))
+        found.append(
+            Reaction(
+                event=event,
+                response=response,
+                pose=SHELTER if response is Response.SAFE_AREA else None,
+                until=until if holds else None,
+                afterwards=afterwards if drives else Afterwards.END,
+                hold_limit=limit,
+                on_limit=draw(st.sampled_from(Afterwards)) if limit else Afterwards.WAIT,
+                priority=draw(st.sampled_from([None, None, 40])),
+            )
+        )
+    return tuple(found)
 
 
 @st.composite

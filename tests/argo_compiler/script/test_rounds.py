@@ -23,7 +23,6 @@ from argo_compiler.hfsm import (
 from argo_compiler.il import Action, EventKind, Mission
 from argo_compiler.script import import_script
 from argo_compiler.script.write.protocol import format_script
-from tests.argo_compiler.hfsm.play import started
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.argo_compiler.script.sentences import HORIZON, Interpreter, Writer, script, value
 from tests.conftest import examples
@@ -102,7 +101,8 @@ def test_what_is_decided_behind_a_patrol_is_decided_when_its_time_is_up(
         "1. Check #1.\n2. Patrol floor 1 for 10 min.\n"
         "If #1 is above 5, check #2; otherwise check #3."
     )
-    executor = started(read(lines, catalog))
+    executor = Executor(lower(read(lines, catalog)))
+    executor.start(0.0)
     executor.handle(ActionSucceeded("MEASURE 1", value), 1.0)
     executor.handle(ActionSucceeded("WAYPOINT 1"), 2.0)
     (cancelled,) = executor.handle(Tick(), 601.0)
@@ -144,7 +144,8 @@ def test_a_priority_of_a_script_does_not_hold_an_emergency_stop_back(
         f"1. Check #1.\nOn low battery: return to the docking station, priority {priority}.\n"
         "In case of an emergency stop, abort the mission, priority 3."
     )
-    executor = started(read(lines, catalog))
+    executor = Executor(lower(read(lines, catalog)))
+    executor.start(0.0)
     executor.handle(Occurred(EventKind.LOW_BATTERY), 1.0)
     executor.handle(ActionStopped("MEASURE 1"), 2.0)
     assert executor.running is not None

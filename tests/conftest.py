@@ -74,7 +74,7 @@ _SHARED = {
     "tests/argo_env/evaluation/pool/test_pool.py": _CLUSTERS,
     "tests/argo_env/evaluation/test_evaluating.py": _CLUSTERS,
 }
-"""What takes long and files share."""
+"""By file, the fixture or computation that takes long and that it shares with other files."""
 
 
 def work_unit(test: str) -> str:

@@ -51,7 +51,7 @@ def read_within_limits(path: Path, answers: Connection) -> None:
 
 
 def answer(path: Path, content: str) -> str:
-    """What becomes of a file with this content."""
+    """Write a file with this content; return what a process answers that reads it within limits."""
     path.write_text(content, encoding="utf-8")
     answers, sending = PROCESSES.Pipe(duplex=False)
     process = PROCESSES.Process(target=read_within_limits, args=(path, sending))

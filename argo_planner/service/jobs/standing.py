@@ -129,8 +129,17 @@ class RunCount:
         if not row.success:
             self._failed += 1
             if len(self._failing) < MOST_FAILING:
-                told = row.model_dump(include={*FailedRun.model_fields})
-                self._failing.append(FailedRun(**told | {"faults": faults}))
+                self._failing.append(
+                    FailedRun(
+                        key=row.key,
+                        seed=row.seed,
+                        faults=faults,
+                        outcome=row.outcome,
+                        reason=row.reason,
+                        task=row.task,
+                        duration=row.duration,
+                    )
+                )
         if self._outcomes.total() % self._every == 0:
             self._curve.append(RateTold.of(quick_rate(self._outcomes)))
             if len(self._curve) > _MOST_POINTS:

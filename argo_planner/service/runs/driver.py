@@ -128,8 +128,11 @@ class SupervisedRun:
         self._skipped.append(name)
 
     def done(self, mission: Mission) -> tuple[ByHand, ...]:
-        """What was done by hand and skipped until now, for the mission, which may be edited: what
-        only has the name of a skipped task, and is another one, is not skipped."""
+        """Return what the person has done and skipped so far, to be given back with a mission.
+
+        The mission may have been edited: a task that was skipped and is another one in it, under
+        the same name, is not skipped.
+        """
         old = self._simulation.spec.mission
         skipped = (name for name in self._skipped if _same(old.task(name), mission.task(name)))
         left_out = (ByHand(task=name, skipped=True) for name in skipped)
@@ -140,7 +143,10 @@ class SupervisedRun:
         self._skipped.clear()
 
     def task(self, request: asked.DoTask | asked.DriveTo | asked.MeasureAt) -> Task:
-        """What the robot is to do by hand. Raises NotFound for a task that there is not."""
+        """Return the task that a person asks for: one of the mission, or one made for the request.
+
+        Raises NotFound if the mission has no task of that name.
+        """
         mission = self._simulation.spec.mission
         if isinstance(request, asked.DoTask):
             task = mission.task(request.task)
@@ -157,7 +163,8 @@ class SupervisedRun:
 
 
 def _same(old: Task | None, new: Task | None) -> bool:
-    """Whether a task was not made anew under the same name. One that is gone is told as such."""
+    """Return whether two tasks of one name are the same task; True if one of them is missing, which
+    is reported elsewhere."""
     if old is None or new is None:
         return True
     return (old.action, old.object_id, old.pose) == (new.action, new.object_id, new.pose)

@@ -134,11 +134,17 @@ class RunHost:
             now = self._clock()
             first = RunState(
                 id=f"{now:%Y%m%d-%H%M%S}-{secrets.token_hex(2)}",
+                plan=order.plan,
+                revision=order.revision,
+                name=order.name,
                 by=by,
                 begun=now,
                 status=RunStatus.PREPARING,
+                drive=order.drive,
+                sensor=order.sensor,
+                seed=order.seed,
+                speed=order.speed,
                 max_duration=order.mission.max_duration,
-                **order.model_dump(include={*RunState.model_fields} & {*RunOrder.model_fields}),
             )
             kept = KeptRun(order=order, state=first)
             await self._disk.do(self._folder.make, kept)

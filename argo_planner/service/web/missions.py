@@ -89,7 +89,7 @@ class RevisionList(Model):
 
 
 class ImportNotes(Model):
-    """What the last import of a mission had to say."""
+    """Notes of the last import of a mission."""
 
     revision: int
     """of the mission that it made"""
@@ -265,8 +265,8 @@ async def list_revisions(
 
 @router.get("/missions/{id}/notes", operation_id="read_notes", response_model=ImportNotes)
 async def read_import_notes(service: Service, _: Viewer, id: PlanId) -> Response:
-    """What the import of the mission, or of the last script put in its place, had to say: what was
-    healed, taken for something, or has no effect."""
+    """Return the notes of the import of the mission, or of the last script put in its place: words
+    that were healed, taken for something else, or have no effect."""
     await service.rooms.open(id)
     revision, notes = read_notes(service.folder, id)
     return said(ImportNotes(revision=revision, notes=notes))

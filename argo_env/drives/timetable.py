@@ -4,12 +4,14 @@ import math
 from bisect import bisect_right
 from collections.abc import Iterator
 from itertools import accumulate
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING
 
 from argo_env.navigation.path import Motion, Path
 from argo_env.robot.spec import RobotSpec
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 _ROUNDING = 1e-6  # of a step, left by sums of floats
 
@@ -38,13 +40,15 @@ class Timetable:
             return self._motions[-1], 1.0
         return self._motions[k], 1.0 - (self._ends[k] - t) / self._durations[k]
 
-    def stretches(self, times: NDArray[np.float64]) -> Iterator[tuple[Motion, NDArray[np.float64]]]:
+    def stretches(
+        self, times: "NDArray[np.float64]"
+    ) -> Iterator[tuple[Motion, "NDArray[np.float64]"]]:
         """For times (s), shape (n,), that only grow and are before the end: each motion that is
         under way at some of them, and the share of it that is done at each."""
         first = 0
         while first < len(times):
             k = bisect_right(self._ends, times[first])
-            last = int(np.searchsorted(times, self._ends[k]))
+            last = int(times.searchsorted(self._ends[k]))
             yield self._motions[k], 1.0 - (self._ends[k] - times[first:last]) / self._durations[k]
             first = last
 

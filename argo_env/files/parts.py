@@ -1,7 +1,8 @@
-"""Arrays that took long to find, kept on disk: plain numbers in files that are whole or not there.
+"""Arrays and texts that took long to find, kept on disk in files that are whole or not there.
 
-A file is one of NumPy's, uncompressed, and ends with a comment: the checksum of what it belongs to
-and of all before.
+Each file ends with a checksum of what it belongs to and of all before. Arrays are in one of NumPy's
+files, uncompressed, and the checksum is its comment. NumPy is imported for arrays only: a command
+that finds its texts starts without it.
 """
 
 import io
@@ -11,15 +12,16 @@ import zlib
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO, TypeAlias, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
-Arrays = dict[str, NDArray[Any]]
+Arrays: TypeAlias = "dict[str, NDArray[Any]]"
 
 _CHECKSUM = 8  # bytes
 _AT_ONCE = 1 << 18  # bytes
+_Read = TypeVar("_Read")
 _log = logging.getLogger(__name__)
 
 
@@ -36,7 +38,7 @@ class Parts:
         self._folder = folder
         self._key = key
 
-    def made(self, name: str, make: Callable[[], Mapping[str, NDArray[Any]]]) -> Arrays:
+    def made(self, name: str, make: "Callable[[], Mapping[str, NDArray[Any]]]") -> Arrays:
         """The part of that name; `make` makes it if it is not there, and then it is kept."""
         found = self.find(name)
         if found is None:
@@ -44,81 +46,90 @@ class Parts:
             self.keep(name, found)
         return found
 
-    def find(self, name: str) -> Arrays | None:
+    def find(self, name: str) -> "Arrays | None":
         """The arrays of a part, which must not be written to; None if it is not there whole."""
+        return self._find(f"{name}.npz", _read_arrays)
+
+    def keep(self, name: str, arrays: "Mapping[str, NDArray[Any]]") -> None:
+        """Writes arrays as a part."""
+        if self._folder is not None:
+            self._keep(self._folder, f"{name}.npz", _npz(arrays))
+
+    def find_text(self, name: str) -> str | None:
+        """The text of a part; None if it is not there whole."""
+        return self._find(f"{name}.txt", _read_text)
+
+    def keep_text(self, name: str, text: str) -> None:
+        """Writes a text as a part."""
+        if self._folder is not None:
+            self._keep(self._folder, f"{name}.txt", text.encode())
+
+    def _find(self, file_name: str, read: Callable[[BinaryIO], _Read]) -> _Read | None:
         if self._folder is None:
             return None
-        path = self._path(name)
+        path = self._folder / file_name
         try:
             with path.open("rb", buffering=0) as file:
-                found = _decode(file, self._part(name))
+                if _is_whole(file, self._part(file_name)):
+                    return read(file)
         except FileNotFoundError:
             return None
         except OSError as error:
             _log.debug("%s: can't be read: %s", path, error)
             return None
-        if found is None:
-            _log.warning("%s: is damaged or does not belong there, and is made anew", path)
-        return found
+        _log.warning("%s: is damaged or does not belong there, and is made anew", path)
+        return None
 
-    def keep(self, name: str, arrays: Mapping[str, NDArray[Any]]) -> None:
-        """Writes a part in one go, so that no reader ever sees half of it."""
-        if self._folder is None:
-            return
+    def _keep(self, folder: Path, file_name: str, content: bytes | memoryview) -> None:
+        """Writes a file in one go, so that no reader ever sees half of it."""
         from tempfile import NamedTemporaryFile
 
-        draft: str | None = None
+        path, draft = folder / file_name, None
+        checksum = zlib.crc32(content, zlib.crc32(self._part(file_name)))
         try:
-            self._folder.mkdir(parents=True, exist_ok=True)
-            with NamedTemporaryFile(dir=self._folder, prefix=".", delete=False) as file:
+            folder.mkdir(parents=True, exist_ok=True)
+            with NamedTemporaryFile(dir=folder, prefix=".", delete=False) as file:
                 draft = file.name
-                for piece in _encode(arrays, self._part(name)):
-                    file.write(piece)
-            os.replace(draft, self._path(name))
+                file.write(content)
+                file.write(_digits(checksum))
+            os.replace(draft, path)
         except OSError as error:  # read-only, full, taken away meanwhile
-            _log.debug("%s: can't be kept: %s", self._path(name), error)
+            _log.debug("%s: can't be kept: %s", path, error)
             if draft is not None:
                 with suppress(OSError):
                     os.unlink(draft)
 
-    def find_text(self, name: str) -> str | None:
-        """The text of a part; None if it is not there whole."""
-        found = self.find(name)
-        return None if found is None else found["text"].tobytes().decode()
-
-    def keep_text(self, name: str, text: str) -> None:
-        """Writes a text as a part."""
-        self.keep(name, {"text": np.frombuffer(text.encode(), dtype=np.uint8)})
-
-    def _path(self, name: str) -> Path:
-        assert self._folder is not None
-        return self._folder / f"{name}.npz"
-
-    def _part(self, name: str) -> str:
-        return f"{self._key} {name}"
+    def _part(self, file_name: str) -> bytes:
+        return f"{self._key} {file_name}".encode()
 
 
 NOWHERE = Parts(None, "")
 """Keeps nothing."""
 
 
-def _encode(arrays: Mapping[str, NDArray[Any]], part: str) -> tuple[memoryview, bytes]:
-    """Return the content of a file, and the checksum that ends it, as the comment of the zip."""
+def _npz(arrays: "Mapping[str, NDArray[Any]]") -> memoryview:
+    """Return the content of a file of arrays, but for the comment that follows it."""
+    import numpy as np
+
     plain = {label: np.ascontiguousarray(array) for label, array in arrays.items()}
     sink = io.BytesIO()
     np.savez(sink, allow_pickle=False, **plain)
     content = sink.getbuffer()
     content[-2:] = _CHECKSUM.to_bytes(2, "little")  # the length of the comment
-    return content, _said(zlib.crc32(content, zlib.crc32(part.encode())))
+    return content
 
 
-def _decode(file: BinaryIO, part: str) -> Arrays | None:
-    """Return the arrays in a file; None if anything is not as it was written for this part."""
-    check, left = zlib.crc32(part.encode()), os.fstat(file.fileno()).st_size - _CHECKSUM
+def _is_whole(file: BinaryIO, part: bytes) -> bool:
+    """Return whether all in the file is as it was written for this part."""
+    check, left = zlib.crc32(part), os.fstat(file.fileno()).st_size - _CHECKSUM
     while left > 0 and (piece := file.read(min(left, _AT_ONCE))):
         check, left = zlib.crc32(piece, check), left - len(piece)
-    if file.read() != _said(check):
-        return None
+    return file.read() == _digits(check)
+
+
+def _read_arrays(file: BinaryIO) -> Arrays:
+    import numpy as np
+
     file.seek(0)
     with np.load(file, allow_pickle=False) as found:
         arrays = dict(found)
@@ -127,5 +138,10 @@ def _decode(file: BinaryIO, part: str) -> Arrays | None:
     return arrays
 
 
-def _said(check: int) -> bytes:
+def _read_text(file: BinaryIO) -> str:
+    file.seek(0)
+    return file.read()[:-_CHECKSUM].decode()
+
+
+def _digits(check: int) -> bytes:
     return b"%0*x" % (_CHECKSUM, check)

@@ -1,15 +1,20 @@
-"""A path: straight drives and turns in place, one after the other."""
+"""A path: straight drives and turns in place, one after the other.
+
+NumPy is imported by what makes arrays only: commands that find their paths in the cache start
+without it.
+"""
 
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import overload
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, overload
 
 from argo_compiler.base.model import Pose
 from argo_env.robot.spec import MotionKind, RobotSpec, drive_kind
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 
 @dataclass(frozen=True)
@@ -46,7 +51,7 @@ class Motion:
             yaw=wrap(a.yaw + share * self.turn),
         )
 
-    def along(self, shares: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+    def along(self, shares: "NDArray[np.float64]") -> tuple["NDArray[np.float64]", ...]:
         """x, y, z (m) and yaw (rad) after such shares of the motion, each of the shape of these."""
         a, b = self.start, self.end
         return (
@@ -97,8 +102,10 @@ class Path:
         """s, at the robot's planning speeds or at `velocity` (m/s) on the flat."""
         return sum(m.duration(robot, velocity) for m in self.motions)
 
-    def timed(self, robot: RobotSpec, velocity: float | None = None) -> NDArray[np.float64]:
+    def timed(self, robot: RobotSpec, velocity: float | None = None) -> "NDArray[np.float64]":
         """t (s), x, y, z (m) and yaw (rad) at the start and after each motion, shape (n + 1, 5)."""
+        import numpy as np
+
         rows = [(0.0, *_row(self.start))]
         for motion in self.motions:
             rows.append((rows[-1][0] + motion.duration(robot, velocity), *_row(motion.end)))
@@ -130,10 +137,10 @@ def wrap(angle: float) -> float: ...
 
 
 @overload
-def wrap(angle: NDArray[np.float64]) -> NDArray[np.float64]: ...
+def wrap(angle: "NDArray[np.float64]") -> "NDArray[np.float64]": ...
 
 
-def wrap(angle: float | NDArray[np.float64]) -> float | NDArray[np.float64]:
+def wrap(angle: "float | NDArray[np.float64]") -> "float | NDArray[np.float64]":
     """The same angle between -pi (exclusive) and pi, in rad."""
     return math.pi - (math.pi - angle) % (2 * math.pi)
 

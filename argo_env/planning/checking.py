@@ -3,7 +3,7 @@
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.base.stages import each
 from argo_env.navigation.navigator import Navigator
-from argo_env.planning.catalog import patrol
+from argo_env.planning.patrols import patrol
 
 
 def unserved_floors(navigator: Navigator) -> list[int]:

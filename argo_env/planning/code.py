@@ -1,12 +1,11 @@
 """A digest of the code that plans on sites: what it has found is only good for the same code."""
 
 import hashlib
+import struct
 import sys
 from functools import lru_cache
 from importlib.util import find_spec
 from pathlib import Path
-
-import numpy as np
 
 _ROOT = Path(__file__).parents[2]
 _FOLDERS = ("files", "navigation", "planning", "robot", "site")
@@ -22,8 +21,9 @@ def digest_of_code() -> str:
     """Of all modules that have a part in what is found on a site, of the libraries that search for
     it, and of the kind of machine."""
     sink = hashlib.blake2b(digest_size=16)
-    sink.update(f"{sys.platform} {sys.byteorder} {np.dtype(np.intp).str} ".encode())
-    sink.update(f"{sys.version_info[:2]} {np.__version__} {_version_of_scipy()}".encode())
+    sink.update(f"{sys.platform} {sys.byteorder} {struct.calcsize('P')} ".encode())
+    libraries = f"{_version_of('numpy')} {_version_of('scipy')}"
+    sink.update(f"{sys.version_info[:2]} {libraries}".encode())
     files = [_ROOT / module for module in _MODULES]
     for folder in _FOLDERS:
         files += sorted((_ROOT / "argo_env" / folder).glob("*.py"))
@@ -33,9 +33,9 @@ def digest_of_code() -> str:
     return sink.hexdigest()
 
 
-def _version_of_scipy() -> str:
-    """Without importing it, which takes longer than all else."""
-    found = find_spec("scipy")
+def _version_of(library: str) -> str:
+    """Return the text with its version, without importing it, which takes longer than all else."""
+    found = find_spec(library)
     if found is None or found.origin is None:
         return "none"
     version = Path(found.origin).with_name("version.py")

@@ -4,16 +4,14 @@ planned are kept on disk, as the same missions are checked again and again."""
 import hashlib
 import json
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Protocol
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, Protocol
 
 from argo_compiler.analysis import Leg, NoWay, Standing
 from argo_compiler.base.errors import ArgoError, Unreachable
 from argo_compiler.base.model import Pose
 from argo_compiler.il import MAX_TIME_S, Action, Mission, Task
 from argo_env.drives.timetable import steps
-from argo_env.files.parts import Arrays, Parts
+from argo_env.files.parts import Parts
 from argo_env.navigation.path import Motion, Path
 from argo_env.planning.start import start_pose
 from argo_env.robot.spec import MotionKind, RobotSpec
@@ -32,17 +30,17 @@ def kept_way(parts: Parts, asked: object, plan: Callable[[], Path]) -> Way:
 
     `asked` is what the way depends on, as data that JSON can say exactly.
     """
-    question = json.dumps(asked).encode()
-    place = int.from_bytes(hashlib.blake2b(question, digest_size=8).digest()) % _PLACES
-    name = f"way-{place:04x}"
-    found = parts.find(name)
-    if found is not None and found["asked"].tobytes() == question:
-        return _to_way(found)
+    question = json.dumps(asked)
+    digest = hashlib.blake2b(question.encode(), digest_size=8).digest()
+    name = f"way-{int.from_bytes(digest) % _PLACES:04x}"
+    found, _, answer = (parts.find_text(name) or "").partition("\n")
+    if found == question:
+        return _to_way(json.loads(answer))
     try:
         way: Way = plan()
     except ArgoError as error:
         way = NoWay(str(error))
-    parts.keep(name, {"asked": np.frombuffer(question, np.uint8), **_to_arrays(way)})
+    parts.keep_text(name, f"{question}\n{json.dumps(_to_data(way))}")
     return way
 
 
@@ -51,24 +49,21 @@ def as_data(pose: Pose) -> tuple[float, float, float, float]:
     return pose.x, pose.y, pose.z, pose.yaw
 
 
-def _to_arrays(way: Way) -> Arrays:
+def _to_data(way: Way) -> dict[str, Any]:
     if isinstance(way, NoWay):
-        return {"reason": np.frombuffer(way.reason.encode(), np.uint8)}
-    rows = [(*as_data(m.start), *as_data(m.end), m.turn, m.gear, m.on_stairs) for m in way.motions]
-    return {
-        "start": np.array(as_data(way.start)),
-        "motions": np.array(rows, dtype=np.float64).reshape(len(rows), 11),
-    }
-
-
-def _to_way(arrays: Arrays) -> Way:
-    if "reason" in arrays:
-        return NoWay(arrays["reason"].tobytes().decode())
+        return {"reason": way.reason}
     motions = [
-        Motion(_pose(row[:4]), _pose(row[4:8]), row[8], int(row[9]), bool(row[10]))
-        for row in arrays["motions"].tolist()
+        (*as_data(m.start), *as_data(m.end), m.turn, int(m.gear), bool(m.on_stairs))
+        for m in way.motions
     ]
-    return Path(_pose(arrays["start"].tolist()), tuple(motions))
+    return {"start": as_data(way.start), "motions": motions}
+
+
+def _to_way(data: dict[str, Any]) -> Way:
+    if "reason" in data:
+        return NoWay(data["reason"])
+    motions = [Motion(_pose(row[:4]), _pose(row[4:8]), *row[8:]) for row in data["motions"]]
+    return Path(_pose(data["start"]), tuple(motions))
 
 
 def _pose(row: list[float]) -> Pose:

@@ -5,15 +5,18 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from argo_compiler.base.catalog import CheckpointKind, Interval
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Pose
 from argo_env.files import resources
 from argo_env.site.family import PREFIX, is_family
-from argo_env.site.index import SolidIndex, SolidRays
-from argo_env.site.shapes import Element, Vector
 from argo_env.site.spec import FloorSpec, SiteSpec
+
+if TYPE_CHECKING:
+    from argo_env.site.index import SolidIndex, SolidRays
+    from argo_env.site.shapes import Element, Vector
 
 SCALES: dict[CheckpointKind, tuple[str, Interval]] = {
     CheckpointKind.PRESSURE_GAUGE: ("bar", Interval(low=0.0, high=10.0)),
@@ -31,7 +34,7 @@ class SiteCheckpoint:
     kind: CheckpointKind
     name: str
     floor: int
-    position: Vector
+    position: "Vector"
     yaw: float
     nominal: Interval
 
@@ -53,31 +56,37 @@ class Site:
     docks: dict[int, Pose]
     """pose of the docked robot for each starting area"""
     places: dict[str, Pose]
-    altered: tuple[Element, ...] | None = None
+    altered: "tuple[Element, ...] | None" = None
     """the elements, where they are others than the description gives"""
 
     @property
     def name(self) -> str:
         return self.spec.name
 
+    # A mission is checked without its site's solids: imported when needed.
+
     @cached_property
-    def elements(self) -> tuple[Element, ...]:
+    def elements(self) -> "tuple[Element, ...]":
         """The named parts that its solids belong to."""
         from argo_env.site.build import build_site
 
         return build_site(self.spec) if self.altered is None else self.altered
 
     @cached_property
-    def solids(self) -> SolidIndex:
+    def solids(self) -> "SolidIndex":
         """All solids of the site, to be found by where they are."""
+        from argo_env.site.index import SolidIndex
+
         return SolidIndex(self.elements)
 
     @cached_property
-    def rays(self) -> SolidRays:
+    def rays(self) -> "SolidRays":
         """What straight lines meet first of its solids."""
+        from argo_env.site.index import SolidRays
+
         return SolidRays(self.elements)
 
-    def with_elements(self, elements: tuple[Element, ...]) -> "Site":
+    def with_elements(self, elements: "tuple[Element, ...]") -> "Site":
         """The same site with other elements, as where something lies about on it."""
         return self if elements == self.elements else replace(self, altered=elements)
 

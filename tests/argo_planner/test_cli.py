@@ -1,6 +1,7 @@
 """The command as a whole: its list of commands, what it imports, misspelt words, completion."""
 
 import os
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
@@ -8,6 +9,7 @@ from typer.testing import CliRunner
 from argo_planner.cli import ArgoCommands, app
 from argo_planner.lazy_group import LazyCommand, load_command
 from tests.processes import run_python
+from tests.yard import write_site
 
 COMMANDS = {command.name: command for command in ArgoCommands.lazy_commands}
 
@@ -36,17 +38,31 @@ def test_a_misspelt_command_is_answered_with_the_ones_that_are_like_it() -> None
     assert "Did you mean 'check'" in answer.output
 
 
+MODULES = (
+    "import sys; from argo_planner.cli import main\n"
+    "try: main()\n"
+    "except SystemExit: print(*sys.modules, file=sys.stderr)"
+)
+"""a program that runs a command, and then prints what it has imported"""
+
+
 def test_help_and_version_import_no_command_and_none_of_what_commands_need() -> None:
-    program = (
-        "import sys; from argo_planner.cli import main\n"
-        "try: main()\n"
-        "except SystemExit: print(*sys.modules, file=sys.stderr)"
-    )
     for option in ("--help", "--version"):
-        loaded = set(run_python("-c", program, option).stderr.split())
+        loaded = set(run_python("-c", MODULES, option).stderr.split())
         assert "argo_planner.cli" in loaded
         assert not loaded & {"numpy", "pydantic", "scipy", "gymnasium", "argo_env"}
         assert not {name for name in loaded if name.startswith("argo_planner.commands.")}
+
+
+def test_what_was_checked_before_is_checked_without_numpy(tmp_path: Path) -> None:
+    script = tmp_path / "script.txt"
+    script.write_text("Start in starting area 1. Read checkpoint 1.\n", encoding="utf-8")
+    command = ["check", str(script), "--site", write_site(tmp_path / "yard.yaml")]
+    checked = CliRunner().invoke(app, command)
+    assert checked.exit_code == 0, checked.output
+    loaded = set(run_python("-c", MODULES, *command).stderr.split())
+    assert "argo_env.planning.travel" in loaded
+    assert not loaded & {"numpy", "scipy", "argo_env.navigation.navigator", "argo_env.site.build"}
 
 
 def complete(shell: str, words: str) -> str:

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from argo_compiler.base.listing import listed
 from argo_env.navigation import Navigator
 from argo_env.navigation.lattice import MARGIN
-from argo_env.planning.catalog import APART, patrol_corners
 from argo_env.planning.checking import unserved_floors
 from argo_env.planning.flaws.flaw import ASIDE, Flaw, Mark, between, place
 from argo_env.planning.flaws.standing import Standing
+from argo_env.planning.patrols import APART, patrol_corners
 from argo_env.site.spec import LEDGE, FloorSpec, TowerSpec, away
 from argo_env.site.stairs import mouths
 

@@ -201,7 +201,7 @@ def test_a_part_of_another_name_is_not_taken(tmp_path):
     parts = Parts(tmp_path, "key")
     parts.keep_text("one", "a text")
     assert parts.find_text("one") == "a text"
-    shutil.copy(tmp_path / "one.npz", tmp_path / "two.npz")
+    shutil.copy(tmp_path / "one.txt", tmp_path / "two.txt")
     assert parts.find_text("two") is None
     assert Parts(tmp_path, "another key").find_text("one") is None
 

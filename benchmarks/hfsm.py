@@ -45,6 +45,7 @@ from argo_compiler.il import (
 )
 
 HIGH = 8.0
+EVENTS = 5_000
 
 ISAR = "isar 1.34.28"
 ISAR_STATES = 26
@@ -398,7 +399,7 @@ def states() -> None:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Measure or count what the command line asks for."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--events", type=int, default=5000)
+    parser.add_argument("--events", type=int, default=EVENTS)
     parser.add_argument("--repeats", type=int, default=7)
     parser.add_argument("--states", action="store_true", help="count states instead")
     given = parser.parse_args(arguments)

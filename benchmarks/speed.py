@@ -91,7 +91,7 @@ def executor(turns: int) -> float | None:
     if importlib.util.find_spec("py_trees") is None:
         return None
     machines = {name: hfsm.PEERS[name] for name in ("Argo", "py_trees")}
-    rates = hfsm.measure(2_000, turns, machines)
+    rates = hfsm.measure(hfsm.EVENTS, turns, machines)
     return rates["Argo"] / rates["py_trees"]
 
 

@@ -34,22 +34,21 @@ class Configuration:
         "frames",
         "interrupted_at",
         "interrupted_s",
-        "interruptions",
+        "numbers",
         "own_due",
         "readings",
         "round_of",
         "timed_out",
         "visit",
-        "visits",
     )
 
     def __init__(self, tables: Tables) -> None:
         self._has_hard_groups = tables.has_hard_groups
         self.began = 0.0
         """s, when the mission was started"""
-        self.visits = 0
-        """how many visits there have been; the drives of reactions count as well"""
-        self.visit = TaskVisit(None, 0, 0.0)
+        self.numbers = 0
+        """how many visits and turns there have been; a drive of a reaction is a turn"""
+        self.visit = TaskVisit(None, 0, 0, 0.0)
         self.frames: list[Frame] = []
         """the active groups, outermost first"""
         self.round_of: Frame | None = None
@@ -62,9 +61,6 @@ class Configuration:
         """s of interruptions that are over"""
         self.interrupted_at: float | None = None
         """since when the mission has been interrupted (s)"""
-        self.interruptions = 0
-        """how many there have been: an action that was started before one is started anew, even if
-        the driver hears of it when it is over"""
         self.due = math.inf
         """when the time of a group with a hard stop is up next (s); never while interrupted"""
         self.timed_out: GroupNode | None = None
@@ -77,9 +73,9 @@ class Configuration:
         """The task that the mission stands at."""
         return self.visit.leaf
 
-    def new_visit(self) -> int:
-        self.visits += 1
-        return self.visits
+    def new_number(self) -> int:
+        self.numbers += 1
+        return self.numbers
 
     def clock(self, now: float, group: GroupNode) -> float:
         """The clock that a group goes by (s)."""
@@ -111,7 +107,8 @@ class Configuration:
     def interrupt(self, now: float) -> None:
         if self.interrupted_at is None:
             self.interrupted_at = now
-            self.interruptions += 1
+            # An action is started anew afterwards, even if the driver hears of it when it is over.
+            self.visit.turn = self.new_number()
             self.due = self.own_due = self.visit.action_due = math.inf
 
     def go_on(self, now: float) -> None:
@@ -185,7 +182,8 @@ class Configuration:
 
     def leave(self) -> None:
         """The mission has ended, whatever it was doing."""
-        self.visit = TaskVisit(None, self.new_visit(), 0.0)
+        number = self.new_number()
+        self.visit = TaskVisit(None, number, number, 0.0)
         self.frames.clear()
         self.round_of = None
         self.due = self.own_due = math.inf
@@ -208,8 +206,14 @@ class Configuration:
         self, leaf: LeafNode | None, keep: int, domain: GroupNode | None, now: float
     ) -> None:
         """Leaves all below `domain`, which is the last of `keep` groups, and enters the leaf."""
-        self.visits = number = self.visits + 1
-        self.visit.begin(leaf, number, now)
+        self.numbers = number = self.numbers + 1
+        visit = self.visit  # used again, which takes less time than a new one
+        visit.leaf = leaf
+        visit.number = visit.turn = number
+        visit.since = visit.look_at = now
+        visit.attempt = 0
+        visit.occurred = False
+        visit.action_due = _NEVER
         frames = self.frames
         changed = len(frames) > keep
         if changed:

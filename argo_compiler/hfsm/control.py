@@ -24,8 +24,8 @@ class Control:
         self.tables = tables
         self.course = MissionCourse(tables)
         self.standing = InterruptState()
-        self.drive_visit = 0
-        """the number of the active reaction's drive, among the visits"""
+        self.drive_turn = 0
+        """of the active reaction's drive, among those of the visits"""
         self.held_since = 0.0
         """s, when the present hold began"""
         self.hold_due = math.inf
@@ -187,7 +187,7 @@ class Control:
             began = self.active
             assert began is not None
             self._note_reaction(began)
-            self.drive_visit = course.place.new_visit()
+            self.drive_turn = course.place.new_number()
         elif row.target is Stage.HOLDING:
             self.held_since = course.now
             course.note(Cause.HOLD, event=active)

@@ -92,7 +92,7 @@ class Executor:
         self._running: Task | None = None
         self._running_leaf: LeafNode | None = None
         """None: the drive of a reaction"""
-        self._running_turn = _NO_TURN
+        self._running_visit = self._running_turn = 0
         self._last_id = 0
         """of the last command that started an action"""
         self._cancelling = False
@@ -117,7 +117,7 @@ class Executor:
         course.now = _seconds(now)
         course.place = place_of(control.tables, progress, now, _seconds(away))
         control.standing = standing_of(control.tables, progress)
-        control.drive_visit = course.place.new_visit()
+        control.drive_turn = course.place.new_number()
         if progress.reaction is not None:
             control.held_since = now - progress.reaction.held - away
         for done in progress.by_hand:
@@ -344,7 +344,19 @@ class Executor:
 
     def _command(self) -> tuple[Command, ...]:
         """Starts what is to run, once what is not has ended."""
-        leaf, task, turn = self._wanted()
+        # What is to run and its turn; no task: nothing is. Each event comes by here.
+        control = self._control
+        course, standing = control.course, control.standing
+        visit = course.place.visit
+        leaf, task, turn = visit.leaf, None, 0
+        if course.outcome is not None or standing.paused:
+            pass
+        elif standing.active is not None:
+            active = control.active
+            if control.driving and active is not None:
+                leaf, task, turn = None, active.task, control.drive_turn
+        elif leaf is not None and leaf.wait is None and course.place.round_of is None:
+            task, turn = leaf.task, visit.turn
         running = self._running
         if running is not None:
             if self._cancelling or turn == self._running_turn:
@@ -356,6 +368,7 @@ class Executor:
         self._running = task
         self._running_leaf = leaf
         self._running_turn = turn
+        self._running_visit = visit.number
         self._last_id += 1
         not_before = None
         if leaf is not None:
@@ -364,24 +377,6 @@ class Executor:
             if leaf.time_limit is not None:
                 self._control.course.limit_action(leaf.time_limit, not_before)
         return (new_tuple(StartAction, (task, self._last_id, not_before)),)
-
-    def _wanted(self) -> "_Wanted":
-        """The leaf and the task of the action that is to run, and its turn. No task: none."""
-        control = self._control
-        course, standing = control.course, control.standing
-        if course.outcome is not None or standing.paused:
-            return _NOTHING
-        if standing.active is None:
-            place = course.place
-            visit = place.visit
-            leaf = visit.leaf
-            if leaf is None or leaf.wait is not None or place.round_of is not None:
-                return _NOTHING
-            return leaf, leaf.task, (visit.number, visit.attempt, place.interruptions)
-        active = control.active
-        if control.driving and active is not None:
-            return None, active.task, (control.drive_visit, 0, 0)
-        return _NOTHING
 
     def _reason(self) -> str:
         if self._control.outcome is not None:
@@ -403,7 +398,7 @@ class Executor:
         self._running = None
         self._cancelling = False
         if leaf is None:
-            if control.driving and control.drive_visit == self._running_turn[0]:
+            if self._drives_on():
                 control.arrive()
             return
         course = control.course
@@ -411,7 +406,7 @@ class Executor:
             course.unlimit_action()
         if leaf.measures is not None:
             course.measure(leaf.measures, leaf, event.value, event.abnormal)
-        if self._running_turn[0] == course.place.visit.number:
+        if self._running_visit == course.place.visit.number:
             course.leave(leaf)
         else:
             course.leave_late(leaf)
@@ -420,23 +415,23 @@ class Executor:
         """The running action has failed or was stopped."""
         control, leaf = self._control, self._running_leaf
         course = control.course
-        failed = isinstance(event, ActionFailed) and not self._cancelling
-        if failed:
-            # A failure may be the work of the cancellation, so then it counts as a stop.
-            _, _, turn = self._wanted()
-            failed = turn == self._running_turn
+        # A failure may be the work of the cancellation, so then it counts as a stop.
+        failure = event if isinstance(event, ActionFailed) and not self._cancelling else None
         self._running = None
         self._cancelling = False
         if leaf is None:
-            if not control.driving or control.drive_visit != self._running_turn[0]:
-                return
-            if isinstance(event, ActionFailed) and failed:
-                control.fail_drive(event.reason)
+            if failure is not None and self._drives_on():
+                control.fail_drive(failure.reason)
             return
         if leaf.time_limit is not None:
             course.unlimit_action()
-        if isinstance(event, ActionFailed) and failed:
-            course.fail(leaf, event.reason, event.unreadable)
+        if failure is not None and self._running_turn == course.place.visit.turn:
+            course.fail(leaf, failure.reason, failure.unreadable)
+
+    def _drives_on(self) -> bool:
+        """Whether the drive that has just ended is still the active reaction's."""
+        control = self._control
+        return control.driving and control.drive_turn == self._running_turn
 
     def _require_order(self, now: float) -> None:
         if not self._control.course.now <= _seconds(now):
@@ -485,12 +480,6 @@ class Executor:
 
 _BUSY = "another call of the executor is under way: one thread at a time, and none from inside"
 _NOT_STARTED = "the executor has not been started: call start first"
-_Turn = tuple[int, int, int]
-"""The number of a visit, and by what its action is begun anew: failures in this visit, and
-interruptions so far."""
-_NO_TURN = (0, 0, 0)
-_NOTHING = (None, None, _NO_TURN)
-_Wanted = tuple[LeafNode | None, Task | None, _Turn]
 
 
 def _ended_visit(kept: tuple[str, str | None, bool]) -> EndedVisit:

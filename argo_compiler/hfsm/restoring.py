@@ -34,9 +34,11 @@ def place_of(tables: Tables, progress: Progress, now: float, away: float) -> Con
     place = Configuration(tables)
     place.began = now - progress.elapsed - away
     leaf = None if progress.active is None else leaf_of(tables, progress.active)
+    number = place.new_number()
     place.visit = TaskVisit(
         leaf,
-        place.new_visit(),
+        number,
+        number,
         now - progress.since - away,
         now,
         progress.attempt,

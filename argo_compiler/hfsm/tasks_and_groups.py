@@ -194,6 +194,7 @@ class MissionCourse:
         visit = self.place.visit
         if visit.attempt < leaf.retries:
             visit.attempt += 1
+            visit.turn = self.place.new_number()
             visit.action_due = math.inf
             self.place.find_own_due()
             self.note(Cause.RETRY, failure=reason)

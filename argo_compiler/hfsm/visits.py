@@ -13,7 +13,10 @@ class TaskVisit:
     leaf: LeafNode | None
     """None: the mission has not begun, or nothing is left to do"""
     number: int
-    """tells two visits of a task apart; the drives of reactions are counted as well"""
+    """tells two visits of a task apart"""
+    turn: int
+    """tells two actions of a visit apart: the number at first, another one after a failure of the
+    action and after an interruption"""
     since: float
     """s, when it began"""
     look_at: float = -math.inf
@@ -24,15 +27,6 @@ class TaskVisit:
     """whether the event that a WAIT waits for has occurred"""
     action_due: float = math.inf
     """when the time limit of the running action is over (s)"""
-
-    def begin(self, leaf: LeafNode | None, number: int, now: float) -> None:
-        """Make this the visit of a task that begins now (s)."""
-        self.leaf = leaf
-        self.number = number
-        self.since = self.look_at = now
-        self.attempt = 0
-        self.occurred = False
-        self.action_due = math.inf
 
     def wait_at(self, began: float) -> float:
         """When a WAIT may end (s), its conditions apart. `began`: the mission's start (s)."""

@@ -21,13 +21,18 @@ class CheckedRun:
 
 
 def check_run(
-    spec: RunSpec, site: OpenedSite | None = None, *, settings: bool = True
+    spec: RunSpec | CheckedRun, site: OpenedSite | None = None, *, settings: bool = True
 ) -> CheckedRun:
     """Return the run of a spec, checked, on the site that it names unless that is open already.
 
     Without `settings` only what depends on the mission is checked: for one that became known after
-    `check_spec`. Raises ArgoError for a run that can't be.
+    `check_spec`. What was checked on that site already is returned as it is. Raises ArgoError for
+    a run that can't be.
     """
+    if isinstance(spec, CheckedRun):
+        if site is None or site is spec.site:
+            return spec
+        spec = spec.spec
     spec = checked(spec)
     site = site or open_site(spec.site, load_robot(spec.robot))
     require_site(site, spec)

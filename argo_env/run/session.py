@@ -45,7 +45,7 @@ def simulate(
     """Run the mission of a spec to its end and return the record. Equal specs give equal records.
 
     The `site` is the one that the spec names, if it is open already. A run that `check_run` has
-    checked has its own, and is not checked again. With a `journal` the run can be resumed after its
+    checked on it is not checked again. With a `journal` the run can be resumed after its
     process has died: a new file, or with `replace` one that is there already. With `pace` a second
     of wall time shows at most that many seconds of simulated time. The function `interrupted` is
     asked after each step whether the run is to stop there: the record is as it stands then, and a
@@ -55,7 +55,7 @@ def simulate(
         ArgoError: the mission makes no sense on this site, there is no such site, drive or sensor,
             the site is not the spec's, or the journal can't be written.
     """
-    known = spec if isinstance(spec, CheckedRun) else check_run(spec, site)
+    known = check_run(spec, site)
     spec, site = known.spec, known.site
     machine = machine_of(spec.mission, spec.beginning)
     _log.info(

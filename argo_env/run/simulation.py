@@ -101,7 +101,7 @@ class Simulation(Closing):
         or the past is not this run's: Conflict for a site or a machine that is not the spec's, or a
         machine that was used before.
         """
-        known = isinstance(spec, CheckedRun)
+        known = isinstance(spec, CheckedRun) and spec.site is site
         self._spec = spec = spec.spec if isinstance(spec, CheckedRun) else checked(spec)
         self._observers = tuple(observers)
         self._hearing = any(

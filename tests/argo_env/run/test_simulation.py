@@ -30,6 +30,7 @@ from argo_env.faults.checkpoints import AbnormalValue
 from argo_env.faults.plant import GasLeakFault
 from argo_env.faults.robot import ConnectionLoss, DriveDysfunction, LowBattery, SensorDysfunction
 from argo_env.faults.walkway import Brick
+from argo_env.planning.opening import OpenedSite
 from argo_env.run.fitting_together import check_run
 from argo_env.run.journal import open_journal
 from argo_env.run.machine import OpenMachine
@@ -47,6 +48,7 @@ from tests.yard import (
     measure,
     mission,
     simulation_of,
+    site_of,
     steps,
     take_over,
     until,
@@ -529,6 +531,16 @@ class TestWhatDoesNotFitTogether:
         spec = spec_of("route").model_copy(update={"mission": elsewhere})
         with pytest.raises(Conflict, match="planned for site umad, and the site is yard"):
             simulate(spec, site)
+
+    def test_a_run_that_was_checked_on_another_site(self, site):
+        known, other = check_run(spec_of("route"), site), OpenedSite.of(site_of(name="other"))
+        for begin in (
+            lambda: simulate(known, other),
+            lambda: Simulation(Executor(lower(PLAN)), other, known),
+        ):
+            with pytest.raises(Conflict, match="planned for site yard, and the site is other"):
+                begin()
+        assert simulate(known) == simulate(known, site) == simulate(known.spec, site)
 
     def test_the_machine_of_another_mission(self, site):
         with pytest.raises(Conflict, match="not that of the spec's mission"):

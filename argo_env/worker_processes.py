@@ -1,5 +1,6 @@
 """Processes that work for another one."""
 
+import errno
 import multiprocessing
 import os
 import signal
@@ -10,7 +11,7 @@ from functools import partial
 from multiprocessing.connection import wait
 from multiprocessing.context import ForkServerContext, ForkServerProcess
 
-_NEEDED_TO_DRIVE = (
+NEEDED_TO_DRIVE = (
     "argo_env.site.build",
     "scipy.ndimage",
     "scipy.sparse.csgraph",
@@ -39,13 +40,15 @@ class _Process(ForkServerProcess):
     begun again."""
 
     def start(self) -> None:
+        """Begin the process. Raises OSError if it can't."""
         for attempts_left in reversed(range(_ATTEMPTS)):
             try:
                 super().start()
                 return
-            except (EOFError, ConnectionError):
+            except (EOFError, ConnectionError) as error:
                 if not attempts_left:
-                    raise
+                    why = "the process that it would be forked from has ended"
+                    raise ChildProcessError(errno.ECHILD, why) from error
                 time.sleep(_PAUSE)  # it may not be known yet that it has ended
 
 
@@ -61,7 +64,7 @@ def context_with(*modules: str) -> ForkServerContext:
     has one of this kind only.
     """
     context = _Context()
-    context.set_forkserver_preload([*modules, *_NEEDED_TO_DRIVE])
+    context.set_forkserver_preload([*modules, *NEEDED_TO_DRIVE])
     return context
 
 

@@ -113,7 +113,7 @@ def _npz(arrays: "Mapping[str, NDArray[Any]]") -> memoryview:
 
     plain = {label: np.ascontiguousarray(array) for label, array in arrays.items()}
     sink = io.BytesIO()
-    np.savez(sink, allow_pickle=False, **plain)
+    np.savez(sink, **plain)  # type: ignore[arg-type]  # one could be called `allow_pickle`
     content = sink.getbuffer()
     content[-2:] = _CHECKSUM.to_bytes(2, "little")  # the length of the comment
     return content

@@ -14,7 +14,7 @@ from argo_env.run.steering import check_given
 
 @dataclass(frozen=True)
 class CheckedRun:
-    """A spec that a run on the site can have, as `check_run` has found: nobody checks it again."""
+    """A spec that a run on the site can have, as `check_run` has found."""
 
     spec: RunSpec
     site: OpenedSite

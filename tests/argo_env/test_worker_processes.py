@@ -38,5 +38,5 @@ def test_a_process_that_can_not_begin_says_so(monkeypatch):
         raise ConnectionRefusedError
 
     monkeypatch.setattr(forkserver, "connect_to_new_process", refuse)
-    with pytest.raises(ConnectionRefusedError):
+    with pytest.raises(OSError, match="forked from has ended"):
         parent_of_the_workers(context_with("argo_env.worker_processes"))

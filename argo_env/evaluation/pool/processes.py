@@ -11,6 +11,7 @@ from loky import ProcessPoolExecutor
 from loky.backend.context import LokyContext
 from loky.process_executor import BrokenProcessPool
 
+from argo_compiler.base.errors import Unavailable
 from argo_env.evaluation.pool.backend import WorkerDiedError
 from argo_env.worker_processes import end_with_parent
 
@@ -40,6 +41,8 @@ class Processes:
         except BrokenProcessPool as broken:
             self._broken = True
             raise _death(broken) from None
+        except OSError as error:
+            raise Unavailable(f"no worker process can begin: {error.strerror}") from error
         return future
 
     def wait(self, calls: Sequence["Future[Any]"]) -> Sequence["Future[Any]"]:

@@ -196,7 +196,7 @@ class Evaluations:
             try:
                 await work.result(lambda _: None)
             finally:
-                work.end()
+                await work.end()
         try:
             return await asyncio.to_thread(self._folder.report, id)
         except NotFound:
@@ -230,7 +230,7 @@ class Evaluations:
                     "service"
                 ) from None
             finally:
-                work.end()
+                await work.end()
 
     def _require_free(self) -> None:
         for job in self._jobs.running(EvaluationJob):

@@ -36,19 +36,25 @@ class Analyst:
     async def analyse(self, mission: Mission, revision: int) -> AnalysisFound:
         """The analysis of a mission, and of which revision it is."""
         for _ in range(2):  # once more in a new process
-            job = self._pool.submit(_analysed, self._site, mission, revision)
             try:
+                # The first process begins when its modules are loaded, which takes seconds.
+                job = await asyncio.to_thread(
+                    self._pool.submit, _analysed, self._site, mission, revision
+                )
                 return await asyncio.wrap_future(job)
             except BrokenProcessPool:
-                self._pool.shutdown(wait=False)
-                self._pool = _pool()
-        return AnalysisFound(revision=revision, problem="the process that analyses it has died")
+                problem = "the process that analyses it has died"
+            except OSError as error:
+                problem = f"the process that analyses it can't begin: {error.strerror}"
+            self._pool.shutdown(wait=False)
+            self._pool = _pool()
+        return AnalysisFound(revision=revision, problem=problem)
 
     def close(self) -> None:
         """Ends the process, whatever it does."""
-        processes = list((self._pool._processes or {}).values())
+        processes = self._pool._processes  # filled as long as it is not shut down
         self._pool.shutdown(wait=False, cancel_futures=True)
-        for process in processes:
+        for process in [*processes.values()]:
             process.terminate()
 
 

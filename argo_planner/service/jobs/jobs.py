@@ -68,7 +68,7 @@ class Jobs:
         if under_way is None:
             raise Conflict(f"job {id} is over: it is {job.state}")
         under_way.watching.cancel()
-        under_way.work.end()
+        await under_way.work.end()
         job = self._keep(self._jobs[id].model_copy(update={"state": JobState.CANCELLED}))
         await under_way.ended(job)
         return self._jobs.get(id, job)
@@ -87,7 +87,7 @@ class Jobs:
         under_way, self._under_way = [*self._under_way.values()], {}
         for one in under_way:
             one.watching.cancel()
-            one.work.end()
+            await one.work.end()
             with suppress(asyncio.CancelledError):
                 await one.watching
 
@@ -107,7 +107,7 @@ class Jobs:
         under_way = self._under_way.pop(id, None)
         if under_way is not None:
             self._keep(job)
-            await asyncio.to_thread(work.end)
+            await work.end()
             await under_way.ended(job)
 
     def _keep(self, job: Job) -> Job:

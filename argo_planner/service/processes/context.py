@@ -2,9 +2,9 @@
 
 from argo_env.worker_processes import context_with
 
-CONTEXT = context_with(
-    *(
-        f"argo_planner.service.{module}"
-        for module in ("runs.worker", "jobs.analysis", "jobs.evaluation", "jobs.order")
-    )
+LOADED = tuple(
+    f"argo_planner.service.{module}"
+    for module in ("runs.worker", "jobs.analysis", "jobs.evaluation", "jobs.order")
 )
+"""modules of the work that they do"""
+CONTEXT = context_with(*LOADED)

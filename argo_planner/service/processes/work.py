@@ -5,6 +5,7 @@ import asyncio
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from multiprocessing.connection import Connection
+from threading import Lock
 from typing import Any, Generic, TypeVar
 
 from argo_compiler.base.errors import ArgoError, Unavailable
@@ -17,24 +18,28 @@ Tell = Callable[[Any], None]
 
 
 class JobProcess(Generic[Result]):
-    """One piece of work under way. Holds the process."""
+    """One piece of work, which begins when somebody awaits its result. Holds the process."""
 
     def __init__(self, work: Callable[..., Result], *arguments: Any, parent: bool = False) -> None:
-        """Begins the work, `work(*arguments, tell)`; all of it can be pickled. `parent`: whether
-        it has processes of its own, which then have to end by themselves once it has."""
-        self._here, there = CONTEXT.Pipe(duplex=False)
-        self._process = CONTEXT.Process(target=_carried_out, args=(there, work, arguments))
+        """The work is `work(*arguments, tell)`; all of it can be pickled. `parent`: whether it has
+        processes of its own, which then have to end by themselves once it has."""
+        self._here, self._there = CONTEXT.Pipe(duplex=False)
+        self._process = CONTEXT.Process(target=_carried_out, args=(self._there, work, arguments))
         self._process.daemon = not parent
-        self._process.start()
-        there.close()
+        self._turn = Lock()
+        """held while the process begins or is ended"""
+        self._ended = False
 
     async def result(self, heard: Tell) -> Result:
         """What came of the work; `heard` is told how far it is.
 
-        Raises the ArgoError that the work has raised, or Unavailable if its process has died.
+        Raises the ArgoError that the work has raised, or Unavailable if its process can't begin or
+        has died.
         """
         loop = asyncio.get_running_loop()
-        with ThreadPoolExecutor(1) as thread:
+        thread = ThreadPoolExecutor(1)
+        try:
+            await loop.run_in_executor(thread, self._begin)
             while True:
                 try:
                     kind, what = await loop.run_in_executor(thread, self._here.recv)
@@ -48,11 +53,31 @@ class JobProcess(Generic[Result]):
                     case _:
                         result: Result = what
                         return result
+        finally:
+            thread.shutdown(wait=False)
 
-    def end(self) -> None:
+    def _begin(self) -> None:
+        # The first process begins when its modules are loaded, which takes seconds.
+        with self._turn:
+            try:
+                if not self._ended:
+                    self._process.start()
+            except OSError as error:
+                why = f"the process that is to work on it can't begin: {error.strerror}"
+                raise Unavailable(f"{why}; try again") from error
+            finally:
+                self._there.close()
+
+    async def end(self) -> None:
         """Ends the process, whatever it does."""
-        self._process.kill()
-        self._process.join()
+        await asyncio.to_thread(self._end)
+
+    def _end(self) -> None:
+        with self._turn:
+            self._ended = True
+            if self._process.pid is not None:
+                self._process.kill()
+                self._process.join()
 
 
 def _carried_out(pipe: Connection, work: Callable[..., Any], arguments: tuple[Any, ...]) -> None:

@@ -1,0 +1,131 @@
+"""Work in processes of their own: begun beside all else, ended at any moment."""
+
+import asyncio
+import errno
+import threading
+from collections.abc import Callable, Coroutine
+from importlib.util import find_spec
+
+import pytest
+
+from argo_compiler.base.errors import Unavailable
+from argo_compiler.il import Mission
+from argo_env.planning.opening import OpenedSite
+from argo_env.worker_processes import NEEDED_TO_DRIVE
+from argo_planner.service.jobs.analysis import AnalysisFound, Analyst
+from argo_planner.service.processes.context import CONTEXT, LOADED
+from argo_planner.service.processes.work import JobProcess, Tell
+
+
+def double(number: int, tell: Tell) -> int:
+    tell("half of it")
+    return 2 * number
+
+
+def never(_: Tell) -> None:
+    threading.Event().wait()
+
+
+@pytest.fixture
+def slow_start(monkeypatch: pytest.MonkeyPatch) -> threading.Event:
+    """An event, before which no process begins."""
+    begun, start = threading.Event(), CONTEXT.Process.start
+
+    def wait_and_start(process: object) -> None:
+        assert begun.wait(30)
+        start(process)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(CONTEXT.Process, "start", wait_and_start)
+    return begun
+
+
+@pytest.fixture
+def no_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No process begins."""
+
+    def refuse(_: object) -> None:
+        raise ChildProcessError(errno.ECHILD, "too little memory")
+
+    monkeypatch.setattr(CONTEXT.Process, "start", refuse)
+
+
+async def ticks(times: int) -> int:
+    for _ in range(times):
+        await asyncio.sleep(0.01)
+    return times
+
+
+def test_the_result_and_how_far_it_is() -> None:
+    heard: list[str] = []
+    assert asyncio.run(JobProcess[int](double, 21).result(heard.append)) == 42
+    assert heard == ["half of it"]
+
+
+async def work(_: OpenedSite) -> object:
+    return await JobProcess[int](double, 21).result(lambda _: None)
+
+
+async def analysis(site: OpenedSite) -> AnalysisFound:
+    analyst = Analyst(site)
+    try:
+        return await analyst.analyse(Mission(tasks=()), 1)
+    finally:
+        analyst.close()
+
+
+@pytest.mark.parametrize("begin", [work, analysis])
+def test_nobody_waits_while_a_process_begins(
+    begin: Callable[[OpenedSite], Coroutine[None, None, object]],
+    site: OpenedSite,
+    slow_start: threading.Event,
+) -> None:
+    async def beside() -> None:
+        task = asyncio.ensure_future(begin(site))
+        assert await ticks(10) == 10
+        assert not task.done()
+        slow_start.set()
+        assert await task
+
+    asyncio.run(beside())
+
+
+def test_work_is_ended_while_it_begins_and_while_it_goes_on(slow_start: threading.Event) -> None:
+    async def end(at_once: bool) -> None:
+        endless = JobProcess[None](never)
+        task = asyncio.ensure_future(endless.result(lambda _: None))
+        await ticks(2)
+        if not at_once:
+            slow_start.set()
+            await ticks(20)
+        task.cancel()
+        ending = asyncio.ensure_future(endless.end())
+        await ticks(2)
+        slow_start.set()
+        await ending
+        assert endless._process.exitcode is not None
+
+    for at_once in (True, False):
+        slow_start.clear()
+        asyncio.run(end(at_once))
+
+
+def test_work_that_nobody_awaits_is_ended_before_it_has_begun() -> None:
+    endless = JobProcess[None](never)
+    asyncio.run(endless.end())
+    assert endless._process.pid is None
+
+
+@pytest.mark.usefixtures("no_start")
+def test_a_process_that_can_not_begin_is_said_to(site: OpenedSite) -> None:
+    with pytest.raises(Unavailable, match="can't begin: too little memory; try again"):
+        asyncio.run(work(site))
+    assert (
+        asyncio.run(analysis(site)).problem
+        == "the process that analyses it can't begin: too little memory"
+    )
+
+
+@pytest.mark.parametrize("module", [*LOADED, *NEEDED_TO_DRIVE])
+def test_what_processes_have_loaded_is_there(module: str) -> None:
+    """A name that is wrong would only cost time."""
+    assert find_spec(module)

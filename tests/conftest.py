@@ -74,7 +74,7 @@ _SHARED = {
     "tests/argo_env/evaluation/pool/test_pool.py": _CLUSTERS,
     "tests/argo_env/evaluation/test_evaluating.py": _CLUSTERS,
 }
-"""By file, the fixture or computation that takes long and that it shares with other files."""
+"""Names of what takes long to make and is shared by files (fixtures, computations), by file."""
 
 
 def work_unit(test: str) -> str:

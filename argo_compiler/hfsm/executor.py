@@ -92,7 +92,10 @@ class Executor:
         self._running: Task | None = None
         self._running_leaf: LeafNode | None = None
         """None: the drive of a reaction"""
-        self._running_visit = self._running_turn = 0
+        self._running_visit = 0
+        """the number of the visit in which the action was started"""
+        self._running_turn = 0
+        """its turn then: of another one the action has to be cancelled"""
         self._last_id = 0
         """of the last command that started an action"""
         self._cancelling = False
@@ -429,7 +432,7 @@ class Executor:
             course.fail(leaf, failure.reason, failure.unreadable)
 
     def _drives_on(self) -> bool:
-        """Whether the drive that has just ended is still the active reaction's."""
+        """Return whether the drive that has just ended belongs to the active reaction."""
         control = self._control
         return control.driving and control.drive_turn == self._running_turn
 

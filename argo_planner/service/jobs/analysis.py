@@ -36,18 +36,18 @@ class Analyst:
     async def analyse(self, mission: Mission, revision: int) -> AnalysisFound:
         """The analysis of a mission, and of which revision it is."""
         for _ in range(2):  # once more in a new process
+            pool = self._pool
             try:
                 # The first process begins when its modules are loaded, which takes seconds.
-                job = await asyncio.to_thread(
-                    self._pool.submit, _analysed, self._site, mission, revision
-                )
+                job = await asyncio.to_thread(pool.submit, _analysed, self._site, mission, revision)
                 return await asyncio.wrap_future(job)
             except BrokenProcessPool:
                 problem = "the process that analyses it has died"
+                pool.shutdown(wait=False)
+                if pool is self._pool:  # another analysis may have replaced it meanwhile
+                    self._pool = _pool()
             except OSError as error:
                 problem = f"the process that analyses it can't begin: {error.strerror}"
-            self._pool.shutdown(wait=False)
-            self._pool = _pool()
         return AnalysisFound(revision=revision, problem=problem)
 
     def close(self) -> None:

@@ -18,7 +18,7 @@ Tell = Callable[[Any], None]
 
 
 class JobProcess(Generic[Result]):
-    """One piece of work, which begins when somebody awaits its result. Holds the process."""
+    """Piece of work in a process of its own, which is begun when the result is awaited."""
 
     def __init__(self, work: Callable[..., Result], *arguments: Any, parent: bool = False) -> None:
         """The work is `work(*arguments, tell)`; all of it can be pickled. `parent`: whether it has

@@ -125,6 +125,21 @@ def test_a_process_that_can_not_begin_is_said_to(site: OpenedSite) -> None:
     )
 
 
+def test_missions_are_analysed_again_whose_process_is_killed(site: OpenedSite) -> None:
+    async def killed() -> None:
+        analyst = Analyst(site)
+        try:
+            first = await analyst.analyse(Mission(tasks=()), 1)
+            (process,) = analyst._pool._processes.values()
+            process.kill()
+            together = (analyst.analyse(Mission(tasks=()), 1) for _ in range(5))
+            assert await asyncio.gather(*together) == [first] * 5
+        finally:
+            analyst.close()
+
+    asyncio.run(killed())
+
+
 @pytest.mark.parametrize("module", [*LOADED, *NEEDED_TO_DRIVE])
 def test_what_processes_have_loaded_is_there(module: str) -> None:
     """A name that is wrong would only cost time."""

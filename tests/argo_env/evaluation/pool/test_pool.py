@@ -1,5 +1,6 @@
 """The pool on each of its back ends, all of them for real on this machine."""
 
+import errno
 import os
 import signal
 import socket
@@ -8,10 +9,12 @@ import sys
 import time
 from contextlib import suppress
 from importlib.util import find_spec
+from multiprocessing import get_context
+from types import SimpleNamespace
 
 import pytest
 
-from argo_compiler.base.errors import ArgoError, Invalid
+from argo_compiler.base.errors import ArgoError, Invalid, Unavailable
 from argo_env.evaluation.pool.backends import BACKENDS, make_backend
 from argo_env.evaluation.pool.pool import Pool
 from tests.argo_env.evaluation.conftest import PACKAGES
@@ -97,6 +100,17 @@ def test_all_workers_work(backend):
 
 def test_there_is_a_test_for_each_back_end():
     assert set(PACKAGES) == set(BACKENDS)
+
+
+def test_workers_that_can_not_begin_are_said_to():
+    class Refused(get_context("spawn").Process):
+        def start(self):
+            raise ChildProcessError(errno.ECHILD, "too little memory")
+
+    backend = make_backend(workers=1, context=SimpleNamespace(Process=Refused))
+    with pytest.raises(Unavailable, match="no worker process can begin: too little memory"):
+        carried_out(backend, work.square, [1])
+    backend.close()
 
 
 def test_what_can_be_no_back_end_is_said():

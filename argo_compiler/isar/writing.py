@@ -11,7 +11,8 @@ from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.export.exporter import refusal, refuse
 from argo_compiler.hfsm import ActionSucceeded, Executor, Hfsm, StartAction
 from argo_compiler.il import Action, Mission, Mode, OnFailure, Task
-from argo_compiler.isar.definition import FRAME, IMAGE, INSPECTION, RETURN_TO_HOME
+from argo_compiler.isar.definition import FRAME, IMAGE
+from argo_compiler.isar.recognition import INSPECTION, RETURN_TO_HOME
 
 MAX_TASKS = 10_000
 """of the definition, rounds unrolled"""

@@ -29,14 +29,13 @@ if TYPE_CHECKING:
     from argo_compiler.ros.bags import (
         Storage,
         decode_bag,
-        is_bag,
-        is_bag_content,
         read_bag,
         to_ros1_bag,
         to_ros2_bag,
     )
     from argo_compiler.ros.messages import Received, from_message, to_message
     from argo_compiler.ros.package import message_package
+    from argo_compiler.ros.recognition import is_bag, is_bag_content
     from argo_compiler.ros.types import RosTypes, ros1_types, ros2_types
 else:
     __getattr__, __dir__ = lazy_names(
@@ -45,14 +44,13 @@ else:
             "bags": [
                 "Storage",
                 "decode_bag",
-                "is_bag",
-                "is_bag_content",
                 "read_bag",
                 "to_ros1_bag",
                 "to_ros2_bag",
             ],
             "messages": ["Received", "from_message", "to_message"],
             "package": ["message_package"],
+            "recognition": ["is_bag", "is_bag_content"],
             "types": ["RosTypes", "ros1_types", "ros2_types"],
         },
     )

@@ -10,7 +10,7 @@ from typing import Any
 
 from argo_compiler.base.errors import Invalid
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.files.reading import FileError, opened
+from argo_compiler.files.reading import FileError
 from argo_compiler.il import Mission
 from argo_compiler.ros.compression import (
     TooLargeError,
@@ -20,6 +20,7 @@ from argo_compiler.ros.compression import (
 )
 from argo_compiler.ros.messages import Received, from_message, refuse, to_message
 from argo_compiler.ros.package import SPECIFICATION
+from argo_compiler.ros.recognition import MAGIC, MCAP, ROS1, SQLITE, beginning, first_bytes
 from argo_compiler.ros.types import RosTypes, ros1_types, ros2_types
 
 TOPIC = "/mission"
@@ -30,9 +31,6 @@ which ROS 1 takes for unset."""
 MAX_BYTES = 50_000_000
 """of a message, as of a mission's file"""
 
-_ROS1 = b"#ROSBAG V"
-_MCAP = b"\x89MCAP0\r\n"
-_SQLITE = b"SQLite format 3\0"
 _UNPACK = "unpack it first: rosbag decompress, or ros2 bag convert"
 _MAX_MESSAGES = 1000
 """that may repeat the same mission"""
@@ -45,18 +43,6 @@ class Storage(StrEnum):
 
     SQLITE3 = "sqlite3"
     MCAP = "mcap"
-
-
-def is_bag(path: Path) -> bool:
-    """Whether the path is meant as a bag: a folder, a bag's first bytes, or a bag's suffix."""
-    return os.path.isdir(path) or is_bag_content(path.name, _first_bytes(path))
-
-
-def is_bag_content(name: str, content: bytes) -> bool:
-    """Whether a file is meant as a bag, by its name or its first bytes."""
-    return Path(name).suffix.lower() in {".bag", ".mcap", ".db3"} or content.startswith(
-        (_ROS1, _MCAP, _SQLITE)
-    )
 
 
 def to_ros1_bag(mission: Mission) -> bytes:
@@ -135,12 +121,12 @@ def read_bag(path: Path, source_name: str | None = None) -> Received:
         hint = "name the script, mission or bag in it; a rosbag2 folder has a metadata.yaml"
         refuse(name, "file.directory", "is a directory", hint)
     try:
-        first = b"" if is_folder else _beginning(path)
+        first = b"" if is_folder else beginning(path)
     except FileError as error:
         refuse(name, f"file.{error.problem}", error.message, error.hint)
-    if not is_folder and not first.startswith((_ROS1, _MCAP, _SQLITE)):
+    if not is_folder and not first.startswith(MAGIC):
         refuse(name, "ros.not-a-bag", "is no bag", "name a ROS 1 bag or a rosbag2 folder")
-    types = ros1_types() if first.startswith(_ROS1) else ros2_types()
+    types = ros1_types() if first.startswith(ROS1) else ros2_types()
     # rosbags raises whatever the broken bytes lead to: errors of its own, of SQLite, of struct, of
     # YAML, of the decompressors, KeyError, AssertionError.
     try:
@@ -165,9 +151,9 @@ def decode_bag(content: bytes | Mapping[str, bytes], source_name: str) -> Receiv
     with tempfile.TemporaryDirectory() as folder:
         if isinstance(content, bytes):
             # The suffix matters to rosbags: it picks the storage.
-            first = content[: len(_SQLITE)]
-            suffix = ".bag" if first.startswith(_ROS1) else ".mcap"
-            suffix = ".db3" if first.startswith(_SQLITE) else suffix
+            first = content[: len(SQLITE)]
+            suffix = ".bag" if first.startswith(ROS1) else ".mcap"
+            suffix = ".db3" if first.startswith(SQLITE) else suffix
             path = Path(folder) / f"bag{suffix}"
             path.write_bytes(content)
             return read_bag(path, source_name)
@@ -180,7 +166,7 @@ def decode_bag(content: bytes | Mapping[str, bytes], source_name: str) -> Receiv
 
 @contextmanager
 def _open(path: Path, first: bytes) -> Iterator[Any]:
-    if first.startswith(_ROS1):
+    if first.startswith(ROS1):
         from rosbags.rosbag1 import Reader as Ros1Reader
 
         with Ros1Reader(path) as reader:
@@ -193,7 +179,7 @@ def _open(path: Path, first: bytes) -> Iterator[Any]:
         if os.path.isdir(path):
             check_metadata(path)
         for file in path.glob("*") if os.path.isdir(path) else [path]:
-            if _first_bytes(file).startswith(_MCAP):
+            if first_bytes(file).startswith(MCAP):
                 check_mcap_chunks(file)
         with Ros2Reader(path) as reader:
             yield reader
@@ -242,18 +228,3 @@ def _read(name: str, reader: Any, types: RosTypes) -> bytes:
     if not found:
         refuse(name, "ros.no-mission", f"has no message on {TOPIC}", f"record {TOPIC} again")
     return found.pop()
-
-
-def _first_bytes(path: Path) -> bytes:
-    if not os.path.isfile(path):  # what is read of a pipe is gone
-        return b""
-    try:
-        return _beginning(path)
-    except FileError:
-        return b""  # reading it in earnest says what is wrong
-
-
-def _beginning(path: Path) -> bytes:
-    """Enough to tell what the file is. Raises FileError if it can't be read."""
-    with opened(path, "bag") as file:
-        return file.read(16)

@@ -9,7 +9,7 @@ from argo_compiler.base.errors import Conflict, Invalid, Remedy, Unavailable
 from argo_compiler.files.mission_file import read_mission_bytes
 from argo_compiler.files.reading import read_bytes
 from argo_compiler.files.writing import check_place, is_stream, write_folder, write_whole
-from argo_compiler.ros import is_bag
+from argo_compiler.ros.recognition import is_bag
 from argo_compiler.script.syntax.reading import MAX_BYTES
 from argo_env.files.folders import check_folder
 from argo_planner.use_cases.importing import Upload

@@ -23,8 +23,8 @@ from argo_compiler.diagnostics import (
 from argo_compiler.files.mission_file import MissionFile, decode_mission
 from argo_compiler.files.reading import opened
 from argo_compiler.il import Mission
-from argo_compiler.isar import find_definition, from_isar
-from argo_compiler.ros import Received, decode_bag, is_bag_content, read_bag
+from argo_compiler.isar.recognition import find_definition
+from argo_compiler.ros.recognition import is_bag_content
 from argo_compiler.script.syntax.text.source import Source as Script
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.site_warnings import too_fast
@@ -111,25 +111,18 @@ def load(
     _log.info("%s is read as a %s", name, kind)
     if kind is not SourceKind.SCRIPT:
         refuse_areas(name, start_area, end_area)
-    if isinstance(upload.content, Path):
-        return _received(read_bag(upload.content, name))
     if not isinstance(upload.content, bytes):
-        return _received(decode_bag(upload.content, name))
+        return _load_bag(upload.content, name)
     match kind:
         case SourceKind.BAG:
-            return _received(decode_bag(upload.content, name))
+            return _load_bag(upload.content, name)
         case SourceKind.ISAR:
-            imported = from_isar(find_definition(upload.content), name, catalog)
-            return Loaded(imported.mission, imported.diagnostics, None)
+            return _load_isar(upload.content, name, catalog)
         case SourceKind.MISSION:
             file = decode_mission(upload.content, name)
             return Loaded(file.mission, file.placed(file.changes), file)
         case SourceKind.SCRIPT:
             return _load_script(upload.content, name, catalog, start_area, end_area)
-
-
-def _received(received: Received) -> Loaded:
-    return Loaded(received.mission, received.diagnostics, None)
 
 
 def _refuse_runs(upload: Upload) -> None:
@@ -152,10 +145,27 @@ def _refuse_runs(upload: Upload) -> None:
             )
 
 
+# Each kind of source imports what reads it, which none of the others needs.
+
+
+def _load_bag(content: bytes | Mapping[str, bytes] | Path, name: str) -> Loaded:
+    from argo_compiler.ros import decode_bag, read_bag
+
+    read = read_bag(content, name) if isinstance(content, Path) else decode_bag(content, name)
+    return Loaded(read.mission, read.diagnostics, None)
+
+
+def _load_isar(content: bytes, name: str, catalog: Catalog) -> Loaded:
+    from argo_compiler.isar import from_isar
+
+    imported = from_isar(find_definition(content), name, catalog)
+    return Loaded(imported.mission, imported.diagnostics, None)
+
+
 def _load_script(
     content: bytes, name: str, catalog: Catalog, start_area: int | None, end_area: int | None
 ) -> Loaded:
-    with collector_held():  # missions need no grammars
+    with collector_held():
         from argo_compiler.script import decode_script, import_script
 
     text = decode_script(content, name)

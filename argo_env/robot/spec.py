@@ -1,19 +1,19 @@
 """Data of a robot for planning and driving (`urdf/robot/<name>.yaml`); and the speeds that it
 reaches in fact, beside those that it is told to go at."""
 
+import json
 import math
 import os
 from enum import StrEnum
 from functools import lru_cache
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
-import yaml
 from pydantic import BaseModel, Field, ValidationError, model_validator
 
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Model
-from argo_env.files import resources
+from argo_env.files import cache, resources
 
 
 class MotionKind(StrEnum):
@@ -62,9 +62,6 @@ class Calibration(Model):
 
 
 _Described = TypeVar("_Described", bound=BaseModel)
-
-_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-"""PyYAML's in C, where it was built with it: ten times as fast"""
 
 
 class Footprint(Model):
@@ -200,14 +197,19 @@ class RobotSpec(Model):
 
 @lru_cache
 def _joints(urdf: str) -> frozenset[str]:
-    """The names of a model's joints; ValueError if there is no such model."""
-    from xml.etree import ElementTree as ET
+    """Return the names of a model's joints; ValueError if there is no such model."""
+    from xml.parsers import expat  # alone it is imported faster than ElementTree
 
+    names: set[str] = set()
+    parser = expat.ParserCreate()
+    parser.StartElementHandler = lambda tag, attributes: (
+        names.add(attributes.get("name", "")) if tag == "joint" else None
+    )
     try:
-        tree = ET.parse(robot_folder() / urdf)
-    except (OSError, ET.ParseError) as error:
+        parser.Parse((robot_folder() / urdf).read_bytes(), True)
+    except (OSError, expat.ExpatError) as error:
         raise ValueError(f"the robot's model {urdf} can't be read: {error}") from None
-    return frozenset(joint.get("name", "") for joint in tree.iter("joint"))
+    return frozenset(names)
 
 
 def checked_robot(robot: RobotSpec) -> RobotSpec:
@@ -234,10 +236,25 @@ def load_robot(name: str = "tracker") -> RobotSpec:
 
 @lru_cache(maxsize=16)  # each time that a site is opened
 def _described(kind: type[_Described], path: Path, text: str) -> _Described:
-    """What the text of a file describes."""
+    """Return what the text of a file describes. What it holds is kept on disk as JSON."""
+    parts = cache.entry(("description of a robot", text))
+    known = parts.find_text("data")
+    data = _read_yaml(path, text) if known is None else json.loads(known)
     try:
-        return kind.model_validate(yaml.load(text, _LOADER))
-    except (yaml.YAMLError, ValidationError) as error:
+        described = kind.model_validate(data)
+    except ValidationError as error:
+        raise Invalid(f"{path}: {error}") from error
+    if known is None:
+        parts.keep_text("data", json.dumps(data))
+    return described
+
+
+def _read_yaml(path: Path, text: str) -> Any:
+    import yaml  # takes longer to import than to read any robot
+
+    try:
+        return yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    except yaml.YAMLError as error:
         raise Invalid(f"{path}: {error}") from error
 
 

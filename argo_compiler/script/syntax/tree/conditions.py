@@ -1,10 +1,9 @@
 """Conditions: what is asked of values, states and events, joined by and, or and not."""
 
-from dataclasses import dataclass
 from enum import StrEnum
 
 from argo_compiler.il import EventKind
-from argo_compiler.script.syntax.tree.node import Node
+from argo_compiler.script.syntax.tree.node import Node, node
 from argo_compiler.script.syntax.tree.nouns import Nouns
 
 
@@ -27,7 +26,7 @@ class TaskState(StrEnum):
     STALE = "stale"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Amount(Node):
     """A value with the unit that is said with it, if one is."""
 
@@ -35,7 +34,7 @@ class Amount(Node):
     unit: str = ""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Compared(Node):
     """`above 5 bar`."""
 
@@ -43,7 +42,7 @@ class Compared(Node):
     bound: Amount
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Between(Node):
     """`between 2 and 3`, the bounds excluded; `from 2 to 3`, included."""
 
@@ -52,7 +51,7 @@ class Between(Node):
     inclusive: bool
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class InState(Node):
     """`abnormal`, `unreadable`, `older than 60 s`."""
 
@@ -69,7 +68,7 @@ class InState(Node):
 Predicate = Compared | Between | InState
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Test(Node):
     """What is asked of the checkpoints; of several joined by `or`, one has to be so."""
 
@@ -84,14 +83,14 @@ class Test(Node):
     """an upper bound that the comparison does not need, kept for the plan's sake"""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Occurs(Node):
     """`a gas leak is detected`. None: which of two kinds of obstacle is open."""
 
     event: EventKind | None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class BatteryDrops(Node):
     """`the battery drops below 30 %`."""
 
@@ -99,7 +98,7 @@ class BatteryDrops(Node):
     level: Amount
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class TooLate(Node):
     """`it is too late`: the window of the task before is over."""
 
@@ -107,7 +106,7 @@ class TooLate(Node):
 Asked = Test | Occurs | BatteryDrops | TooLate
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class SaidCondition(Node):
     """Alternatives, of each of which all must hold: `and` binds more tightly than `or`."""
 

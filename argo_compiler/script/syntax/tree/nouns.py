@@ -1,10 +1,9 @@
 """Noun phrases: which checkpoints are meant. Nothing is looked up yet."""
 
-from dataclasses import dataclass
 from enum import StrEnum
 
 from argo_compiler.base.catalog import CheckpointKind
-from argo_compiler.script.syntax.tree.node import Node
+from argo_compiler.script.syntax.tree.node import Node, node
 from argo_compiler.script.syntax.tree.places import FloorName
 
 
@@ -27,7 +26,7 @@ class Quantity(StrEnum):
     PRESSURE = "pressure"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Labelled(Node):
     """`valve R25`, `#8`, `pressure gauges 5 to 7`: by a number or an identifier."""
 
@@ -47,7 +46,7 @@ class Labelled(Node):
     """the same by its other name: `pressure gauge 5 (checkpoint #8)`"""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class AllOf(Node):
     """`all valves on the second floor`."""
 
@@ -60,7 +59,7 @@ class AllOf(Node):
     """`everything`, `the whole round`: of no kind"""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class TheOne(Node):
     """`the valve on the third floor`: the only one of its kind there, or what was measured last."""
 
@@ -70,7 +69,7 @@ class TheOne(Node):
     """`the valves on the third floor`"""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Pronoun(Node):
     """What was measured last: `it`, `the value`; or all that was: `both`, `them`."""
 
@@ -87,7 +86,7 @@ class Pronoun(Node):
 Noun = Labelled | AllOf | TheOne | Pronoun
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Nouns(Node):
     """A list of them."""
 

@@ -1,17 +1,17 @@
 """Orders: what the robot is to do, and changes of the plan; facts; and sentences of both."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from typing import Self
 
 from argo_compiler.script.syntax.tree.conditions import SaidCondition
 from argo_compiler.script.syntax.tree.manner import Manner
-from argo_compiler.script.syntax.tree.node import Node
+from argo_compiler.script.syntax.tree.node import Node, node
 from argo_compiler.script.syntax.tree.nouns import Nouns
 from argo_compiler.script.syntax.tree.places import DockLocation, FloorName, Location, Steps
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class ScriptOrder(Node):
     """Something to do."""
 
@@ -26,7 +26,7 @@ class ScriptOrder(Node):
         return replace(self, joint=joint)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Measure(ScriptOrder):
     """`Check the checkpoint #14`."""
 
@@ -39,28 +39,28 @@ class Measure(ScriptOrder):
     """`valve R25 has to be read`"""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class VisitOrder(ScriptOrder):
     """`Drive to checkpoint 5 at 0.3 m/s`: on the way to what is measured there."""
 
     what: Nouns
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Go(ScriptOrder):
     """`Go to the front of the site`."""
 
     where: Location | FloorName
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Home(ScriptOrder):
     """`Return to the docking station`, `go home`."""
 
     dock: DockLocation
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Start(ScriptOrder):
     """`Set a starting point in front of the site`; with `here` it stays where the line stands."""
 
@@ -70,14 +70,14 @@ class Start(ScriptOrder):
     """`start and end in starting area 1`"""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Patrol(ScriptOrder):
     """`Patrol the first floor in circles for 10 minutes`."""
 
     places: tuple[FloorName | Location, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class WaitOrder(ScriptOrder):
     """`Wait 90 s`, `wait until #1 is below 3`, `wait for the all-clear`."""
 
@@ -102,24 +102,24 @@ class PlainWord(StrEnum):
     MEET = "go on here"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Plain(ScriptOrder):
     """An order that needs nothing else."""
 
     word: PlainWord
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Amend(ScriptOrder):
     """Manner by itself: of what stands before it, or behind it after a colon."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Follow(ScriptOrder):
     """`Do the following twice:`, of the steps within this one."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Retry(ScriptOrder):
     """`retry twice`."""
 
@@ -127,14 +127,14 @@ class Retry(ScriptOrder):
     """whether it may be meant as once more, too: `repeat the reading`"""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Jump(ScriptOrder):
     """`go to step 5`."""
 
     step: Steps
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Repeat(ScriptOrder):
     """`Repeat steps 2 to 4 three times`."""
 
@@ -153,7 +153,7 @@ class Side(StrEnum):
     AFTER = "after"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Add(ScriptOrder):
     """`Add checkpoint #2 after checkpoint #14`."""
 
@@ -162,7 +162,7 @@ class Add(ScriptOrder):
     anchor: Nouns | Steps
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Beside(ScriptOrder):
     """`Before you read liquid level gauge 2, check valve R12`: both, in this order."""
 
@@ -171,21 +171,21 @@ class Beside(ScriptOrder):
     anchor: Nouns
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Delete(ScriptOrder):
     """`Delete the measuring of checkpoint #2`."""
 
     what: Nouns | Steps
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Spare(ScriptOrder):
     """`Don't check checkpoint 19`."""
 
     what: Nouns
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Move(ScriptOrder):
     """`Move checkpoint #4 before checkpoint #1`."""
 
@@ -194,7 +194,7 @@ class Move(ScriptOrder):
     anchor: Nouns | Steps
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Replace(ScriptOrder):
     """`Replace checkpoint #1 by checkpoint #2`."""
 
@@ -213,7 +213,7 @@ class Rest(StrEnum):
     """likewise, where the round ends that is not repeated any more"""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Case(Node):
     """`If ..., A and B`; without a condition: `otherwise A and B`."""
 
@@ -235,7 +235,7 @@ class Placing(StrEnum):
     INSTEAD = "INSTEAD"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Placed(Node):
     """A word of an order that says where it stands: `Finally check 4`."""
 
@@ -247,19 +247,19 @@ class Placed(Node):
 # ---- what a sentence says of the mission as a whole
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Fact(Node):
     """Something that holds for the whole mission."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class MaxDuration(Fact):
     """`The mission may take 20 minutes at most`."""
 
     seconds: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class BackWithin(Fact):
     """`It has to be back in its dock in starting area 1 within 35 minutes`."""
 
@@ -267,7 +267,7 @@ class BackWithin(Fact):
     seconds: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class ReadBefore(Fact):
     """`Checkpoint 7 has to be read before checkpoint 18`."""
 
@@ -275,12 +275,12 @@ class ReadBefore(Fact):
     second: Nouns
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class OrderFree(Fact):
     """`The order does not matter`."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class StepsOrdered(Fact):
     """`Always do step 2 before step 5`."""
 
@@ -288,12 +288,12 @@ class StepsOrdered(Fact):
     second: Steps
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class LeaveOut(Fact):
     """`Leave out what does not fit`: each task may be."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class RoundsDriven(Fact):
     """`Steps 2 and 3 are a round that is driven three times`."""
 
@@ -301,7 +301,7 @@ class RoundsDriven(Fact):
     count: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Sentence(Node):
     """Orders, then cases in the order in which they are said."""
 

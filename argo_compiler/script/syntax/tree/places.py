@@ -1,9 +1,8 @@
 """Places, floors and steps as a script names them."""
 
-from dataclasses import dataclass
 from enum import StrEnum
 
-from argo_compiler.script.syntax.tree.node import Node
+from argo_compiler.script.syntax.tree.node import Node, node
 
 
 class NamedFloor(StrEnum):
@@ -14,35 +13,35 @@ class NamedFloor(StrEnum):
     GROUND = "ground"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class FloorName(Node):
     """A floor by its number, counted from 1 at the bottom, or as the top or the ground floor."""
 
     number: int | NamedFloor
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class AreaLocation(Node):
     """`starting area 1`."""
 
     area: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class DockLocation(Node):
     """The docking station, of the starting area that is named with it, if one is."""
 
     area: AreaLocation | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class PlaceLocation(Node):
     """A place of the site by its name: `front of the site`."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Coordinates(Node):
     """A point in the site's frame; the height is given by `z` or by the floor."""
 
@@ -60,7 +59,7 @@ class Coordinates(Node):
 Location = AreaLocation | DockLocation | PlaceLocation | Coordinates
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Steps(Node):
     """Steps by their numbers, or tasks by their names."""
 

@@ -4,26 +4,26 @@ from dataclasses import dataclass, field
 
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Mode, Order
-from argo_compiler.script.syntax.tree.node import Node
+from argo_compiler.script.syntax.tree.node import Node, node
 from argo_compiler.script.syntax.tree.orders import Fact, Sentence
 from argo_compiler.script.syntax.tree.places import Coordinates, Steps
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Text(Node):
     """A field that is kept as text."""
 
     text: str
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Areas(Node):
     """A field that names starting areas: more than one leaves the choice to the preparation."""
 
     areas: tuple[int, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class AreaChosen(Node):
     """`Start area: 1`, perhaps `none`, perhaps `as planned`: then the steps stay as they are."""
 
@@ -31,12 +31,12 @@ class AreaChosen(Node):
     as_planned: bool
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class Unread(Node):
     """A sentence with an error: what it would ask for is not known."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@node
 class ScriptStep(Node):
     """A numbered line, a bullet or a paragraph, with those that lie within it."""
 

@@ -5,6 +5,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import Lock
 
+_THRESHOLD = 200_000
+"""containers made since the last search that a command's next one waits for; Python's own is 700"""
+
 _holding = Lock()
 """held by the one thread that holds the collector off"""
 
@@ -34,7 +37,12 @@ def collector_held() -> Iterator[None]:
 
 
 def collect_again() -> None:
-    """Turns the collector on where it was turned off; what lives by now is never looked at."""
+    """Turn the collector on where it was turned off; what lives by now is never looked at.
+
+    A command makes some 150,000 containers that stay, of the tables by which a script is read: to
+    look through them for garbage takes a twentieth of a short command's time.
+    """
     if not gc.isenabled():
         gc.freeze()
+        gc.set_threshold(_THRESHOLD)
         gc.enable()

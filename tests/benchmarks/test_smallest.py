@@ -30,7 +30,7 @@ COMMANDS = {
         r"10 min: usual \d+ readings(.|\n)*1.1 times the shortest"
     ),
     "routes_sites --missions 2 --large 0 --peer 0 --sites umad": r"2 of 2 proven",
-    "startup --repeats 1 --only import,": r"argo import, mission #1 +[\d.]+ +[\d.]+ +[\d.]+ s",
+    "startup --repeats 1 --only mission": r"argo check, a mission +[\d.]+ +[\d.]+ +[\d.]+ s",
     "tracked --laps slab --repeats 1": r"slab +[\d.]+ s in ",
     "against . import --repeats 1": r"import +[\d.]+ +[\d.]+ +[\d.]+ ",
     f"drives --missions 1 --seed 12 --site {SMALL} --workers 1": r"tracked +0.00 % ",

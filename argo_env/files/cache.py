@@ -1,4 +1,4 @@
-"""Where Argo keeps on disk what took long to find: one folder for each site with its robot."""
+"""A cache on disk of what takes long to find: a folder for each site with its robot, and more."""
 
 import hashlib
 import logging

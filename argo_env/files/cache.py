@@ -1,4 +1,5 @@
-"""A cache on disk of what takes long to find: a folder for each site with its robot, and more."""
+"""A cache on disk of what takes long to find: a folder for each site with its robot, and small ones
+for the descriptions of robots."""
 
 import hashlib
 import logging
@@ -17,6 +18,8 @@ VARIABLE = "ARGO_CACHE_DIR"
 MOST = 2 * 1024**3
 """bytes that the cache may take; what was not used for longest makes room"""
 _MOST_FILES = 50_000
+_SITES = "sites"
+ROBOTS = "robots"
 _NAME = re.compile("[0-9a-f]{32}")  # of an entry: what else lies there is not Argo's
 _log = logging.getLogger(__name__)
 
@@ -42,14 +45,15 @@ def cache_folder() -> Path:
     return user_cache_path("argo", appauthor=False)
 
 
-def entry(content: Iterable[str]) -> Parts:
-    """The parts that belong to what `content` says, all that they depend on."""
+def entry(content: Iterable[str], of: str = _SITES) -> Parts:
+    """Return the parts that belong to what `content` says, all that they depend on; the entries
+    `of` sites and of robots have a folder each."""
     sink = hashlib.blake2b(digest_size=16)
     for piece in content:
         sink.update(f"{len(piece)} ".encode() + piece.encode())
     key = sink.hexdigest()
     try:
-        folder = _sites() / key
+        folder = cache_folder() / of / key
         with suppress(FileNotFoundError):
             os.utime(folder)  # used now
     except (OSError, RuntimeError, ValueError) as error:  # no home, not mine, no name of a file
@@ -59,7 +63,7 @@ def entry(content: Iterable[str]) -> Parts:
 
 
 def make_room(most: int = MOST, files: int = _MOST_FILES) -> None:
-    """Takes away the entries that were not used for longest, until the others take at most `most`
+    """Take away the sites that were not used for longest, until the others take at most `most`
     bytes in `files` files."""
     kept, count = 0, 0
     for _, folder in sorted(((_used(f), f) for f in _entries()), reverse=True):
@@ -70,7 +74,7 @@ def make_room(most: int = MOST, files: int = _MOST_FILES) -> None:
 
 
 def contents() -> Contents:
-    """What is in the cache now."""
+    """Return what is in the cache now, of sites."""
     sizes = [_sizes(folder) for folder in _entries()]
     return Contents(len(sizes), sum(map(len, sizes)), sum(map(sum, sizes)))
 
@@ -80,7 +84,7 @@ def flaw() -> str | None:
     from tempfile import TemporaryFile
 
     try:
-        folder = _sites()
+        folder = cache_folder() / _SITES
         folder.mkdir(parents=True, exist_ok=True)
         with TemporaryFile(dir=folder) as file:
             file.write(b"?")
@@ -91,17 +95,14 @@ def flaw() -> str | None:
 
 def empty() -> None:
     """Takes all entries away; whoever uses them just then makes them anew."""
-    for folder in _entries():
+    for folder in (*_entries(), *_entries(ROBOTS)):
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def _sites() -> Path:
-    return cache_folder() / "sites"
-
-
-def _entries() -> list[Path]:
+def _entries(of: str = _SITES) -> list[Path]:
     try:
-        return [path for path in _sites().iterdir() if _NAME.fullmatch(path.name)]
+        folder = cache_folder() / of
+        return [path for path in folder.iterdir() if _NAME.fullmatch(path.name)]
     except (OSError, RuntimeError, ValueError):
         return []
 

@@ -237,7 +237,7 @@ def load_robot(name: str = "tracker") -> RobotSpec:
 @lru_cache(maxsize=16)  # each time that a site is opened
 def _described(kind: type[_Described], path: Path, text: str) -> _Described:
     """Return what the text of a file describes. What it holds is kept on disk as JSON."""
-    parts = cache.entry(("description of a robot", text))
+    parts = cache.entry([text], cache.ROBOTS)
     known = parts.find_text("data")
     data = _read_yaml(path, text) if known is None else json.loads(known)
     try:

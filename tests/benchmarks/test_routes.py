@@ -46,9 +46,9 @@ def folder(tmp_path):
 
 def test_the_table_of_two_problems(folder, capsys):
     pytest.importorskip("pyvrp")
-    assert main([str(folder), "--time-limit", "0.3", "--workers", "1"]) == 0
+    assert main([str(folder), "--time-limit", "1", "--workers", "1"]) == 0
     setting, _, head, _, three, late, _, *said = capsys.readouterr().out.splitlines()
-    assert setting.startswith("0.3 s for each problem, 1 workers")
+    assert setting.startswith("1 s for each problem, 1 workers")
     assert head == "|  | nodes | known | ours | off | bound | proven | time | by | PyVRP |"
     assert three.startswith("| ATSP three | 3 | - | 7 | 0 | 7 | yes | ")
     assert three.endswith(" | 7, 0 |")

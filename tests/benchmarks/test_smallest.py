@@ -25,8 +25,8 @@ COMMANDS = {
     "route_parts --problems plain --count 1 --size 4 --time-limit 0.1 --only PyVRP --alone": (
         r"\nPyVRP (.|\n)*\nall but PyVRP "
     ),
-    "routes_limits --sizes 4 --limits 0.1": r"\| 4 \| rounds \| 0.1 s \| [\d.]+ s \| yes \| ",
-    "routes_robust --problems 1 --minutes 10 --shares 1.1 --time-limit 0.2": (
+    "routes_limits --sizes 4 --limits 10": r"\| 4 \| rounds \| 10 s \| [\d.]+ s \| yes \| ",
+    "routes_robust --problems 1 --minutes 10 --shares 1.1 --time-limit 1": (
         r"10 min: usual \d+ readings(.|\n)*1.1 times the shortest"
     ),
     "routes_sites --missions 2 --large 0 --peer 0 --sites umad": r"2 of 2 proven",

@@ -13,7 +13,7 @@ from typing import Any
 import httpx
 import pytest
 from websockets.asyncio.client import connect
-from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
 from tests.argo_planner.service.test_live import Listener
 from tests.argo_planner.service.test_plan import mission
@@ -159,7 +159,7 @@ class Subscriber(Listener):
                     self.connections += 1
                     async for text in opened:
                         self.told_that(json.loads(text))
-            except (OSError, ConnectionClosed, InvalidStatus, EOFError):
+            except (OSError, ConnectionClosed, InvalidHandshake, EOFError):  # killed at any moment
                 await asyncio.sleep(0.2)
 
 

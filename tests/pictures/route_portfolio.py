@@ -37,7 +37,7 @@ def problem_of(kind: str, count: int) -> RouteProblem:
 def draw(name: str, made: RouteSuggestion, turns: Axes, curve: Axes) -> None:
     """The turns of one search, and below them what was known when."""
     solvers = list(dict.fromkeys(turn.solver for turn in made.turns))
-    end = max(turn.end for turn in made.turns)
+    end = max((turn.end for turn in made.turns), default=0.0)
     for turn in made.turns:
         row = solvers.index(turn.solver)
         length = max(turn.end - turn.begin, 0.004 * end)
@@ -46,6 +46,15 @@ def draw(name: str, made: RouteSuggestion, turns: Axes, curve: Axes) -> None:
     turns.invert_yaxis()
     said = "proven" if made.proven else f"gap {made.gap:.1%}" if made.gap is not None else "none"
     turns.set_title(f"{name}: {said} after {end:.1f} s", fontsize=10)
+    turns.tick_params(axis="x", labelsize=8)
+    curve.tick_params(labelsize=8)
+    curve.set_xlabel("s", fontsize=8)
+    if made.history:
+        draw_history(made, end, curve)
+
+
+def draw_history(made: RouteSuggestion, end: float, curve: Axes) -> None:
+    """Draw the best route and the bound that were known at each time, up to the `end` (s)."""
     prizes = made.prize_bound > 0 and any(p.prize != made.prize for p in made.history if p.prize)
     times = [p.time for p in made.history] + [end]
     best = [(p.prize if prizes else p.cost) for p in made.history]
@@ -55,11 +64,9 @@ def draw(name: str, made: RouteSuggestion, turns: Axes, curve: Axes) -> None:
     curve.step(times, [*bound, bound[-1]], where="post", color="tab:red", ls="--", label="bound")
     curve.set_ylabel("prize" if prizes else "cost, s", fontsize=8)
     known = [value for value in [*values, *bound] if np.isfinite(value) and value > 0]
-    most = max(known) if prizes else max(value for value in values if np.isfinite(value))
-    curve.set_ylim(0.9 * min(known), 1.05 * most)
-    turns.tick_params(axis="x", labelsize=8)
-    curve.tick_params(labelsize=8)
-    curve.set_xlabel("s", fontsize=8)
+    found = [value for value in values if np.isfinite(value)]
+    if known and found:
+        curve.set_ylim(0.9 * min(known), 1.05 * max(known if prizes else found))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -86,7 +86,7 @@ def test_searches_beside_each_other_agree_with_brute_force() -> None:
 
 def test_the_time_that_is_given_is_kept_to_and_something_is_always_known() -> None:
     problem = _grid(70)
-    made = suggest_route(problem, time_limit=0.3, explain=False)
+    made = suggest_route(problem, time_limit=1.0, explain=False)
     assert made.route is not None
     assert evaluate(problem, made.route).feasible
     assert 0 < made.bound <= made.cost

@@ -4,6 +4,7 @@ import atexit
 import gc
 import json
 import os
+import random
 import shutil
 import tempfile
 from collections import defaultdict
@@ -18,7 +19,7 @@ from hypothesis.internal.conjecture import providers
 from xdist.remote import Producer
 from xdist.scheduler import LoadFileScheduling
 
-# As many workers run as there are cores: threads of numerical libraries would wait for each other,
+# More workers run than there are cores: threads of numerical libraries would wait for each other,
 # and so would worker processes, each of which takes seconds to begin.
 os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHON_CPU_COUNT": "1"}
 
@@ -32,6 +33,12 @@ _UNTIMED = settings(deadline=None, database=None, suppress_health_check=[HealthC
 settings.register_profile("suite", _UNTIMED, derandomize=True)
 settings.register_profile("campaign", _UNTIMED, print_blob=True)
 settings.load_profile("campaign" if EXAMPLES else "suite")
+
+if EXAMPLES:
+    os.environ.setdefault("ARGO_FIRST_SEED", str(random.randrange(1_000_000)))
+FIRST_SEED = int(os.environ.get("ARGO_FIRST_SEED", "0"))
+"""The first seed of generators: 0 in the suite, and another one in each campaign. The workers of a
+run inherit it from the process that starts them."""
 
 if not EXAMPLES:
     # Hypothesis also draws numbers and words that it finds in the modules loaded so far, and which
@@ -57,9 +64,18 @@ def examples(full: int) -> int:
     return full if EXAMPLES == "full" else int(EXAMPLES)
 
 
-def sample(items: Iterable[_T]) -> Iterable[_T]:
-    """Return every fourth of the items in the suite, and all of them in a campaign."""
-    return islice(items, 0, None, None if EXAMPLES else 4)
+def seeds(full: int) -> range:
+    """Return the seeds of `examples(full)` cases."""
+    return range(FIRST_SEED, FIRST_SEED + examples(full))
+
+
+def sample(items: Iterable[_T], each: int = 4) -> Iterable[_T]:
+    """Return one of `each` so many items in the suite, and all of them in a campaign."""
+    return islice(items, 0, None, None if EXAMPLES else each)
+
+
+def pytest_report_header() -> str | None:
+    return f"ARGO_FIRST_SEED={FIRST_SEED} draws the same" if EXAMPLES else None
 
 
 _CLUSTERS = "a Ray and a Dask cluster"
@@ -80,8 +96,8 @@ _SHARED = {
 def work_unit(test: str) -> str:
     """Return the name of the unit that a test belongs to: one worker runs it, in its order.
 
-    A unit is a file, the files that share a fixture, or the tests of the page, which share a
-    browser. So fixtures are made once, and what a test leaves behind meets the same others each
+    A unit is a file, the files that share a fixture, or the tests of the page: one browser works
+    at a time. So fixtures are made once, and what a test leaves behind meets the same others each
     time.
     """
     file = test.split("::", 1)[0]

@@ -26,8 +26,7 @@ def test_what_it_shows(tmp_path, monkeypatch):
     assert open_site("darmstadt").catalog
     said = doctor()
     assert said.startswith(f"argo {__version__}, Python 3.11")
-    sites = tmp_path / "sites"
-    size = sum(path.stat().st_size for path in sites.rglob("*") if path.is_file())
+    size = sum(path.stat().st_size for path in tmp_path.rglob("*") if path.is_file())
     assert f"cache: {tmp_path}, 1 sites, {size / 1e6:.1f} MB of at most" in said
     assert "PyBullet: works" in said
     emptied = doctor("--empty-cache")

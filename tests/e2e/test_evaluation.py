@@ -13,7 +13,7 @@ import pytest
 
 from argo_compiler.base.errors import NotFound
 from argo_env.evaluation.store import LOG, read_rows
-from tests.conftest import examples
+from tests.conftest import FIRST_SEED, examples
 from tests.e2e.conftest import ROOT, reported, started
 from tests.e2e.test_errors import refused
 
@@ -309,7 +309,7 @@ def test_killed_and_begun_again_the_rows_are_those_of_an_undisturbed_one(
     argo, killed_file, undisturbed, tmp_path
 ):
     """SIGKILL to the command, at any moment; each row that it had told stays, once."""
-    chosen, out = random.Random(KILLS), tmp_path / "out"
+    chosen, out = random.Random(KILLS + FIRST_SEED), tmp_path / "out"
     done = 0
     for _ in range(KILLS):
         process = begun(killed_file, out)
@@ -326,7 +326,7 @@ def test_killed_and_begun_again_the_rows_are_those_of_an_undisturbed_one(
 
 
 def test_killed_workers_change_nothing_of_the_rows(killed_file, undisturbed, tmp_path):
-    chosen, out = random.Random(100 + KILLS), tmp_path / "out"
+    chosen, out = random.Random(100 + KILLS + FIRST_SEED), tmp_path / "out"
     process = begun(killed_file, out)
     killed, wanted = 0, 1
     while process.poll() is None and killed < KILLS:

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from argo_env.run.journal import open_journal
-from tests.conftest import examples
+from tests.conftest import FIRST_SEED, examples
 from tests.e2e.conftest import reported, started
 from tests.e2e.test_journal import (
     ANNOUNCED,
@@ -259,7 +259,7 @@ def test_a_run_whose_output_goes_nowhere_is_reported(folder, tmp_path, closed: b
 @pytest.mark.long
 def test_runs_that_are_interrupted_lose_nothing(argo, folder, navigator) -> None:
     """At random moments, from the first one on."""
-    rng = random.Random(16)
+    rng = random.Random(16 + FIRST_SEED)
     sent, statuses, seeds = 0, [], count()
     while sent < INTERRUPTIONS:
         seed = next(seeds)

@@ -14,9 +14,7 @@ from argo_compiler.route.pruning import Pruned, prune, shortest
 from argo_compiler.route.search import Search, SearchLimits
 from tests.argo_compiler.route.random_problems import random_problem
 from tests.argo_compiler.route.second_reading import best_worth
-from tests.conftest import examples
-
-PROBLEMS = examples(480)
+from tests.conftest import seeds
 
 
 def _relaxed(
@@ -53,7 +51,7 @@ def _kept(net: StepNetwork, relaxation: LinearRelaxation, most: int, problem: Ro
 
 @pytest.mark.parametrize("part", range(4))
 def test_no_bound_is_above_the_best_route(part: int) -> None:
-    for seed in range(part, PROBLEMS, 4):
+    for seed in seeds(480)[part::4]:
         problem = random_problem(np.random.default_rng(50_000 + seed), 5)
         net = network(problem, lambda step: tuple(step.parts))
         pruned = prune(net)

@@ -20,7 +20,7 @@ from argo_compiler.route import (
 )
 from tests.argo_compiler.route.odd_problems import odd_problem, odd_tour
 from tests.argo_compiler.route.second_reading import Best, Reading
-from tests.conftest import examples
+from tests.conftest import examples, seeds
 
 NUMBERS = st.integers(0, 2**32)
 """of odd problems"""
@@ -84,7 +84,7 @@ def require_true(problem: RouteProblem) -> None:
 def test_evaluation_agrees_with_the_second_reading(timed: bool) -> None:
     rng = np.random.default_rng([timed, 2])
     possible = 0
-    for number in range(examples(800)):
+    for number in seeds(800):
         problem = numbered(number, timed)
         reading = Reading(problem)
         for _ in range(5):

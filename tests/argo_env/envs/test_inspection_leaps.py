@@ -10,10 +10,9 @@ from argo_env.planning.opening import open_site
 from argo_env.run.fitting_together import check_run
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunConditions, RunSpec
-from tests.conftest import examples
+from tests.conftest import seeds
 
 SITE = open_site("umad")
-EXAMPLES = examples(20)
 FAULTS = (
     "{kind: low_battery, charge: 0.12}",
     "{kind: low_battery, charge: 0.006}",
@@ -52,7 +51,7 @@ def told_of(seed: int) -> list[object]:
         return [*told, run.trail, run.noticed, run.record().model_dump_json()]
 
 
-@pytest.mark.parametrize("seed", range(EXAMPLES))
+@pytest.mark.parametrize("seed", seeds(20))
 def test_it_tells_what_it_tells_step_by_step(seed, monkeypatch):
     leaping = told_of(seed)
     monkeypatch.setattr(Simulation, "leap", lambda self, until: self.step() or ())  # noqa: ARG005

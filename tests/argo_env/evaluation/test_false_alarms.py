@@ -13,7 +13,7 @@ from argo_env.run.spec import RunConditions, RunSpec, ValueProfile
 from argo_planner.use_cases.importing import Upload, import_mission
 from tests.campaigns.fault_causes import causes_of
 from tests.campaigns.fault_pairs import draw
-from tests.conftest import examples
+from tests.conftest import seeds
 
 FAULTS = resources.scenarios() / "umad" / "faults"
 
@@ -84,7 +84,7 @@ def test_a_fault_elsewhere_is_not_found_by_what_looks_the_same():
 def test_findings_and_causes_as_another_reading_of_the_documentation_has_them():
     """Beside the causes that the measurements of faults know, in random runs with two faults."""
     seen = 0
-    for number in range(examples(100)):
+    for number in seeds(100):
         spec = draw(number, "route").spec
         opened = open_site(spec.site)
         record = simulate(spec, opened)

@@ -12,7 +12,7 @@ from argo_env.faults.reading import read_faults
 from argo_env.files import resources
 from argo_env.run.spec import logged
 from tests.campaigns.faults import random_mission
-from tests.conftest import examples
+from tests.conftest import seeds
 from tests.yard import Watching, simulated
 
 FOLDER = resources.scenarios() / "umad" / "faults"
@@ -151,7 +151,7 @@ def test_found_and_answered(missions, navigator, clean, kind):
         assert record.interruptions[-1].end == answer.operator
 
 
-@pytest.mark.parametrize("seed", range(examples(1)))
+@pytest.mark.parametrize("seed", seeds(1))
 def test_no_false_alarm_in_a_random_mission(navigator, seed):
     """One of those that `python -m tests.campaigns.faults --clean 100` runs."""
     mission = random_mission(navigator, 100 + seed)

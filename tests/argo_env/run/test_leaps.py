@@ -22,7 +22,7 @@ from argo_env.planning.opening import open_site
 from argo_env.run.observer import Observer
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunConditions, RunSpec, logged
-from tests.conftest import examples
+from tests.conftest import seeds
 from tests.yard import in_order
 
 SITE = open_site("umad")
@@ -132,15 +132,15 @@ def outcome(spec, **options) -> str:
         return str(error)
 
 
-EXAMPLES = examples(60)
+SEEDS = seeds(60)
 CASES = [
     *(
-        pytest.param(seed, "route", marks=pytest.mark.long if seed >= 4 else ())
-        for seed in range(EXAMPLES)
+        pytest.param(seed, "route", marks=pytest.mark.long if number >= 4 else ())
+        for number, seed in enumerate(SEEDS)
     ),
     *(
-        pytest.param(1000 + seed, "kinematic", marks=pytest.mark.long if seed >= 1 else ())
-        for seed in range(max(4, EXAMPLES // 5))
+        pytest.param(1000 + seed, "kinematic", marks=pytest.mark.long if number >= 1 else ())
+        for number, seed in enumerate(SEEDS[: max(4, len(SEEDS) // 5)])
     ),
 ]
 

@@ -10,7 +10,7 @@ import pytest
 
 from argo_planner.service.web.app import document
 from tests.argo_planner.service.served import ALL, Served
-from tests.conftest import examples, sample
+from tests.conftest import FIRST_SEED, examples, sample
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "openapi.json"
 
@@ -37,7 +37,7 @@ def cases(service: Served, folder: Path, *options: str) -> int:
             "run",
             f"http://{service.address}/api/openapi.json",
             *("-H", f"Authorization: Bearer {ALL}"),
-            *("--seed", "1", "--no-color", "--generation-database", "none"),
+            *("--seed", str(1 + FIRST_SEED), "--no-color", "--generation-database", "none"),
             *("--exclude-checks", LEFT_OUT, *options),
         ],
         capture_output=True,

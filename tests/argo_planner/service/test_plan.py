@@ -32,7 +32,7 @@ from argo_planner.service.core.refusals import (
     StaleRevision,
 )
 from tests.argo_compiler.editing.random_edits import random_edit
-from tests.conftest import examples
+from tests.conftest import seeds
 
 AT = datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC)
 
@@ -331,7 +331,7 @@ GONE = object()
 def test_three_people_edit_undo_and_redo_at_once() -> None:
     """Random interleavings: each works on what they saw last, and nobody is ever told wrong."""
     done: Counter[str] = Counter()
-    for seed in range(examples(100)):
+    for seed in seeds(100):
         rng = random.Random(seed)
         first = mission("a", "b", "c", "d", "e")
         plan = MissionPlan(first)

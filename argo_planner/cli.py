@@ -83,6 +83,8 @@ _COMMANDS = {
     ),
 }
 """by their names: the module and the function of each, and the line that lists it"""
+_SHORT = {"import", "check", "explain", "compile", "format", "export"}
+"""commands that read a mission, and end"""
 
 
 class ArgoCommands(LazyGroup):
@@ -136,7 +138,7 @@ def argo(
     """Turns a written inspection mission into a checked plan and drives it through a site."""
     from argo_planner.terminal.stage_display import stages_shown  # `argo --help` has no stages
 
-    collect_again()
+    collect_again(seldom=context.invoked_subcommand in _SHORT)
     set_verbosity(verbose, quiet)
     context.with_resource(stages_shown())
 

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import Lock
 
-_THRESHOLD = 200_000
-"""containers made since the last search that a command's next one waits for; Python's own is 700"""
+_SELDOM = 200_000
+"""containers made since the last search that the next one waits for; Python's own number is 700"""
 
 _holding = Lock()
 """held by the one thread that holds the collector off"""
@@ -36,13 +36,15 @@ def collector_held() -> Iterator[None]:
         _holding.release()
 
 
-def collect_again() -> None:
+def collect_again(seldom: bool = False) -> None:
     """Turn the collector on where it was turned off; what lives by now is never looked at.
 
-    A command makes some 150,000 containers that stay, of the tables by which a script is read: to
-    look through them for garbage takes a twentieth of a short command's time.
+    With `seldom`, which is for commands that end soon, it hardly ever looks: the tables by which a
+    script is read are 150,000 containers that stay, and to look through them takes a twentieth of
+    the time of `argo check`.
     """
     if not gc.isenabled():
         gc.freeze()
-        gc.set_threshold(_THRESHOLD)
+        if seldom:
+            gc.set_threshold(_SELDOM)
         gc.enable()

@@ -1,7 +1,8 @@
 """What takes long says what it is doing and how far it is, to whoever listens.
 
 As with logging, nobody in between has to hand the listener on: what a site is made of is found when
-it is first asked for, wherever that is. Other threads are not heard.
+it is first asked for, wherever that is. Other threads are not heard. Only packages above this one
+have what takes long; it is here because `argo --help` shows stages and must not import `argo_env`.
 """
 
 from collections.abc import Callable, Iterator, Sequence

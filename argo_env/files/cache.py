@@ -18,8 +18,8 @@ VARIABLE = "ARGO_CACHE_DIR"
 MOST = 2 * 1024**3
 """bytes that the cache may take; what was not used for longest makes room"""
 _MOST_FILES = 50_000
-_SITES = "sites"
-ROBOTS = "robots"
+SITES, ROBOTS = "sites", "robots"
+"""what is kept, each in a folder of that name"""
 _NAME = re.compile("[0-9a-f]{32}")  # of an entry: what else lies there is not Argo's
 _log = logging.getLogger(__name__)
 
@@ -28,7 +28,7 @@ _log = logging.getLogger(__name__)
 class Contents:
     """What is in the cache."""
 
-    entries: int
+    sites: int
     files: int
     size: int
     """bytes"""
@@ -45,15 +45,14 @@ def cache_folder() -> Path:
     return user_cache_path("argo", appauthor=False)
 
 
-def entry(content: Iterable[str], of: str = _SITES) -> Parts:
-    """Return the parts that belong to what `content` says, all that they depend on; the entries
-    `of` sites and of robots have a folder each."""
+def entry(content: Iterable[str], kind: str = SITES) -> Parts:
+    """Return the parts that belong to what `content` says, all that they depend on."""
     sink = hashlib.blake2b(digest_size=16)
     for piece in content:
         sink.update(f"{len(piece)} ".encode() + piece.encode())
     key = sink.hexdigest()
     try:
-        folder = cache_folder() / of / key
+        folder = cache_folder() / kind / key
         with suppress(FileNotFoundError):
             os.utime(folder)  # used now
     except (OSError, RuntimeError, ValueError) as error:  # no home, not mine, no name of a file
@@ -63,7 +62,7 @@ def entry(content: Iterable[str], of: str = _SITES) -> Parts:
 
 
 def make_room(most: int = MOST, files: int = _MOST_FILES) -> None:
-    """Take away the sites that were not used for longest, until the others take at most `most`
+    """Take away the entries that were not used for longest, until the others take at most `most`
     bytes in `files` files."""
     kept, count = 0, 0
     for _, folder in sorted(((_used(f), f) for f in _entries()), reverse=True):
@@ -74,9 +73,11 @@ def make_room(most: int = MOST, files: int = _MOST_FILES) -> None:
 
 
 def contents() -> Contents:
-    """Return what is in the cache now, of sites."""
-    sizes = [_sizes(folder) for folder in _entries()]
-    return Contents(len(sizes), sum(map(len, sizes)), sum(map(sum, sizes)))
+    """Return what is in the cache now."""
+    entries = _entries()
+    sizes = [_sizes(folder) for folder in entries]
+    sites = sum(folder.parent.name == SITES for folder in entries)
+    return Contents(sites, sum(map(len, sizes)), sum(map(sum, sizes)))
 
 
 def flaw() -> str | None:
@@ -84,7 +85,7 @@ def flaw() -> str | None:
     from tempfile import TemporaryFile
 
     try:
-        folder = cache_folder() / _SITES
+        folder = cache_folder() / SITES
         folder.mkdir(parents=True, exist_ok=True)
         with TemporaryFile(dir=folder) as file:
             file.write(b"?")
@@ -95,14 +96,14 @@ def flaw() -> str | None:
 
 def empty() -> None:
     """Takes all entries away; whoever uses them just then makes them anew."""
-    for folder in (*_entries(), *_entries(ROBOTS)):
+    for folder in _entries():
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def _entries(of: str = _SITES) -> list[Path]:
+def _entries() -> list[Path]:
     try:
-        folder = cache_folder() / of
-        return [path for path in folder.iterdir() if _NAME.fullmatch(path.name)]
+        found = [path for kind in (SITES, ROBOTS) for path in (cache_folder() / kind).glob("*")]
+        return [path for path in found if _NAME.fullmatch(path.name)]
     except (OSError, RuntimeError, ValueError):
         return []
 

@@ -201,10 +201,13 @@ def _joints(urdf: str) -> frozenset[str]:
     from xml.parsers import expat  # alone it is imported faster than ElementTree
 
     names: set[str] = set()
+
+    def note(tag: str, attributes: dict[str, str]) -> None:
+        if tag == "joint":
+            names.add(attributes.get("name", ""))
+
     parser = expat.ParserCreate()
-    parser.StartElementHandler = lambda tag, attributes: (
-        names.add(attributes.get("name", "")) if tag == "joint" else None
-    )
+    parser.StartElementHandler = note
     try:
         parser.Parse((robot_folder() / urdf).read_bytes(), True)
     except (OSError, expat.ExpatError) as error:

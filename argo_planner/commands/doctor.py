@@ -12,7 +12,7 @@ from argo_planner.use_cases.doctor import examine
 def show_health(
     empty_cache: Annotated[
         bool,
-        typer.Option("--empty-cache", help="take away what is kept of sites; it is made again"),
+        typer.Option("--empty-cache", help="take away all that is kept; it is made again"),
     ] = False,
 ) -> None:
     """Show the version, the cache on disk, and which optional parts are installed."""
@@ -40,7 +40,7 @@ def _empty() -> None:
     """Raises Unavailable if anything is left, or there is no such folder to be had."""
     before, why = cache.contents().size, cache.flaw()
     cache.empty()
-    if why is not None or cache.contents().entries:
+    if why is not None or cache.contents().files:
         raise Unavailable(
             f"{cache.cache_folder()}: the cache can't be emptied: {why or 'some of it is left'}; "
             f"name a folder that can be written to ({cache.VARIABLE}), or let it be written to"

@@ -82,7 +82,7 @@ def examine() -> Examination:
         system=f"{platform.system()} {platform.machine()}",
         cache=CacheReport(
             folder=str(cache.cache_folder()),
-            entries=kept.entries,
+            entries=kept.sites,
             size=kept.size,
             limit=cache.MOST,
             flaw=cache.flaw(),

@@ -37,7 +37,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def commands(folder: Path) -> dict[str, tuple[Sequence[str], float | None]]:
-    """Return the commands by their names, with the ratio that each may have, if one is set."""
+    """Return the commands by their names, with the ratio that each may have, if one is set. The
+    mission that one of them checks is imported first."""
     argo = (sys.executable, "-m", "argo_planner")
     mission = str(folder / "mission.json")
     importing = (*argo, "import", str(SHEET), *AREAS, "-o", mission, "--force")

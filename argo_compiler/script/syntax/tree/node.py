@@ -25,7 +25,7 @@ class Node:
     """A part of the tree; `span` is where its text begins and how far it goes."""
 
     field_names: ClassVar[tuple[str, ...]]
-
+    """of the class, its bases' included"""
     span: Span
 
     def __eq__(self, other: object) -> bool:

@@ -403,10 +403,8 @@ def _distances(keywords: _Keywords, nodes: int) -> NDArray[np.int64]:
         found[rows, columns] = _whole(numbers, len(rows))
         found = np.maximum(found, found.T)
     else:
-        forms = ("FULL_MATRIX", *_TRIANGLES)
-        raise keywords.unknown(
-            "EDGE_WEIGHT_FORMAT", f"EDGE_WEIGHT_FORMAT {form} is not read", known
-        )
+        said = f"EDGE_WEIGHT_FORMAT {form} is not read"
+        raise keywords.unknown("EDGE_WEIGHT_FORMAT", said, ("FULL_MATRIX", *_TRIANGLES))
     numbers.finish("EDGE_WEIGHT_SECTION")
     return found
 

@@ -7,6 +7,7 @@ import signal
 import socket
 import time
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -163,12 +164,14 @@ class Subscriber(Listener):
                 await asyncio.sleep(0.2)
 
 
-async def edit_for(serving: Serving, id: str, seconds: float, acknowledged: Counter[str]) -> int:
+async def edit_until(
+    stopped: asyncio.Event, serving: Serving, id: str, acknowledged: Counter[str]
+) -> int:
     """Twenty edits a second, each sent again until it is acknowledged."""
     loop = asyncio.get_running_loop()
-    ends, number, highest = loop.time() + seconds, 0, 1
+    number, highest = 0, 1
     async with serving.client(httpx.AsyncClient, timeout=10) as client:
-        while loop.time() < ends:
+        while not stopped.is_set():
             number += 1
             edit = {"kind": "change_task", "name": f"t{number % 50}", "velocity": number / 1e4}
             body = {"kind": "edit", "id": f"e{number}", "edits": [edit]}
@@ -189,6 +192,13 @@ async def edit_for(serving: Serving, id: str, seconds: float, acknowledged: Coun
     return highest
 
 
+async def connected(pages: Sequence[Subscriber], times: int) -> None:
+    """Wait until each has connected so many times: a slow machine takes seconds for it."""
+    async with asyncio.timeout(60):
+        while any(page.connections < times for page in pages):
+            await asyncio.sleep(0.05)
+
+
 async def play(serving: Serving, seconds: float, subscribers: int, kills: int) -> None:
     async with serving.client(httpx.AsyncClient, timeout=30) as client:
         tasks = mission(*(f"t{k}" for k in range(50))).model_dump(mode="json")
@@ -198,12 +208,17 @@ async def play(serving: Serving, seconds: float, subscribers: int, kills: int) -
         id = made.json()["id"]
     pages = [Subscriber(serving, id, f"p{k}") for k in range(subscribers)]
     following = [asyncio.create_task(page.follow()) for page in pages]
+    await connected(pages, 1)
     acknowledged: Counter[str] = Counter()
-    editing = asyncio.create_task(edit_for(serving, id, seconds, acknowledged))
-    for _ in range(kills):
+    stopped = asyncio.Event()
+    editing = asyncio.create_task(edit_until(stopped, serving, id, acknowledged))
+    for kill in range(kills):
         await asyncio.sleep(seconds / (kills + 1))
         await asyncio.to_thread(serving.end, signal.SIGKILL)
         await asyncio.to_thread(serving.begin)
+        await connected(pages, kill + 2)
+    await asyncio.sleep(seconds / (kills + 1))
+    stopped.set()
     highest = await editing
     async with serving.client(httpx.AsyncClient) as client:
         state = (await client.get(f"/api/missions/{id}")).json()

@@ -1,8 +1,9 @@
 """How fast the page is: `python -m tests.e2e.page.measure`. Printed, and never asserted."""
 
+import argparse
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from http.client import HTTPConnection
@@ -19,9 +20,7 @@ from argo_env.planning.opening import open_site
 from tests.argo_planner.service.served import ALL, Served, served
 from tests.e2e.page.person import Browsers, Person
 
-LARGE = "generated:floors=6,seed=7"
 MOVES = 200
-PAGES = 50
 
 
 def mission(count: int, site: str) -> dict[str, Any]:
@@ -61,18 +60,17 @@ def opening(browsers: Browsers, service: Served, count: int) -> None:
         browsers.leave()
 
 
-def many_pages(browsers: Browsers, service: Served) -> None:
+def many_pages(browsers: Browsers, service: Served, count: int) -> None:
     """Many pages of one mission that open at once, each in a context of its own."""
     id = service.create("Together", mission(200, "umad"))
-    people = [browsers.person(f"http://{service.address}/?token={ALL}") for _ in range(PAGES)]
+    people = [browsers.person(f"http://{service.address}/?token={ALL}") for _ in range(count)]
     begun = time.perf_counter()
     for person in people:
         person.page.goto(f"{person.address}#/missions/{id}", wait_until="commit")
     for person in people:
         rows_there(person)
-    print(
-        f"{PAGES} pages with 200 tasks: the last one usable in {time.perf_counter() - begun:.1f} s"
-    )
+    took = time.perf_counter() - begun
+    print(f"{count} pages with 200 tasks: the last one usable in {took:.1f} s")
     # One browser draws so many scenes with one processor: what it says of that is not the page's.
     print(*sorted({said for person in people for said in person.complaints}), sep="\n")
     for person in people:
@@ -108,45 +106,44 @@ def ask_all(address: str, paths: list[str], id: str, start: Barrier) -> None:
         live.recv()
 
 
-def ask_for_many(address: str, paths: list[str], id: str) -> None:
-    start = Barrier(PAGES + 1)
-    with ThreadPoolExecutor(PAGES) as pool:
-        asked = [pool.submit(ask_all, address, paths, id, start) for _ in range(PAGES)]
+def ask_for_many(address: str, paths: list[str], id: str, count: int) -> None:
+    start = Barrier(count + 1)
+    with ThreadPoolExecutor(count) as pool:
+        asked = [pool.submit(ask_all, address, paths, id, start) for _ in range(count)]
         start.wait()
         begun = time.perf_counter()
         for one in asked:
             one.result()
         took = time.perf_counter() - begun
-    print(f"{PAGES} times all of the {len(paths)} answers that a page needs: {took:.1f} s")
+    print(f"{count} times all of the {len(paths)} answers that a page needs: {took:.1f} s")
 
 
-def answering(browsers: Browsers, service: Served) -> None:
+def answering(browsers: Browsers, service: Served, count: int) -> None:
     """What the service does for many pages that open at once, without their browsers."""
     id = service.create("Answers", mission(200, "umad"))
     paths = asked_by_a_page(browsers, service, id)
-    asking = Process(target=ask_for_many, args=(service.address, paths, id))
+    asking = Process(target=ask_for_many, args=(service.address, paths, id, count))
     asking.start()
     asking.join()
 
 
-def line_of_text(browsers: Browsers, service: Served) -> None:
+def line_of_text(browsers: Browsers, service: Served, count: int) -> None:
     """What as many browsers take for a text: the least that any page could."""
-    people = [browsers.person(f"http://{service.address}/api/service") for _ in range(PAGES)]
+    people = [browsers.person(f"http://{service.address}/api/service") for _ in range(count)]
     begun = time.perf_counter()
     for person in people:
         person.page.goto(person.address, wait_until="commit")
     for person in people:
         expect(person.page.locator("body")).to_be_visible()
-    print(f"{PAGES} pages with a line of text: {time.perf_counter() - begun:.1f} s")
+    print(f"{count} pages with a line of text: {time.perf_counter() - begun:.1f} s")
     for person in people:
         person.complaints.clear()
     browsers.leave()
 
 
-def hovering(browsers: Browsers, service: Served) -> None:
+def hovering(browsers: Browsers, service: Served, site: str) -> None:
     """The verdict under the pointer, and what it asks of the service."""
-    site = open_site(LARGE)
-    id = service.create("Ghost", mission(3, site.name))
+    id = service.create("Ghost", mission(3, site))
     person = browsers.person(f"http://{service.address}/?token={ALL}")
     person.open(f"/missions/{id}")
     rows_there(person)
@@ -161,22 +158,27 @@ def hovering(browsers: Browsers, service: Served) -> None:
         x = box["x"] + box["width"] * (0.25 + 0.5 * k / MOVES)
         person.page.mouse.move(x, box["y"] + box["height"] * (0.4 + 0.3 * (k % 10) / 10))
     took = sorted(person.ask("() => window.argo.figures().hover"))
-    solids = sum(len(element.solids) for element in site.site.elements)
+    solids = sum(len(element.solids) for element in open_site(site).site.elements)
     last = took[int(0.95 * len(took))]
     print(f"{solids} solids: verdict p95 {last:.2f} ms of {len(took)}, {len(asked)} requests")
     browsers.leave()
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition(":")[0])
+    parser.add_argument("--large", default="generated:floors=6,seed=7", metavar="SITE")
+    parser.add_argument("--tasks", type=int, nargs="*", default=(200, 2_000))
+    parser.add_argument("--pages", type=int, default=50)
+    given = parser.parse_args(arguments)
     browsers = Browsers()
-    with serving(LARGE) as service:
-        hovering(browsers, service)
+    with serving(given.large) as service:
+        hovering(browsers, service, given.large)
     with serving("umad") as service:
-        for count in (200, 2000):
+        for count in given.tasks:
             opening(browsers, service, count)
-        answering(browsers, service)
-        line_of_text(browsers, service)
-        many_pages(browsers, service)
+        answering(browsers, service, given.pages)
+        line_of_text(browsers, service, given.pages)
+        many_pages(browsers, service, given.pages)
     browsers.close()
 
 

@@ -145,14 +145,7 @@ def transitions_flat() -> Run:
     ]  # fmt: skip
     Machine(model, states=list("ABDECF"), transitions=ways, initial="A", auto_transitions=False)
 
-    def run(values: Sequence[float]) -> list[str]:
-        ended = []
-        for value in values:
-            ended.append(model.state)
-            model.ended(value)
-        return ended
-
-    return run
+    return _ending(model)
 
 
 def transitions_nested() -> Run:
@@ -179,6 +172,12 @@ def transitions_nested() -> Run:
     HierarchicalMachine(
         model, states=["A", alpha, "F"], transitions=ways, initial="A", auto_transitions=False
     )
+
+    return _ending(model)
+
+
+def _ending(model: Any) -> Run:
+    """Return what ends the tasks of a model of transitions; a state's last letter is its task."""
 
     def run(values: Sequence[float]) -> list[str]:
         ended = []

@@ -19,6 +19,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from itertools import cycle
 from pathlib import Path
 from statistics import median
@@ -35,10 +36,8 @@ def drive_free() -> Work:
     """50 steps of Drive-v0, turning to and fro where there is room to turn."""
     import numpy as np
 
-    env = _drive_env()
-    env.reset(seed=3)
-    rng = np.random.default_rng(0)
-    actions = rng.uniform(-1.0, 1.0, (50, 3)).astype(np.float32)
+    env = _drive_env(3)
+    actions = np.random.default_rng(0).uniform(-1.0, 1.0, (50, 3)).astype(np.float32)
     actions[:, 0] = 0.0
 
     def work() -> None:
@@ -53,8 +52,7 @@ def drive_random() -> Work:
     """50 steps of Drive-v0 with random actions, as at the start of training."""
     import numpy as np
 
-    env = _drive_env()
-    env.reset(seed=3)
+    env = _drive_env(3)
     actions = np.random.default_rng(0).uniform(-1.0, 1.0, (50, 3)).astype(np.float32)
 
     def work() -> None:
@@ -68,8 +66,7 @@ def drive_contact() -> Work:
     """50 steps of Drive-v0 ahead, against a wall that the robot has reached before."""
     import numpy as np
 
-    env = _drive_env()
-    env.reset(seed=1)
+    env = _drive_env(1)
     ahead = np.array([1.0, 0.0, 0.0], np.float32)
     for _ in range(20):
         env.step(ahead)
@@ -82,33 +79,27 @@ def drive_contact() -> Work:
     return work
 
 
-def kinematic() -> Work:
-    """Mission #1 with the drive `kinematic`, after a run of it in the same process."""
-    work = _mission_run("mission_1.txt", "kinematic", 1, 2)
-    work()
-    return work
+def mission_run(
+    drive: str,
+    file: str = "mission_1.txt",
+    areas: Sequence[int] = (1, 2),
+    *,
+    again: bool = False,
+) -> Work:
+    """A run of a shipped mission with a drive. The first one of a process imports the simulator and
+    plans the ways, too; `again`: after such a run."""
+    from argo_env.planning import open_site
+    from argo_env.run.session import simulate
+    from argo_env.run.spec import RunSpec
+    from argo_planner.use_cases.importing import Upload, import_mission
 
-
-def kinematic_first() -> Work:
-    """The first run of a process: it imports the simulator and plans the ways, too."""
-    return _mission_run("mission_1.txt", "kinematic", 1, 2)
-
-
-def kinematic_rounds() -> Work:
-    """Protocol #3 with its rounds, as the first run of a process."""
-    return _mission_run("protocol_3.txt", "kinematic", None, None)
-
-
-def tracked() -> Work:
-    """Mission #1 with the drive `tracked`, on a site that is open."""
-    return _mission_run("mission_1.txt", "tracked", 1, 2)
-
-
-def route() -> Work:
-    """Mission #1 by travel times, after a run of it in the same process."""
-    work = _mission_run("mission_1.txt", "route", 1, 2)
-    work()
-    return work
+    site = open_site("umad").prepare()
+    upload = Upload(file, (MISSIONS / file).read_bytes())
+    mission = import_mission(upload, site, *areas).mission
+    spec = RunSpec(mission=mission, drive=drive)
+    if again:
+        simulate(spec, site)
+    return lambda: simulate(spec, site)
 
 
 def inspect() -> Work:
@@ -168,7 +159,7 @@ def report() -> Work:
     from argo_planner.use_cases.reporting import report_files
 
     site = open_site("umad").prepare()
-    record: Any = _mission_run("mission_1.txt", "route", 1, 2)()
+    record: Any = mission_run("route")()
 
     def work() -> object:
         return report_files(record, site.site, site.robot)
@@ -183,7 +174,7 @@ def film() -> Work:
     from argo_env.planning import open_site
 
     site = open_site("umad").prepare()
-    record: Any = _mission_run("mission_1.txt", "route", 1, 2)()
+    record: Any = mission_run("route")()
 
     def work() -> None:
         with tempfile.TemporaryDirectory() as folder:
@@ -196,11 +187,11 @@ CASES: dict[str, tuple[Callable[[], Work], int]] = {
     "drive-free": (drive_free, 4),
     "drive-random": (drive_random, 4),
     "drive-contact": (drive_contact, 4),
-    "kinematic": (kinematic, 3),
-    "kinematic-first": (kinematic_first, 1),
-    "kinematic-rounds": (kinematic_rounds, 1),
-    "tracked": (tracked, 1),
-    "route": (route, 10),
+    "kinematic": (partial(mission_run, "kinematic", again=True), 3),
+    "kinematic-first": (partial(mission_run, "kinematic"), 1),
+    "kinematic-rounds": (partial(mission_run, "kinematic", "protocol_3.txt", ()), 1),
+    "tracked": (partial(mission_run, "tracked"), 1),
+    "route": (partial(mission_run, "route", again=True), 10),
     "inspect": (inspect, 3),
     "inspect-known": (inspect_known, 3),
     "import": (importing, 1),
@@ -210,25 +201,14 @@ CASES: dict[str, tuple[Callable[[], Work], int]] = {
 """What prepares the work of each case, and how many times a process does it."""
 
 
-def _drive_env() -> Any:
+def _drive_env(seed: int) -> Any:
     import gymnasium as gym
 
     import argo_env  # noqa: F401
 
-    return gym.make("argo/Drive-v0", disable_env_checker=True, time_limit=3600.0).unwrapped
-
-
-def _mission_run(file: str, drive: str, start_area: int | None, end_area: int | None) -> Work:
-    from argo_env.planning import open_site
-    from argo_env.run.session import simulate
-    from argo_env.run.spec import RunSpec
-    from argo_planner.use_cases.importing import Upload, import_mission
-
-    site = open_site("umad").prepare()
-    upload = Upload(file, (MISSIONS / file).read_bytes())
-    mission = import_mission(upload, site, start_area, end_area).mission
-    spec = RunSpec(mission=mission, drive=drive)
-    return lambda: simulate(spec, site)
+    env = gym.make("argo/Drive-v0", disable_env_checker=True, time_limit=3600.0).unwrapped
+    env.reset(seed=seed)
+    return env
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

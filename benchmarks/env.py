@@ -182,8 +182,18 @@ def jumanji_rollout(name: str) -> Stepper:
         yield int(moved), time.perf_counter() - begun
 
 
+def sampled(env: gym.Env) -> Stepper:
+    """Steps of one Gymnasium environment with actions from all of its action space."""
+    env.action_space.seed(0)
+    return single(env, lambda _: env.action_space.sample())
+
+
 def report(
-    given: argparse.Namespace, name: str, stepper: Callable[[], Stepper], needs: str | None = None
+    given: argparse.Namespace,
+    name: str,
+    stepper: Callable[..., Stepper],
+    *arguments: Any,
+    needs: str | None = None,
 ) -> None:
     """Print one figure, or that the peer is not installed."""
     if needs is not None:
@@ -192,7 +202,7 @@ def report(
         except ImportError:
             print(f"{name:48s} not installed", flush=True)
             return
-    print(f"{name:48s} {best(stepper(), given.window):14,.0f} steps/s", flush=True)
+    print(f"{name:48s} {best(stepper(*arguments), given.window):14,.0f} steps/s", flush=True)
 
 
 def route(given: argparse.Namespace) -> None:
@@ -201,24 +211,15 @@ def route(given: argparse.Namespace) -> None:
         print(f"-- routes, {NODES} nodes, batch {count}")
         if count == 1:
             env = gym.make("argo/Route-v0", checkpoints=NODES, disable_env_checker=True).unwrapped
-            report(given, "argo/Route-v0 (single)", lambda env=env: single(env, legal()))
+            report(given, "argo/Route-v0 (single)", single, env, legal())
         else:
-            report(given, "argo/Route-v0 (vector)", lambda count=count: argo_batch(count))
-        report(given, "RL4CO OP", lambda count=count: rl4co_batch(count), "rl4co")
+            report(given, "argo/Route-v0 (vector)", argo_batch, count)
+        report(given, "RL4CO OP", rl4co_batch, count, needs="rl4co")
         for name in ("TSP-v1", "CVRP-v1"):
-            report(
-                given,
-                f"Jumanji {name}",
-                lambda n=name, count=count: jumanji_batch(n, count),
-                "jumanji",
-            )
+            title = f"Jumanji {name}"
+            report(given, title, jumanji_batch, name, count, needs="jumanji")
             if count == 1:
-                report(
-                    given,
-                    f"Jumanji {name}, a compiled loop",
-                    lambda n=name: jumanji_rollout(n),
-                    "jumanji",
-                )
+                report(given, f"{title}, a compiled loop", jumanji_rollout, name, needs="jumanji")
 
 
 def peers(given: argparse.Namespace) -> None:
@@ -226,28 +227,23 @@ def peers(given: argparse.Namespace) -> None:
 
     def panda(name: str) -> Stepper:
         importlib.import_module("panda_gym")
-        env = gym.make(name, disable_env_checker=True).unwrapped
-        env.action_space.seed(0)
-        return single(env, lambda _: env.action_space.sample())
+        return sampled(gym.make(name, disable_env_checker=True).unwrapped)
 
     def drones() -> Stepper:
         from gym_pybullet_drones.envs.HoverAviary import HoverAviary
 
-        env = HoverAviary()
-        env.action_space.seed(0)
-        return single(env, lambda _: env.action_space.sample())
+        return sampled(HoverAviary())
 
     for name in ("PandaReach-v3", "PandaPickAndPlace-v3"):
-        report(given, f"panda-gym {name}", lambda name=name: panda(name), "panda_gym")
-    report(given, "gym-pybullet-drones HoverAviary", drones, "gym_pybullet_drones")
+        report(given, f"panda-gym {name}", panda, name, needs="panda_gym")
+    report(given, "gym-pybullet-drones HoverAviary", drones, needs="gym_pybullet_drones")
 
 
 def drive(given: argparse.Namespace) -> None:
     """Drive-v0 beside other PyBullet environments."""
     print("-- driving: 24 steps of physics at 240 Hz and 54 rays in each step of Drive-v0")
     env = gym.make("argo/Drive-v0", disable_env_checker=True).unwrapped
-    env.action_space.seed(0)
-    report(given, "argo/Drive-v0", lambda: single(env, lambda _: env.action_space.sample()))
+    report(given, "argo/Drive-v0", sampled, env)
     peers(given)
 
 

@@ -276,10 +276,10 @@ def _written(
         mission=begins.mission,
         versions=document.versions,
     )
-    lines = [checked_line({"n": 0} | base.model_dump(mode="json"))]
-    for number, record in enumerate(made, start=1):
-        data = record.model_dump(mode="json")
-        lines.append(checked_line({"n": number} | data))
+    lines = [
+        checked_line({"n": number} | record.model_dump(mode="json"))
+        for number, record in enumerate((base, *made))
+    ]
     content = b"".join(lines)
     draft = path.with_name(f"{path.name}.new")
     try:

@@ -19,7 +19,7 @@ from argo_planner.service.web.requests import (
     Service,
     Viewer,
     created,
-    link,
+    links,
     routes,
     said,
 )
@@ -27,13 +27,10 @@ from argo_planner.service.web.requests import (
 router = routes("jobs")
 
 RunKey = Annotated[str, Path(pattern=r"^[0-9a-f]{24}$", description="key of the run")]
-_JOB = {
-    name: link(name, id="$response.body#/id")
-    for name in (
-        "read_job", "cancel_job", "go_on_with_evaluation", "read_evaluation_report",
-        "forget_evaluation",
-    )
-}  # fmt: skip
+_JOB = links(
+    "read_job", "cancel_job", "go_on_with_evaluation", "read_evaluation_report",
+    "forget_evaluation", id="$response.body#/id",
+)  # fmt: skip
 
 
 @router.post(

@@ -23,7 +23,7 @@ from argo_planner.service.web.requests import (
     Service,
     Viewer,
     created,
-    link,
+    links,
     routes,
     said,
 )
@@ -35,9 +35,7 @@ LONGEST_SEARCH = 600.0
 router = routes("jobs")
 
 JobId = Annotated[str, Path(pattern=f"^{JOB_ID}$", description="id of the job")]
-_JOB = {
-    name: link(name, id="$response.body#/id") for name in ("read_job", "cancel_job", "accept_order")
-}
+_JOB = links("read_job", "cancel_job", "accept_order", id="$response.body#/id")
 
 
 class OrderAsked(Model):

@@ -36,32 +36,30 @@ from argo_planner.service.web.requests import (
     answers_file,
     created,
     link,
+    links,
     routes,
     said,
 )
 from argo_planner.use_cases.exporting import as_script, export_mission
 from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
 
-ID = "$response.body#/id"
-OF_MISSION = {
-    name: link(name, id=ID)
-    for name in (
-        "read_mission",
-        "rename_mission",
-        "duplicate_mission",
-        "delete_mission",
-        "export_mission",
-        "carry_out_command",
-        "list_revisions",
-        "keep_version",
-        "list_versions",
-        "read_back",
-        "read_analysis",
-        "write_script",
-        "suggest_order",
-        "start_run",
-    )
-}
+OF_MISSION = links(
+    "read_mission",
+    "rename_mission",
+    "duplicate_mission",
+    "delete_mission",
+    "export_mission",
+    "carry_out_command",
+    "list_revisions",
+    "keep_version",
+    "list_versions",
+    "read_back",
+    "read_analysis",
+    "write_script",
+    "suggest_order",
+    "start_run",
+    id="$response.body#/id",
+)
 ETAG = "$response.header.ETag"
 for _name in ("carry_out_command", "keep_version", "write_script", "start_run"):
     OF_MISSION[_name]["parameters"]["If-Match"] = ETAG

@@ -157,3 +157,8 @@ _LOCATION = {"Location": {"description": "where it is", "schema": {"type": "stri
 def link(operation: str, **parameters: str) -> dict[str, Any]:
     """A link of the OpenAPI document: parameters of another operation that the answer has."""
     return {"operationId": operation, "parameters": parameters}
+
+
+def links(*operations: str, **parameters: str) -> dict[str, dict[str, Any]]:
+    """Return links to operations that take the same parameters, by their names."""
+    return {name: link(name, **parameters) for name in operations}

@@ -32,7 +32,7 @@ from argo_planner.service.web.requests import (
     Viewer,
     answers_file,
     created,
-    link,
+    links,
     routes,
     said,
 )
@@ -40,10 +40,8 @@ from argo_planner.service.web.requests import (
 router = routes("runs")
 
 RunId = Annotated[str, Path(pattern=r"^[0-9]{8}-[0-9]{6}-[0-9a-f]{4}$", description="of the run")]
-_RUN = {
-    name: link(name, run="$response.body#/id")
-    for name in ("read_run", "ask_run", "list_entries", "read_report")
-}
+_RUN = links("read_run", "ask_run", "list_entries", "read_report", run="$response.body#/id")
+_REQUEST = links("read_request", run="$request.path.run", request="$response.body#/id")
 MOST_ENTRIES = 1_000
 """in one answer"""
 
@@ -116,16 +114,7 @@ async def read_run(service: Service, _: Viewer, run: RunId) -> Response:
     operation_id="ask_run",
     status_code=202,
     response_model=RequestState,
-    responses={
-        202: created(
-            RequestState,
-            {
-                "read_request": link(
-                    "read_request", run="$request.path.run", request="$response.body#/id"
-                )
-            },
-        )
-    },
+    responses={202: created(RequestState, _REQUEST)},
 )
 async def ask_run(
     service: Service, visitor: Operator, run: RunId, request: Sent[AskedOfRun]

@@ -19,12 +19,20 @@ from argo_planner.service.web.requests import (
     Service,
     Viewer,
     created,
-    link,
+    links,
     routes,
     said,
 )
 
 router = routes("versions")
+
+_VERSION = links(
+    "read_version",
+    "restore_version",
+    "drop_version",
+    id="$request.path.id",
+    number="$response.body#/number",
+)
 
 
 class RestoredVersion(Model):
@@ -51,16 +59,7 @@ async def list_versions(service: Service, _: Viewer, id: PlanId) -> Response:
     operation_id="keep_version",
     status_code=201,
     response_model=VersionSummary,
-    responses=documented(412, 428)
-    | {
-        201: created(
-            VersionSummary,
-            {
-                name: link(name, id="$request.path.id", number="$response.body#/number")
-                for name in ("read_version", "restore_version", "drop_version")
-            },
-        )
-    },
+    responses=documented(412, 428) | {201: created(VersionSummary, _VERSION)},
 )
 async def keep_version(
     service: Service,

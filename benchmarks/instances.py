@@ -17,11 +17,9 @@ of 140. The first node is the depot.
 """
 
 import re
-from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from itertools import accumulate
 from pathlib import Path
 
 import numpy as np
@@ -176,7 +174,8 @@ class _Numbers:
         self._file = file
         self._lines = list(lines)
         rows = [_numbers(file, line) for line in self._lines]
-        self._ends = list(accumulate(len(row) for row in rows))
+        self._line = [line for line, row in zip(self._lines, rows, strict=True) for _ in row]
+        """of each number"""
         self._values = np.array([value for row in rows for value in row], dtype=np.float64)
         self._next = 0
 
@@ -203,17 +202,14 @@ class _Numbers:
         """Raises ArgoError at the line of the first of the numbers taken last that is wrong."""
         if wrong.any():
             first = self._next - wrong.size + int(np.flatnonzero(wrong)[0])
-            raise self._file.wrong(self._line(first), f"{self._values[first]:g} {what}", way_out)
+            raise self._file.wrong(self._line[first], f"{self._values[first]:g} {what}", way_out)
 
     def finish(self, what: str) -> None:
         """Raises ArgoError if there are more numbers than those that were taken."""
         if self.left:
             said = f"there are {self.left} numbers more than {what} needs"
             way_out = "does the number of nodes agree with them?"
-            raise self._file.wrong(self._line(self._next), said, way_out)
-
-    def _line(self, position: int) -> int:
-        return self._lines[bisect_right(self._ends, position)]
+            raise self._file.wrong(self._line[self._next], said, way_out)
 
 
 def _numbers(file: _File, line: int) -> list[float]:

@@ -48,17 +48,12 @@ class Orders:
         )
         return job
 
-    def of(self, id: str) -> OrderJob:
-        """Raises NotFound if there is no such job, or it is no search."""
+    def ordered(self, id: str) -> tuple[OrderJob, Mission]:
+        """Return a search, and the mission in the order that it has found. Raises NotFound if there
+        is no such job or it is no search, Conflict if it has found none."""
         job = self._jobs.job(id)
         if not isinstance(job, OrderJob):
             raise NotFound(f"job {id} is no search for an order")
-        return job
-
-    def ordered(self, id: str) -> tuple[OrderJob, Mission]:
-        """A search, and the mission in the order that it has found. Raises NotFound likewise,
-        Conflict if it has found none."""
-        job = self.of(id)
         if job.found is None or job.found.mission is None:
             raise Conflict(f"job {id} is {job.state}, and has found no order")
         return job, job.found.mission

@@ -18,7 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import cycle
 from pathlib import Path
@@ -32,32 +32,20 @@ Work = Callable[[], object]
 """What is timed; each call does the same work, or the next piece of it."""
 
 
-def drive_free() -> Work:
-    """50 steps of Drive-v0, turning to and fro where there is room to turn."""
+def drive_random(*, turning: bool = False) -> Work:
+    """Return 50 steps of Drive-v0 with random actions, as at the start of training; `turning`:
+    those that only turn to and fro, where there is room to."""
     import numpy as np
 
     env = _drive_env(3)
     actions = np.random.default_rng(0).uniform(-1.0, 1.0, (50, 3)).astype(np.float32)
-    actions[:, 0] = 0.0
+    if turning:
+        actions[:, 0] = 0.0
 
     def work() -> None:
         for action in actions:
             *_, info = env.step(action)
-            assert not info["touched"]
-
-    return work
-
-
-def drive_random() -> Work:
-    """50 steps of Drive-v0 with random actions, as at the start of training."""
-    import numpy as np
-
-    env = _drive_env(3)
-    actions = np.random.default_rng(0).uniform(-1.0, 1.0, (50, 3)).astype(np.float32)
-
-    def work() -> None:
-        for action in actions:
-            env.step(action)
+            assert not (turning and info["touched"])
 
     return work
 
@@ -86,8 +74,8 @@ def mission_run(
     *,
     again: bool = False,
 ) -> Work:
-    """A run of a shipped mission with a drive. The first one of a process imports the simulator and
-    plans the ways, too; `again`: after such a run."""
+    """Return a run of a shipped mission with a drive. The first one of a process imports the
+    simulator and plans the ways, too; `again`: after such a run."""
     from argo_env.planning import open_site
     from argo_env.run.session import simulate
     from argo_env.run.spec import RunSpec
@@ -102,23 +90,10 @@ def mission_run(
     return lambda: simulate(spec, site)
 
 
-def inspect() -> Work:
-    """An episode of Inspect-v0 of 40 steps at most, with actions that can be taken, as at the start
-    of training: most of its ways are planned for the first time."""
-    return _episodes(iter(range(1_000_000)))
-
-
-def inspect_known() -> Work:
-    """Such an episode, when its ways are known, as they are in the course of training."""
-    seeds = cycle(range(3))
-    work = _episodes(seeds)
-    for _ in range(3):
-        work()
-    return work
-
-
-def _episodes(seeds: Iterator[int]) -> Work:
-    """Makes an episode of Inspect-v0 with the next of the seeds."""
+def episodes(seeds: Sequence[int], *, again: bool = False) -> Work:
+    """Return episodes of Inspect-v0 of 40 steps at most, one with each seed in turn, with actions
+    that can be taken, as at the start of training: most of their ways are planned for the first
+    time. `again`: after one of each, when their ways are known, as in the course of training."""
     import gymnasium as gym
     import numpy as np
 
@@ -126,9 +101,10 @@ def _episodes(seeds: Iterator[int]) -> Work:
 
     env: Any = gym.make("argo/Inspect-v0", disable_env_checker=True)
     env.reset(seed=100)
+    turns = cycle(seeds)
 
     def work() -> None:
-        seed = next(seeds)
+        seed = next(turns)
         env.reset(seed=seed)
         rng = np.random.default_rng(seed)
         for _ in range(40):
@@ -137,6 +113,8 @@ def _episodes(seeds: Iterator[int]) -> Work:
             if terminated or truncated:
                 return
 
+    for _ in seeds if again else ():
+        work()
     return work
 
 
@@ -184,7 +162,7 @@ def film() -> Work:
 
 
 CASES: dict[str, tuple[Callable[[], Work], int]] = {
-    "drive-free": (drive_free, 4),
+    "drive-free": (partial(drive_random, turning=True), 4),
     "drive-random": (drive_random, 4),
     "drive-contact": (drive_contact, 4),
     "kinematic": (partial(mission_run, "kinematic", again=True), 3),
@@ -192,8 +170,8 @@ CASES: dict[str, tuple[Callable[[], Work], int]] = {
     "kinematic-rounds": (partial(mission_run, "kinematic", "protocol_3.txt", ()), 1),
     "tracked": (partial(mission_run, "tracked"), 1),
     "route": (partial(mission_run, "route", again=True), 10),
-    "inspect": (inspect, 3),
-    "inspect-known": (inspect_known, 3),
+    "inspect": (partial(episodes, range(1_000_000)), 3),
+    "inspect-known": (partial(episodes, range(3), again=True), 3),
     "import": (importing, 1),
     "report": (report, 1),
     "film": (film, 1),

@@ -183,7 +183,7 @@ def jumanji_rollout(name: str) -> Stepper:
 
 
 def sampled(env: gym.Env) -> Stepper:
-    """Steps of one Gymnasium environment with actions from all of its action space."""
+    """Return steps of one Gymnasium environment with actions from all of its action space."""
     env.action_space.seed(0)
     return single(env, lambda _: env.action_space.sample())
 

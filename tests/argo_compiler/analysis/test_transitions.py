@@ -22,6 +22,11 @@ NEVER, AFTER, POSSIBLE, ALWAYS = (
 )
 
 
+def analysed(*tasks, **more):
+    """Return the analysis of such a mission on the site of the catalogue."""
+    return analyse(mission(*tasks, **more), CATALOG)
+
+
 def codes(analysis):
     return sorted(d.code.removeprefix("analysis.") for d in analysis.diagnostics)
 
@@ -57,7 +62,7 @@ def verdicts(analysis, name):
 )
 def test_transitions_of_the_task_that_measures(tests, expected):
     ways = [way("B", *texts) for texts in tests]
-    analysis = analyse(mission(task("Am1", *ways, "C"), "B", "C"), CATALOG)
+    analysis = analysed(task("Am1", *ways, "C"), "B", "C")
     assert verdicts(analysis, "Am1") == expected
     if NEVER in expected and "2 < 6" not in str(tests):
         assert "transition-never" in codes(analysis)
@@ -69,16 +74,13 @@ def test_without_a_catalogue_a_checkpoint_may_show_anything():
 
 
 def test_a_value_is_remembered_along_the_way():
-    analysis = analyse(
-        mission(
-            task("Am1", way("Low", "1 < 5"), "High"),
-            task("Low", way("Never", "1 > 6"), way("Join", "1 < 5"), "Never"),
-            task("High", way("Never", "1 < 5"), "Join"),
-            task("Never", "Join"),
-            task("Join", way("Am1", "1 > 9"), "End"),
-            "End",
-        ),
-        CATALOG,
+    analysis = analysed(
+        task("Am1", way("Low", "1 < 5"), "High"),
+        task("Low", way("Never", "1 > 6"), way("Join", "1 < 5"), "Never"),
+        task("High", way("Never", "1 < 5"), "Join"),
+        task("Never", "Join"),
+        task("Join", way("Am1", "1 > 9"), "End"),
+        "End",
     )
     assert verdicts(analysis, "Low") == [NEVER, ALWAYS, NEVER]
     # The value is not there if its measurement failed; no condition holds then.
@@ -94,7 +96,7 @@ def test_measuring_again_forgets_the_old_value():
         task("Cm1", way("Am1", "1 > 6"), "End"),
         "End",
     ]
-    assert verdicts(analyse(mission(*again), CATALOG), "Cm1") == [POSSIBLE, POSSIBLE]
+    assert verdicts(analysed(*again), "Cm1") == [POSSIBLE, POSSIBLE]
 
 
 def test_an_old_value_may_be_too_old_for_any_verdict_but_never():
@@ -108,14 +110,11 @@ def test_an_old_value_may_be_too_old_for_any_verdict_but_never():
 
 
 def test_what_only_a_failure_leads_to():
-    analysis = analyse(
-        mission(
-            task("Am1", way("Low", "1 < 5"), way("High", "1 >= 5"), "Broken"),
-            task("Low"),
-            task("High"),
-            task("Broken", way("Low", "1 < 20")),
-        ),
-        CATALOG,
+    analysis = analysed(
+        task("Am1", way("Low", "1 < 5"), way("High", "1 >= 5"), "Broken"),
+        task("Low"),
+        task("High"),
+        task("Broken", way("Low", "1 < 20")),
     )
     assert analysis.task("Broken").verdict is AFTER
     assert verdicts(analysis, "Broken") == [NEVER]
@@ -124,21 +123,18 @@ def test_what_only_a_failure_leads_to():
 
 def test_after_an_abort_nothing_follows():
     aborts = task("Am1", way("Low", "1 < 5"), way("Low", "1 >= 5"), on_failure=OnFailure.ABORT)
-    assert analyse(mission(aborts, "Low"), CATALOG).ends is POSSIBLE
+    assert analysed(aborts, "Low").ends is POSSIBLE
 
 
 def test_why_a_task_is_unreachable():
-    found = analyse(
-        mission(
-            task("Am1", way("X", "1 > 12"), way("Y", "2 > 1"), "End"),
-            task("X", "Behind"),
-            task("Y", "End"),
-            task("Behind", "End"),
-            task("Alone", "End"),
-            task("End", "Lastm2"),
-            "Lastm2",
-        ),
-        CATALOG,
+    found = analysed(
+        task("Am1", way("X", "1 > 12"), way("Y", "2 > 1"), "End"),
+        task("X", "Behind"),
+        task("Y", "End"),
+        task("Behind", "End"),
+        task("Alone", "End"),
+        task("End", "Lastm2"),
+        "Lastm2",
     )
     lost = {d.subject: d for d in found.diagnostics if d.code == "analysis.unreachable-task"}
     assert found.reachable == {"Am1", "End", "Lastm2"}
@@ -151,26 +147,23 @@ def test_why_a_task_is_unreachable():
 
 
 def test_transitions_that_are_never_and_always_taken_are_told():
-    found = analyse(mission(task("Am1", way("B", "1 < 4"), way("B", "1 < 3"), "B"), "B"), CATALOG)
+    found = analysed(task("Am1", way("B", "1 < 4"), way("B", "1 < 3"), "B"), "B")
     assert codes(found) == ["transition-never"]
     assert found.diagnostics[0].subject == "tasks['Am1'].transitions[1]"
     assert "can only be 4 to 10 here" in found.diagnostics[0].message
-    found = analyse(mission(task("Am1", way("B", "1 < 11"), "B"), "B"), CATALOG)
+    found = analysed(task("Am1", way("B", "1 < 11"), "B"), "B")
     assert codes(found) == ["transition-always"]
     complete = task("Am1", way("B", "1 < 5"), way("B", "1 >= 5"), "B")
-    assert codes(analyse(mission(complete, "B"), CATALOG)) == []
+    assert codes(analysed(complete, "B")) == []
 
 
 def test_values_that_are_compared_before_they_are_measured():
-    found = analyse(
-        mission(
-            task("Am1", way("Bm2", "1 < 5"), "C"),
-            "Bm2",
-            task("C", way("End", "2 < 5"), way("End", "3 < 5"), "Dm3"),
-            "Dm3",
-            "End",
-        ),
-        CATALOG,
+    found = analysed(
+        task("Am1", way("Bm2", "1 < 5"), "C"),
+        "Bm2",
+        task("C", way("End", "2 < 5"), way("End", "3 < 5"), "Dm3"),
+        "Dm3",
+        "End",
     )
     assert codes(found) == ["maybe-unmeasured", "never-measured"]
     maybe, never = sorted(found.diagnostics, key=lambda d: d.code)
@@ -189,16 +182,13 @@ def test_values_that_are_compared_before_they_are_measured():
     ],
 )
 def test_rounds_of_a_group(group, repeats, ends):
-    found = analyse(
-        mission(
-            "A",
-            task("Bm1", way("Out", "1 > 5"), "C"),
-            task("C", "End"),
-            "Out",
-            "End",
-            groups=[Group(name="G", start="A", end="C", **group)],
-        ),
-        CATALOG,
+    found = analysed(
+        "A",
+        task("Bm1", way("Out", "1 > 5"), "C"),
+        task("C", "End"),
+        "Out",
+        "End",
+        groups=[Group(name="G", start="A", end="C", **group)],
     )
     facts = found.groups[0]
     assert (facts.repeats, facts.ends) == (repeats, ends)
@@ -214,9 +204,9 @@ def reading(kind, target, object_id="1", **more):
 @pytest.mark.parametrize("kind", [ConditionType.FAILED, ConditionType.UNREADABLE])
 @pytest.mark.rule("C3", "C7")
 def test_a_reading_fails_only_after_a_failure(kind):
-    analysis = analyse(mission(task("Am1", reading(kind, "B"), "C"), "B", "C"), CATALOG)
+    analysis = analysed(task("Am1", reading(kind, "B"), "C"), "B", "C")
     assert verdicts(analysis, "Am1") == [AFTER, ALWAYS]
-    unmeasured = analyse(mission("X", task("A", reading(kind, "B"), "C"), "B", "C"), CATALOG)
+    unmeasured = analysed("X", task("A", reading(kind, "B"), "C"), "B", "C")
     assert verdicts(unmeasured, "A") == [NEVER, ALWAYS]
 
 
@@ -225,14 +215,14 @@ def test_a_failed_measurement_leaves_nothing_of_the_value_before():
     high = task("Am1", way("Bm1", "1 > 5"), "End")
     again = task("Bm1", reading(ConditionType.FAILED, "Known"), "End")
     known = task("Known", way("Never", "1 > 5"), "End")
-    analysis = analyse(mission(high, again, known, "Never", "End"), CATALOG)
+    analysis = analysed(high, again, known, "Never", "End")
     assert verdicts(analysis, "Known") == [NEVER, AFTER]
 
 
 @pytest.mark.rule("W5", "C3")
 def test_a_missed_window_leaves_a_failed_reading():
     late = task("Am1", reading(ConditionType.FAILED, "B"), "C", window=TimeWindow(latest=5))
-    assert verdicts(analyse(mission(late, "B", "C"), CATALOG), "Am1") == [POSSIBLE, POSSIBLE]
+    assert verdicts(analysed(late, "B", "C"), "Am1") == [POSSIBLE, POSSIBLE]
 
 
 @pytest.mark.rule("C7")
@@ -250,9 +240,9 @@ def test_what_is_abnormal_lies_outside_the_nominal_range():
 @pytest.mark.rule("C7")
 def test_a_value_that_was_just_read_is_not_stale():
     stale = reading(ConditionType.STALE, "B", max_age=5)
-    analysis = analyse(mission(task("Am1", stale, "C"), "B", "C"), CATALOG)
+    analysis = analysed(task("Am1", stale, "C"), "B", "C")
     assert verdicts(analysis, "Am1")[0] is not POSSIBLE
-    later = analyse(mission("Am1", task("A", stale, "C"), "B", "C"), CATALOG)
+    later = analysed("Am1", task("A", stale, "C"), "B", "C")
     assert verdicts(later, "A") == [POSSIBLE, POSSIBLE]
 
 
@@ -273,7 +263,7 @@ def test_a_value_that_no_task_measures_may_be_told_at_any_time():
     assert "C" in analysis.reachable
     assert analysis.diagnostics == ()
     rounds = Group(name="G", start="A", end="B", until=way("x", "2 > 5").conditions)
-    group = analyse(mission("A", "B", "C", groups=(rounds,)), CATALOG).groups[0]
+    group = analysed("A", "B", "C", groups=(rounds,)).groups[0]
     assert (group.repeats, group.ends) == (POSSIBLE, POSSIBLE)
 
 

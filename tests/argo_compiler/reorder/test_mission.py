@@ -53,12 +53,17 @@ def wild_missions(draw):
     return assume_sound(Mission(order=Order.ANY, tasks=tasks, groups=tuple(groups)))
 
 
-def require_the_same_done(mission, values, seed, fails=frozenset()):
-    """In another order that the problem allows, the same tasks are carried out as often."""
+def reordered(mission, seed):
+    """Return random ways, the mission's problem with them, and a random order that it allows."""
     rng = np.random.default_rng(seed)
     ways = random_ways(mission, rng)
     planned = route_problem(mission, ways)
-    route = shuffled(planned, rng)
+    return ways, planned, shuffled(planned, rng)
+
+
+def require_the_same_done(mission, values, seed, fails=frozenset()):
+    """In another order that the problem allows, the same tasks are carried out as often."""
+    ways, planned, route = reordered(mission, seed)
     event("moved" if route != planned.written else "as written")
     changed = apply_route(planned, route)
     assert len(check(changed)) <= len(check(mission))
@@ -107,10 +112,7 @@ def test_the_written_order_gives_the_same_mission(mission, seed):
 @given(missions(kinds=STRAIGHT, most=6, lasting=True), SEEDS)
 @settings(max_examples=examples(60))
 def test_a_mission_takes_as_long_as_its_route(mission, seed):
-    rng = np.random.default_rng(seed)
-    ways = random_ways(mission, rng)
-    planned = route_problem(mission, ways)
-    route = shuffled(planned, rng)
+    ways, planned, route = reordered(mission, seed)
     done = carry_out(apply_route(planned, route), ways, {o: [0] for o in OBJECTS})
     assert done.finished
     assert done.time == evaluate(planned.problem, route).duration
@@ -123,11 +125,8 @@ def test_a_mission_takes_as_long_as_its_route(mission, seed):
 @settings(max_examples=examples(80))
 @pytest.mark.rule("W4", "W5")
 def test_waits_and_windows_are_kept_as_promised(mission, seed):
-    rng = np.random.default_rng(seed)
-    ways = random_ways(mission, rng)
-    planned = route_problem(mission, ways)
+    ways, planned, route = reordered(mission, seed)
     assume(evaluate(planned.problem, planned.written).feasible)
-    route = shuffled(planned, rng)
     event("moved" if route != planned.written else "as written")
     event("waits" if evaluate(planned.problem, route).waiting else "waits for nothing")
     done = carry_out(apply_route(planned, route), ways, {o: [0] for o in OBJECTS})
@@ -158,10 +157,7 @@ def test_the_best_of_all_orders_is_the_suggested_one(mission, seed):
 @given(missions(calm=True), SHOWN, SEEDS)
 @settings(max_examples=examples(60))
 def test_no_branch_takes_longer_than_reckoned(mission, values, seed):
-    rng = np.random.default_rng(seed)
-    ways = random_ways(mission, rng)
-    planned = route_problem(mission, ways)
-    route = shuffled(planned, rng)
+    ways, planned, route = reordered(mission, seed)
     done = carry_out(apply_route(planned, route), ways, values)
     assert done.finished
     assert done.time <= evaluate(planned.problem, route).duration

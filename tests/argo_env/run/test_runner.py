@@ -312,14 +312,15 @@ class Blind(Stub):
         return Path(start, (Motion(start, goal),))
 
 
+THROUGH_THE_FENCE = (
+    start(Pose(x=3.05, y=1.55, z=0.0, yaw=math.radians(-90))),
+    waypoint("OUT", 3.05, -1.45, -0.03, -90),
+)
+
+
 def test_contacts_are_counted(navigator):
     """Straight through the fence at y = 0.1, 4 cm thick, with the hull from -0.39 m to 0.35 m."""
-    down = math.radians(-90)
-    tasks = (
-        start(Pose(x=3.05, y=1.55, z=0.0, yaw=down)),
-        waypoint("OUT", 3.05, -1.45, -0.03, -90),
-    )
-    record = simulated(mission(*tasks), Blind(navigator))
+    record = simulated(mission(*THROUGH_THE_FENCE), Blind(navigator))
     assert record.tasks[0].outcome == "done"
     assert {c.element for c in record.contacts} == {"floor 1 fence south-west"}
     assert [c.start for c in record.contacts] == sorted(c.start for c in record.contacts)
@@ -340,13 +341,8 @@ def test_contacts_are_counted(navigator):
 
 
 def test_contacts_at_two_times_are_two(navigator):
-    down = math.radians(-90)
-    tasks = (
-        start(Pose(x=3.05, y=1.55, z=0.0, yaw=down)),
-        waypoint("OUT", 3.05, -1.45, -0.03, -90),
-        waypoint("IN", 3.05, 1.55, 0.0, -90),
-    )
-    record = simulated(mission(*tasks), Blind(navigator))
+    back = waypoint("IN", 3.05, 1.55, 0.0, -90)
+    record = simulated(mission(*THROUGH_THE_FENCE, back), Blind(navigator))
     hull = [c for c in record.contacts if c.link == "base_link"]
     assert len(hull) == 2
     assert hull[0].end < hull[1].start

@@ -73,7 +73,8 @@ def drive(request):
 
 
 def spec_of(drive, **fields):
-    return RunSpec(mission=PLANS[drive], site="yard", drive=drive, seed=5, **fields)
+    usual = {"mission": PLANS[drive], "site": "yard", "seed": 5}
+    return RunSpec(drive=drive, **(usual | fields))
 
 
 def read(record):
@@ -96,9 +97,7 @@ class TestTheSameWhoeverSteps:
     def test_by_tasks_given_one_by_one(self, site, drive):
         """As environments give them: each when the one before it has ended."""
         start = PLAN.tasks[0].pose
-        spec = RunSpec(
-            mission=beginning(site, start), site="yard", drive=drive, seed=5, faults=FAULTS
-        )
+        spec = spec_of(drive, mission=beginning(site, start), faults=FAULTS)
         given, whole = Entries(), Entries()
         with Inspection(check_run(spec, site), 600.0, [given]) as inspection:
             deeds = [inspection.read(1)]
@@ -160,10 +159,7 @@ class TestPausing:
 @pytest.mark.long
 def test_eight_threads_give_what_each_gives_alone(site):
     drives = [*3 * ["route", "kinematic"], "route", "tracked"]
-    specs = [
-        spec_of(drive, faults=FAULTS).model_copy(update={"seed": seed})
-        for seed, drive in enumerate(drives)
-    ]
+    specs = [spec_of(drive, faults=FAULTS, seed=seed) for seed, drive in enumerate(drives)]
     alone = [simulate(spec, site) for spec in specs]
     together = Barrier(len(specs))
 
@@ -343,7 +339,7 @@ class TestSteering:
     def test_what_occurs_is_reacted_to(self, site):
         answer = Reaction(event=EventKind.GAS_LEAK, response=Response.ABORT)
         plan = PLAN.model_copy(update={"reactions": (answer,)})
-        spec = spec_of("route").model_copy(update={"mission": plan})
+        spec = spec_of("route", mission=plan)
         with simulation_of(spec, site) as simulation:
             steps(simulation, 25)
             simulation.handle(Occurred(EventKind.GAS_LEAK, "a nose"))
@@ -411,7 +407,7 @@ class TestGivenEvents:
 
 class TestOpenMachine:
     def test_a_task_at_a_time(self, site):
-        spec = spec_of("route").model_copy(update={"mission": beginning(site, PLAN.tasks[0].pose)})
+        spec = spec_of("route", mission=beginning(site, PLAN.tasks[0].pose))
         machine = OpenMachine(spec.mission)
         with Simulation(machine, site, spec) as simulation:
             steps(simulation, 20)
@@ -507,7 +503,7 @@ class TestSpec:
     def test_a_worker_runs_it(self, site, tmp_path):
         """What a worker process is sent opens the site by its reference."""
         file = write_site(tmp_path / "yard.yaml")
-        spec = spec_of("route").model_copy(update={"site": file})
+        spec = spec_of("route", site=file)
         sent = pickle.loads(pickle.dumps((run, spec)))
         assert sent[0](sent[1]) == simulate(spec, site)
 
@@ -519,16 +515,13 @@ class TestSpec:
 
 class TestWhatDoesNotFitTogether:
     def test_another_site_than_the_spec_names(self, site):
-        spec = spec_of("route").model_copy(
-            update={"site": "umad", "mission": PLAN.model_copy(update={"site": ""})}
-        )
+        spec = spec_of("route", site="umad", mission=PLAN.model_copy(update={"site": ""}))
         for begin in (lambda: simulate(spec, site), lambda: simulation_of(spec, site)):
             with pytest.raises(Conflict, match="names site umad, and the site given is yard"):
                 begin()
 
     def test_a_mission_of_another_site(self, site):
-        elsewhere = PLAN.model_copy(update={"site": "umad"})
-        spec = spec_of("route").model_copy(update={"mission": elsewhere})
+        spec = spec_of("route", mission=PLAN.model_copy(update={"site": "umad"}))
         with pytest.raises(Conflict, match="planned for site umad, and the site is yard"):
             simulate(spec, site)
 

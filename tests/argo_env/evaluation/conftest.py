@@ -24,13 +24,18 @@ def short_mission(limit: float | None = None) -> Mission:
     return from_place(start, gauge, max_duration=limit)
 
 
-def plan_of(mission, seeds, faults=("none",), drive="route", name="m", **options) -> EvaluationPlan:
+def plan_of(
+    mission, seeds, faults=("none",), drive="route", name="m", given=(), **options
+) -> EvaluationPlan:
     """A plan of the mission in these worlds, with a case for each name of faults, or each name and
-    its weight."""
+    its weight. All but `none` have the faults that are given."""
     spec = RunSpec(mission=mission, drive=drive)
+    faulty = spec.model_copy(update={"faults": given})
     weights = faults if isinstance(faults, dict) else dict.fromkeys(faults, 1.0)
     cases = tuple(
-        EvaluationCase(mission=name, faults=one, spec=spec, weight=weight)
+        EvaluationCase(
+            mission=name, faults=one, spec=spec if one == "none" else faulty, weight=weight
+        )
         for one, weight in weights.items()
     )
     return EvaluationPlan(cases=cases, seeds=tuple(seeds), **options)

@@ -36,19 +36,9 @@ def processes():
 @pytest.fixture(scope="module")
 def faulty(mission) -> EvaluationPlan:
     """With and without an emergency stop that nobody releases, in worlds that vary."""
-    spec = RunSpec(mission=mission, drive="route")
-    return EvaluationPlan(
-        cases=(
-            EvaluationCase(mission="short", spec=spec),
-            EvaluationCase(
-                mission="short",
-                faults="stop",
-                spec=spec.model_copy(update={"faults": EMERGENCY}),
-            ),
-        ),
-        seeds=tuple(range(6)),
-        variation=Variation(speed=(0.8, 1.0), charge=(0.5, 1.0)),
-    )
+    varied = Variation(speed=(0.8, 1.0), charge=(0.5, 1.0))
+    names = ("none", "stop")
+    return plan_of(mission, range(6), names, name="short", given=EMERGENCY, variation=varied)
 
 
 @pytest.fixture(scope="module")

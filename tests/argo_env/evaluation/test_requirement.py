@@ -5,15 +5,14 @@ import math
 import pytest
 
 from argo_compiler.base.errors import Invalid
-from argo_env.evaluation.case import EvaluationCase
 from argo_env.evaluation.detection import FaultDetection
 from argo_env.evaluation.file import decode_evaluation
-from argo_env.evaluation.plan import EvaluationPlan, Stopping
+from argo_env.evaluation.plan import Stopping
 from argo_env.evaluation.rates import Decision
 from argo_env.evaluation.report.sections import other_rates
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.faults.reading import decode_faults
-from argo_env.run.spec import RunSpec
+from tests.argo_env.evaluation import conftest
 from tests.argo_env.evaluation.conftest import came_to
 
 ALARM = decode_faults(b"faults: [{kind: platform_alarm, at: 5}]", "test").faults
@@ -24,16 +23,7 @@ WORLDS = 40
 
 def plan_of(mission, faults, **options):
     """A plan with a case of each of the faults: `none`, or others."""
-    none = RunSpec(mission=mission, drive="kinematic")
-    cases = tuple(
-        EvaluationCase(
-            mission="m",
-            faults=name,
-            spec=none if name == "none" else none.model_copy(update={"faults": ALARM}),
-        )
-        for name in faults
-    )
-    return EvaluationPlan(cases=cases, seeds=tuple(range(WORLDS)), **options)
+    return conftest.plan_of(mission, range(WORLDS), faults, "kinematic", given=ALARM, **options)
 
 
 def results_of(plan, found_in):

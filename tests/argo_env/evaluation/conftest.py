@@ -27,8 +27,8 @@ def short_mission(limit: float | None = None) -> Mission:
 def plan_of(
     mission, seeds, faults=("none",), drive="route", name="m", given=(), **options
 ) -> EvaluationPlan:
-    """A plan of the mission in these worlds, with a case for each name of faults, or each name and
-    its weight. All but `none` have the faults that are given."""
+    """Return a plan of the mission in these worlds, with a case for each name of faults, or each
+    name and its weight. All but `none` have the faults that are given."""
     spec = RunSpec(mission=mission, drive=drive)
     faulty = spec.model_copy(update={"faults": given})
     weights = faults if isinstance(faults, dict) else dict.fromkeys(faults, 1.0)

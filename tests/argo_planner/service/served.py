@@ -83,9 +83,9 @@ class Served:
     def mission(self, id: str) -> Any:
         return self.client.get(f"/api/missions/{id}").json()["mission"]
 
-    def imported(self, script: str, **areas: int) -> str:
+    def imported(self, script: str, filename: str = "m.txt", **areas: int) -> str:
         """Import a script; return the id of its mission."""
-        params = {"filename": "m.txt"} | areas
+        params = {"filename": filename} | areas
         made = self.client.post("/api/imports", params=params, content=script)
         assert made.status_code == 201, made.text
         id: str = made.json()["id"]

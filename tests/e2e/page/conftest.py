@@ -49,6 +49,15 @@ def address(service: Served) -> str:
     return f"http://{service.address}/?token={ALL}"
 
 
+@pytest.fixture
+def ann(browsers: Browsers, address: str) -> Person:
+    """Return somebody at the list of missions, in a window of their own."""
+    ann = browsers.person(address)
+    ann.open()
+    expect(ann.button("New mission")).to_be_enabled()
+    return ann
+
+
 @pytest.fixture(scope="module")
 def window(chromium: Browsers, address: str) -> Person:
     """Somebody whose window stays open for all tests of a file."""

@@ -18,12 +18,8 @@ SCRIPT = Path(__file__).parents[3] / "scenarios" / "umad" / "missions" / "protoc
 
 
 def imported(service: Served) -> str:
-    """The mission of the pictures; its id."""
-    made = service.client.post(
-        "/api/imports", params={"filename": SCRIPT.name}, content=SCRIPT.read_bytes()
-    )
-    id: str = made.json()["id"]
-    return id
+    """Import the mission of the pictures; return its id."""
+    return service.imported(SCRIPT.read_text(encoding="utf-8"), filename=SCRIPT.name)
 
 
 def opened(browsers: Browsers, service: Served, id: str, **context: Any) -> Person:

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import expect
 
-from tests.e2e.page.test_list import plan, row
+from tests.e2e.page.test_list import at, plan, row
 
 pytestmark = pytest.mark.long
 
@@ -13,9 +13,7 @@ __all__ = ["plan"]
 
 
 def opened(browsers: Any, address: str, plan: str) -> Any:
-    person = browsers.person(address)
-    person.open(f"/missions/{plan}")
-    expect(row(person, "C4")).to_be_visible()
+    person = at(browsers, address, plan)
     person.page.locator("#tab-evaluate").click()
     return person
 
@@ -67,9 +65,7 @@ def test_rates_close_in_and_a_failing_run_is_replayed(browsers, address, plan, s
     ann.click(page.locator("#to-evaluation"))
     expect(page.locator("#failing")).to_be_visible()
     # Who takes the robot over sees the robot, and not the replay.
-    begun = service.client.post(
-        f"/api/missions/{plan}/runs", json={"speed": 1.0}, headers={"if-match": "*"}
-    )
+    begun = service.run(plan, speed=1.0)
     assert begun.status_code in (201, 202), begun.text
     expect(page.locator("argo-run-badge")).to_contain_text("Driving by itself")
     page.locator("#tab-evaluate").click()
@@ -78,9 +74,7 @@ def test_rates_close_in_and_a_failing_run_is_replayed(browsers, address, plan, s
     ann.key("F9")
     expect(told).to_have_count(0)
     expect(page.locator("argo-run-band")).to_contain_text("You have the robot")
-    stopped = service.client.post(
-        f"/api/runs/{begun.json()['id']}/requests", json={"kind": "stop", "id": "end"}
-    )
+    stopped = service.post(f"/api/runs/{begun.json()['id']}/requests", kind="stop", id="end")
     assert stopped.status_code == 202, stopped.text
     page.locator("#tab-evaluate").click()
     with ann.context.expect_page() as opening:
@@ -102,9 +96,7 @@ def test_an_evaluation_is_ended_and_goes_on(browsers, address, plan, service) ->
     expect(begin).to_have_attribute("aria-disabled", "true")
     expect(page.locator("#why-not")).to_contain_text("is under way: wait for it, or end it")
     # Another mission can't be evaluated meanwhile, and leads here.
-    other = service.client.post(
-        f"/api/missions/{plan}/duplicate", json={"name": "another one"}
-    ).json()["id"]
+    other = service.post(f"/api/missions/{plan}/duplicate", name="another one").json()["id"]
     bob = opened(browsers, address, other)
     expect(bob.page.locator("#why-not")).to_contain_text("is being evaluated, begun by")
     bob.click(bob.page.locator("#why-not a"))
@@ -124,9 +116,8 @@ def test_an_evaluation_is_ended_and_goes_on(browsers, address, plan, service) ->
     ann.click(page.locator("#cancel"))
     expect(result).to_have_attribute("data-state", "cancelled")
     assert runs_in(done) >= before
-    service.client.post(  # by somebody else, in another way
-        f"/api/missions/{plan}/evaluations", json={"worlds": 3}, headers={"if-match": "*"}
-    ).raise_for_status()
+    # By somebody else, in another way.
+    service.post(f"/api/missions/{plan}/evaluations", "*", worlds=3).raise_for_status()
     expect(page.locator("#done")).to_have_text("3 of 3 runs")
     expect(result).to_contain_text("No run failed.")
     # The one before can still be looked at, and deleted.

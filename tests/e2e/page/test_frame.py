@@ -7,17 +7,9 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.argo_planner.service.served import SECRETS
-from tests.e2e.page.person import Person
 
 HOSTILE = '"><img src=x onerror=alert(1)>{{7*7}}${7*7}'
 SCRIPT = Path(__file__).parents[3] / "scenarios" / "umad" / "missions" / "mission_1.txt"
-
-
-@pytest.fixture
-def ann(browsers, address) -> Person:
-    ann = browsers.person(address)
-    ann.open()
-    return ann
 
 
 def test_a_mission_is_made_named_deleted_and_taken_back(ann, service) -> None:
@@ -44,7 +36,7 @@ def test_a_script_that_leaves_its_areas_open_asks_for_them(ann, service) -> None
     ann.click(ann.button("Import"))
     expect(ann.saved).to_have_text("Saved")
     id = ann.page.url.rpartition("/")[2]
-    mission = service.client.get(f"/api/missions/{id}").json()["mission"]
+    mission = service.mission(id)
     assert (mission["start_area"], mission["end_area"]) == (1, 2)
 
 

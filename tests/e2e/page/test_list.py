@@ -27,18 +27,26 @@ def plan(service: Served) -> str:
 @pytest.fixture
 def ann(resident, plan) -> Person:
     resident.go(f"/missions/{plan}")
-    expect(resident.page.get_by_role("treeitem")).to_have_count(4)
-    expect(resident.button("Add")).to_be_enabled()
+    expect_open(resident)
     return resident
 
 
-def tasks(service: Served, plan: str) -> list[str]:
-    return [task["name"] for task in mission(service, plan)["tasks"]]
-
-
-def mission(service: Served, plan: str) -> dict[str, Any]:
-    found: dict[str, Any] = service.client.get(f"/api/missions/{plan}").json()["mission"]
+def at(browsers: Any, address: str, plan: str, name: str = "ann", **context: Any) -> Person:
+    """Open the mission of the plan for somebody, in a window of their own."""
+    found: Person = browsers.person(address, name, **context)
+    found.open(f"/missions/{plan}")
+    expect_open(found)
     return found
+
+
+def expect_open(person: Person) -> None:
+    """Wait until the four tasks are there and can be edited."""
+    expect(person.page.get_by_role("treeitem")).to_have_count(4)
+    expect(person.button("Add")).to_be_enabled()
+
+
+def tasks(service: Served, plan: str) -> list[str]:
+    return [task["name"] for task in service.mission(plan)["tasks"]]
 
 
 def row(person: Person, name: str) -> Any:
@@ -63,7 +71,7 @@ def test_checkpoints_are_added_by_keys_one_after_the_other(ann, service, plan) -
     expect(row(ann, "MEASURE 2")).to_have_attribute("aria-selected", "true")
     ann.key("Escape", "ArrowUp")
     expect(row(ann, "MEASURE 14")).to_have_attribute("aria-selected", "true")
-    objects = [task["object_id"] for task in mission(service, plan)["tasks"][-2:]]
+    objects = [task["object_id"] for task in service.mission(plan)["tasks"][-2:]]
     assert objects == ["14", "2"]
 
 
@@ -91,7 +99,7 @@ def test_a_group_is_made_left_entered_and_moved_as_a_whole(ann, service, plan) -
     ann.click(row(ann, "Round"))
     ann.key("Alt+ArrowDown")
     order(ann, "START", "C4", "Round", "A1", "B2")
-    found = mission(service, plan)["groups"]
+    found = service.mission(plan)["groups"]
     assert [(g["name"], g["start"], g["end"]) for g in found] == [("Round", "A1", "B2")]
     ann.key("ArrowLeft")
     order(ann, "START", "C4", "Round")
@@ -120,7 +128,7 @@ def test_several_tasks_are_dragged_at_once_into_a_group(ann, service, plan) -> N
     ann.click(row(ann, "B2"), modifiers=["Shift"])
     row(ann, "A1").drag_to(row(ann, "C4"), target_position={"x": 80, "y": 40})
     order(ann, "START", "Round", "C4", "A1", "B2")
-    (group,) = mission(service, plan)["groups"]
+    (group,) = service.mission(plan)["groups"]
     assert (group["start"], group["end"]) == ("C4", "B2")
 
 
@@ -154,12 +162,12 @@ def test_a_group_is_copied_with_what_it_says(ann, service, plan) -> None:
     rounds = ann.page.get_by_label("Rounds")
     rounds.fill("3")
     rounds.press("Enter")
-    ann.until(lambda: mission(service, plan)["groups"][0]["max_repeat_count"] == 3, "3 rounds")
+    ann.until(lambda: service.mission(plan)["groups"][0]["max_repeat_count"] == 3, "3 rounds")
     expect(ann.saved).to_have_text("Saved")
     ann.click(row(ann, "Round"))
     ann.key("Control+c", "Control+v")
     order(ann, "START", "Round", "A1", "B2", "Round (2)", "A1 (2)", "B2 (2)", "C4")
-    groups = mission(service, plan)["groups"]
+    groups = service.mission(plan)["groups"]
     assert [group["max_repeat_count"] for group in groups] == [3, 3]
 
 
@@ -205,7 +213,7 @@ def test_a_place_is_a_waypoint_where_something_is_planned(ann, service, plan) ->
     ann.type("dock")
     ann.key("Enter")
     order(ann, "A1", "B2", "C4", "DOCK")
-    assert mission(service, plan)["tasks"][-1]["action"] == "WAYPOINT"
+    assert service.mission(plan)["tasks"][-1]["action"] == "WAYPOINT"
 
 
 def test_a_form_takes_times_as_people_write_them(ann, service, plan) -> None:
@@ -219,7 +227,7 @@ def test_a_form_takes_times_as_people_write_them(ann, service, plan) -> None:
     field.press("Enter")
     expect(ann.page.get_by_role("alert")).to_have_count(0)
     expect(field).to_have_value("12 min 30 s")
-    assert mission(service, plan)["max_duration"] == 750
+    assert service.mission(plan)["max_duration"] == 750
 
 
 @pytest.mark.long
@@ -235,7 +243,7 @@ def test_a_condition_is_made_in_the_form(ann, service, plan) -> None:
     expect(row(ann, "A1")).to_contain_text("is below 2.5")
 
     def way():
-        return mission(service, plan)["tasks"][1]["transitions"][0]
+        return service.mission(plan)["tasks"][1]["transitions"][0]
 
     ann.until(lambda: way()["target"] == "C4", "it goes on with C4")
     assert (way()["conditions"][0]["type"], way()["conditions"][0]["param1"]) == (

@@ -7,20 +7,12 @@ from playwright.sync_api import expect
 
 from tests.argo_planner.service.served import ALL, Served
 from tests.conftest import examples
-from tests.e2e.page.person import Line, Person
-from tests.e2e.page.test_list import order, plan, row, tasks
+from tests.e2e.page.person import Line
+from tests.e2e.page.test_list import at, order, plan, row, tasks
 
 pytestmark = pytest.mark.long
 
 __all__ = ["plan"]
-
-
-def at(browsers: Any, address: str, plan: str, name: str) -> Person:
-    found: Person = browsers.person(address, name)
-    found.open(f"/missions/{plan}")
-    expect(found.page.get_by_role("treeitem")).to_have_count(4)
-    expect(found.button("Add")).to_be_enabled()
-    return found
 
 
 def test_edits_and_selections_of_others_appear(browsers, address, plan) -> None:
@@ -125,17 +117,9 @@ def test_a_mission_that_is_deleted_leaves_nothing_under_the_next_key(
     assert len(service.client.get("/api/missions").json()["missions"]) == before - 1
 
 
-def test_obstacles_that_were_put_up_meanwhile_are_heard_of(
-    browsers, address, plan, service
-) -> None:
-    ann = browsers.person(address)
-    ann.open()
-    expect(ann.button("New mission")).to_be_enabled()
+def test_obstacles_that_were_put_up_meanwhile_are_heard_of(ann, address, plan, service) -> None:
     box = {"id": "box", "name": "", "pose": {"x": 8, "y": 1.6, "z": 0, "yaw": 0}, "size": [1, 1, 1]}
-    answer = service.client.put(
-        "/api/world/obstacles", json={"obstacles": [box]}, headers={"if-match": "*"}
-    )
-    assert answer.status_code == 200
+    assert service.put_obstacles(box).status_code == 200
     ann.page.goto(f"{address}#/missions/{plan}")
     ann.idle()
     ann.key("n")
@@ -143,9 +127,7 @@ def test_obstacles_that_were_put_up_meanwhile_are_heard_of(
         lambda: ann.ask("() => window.argo.standing(8, 1.6, 0, 0)") == "closed",
         "the ground is closed there",
     )
-    service.client.put(
-        "/api/world/obstacles", json={"obstacles": []}, headers={"if-match": "*"}
-    ).raise_for_status()
+    service.put_obstacles().raise_for_status()
 
 
 def away(browsers: Any, service: Served, plan: str, seconds: float) -> None:

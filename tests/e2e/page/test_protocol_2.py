@@ -9,21 +9,13 @@ from playwright.sync_api import expect
 
 from tests.argo_planner.service.served import Served
 from tests.e2e.page.person import Person
-from tests.e2e.page.test_list import mission, order, row
+from tests.e2e.page.test_list import order, row
 
 MOST = 40
 """inputs, and one more for each undo, redo or reorder"""
 FRONT = (8.05, -2.05, -0.03)
 CORNERS = ((2, 2), (15, 1), (15, 11), (4, 10))
 PLANNED = ("START", "Round", *(f"WAYPOINT {n}" for n in range(1, 5)), "MEASURE 2", "MEASURE 14")
-
-
-@pytest.fixture
-def ann(browsers, address) -> Person:
-    ann = browsers.person(address)
-    ann.open()
-    expect(ann.button("New mission")).to_be_enabled()
-    return ann
 
 
 def expect_planned(ann: Person, service: Served, start: Any, corners: Any) -> str:
@@ -34,7 +26,7 @@ def expect_planned(ann: Person, service: Served, start: Any, corners: Any) -> st
     ann.page.reload()
     order(ann, *PLANNED)
     id = ann.page.url.rpartition("/")[2]
-    found = mission(service, id)
+    found = service.mission(id)
     (group,) = found["groups"]
     assert (group["start"], group["end"]) == ("WAYPOINT 1", "WAYPOINT 4")
     assert (group["max_repeat_count"], group["max_repeat_duration"]) == (0, 600)

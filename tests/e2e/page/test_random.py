@@ -9,7 +9,7 @@ from playwright.sync_api import expect
 from tests.argo_planner.service.served import Served
 from tests.conftest import FIRST_SEED, examples
 from tests.e2e.page.person import Person
-from tests.e2e.page.test_list import mission, plan, row  # noqa: F401
+from tests.e2e.page.test_list import at, plan  # noqa: F401
 
 pytestmark = pytest.mark.long
 
@@ -51,21 +51,19 @@ def rows_shown(person: Person) -> list[tuple[str, int]]:
 def expect_same(person: Person, service: Served, id: str) -> None:
     expect(person.saved).to_have_text("Saved")
     person.until(
-        lambda: rows_shown(person) == rows_of(mission(service, id)),
-        f"{rows_shown(person)} is {rows_of(mission(service, id))}",
+        lambda: rows_shown(person) == rows_of(service.mission(id)),
+        f"{rows_shown(person)} is {rows_of(service.mission(id))}",
     )
 
 
 @pytest.mark.parametrize(("seed", "steps"), [(7, 10), (8 + FIRST_SEED, examples(400))])
 def test_the_list_is_what_the_service_has(browsers, address, service, plan, seed, steps) -> None:  # noqa: F811
-    ann = browsers.person(address, viewport={"width": 1400, "height": 2400})
+    ann = at(browsers, address, plan, viewport={"width": 1400, "height": 2400})
     ann.context.grant_permissions(["clipboard-read", "clipboard-write"])
-    ann.open(f"/missions/{plan}")
-    expect(row(ann, "START")).to_be_visible()
     chosen = random.Random(seed)
     for _ in range(steps):
         key = chosen.choice(KEYS)
-        if len(mission(service, plan)["tasks"]) > 25 and key == "Control+v":
+        if len(service.mission(plan)["tasks"]) > 25 and key == "Control+v":
             key = "Delete"
         ann.focus(ann.page.get_by_role("tree"))
         ann.key(key)

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import expect
 
-from tests.e2e.page.test_list import order, plan, row
+from tests.e2e.page.test_list import at, order, plan, row
 
 __all__ = ["plan"]
 
@@ -22,9 +22,7 @@ def panel(person: Any) -> Any:
 def test_an_edited_mission_is_given_back_edited_and_the_report_is_readable(
     browsers, address, plan, service
 ) -> None:
-    ann = browsers.person(address)
-    ann.open(f"/missions/{plan}")
-    expect(row(ann, "C4")).to_be_visible()
+    ann = at(browsers, address, plan)
     ann.key("F8")
     expect(ann.button("Start the run")).to_be_focused()
     expect(ann.button("Start the run")).to_be_enabled()
@@ -58,22 +56,16 @@ def test_an_edited_mission_is_given_back_edited_and_the_report_is_readable(
 def test_the_run_of_another_mission_does_not_offer_this_one_s_tasks(
     browsers, address, plan, service
 ) -> None:
-    begun = service.client.post(
-        f"/api/missions/{plan}/runs", json={"speed": 0.5}, headers={"if-match": "*"}
-    )
+    begun = service.run(plan, speed=0.5)
     assert begun.status_code == 201, begun.text
     run = begun.json()["id"]
-    other = service.create("Another", service.client.get(f"/api/missions/{plan}").json()["mission"])
-    ann = browsers.person(address)
-    ann.open(f"/missions/{other}")
-    expect(row(ann, "C4")).to_be_visible()
+    other = service.create("Another", service.mission(plan))
+    ann = at(browsers, address, other)
     ann.page.locator("#tab-run").click()
     take_over = ann.button("Take over")
     expect(take_over).to_be_enabled()
     ann.click(take_over)
     expect(ann.button("Give back")).to_be_enabled()
     expect(ann.page.locator("argo-run-hand #task")).to_have_count(0)
-    service.client.post(
-        f"/api/runs/{run}/requests", json={"kind": "stop", "id": "end"}
-    ).raise_for_status()
+    service.post(f"/api/runs/{run}/requests", kind="stop", id="end").raise_for_status()
     ann.until(lambda: runs(service)[0]["status"] == "ended", "the run ends")

@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.e2e.page.person import Person
-from tests.e2e.page.test_list import mission, order, plan, row
+from tests.e2e.page.test_list import at, order, plan, row
 
 __all__ = ["plan"]
 FREE = (8.0, 1.6, 0.0)
@@ -16,10 +16,7 @@ VESSEL = (3.05, 4.0, 0.0)
 
 @pytest.fixture
 def ann(browsers, address, plan) -> Person:
-    ann = browsers.person(address)
-    ann.open(f"/missions/{plan}")
-    expect(row(ann, "A1")).to_be_visible()
-    expect(ann.button("Add")).to_be_enabled()
+    ann = at(browsers, address, plan)
     ann.idle()
     return ann
 
@@ -42,7 +39,7 @@ def test_a_checkpoint_is_measured_with_two_clicks(ann, service, plan) -> None:
     ann.click(ann.at(*checkpoint(service, 3)["position"]))
     ann.click(ann.page.locator("argo-scene").get_by_role("button", name=re.compile("^Measure")))
     order(ann, "START", "A1", "B2", "C4", "MEASURE 3")
-    assert mission(service, plan)["tasks"][-1]["object_id"] == "3"
+    assert service.mission(plan)["tasks"][-1]["object_id"] == "3"
 
 
 @pytest.mark.long
@@ -129,9 +126,7 @@ def test_an_obstacle_closes_the_ground(ann, service) -> None:
         lambda: ann.ask("() => window.argo.standing(8.5, 1.6, 0, 0)") == "closed",
         "the ground is closed there",
     )
-    service.client.put(
-        "/api/world/obstacles", json={"obstacles": []}, headers={"if-match": "*"}
-    ).raise_for_status()
+    service.put_obstacles().raise_for_status()
 
 
 @pytest.mark.long
@@ -147,9 +142,7 @@ def test_an_obstacle_is_put_up_by_keys_alone(ann, service) -> None:
     )
     assert box["name"] == "Box"
     assert box["size"][:2] == [0.5, 0.5]
-    service.client.put(
-        "/api/world/obstacles", json={"obstacles": []}, headers={"if-match": "*"}
-    ).raise_for_status()
+    service.put_obstacles().raise_for_status()
 
 
 @pytest.mark.long

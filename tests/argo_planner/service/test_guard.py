@@ -230,13 +230,15 @@ def test_messages_that_make_no_sense_end_the_connection(service: Served, said: s
     id = service.create(mission=data("a"))
     page = service.follow(id)
     page.recv()
-    page.send(said)
     with pytest.raises(ConnectionClosed):
-        hear_all(page)
-    assert page.close_code in (4400, 1009)
+        talk(page, said)
+    # What is longer than the buffers may be cut off before the close code is read: that is 1006.
+    assert page.close_code in ((1009, 1006) if len(said) > 1_000_000 else (4400, 1009))
 
 
-def hear_all(page: ClientConnection) -> None:
+def talk(page: ClientConnection, said: str) -> None:
+    """Send something, and hear all that comes."""
+    page.send(said)
     while True:
         page.recv(timeout=30)
 

@@ -1,7 +1,6 @@
 """Data of a robot for planning and driving (`urdf/robot/<name>.yaml`); and the speeds that it
 reaches in fact, beside those that it is told to go at."""
 
-import json
 import math
 import os
 from enum import StrEnum
@@ -239,16 +238,16 @@ def load_robot(name: str = "tracker") -> RobotSpec:
 
 @lru_cache(maxsize=16)  # each time that a site is opened
 def _described(kind: type[_Described], path: Path, text: str) -> _Described:
-    """Return what the text of a file describes. What it holds is kept on disk as JSON."""
+    """Return what the text of a file describes. The fields that it sets are kept on disk."""
     parts = cache.entry([text], cache.ROBOTS)
-    known = parts.find_text("data")
-    data = _read_yaml(path, text) if known is None else json.loads(known)
+    known = parts.find_text("fields")
     try:
-        described = kind.model_validate(data)
+        if known is not None:
+            return kind.model_validate_json(known)
+        described = kind.model_validate(_read_yaml(path, text))
     except ValidationError as error:
         raise Invalid(f"{path}: {error}") from error
-    if known is None:
-        parts.keep_text("data", json.dumps(data))
+    parts.keep_text("fields", described.model_dump_json(exclude_unset=True))
     return described
 
 

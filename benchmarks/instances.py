@@ -181,7 +181,7 @@ class _Numbers:
 
     @property
     def left(self) -> int:
-        """How many have not been taken."""
+        """Return how many numbers have not been taken."""
         return len(self._values) - self._next
 
     def take(self, count: int, what: str) -> NDArray[np.float64]:
@@ -228,7 +228,7 @@ def _numbers(file: _File, line: int) -> list[float]:
 
 @dataclass(frozen=True)
 class _Keywords:
-    """What a file of TSPLIB or OPLib says."""
+    """The keywords of a TSPLIB or OPLib file with their values, and its sections of numbers."""
 
     file: _File
     values: Mapping[str, tuple[int, str]]

@@ -161,7 +161,7 @@ def proving() -> Work:
 
 @contextmanager
 def editing() -> Iterator[Work]:
-    """Edits of a mission of 200 tasks, each durable, by a service of its own."""
+    """Yield what makes ten durable edits of a mission of 200 tasks, by a service of its own."""
     import httpx
 
     from benchmarks.service import HEADERS, edit, mission, service

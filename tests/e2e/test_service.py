@@ -167,7 +167,7 @@ class Subscriber(Listener):
 async def edit_until(
     stopped: asyncio.Event, serving: Serving, id: str, acknowledged: Counter[str]
 ) -> int:
-    """Twenty edits a second, each sent again until it is acknowledged."""
+    """Send twenty edits a second, each until it is acknowledged; return the highest revision."""
     loop = asyncio.get_running_loop()
     number, highest = 0, 1
     async with serving.client(httpx.AsyncClient, timeout=10) as client:

@@ -263,7 +263,7 @@ def _timeless(path: Path, folder: Path) -> bytes:
     if path.suffix == ".journal":
         content = re.sub(rb"(?m)^[0-9a-f]{8} (?=.*FOLDER)", b"CHECKSUM ", content)
     if path.name == "printed":
-        content = re.sub(rb"\d+(\.\d+)? s\b.*", b"TIME", content)
+        content = re.sub(rb"\btook \d+\.\d s\b.*", b"took TIME", content)
     return content
 
 

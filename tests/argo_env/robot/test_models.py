@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import shutil
 
 import numpy as np
 import pybullet
@@ -14,7 +15,7 @@ from pydantic import ValidationError
 from argo_compiler.base.catalog import CheckpointKind
 from argo_compiler.base.errors import ArgoError, Invalid
 from argo_compiler.il import Mission, Task
-from argo_env.files import resources
+from argo_env.files import cache, resources
 from argo_env.planning.opening import open_site
 from argo_env.recording.messages import attitude
 from argo_env.robot.pose import BodyPose
@@ -168,6 +169,23 @@ def test_camera_of_the_robot_in_pybullet(client, robot):
 def test_unknown_robot_is_told_with_the_known_ones():
     with pytest.raises(ArgoError, match="no robot `rover`; there are: tracker"):
         load_robot("rover")
+
+
+@pytest.mark.parametrize("name", ["name: tracker", "name: !!binary VMOkbmtjaGVu"])
+def test_a_description_from_the_cache_is_as_the_file_says(name, tmp_path, monkeypatch):
+    monkeypatch.setenv(cache.VARIABLE, str(tmp_path / "cache"))
+    robots = []
+    for folder in (tmp_path / "first", tmp_path / "second"):
+        shutil.copytree(robot_folder(), folder)
+        described = (folder / "tracker.yaml").read_text().replace("name: tracker", name)
+        (folder / "tracker.yaml").write_text(described)
+        with monkeypatch.context() as patch:
+            patch.setattr("argo_env.robot.spec.robot_folder", lambda folder=folder: folder)
+            robots.append(load_robot())
+    first, second = robots
+    assert second == first and second.model_fields_set == first.model_fields_set
+    assert first.name in ("tracker", "Tänkchen")
+    assert len(list((tmp_path / "cache").glob("**/fields.txt"))) == 2
 
 
 def test_there_is_a_model_of_every_kind_of_checkpoint():

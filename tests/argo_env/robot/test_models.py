@@ -183,7 +183,8 @@ def test_a_description_from_the_cache_is_as_the_file_says(name, tmp_path, monkey
             patch.setattr("argo_env.robot.spec.robot_folder", lambda folder=folder: folder)
             robots.append(load_robot())
     first, second = robots
-    assert second == first and second.model_fields_set == first.model_fields_set
+    assert second == first
+    assert second.model_fields_set == first.model_fields_set
     assert first.name in ("tracker", "Tänkchen")
     assert len(list((tmp_path / "cache").glob("**/fields.txt"))) == 2
 

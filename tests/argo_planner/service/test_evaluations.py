@@ -39,7 +39,7 @@ def test_it_is_watched_says_what_the_library_says_and_its_runs_are_replayed(
     with service.follow(id) as page:
         job = begin(service, id, worlds=12, faults=FAULTS, require=["success >= 0.9"])
         while not heard or heard[-1]["state"] == "running":
-            message = json.loads(page.recv(timeout=120))
+            message = json.loads(page.recv(timeout=600))
             if message["kind"] == "job":
                 assert message["job"]["id"] == job
                 heard.append(message["job"])
@@ -103,7 +103,7 @@ def test_one_at_a_time_and_what_was_cancelled_goes_on(service: Served, id: str) 
         problem(service.client.post(f"/api/jobs/{job}/go_on"), 409, "conflict")
         # What was known is counted before anything is told.
         while True:
-            message = json.loads(page.recv(timeout=120))
+            message = json.loads(page.recv(timeout=600))
             if message["kind"] != "job":
                 continue
             assert message["job"]["standing"]["done"] >= before

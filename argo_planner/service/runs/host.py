@@ -91,8 +91,10 @@ class RunHost:
         self._worker: RunProcess | None = None
         self._workers: set[RunProcess] = set()
         """this one, and those that still write the report of a run before"""
-        self._asking = asyncio.Lock()
-        """so that requests are kept and passed on in the order in which they come"""
+        self._changing = asyncio.Lock()
+        """held while the present run is begun, asked, heard or lost, so that requests are kept and
+        passed on in the order in which they come, and the end of one run is not taken for that of
+        the next"""
         self.robot = RobotLine()
         self._read: tuple[str, tuple[Entry, ...]] | None = None
         """a run before that was read last, with its entries: who looks at it reads it in parts"""
@@ -109,21 +111,22 @@ class RunHost:
 
     async def open(self) -> None:
         """Finds the last run. One that had not ended goes on, or waits for a person."""
-        runs = await self._disk.do(self._folder.all)
-        if not runs:
-            return
-        present, found = self._present, runs[0]
-        requests = self._folder.requests(found.state.id)
-        present.become(found, await self._disk.do(requests.all))
-        await self._lose("the service has ended while it was under way", may_stop=True)
-        if self._after_restart is AfterRestart.GO_ON and (
-            present.kept.state.status is RunStatus.INTERRUPTED
-        ):
-            await self._begin()
+        async with self._changing:
+            runs = await self._disk.do(self._folder.all)
+            if not runs:
+                return
+            present, found = self._present, runs[0]
+            requests = self._folder.requests(found.state.id)
+            present.become(found, await self._disk.do(requests.all))
+            await self._lose("the service has ended while it was under way", may_stop=True)
+            if self._after_restart is AfterRestart.GO_ON and (
+                present.kept.state.status is RunStatus.INTERRUPTED
+            ):
+                await self._begin()
 
     async def start(self, order: RunOrder, by: str) -> RunState:
         """Begins a run. Raises Conflict, with who holds the robot, if one is not over yet."""
-        async with self._asking:
+        async with self._changing:
             state = self.state
             if state is not None and state.status is not RunStatus.ENDED:
                 raise Conflict(
@@ -160,7 +163,7 @@ class RunHost:
         Raises NotFound if the run is another one, Conflict if it is over or can't be asked that
         now, Unavailable if the request can't be kept, or the process takes nothing.
         """
-        async with self._asking:
+        async with self._changing:
             state, worker = self._present.of(run), self._worker
             if (known := self._present.book.known(request, by)) is not None:
                 return known
@@ -182,7 +185,7 @@ class RunHost:
             await self._present.accept(accepted)
             if interrupted:
                 await self._begin((request, by))
-            elif worker is not None and worker is self._worker:
+            elif worker is not None:
                 worker.send((request, by))
             return accepted
 
@@ -247,7 +250,8 @@ class RunHost:
 
     async def close(self) -> None:
         """Ends the process; the journal stays, and the run can go on from it."""
-        self._worker = None
+        async with self._changing:
+            self._worker = None
         while self._workers:
             await asyncio.to_thread(next(iter(self._workers)).end)
         await asyncio.to_thread(self._disk.close)
@@ -291,16 +295,18 @@ class RunHost:
                     worker.problem = problem
                 case RobotText(text=text) if worker is self._worker:
                     self.robot.post(text)
-        if worker is self._worker:
-            await self._present.take(messages)
+        async with self._changing:
+            if worker is self._worker:
+                await self._present.take(messages)
 
     async def _died(self, worker: RunProcess) -> None:
         """The process has ended: with the run, or before."""
         try:
-            if worker is self._worker:
-                self._worker = None
-                problem = worker.problem or f"its process has ended ({worker.how_it_ended()})"
-                await self._lose(problem, may_stop=not worker.for_stop)
+            async with self._changing:
+                if worker is self._worker:
+                    self._worker = None
+                    problem = worker.problem or f"its process has ended ({worker.how_it_ended()})"
+                    await self._lose(problem, may_stop=not worker.for_stop)
         finally:
             self._workers.discard(worker)
 

@@ -5,6 +5,7 @@ import json
 import multiprocessing
 import os
 import signal
+import threading
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager, suppress
 from datetime import UTC, datetime
@@ -15,10 +16,12 @@ import pytest
 from argo_compiler.base.errors import Conflict, NotFound
 from argo_compiler.script import import_script
 from argo_env.planning.opening import OpenedSite
+from argo_env.run.log import Entry
 from argo_env.run.record import RunRecord
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_planner.service.runs import requests as asked
+from argo_planner.service.runs.folder import RunFolder
 from argo_planner.service.runs.host import AfterRestart, RunHost
 from argo_planner.service.runs.requests import RunOrder
 from argo_planner.service.runs.state import RunMode, RunStatus
@@ -133,6 +136,30 @@ async def test_a_run_is_that_of_the_simulation(tmp_path, site) -> None:
         entries = await taken(follower, "entry")
         assert [entry["number"] for entry in entries] == [*range(1, state.entries + 1)]
         assert await reported(host) == alone
+
+
+@pytest.mark.long
+async def test_the_end_of_a_process_does_not_end_the_next_run(tmp_path, site, monkeypatch) -> None:
+    read, reads, go_on = RunFolder.entries, threading.Event(), threading.Event()
+
+    def entries(folder: RunFolder, run: str) -> tuple[Entry, ...]:
+        reads.set()
+        assert go_on.wait(60)
+        return read(folder, run)
+
+    async with hosted(tmp_path) as host:
+        await host.start(order(site), "ann")
+        await until(ended(host))
+        # The host reads them when the process has ended.
+        monkeypatch.setattr(RunFolder, "entries", entries)
+        await until(reads.is_set)
+        starting = asyncio.create_task(host.start(order(site, speed=20.0), "bob"))
+        await asyncio.sleep(0.1)
+        go_on.set()
+        second = await starting
+        await until(lambda: host.state.status is not RunStatus.PREPARING)
+        assert (host.state.id, host.state.status) == (second.id, RunStatus.RUNNING)
+        assert await done(host, asked.EndRun(id="stop")) == "confirmed"
 
 
 @pytest.mark.long

@@ -121,6 +121,9 @@ class Evaluations:
         self._jobs = jobs
         self._new_id = new_id
         self._clock = clock
+        self._changing = asyncio.Lock()
+        """held while one begins, goes on or is deleted, and while it is kept how one has ended, so
+        that this does not change one that goes on already"""
         self._replays = asyncio.Semaphore(MOST_REPLAYED)
 
     async def open(self) -> None:
@@ -133,28 +136,30 @@ class Evaluations:
     ) -> EvaluationJob:
         """Begins an evaluation. Raises Conflict if one is under way, Unavailable if it can't be
         kept."""
-        self._require_free()
-        job = EvaluationJob(
-            id=self._new_id(),
-            mission=plan,
-            revision=revision,
-            author=author,
-            begun=self._clock(),
-            name=order.name,
-            asked=order.asked,
-        )
-        return await self._begin(KeptEvaluation(order=order, job=job))
+        async with self._changing:
+            self._require_free()
+            job = EvaluationJob(
+                id=self._new_id(),
+                mission=plan,
+                revision=revision,
+                author=author,
+                begun=self._clock(),
+                name=order.name,
+                asked=order.asked,
+            )
+            return await self._begin(KeptEvaluation(order=order, job=job))
 
     async def go_on(self, id: str) -> EvaluationJob:
         """Goes on with one that was interrupted or cancelled: what has been run is not run again.
         Raises NotFound, Conflict if it can't go on."""
-        job = self.of(id)
-        if job.state not in (JobState.INTERRUPTED, JobState.CANCELLED):
-            raise Conflict(f"evaluation {id} can't go on: it is {job.state}")
-        self._require_free()
-        kept = await asyncio.to_thread(self._folder.kept, id)
-        job = job.model_copy(update={"state": JobState.RUNNING, "problem": None})
-        return await self._begin(KeptEvaluation(order=kept.order, job=job))
+        async with self._changing:
+            job = self.of(id)
+            if job.state not in (JobState.INTERRUPTED, JobState.CANCELLED):
+                raise Conflict(f"evaluation {id} can't go on: it is {job.state}")
+            self._require_free()
+            kept = await asyncio.to_thread(self._folder.kept, id)
+            job = job.model_copy(update={"state": JobState.RUNNING, "problem": None})
+            return await self._begin(KeptEvaluation(order=kept.order, job=job))
 
     def of(self, id: str) -> EvaluationJob:
         """Raises NotFound if there is no such job, or it is no evaluation."""
@@ -172,11 +177,12 @@ class Evaluations:
     async def forget(self, id: str) -> None:
         """Deletes an evaluation that is over, with all its rows. Raises NotFound, Conflict if it is
         under way."""
-        job = self.of(id)
-        if job.state is JobState.RUNNING:
-            raise Conflict(f"evaluation {id} is under way: end it first")
-        self._jobs.forget(id)
-        await asyncio.to_thread(self._folder.forget, id)
+        async with self._changing:
+            job = self.of(id)
+            if job.state is JobState.RUNNING:
+                raise Conflict(f"evaluation {id} is under way: end it first")
+            self._jobs.forget(id)
+            await asyncio.to_thread(self._folder.forget, id)
 
     async def forget_all_of(self, plan: str) -> None:
         """Deletes the evaluations of a mission that is gone for good."""
@@ -242,19 +248,19 @@ class Evaluations:
 
     async def _begin(self, kept: KeptEvaluation) -> EvaluationJob:
         await asyncio.to_thread(self._folder.keep, kept)
-        self._require_free()  # meanwhile somebody else may have begun one
         work = JobProcess(evaluate_mission, kept.order, self._folder.path(kept.job.id), parent=True)
 
         async def ended(job: Job) -> None:
             assert isinstance(job, EvaluationJob)
-            if job.state in (JobState.CANCELLED, JobState.INTERRUPTED):
-                job = await asyncio.to_thread(self._folder.cut_short, job)
-                self._jobs.tell_anew(job)
-            try:
-                now = KeptEvaluation(order=kept.order, job=job)
-                await asyncio.to_thread(self._folder.keep, now)
-            except ArgoError as error:
-                _log.error("evaluation %s: how it ended is not kept: %s", job.id, error)
+            async with self._changing:
+                if job.state in (JobState.CANCELLED, JobState.INTERRUPTED):
+                    job = await asyncio.to_thread(self._folder.cut_short, job)
+                    self._jobs.tell_anew(job)
+                try:
+                    now = KeptEvaluation(order=kept.order, job=job)
+                    await asyncio.to_thread(self._folder.keep, now)
+                except ArgoError as error:
+                    _log.error("evaluation %s: how it ended is not kept: %s", job.id, error)
 
         self._jobs.begin(kept.job, work, ended)
         return kept.job

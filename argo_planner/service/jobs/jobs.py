@@ -69,7 +69,7 @@ class Jobs:
             raise Conflict(f"job {id} is over: it is {job.state}")
         under_way.watching.cancel()
         await under_way.work.end()
-        job = self._keep(self._jobs[id].model_copy(update={"state": JobState.CANCELLED}))
+        job = self._keep(job.model_copy(update={"state": JobState.CANCELLED}))
         await under_way.ended(job)
         return self._jobs.get(id, job)
 
@@ -104,10 +104,10 @@ class Jobs:
             resumable = isinstance(job, EvaluationJob) and isinstance(error, Unavailable)
             state = JobState.INTERRUPTED if resumable else JobState.FAILED
             job = job.model_copy(update={"state": state, "problem": str(error)})
+        await work.end()
         under_way = self._under_way.pop(id, None)
         if under_way is not None:
             self._keep(job)
-            await work.end()
             await under_way.ended(job)
 
     def _keep(self, job: Job) -> Job:

@@ -1,7 +1,10 @@
 """Evaluations over HTTP: begun, watched, cancelled, gone on with, replayed, reported."""
 
 import json
+import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from threading import Event
 
 import pytest
 
@@ -10,6 +13,8 @@ from argo_env.evaluation.evaluation import Evaluation
 from argo_env.evaluation.store import read_rows
 from argo_env.faults.robot import LowBattery
 from argo_env.planning.opening import OpenedSite
+from argo_planner.service.evaluations.evaluations import EvaluationFolder
+from argo_planner.service.jobs.job import EvaluationJob
 from argo_planner.service.web.access import AccessRole
 from tests.argo_planner.service.served import SECRETS, Served, served
 from tests.argo_planner.service.test_http import begun, problem
@@ -140,6 +145,43 @@ def test_the_evaluation_of_a_mission_that_is_deleted_ends(service: Served) -> No
     assert service.client.get(f"/api/jobs/{job}").json()["state"] == "cancelled"
     assert service.client.delete(f"/api/bin/{id}").status_code == 204
     problem(service.client.get(f"/api/jobs/{job}"), 404, "not-found")
+
+
+@pytest.mark.long
+def test_one_that_goes_on_while_its_end_is_kept_is_under_way(
+    service: Served, id: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read, reads, go_on = EvaluationFolder.cut_short, Event(), Event()
+
+    def cut_short(folder: EvaluationFolder, job: EvaluationJob) -> EvaluationJob:
+        if not reads.is_set():
+            reads.set()
+            assert go_on.wait(60)
+        return read(folder, job)
+
+    monkeypatch.setattr(EvaluationFolder, "cut_short", cut_short)
+    job = begin(service, id, worlds=10_000)
+    until(service, job, lambda read: read["standing"] is not None)
+    with ThreadPoolExecutor() as people:
+        cancelled = people.submit(service.client.delete, f"/api/jobs/{job}")
+        assert reads.wait(60)
+        gone_on = people.submit(service.client.post, f"/api/jobs/{job}/go_on")
+        time.sleep(0.2)
+        go_on.set()
+        assert gone_on.result().status_code == 202
+        assert cancelled.result().status_code == 200
+    assert service.client.get(f"/api/jobs/{job}").json()["state"] == "running"
+    service.client.delete(f"/api/jobs/{job}")
+
+
+@pytest.mark.long
+def test_of_several_that_begin_at_once_only_one_does(tmp_path: Path, site: OpenedSite) -> None:
+    with served(tmp_path, site) as service:
+        id = imported(service)
+        with ThreadPoolExecutor(8) as people:
+            answers = [*people.map(lambda _: asked(service, id, worlds=10_000), range(8))]
+        assert sorted(one.status_code for one in answers) == [202, *[409] * 7]
+        assert len(list((tmp_path / "evaluations").iterdir())) == 1
 
 
 @pytest.mark.long

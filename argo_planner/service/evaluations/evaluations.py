@@ -121,7 +121,7 @@ class Evaluations:
         self._jobs = jobs
         self._new_id = new_id
         self._clock = clock
-        self._changing = asyncio.Lock()
+        self._turn = asyncio.Lock()
         """held while one begins, goes on or is deleted, and while it is kept how one has ended, so
         that this does not change one that goes on already"""
         self._replays = asyncio.Semaphore(MOST_REPLAYED)
@@ -136,7 +136,7 @@ class Evaluations:
     ) -> EvaluationJob:
         """Begins an evaluation. Raises Conflict if one is under way, Unavailable if it can't be
         kept."""
-        async with self._changing:
+        async with self._turn:
             self._require_free()
             job = EvaluationJob(
                 id=self._new_id(),
@@ -152,7 +152,7 @@ class Evaluations:
     async def go_on(self, id: str) -> EvaluationJob:
         """Goes on with one that was interrupted or cancelled: what has been run is not run again.
         Raises NotFound, Conflict if it can't go on."""
-        async with self._changing:
+        async with self._turn:
             job = self.of(id)
             if job.state not in (JobState.INTERRUPTED, JobState.CANCELLED):
                 raise Conflict(f"evaluation {id} can't go on: it is {job.state}")
@@ -177,7 +177,7 @@ class Evaluations:
     async def forget(self, id: str) -> None:
         """Deletes an evaluation that is over, with all its rows. Raises NotFound, Conflict if it is
         under way."""
-        async with self._changing:
+        async with self._turn:
             job = self.of(id)
             if job.state is JobState.RUNNING:
                 raise Conflict(f"evaluation {id} is under way: end it first")
@@ -252,7 +252,7 @@ class Evaluations:
 
         async def ended(job: Job) -> None:
             assert isinstance(job, EvaluationJob)
-            async with self._changing:
+            async with self._turn:
                 if job.state in (JobState.CANCELLED, JobState.INTERRUPTED):
                     job = await asyncio.to_thread(self._folder.cut_short, job)
                     self._jobs.tell_anew(job)

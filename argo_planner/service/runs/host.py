@@ -91,7 +91,7 @@ class RunHost:
         self._worker: RunProcess | None = None
         self._workers: set[RunProcess] = set()
         """this one, and those that still write the report of a run before"""
-        self._changing = asyncio.Lock()
+        self._turn = asyncio.Lock()
         """held while the present run is begun, asked, heard or lost, so that requests are kept and
         passed on in the order in which they come, and the end of one run is not taken for that of
         the next"""
@@ -111,7 +111,7 @@ class RunHost:
 
     async def open(self) -> None:
         """Finds the last run. One that had not ended goes on, or waits for a person."""
-        async with self._changing:
+        async with self._turn:
             runs = await self._disk.do(self._folder.all)
             if not runs:
                 return
@@ -126,7 +126,7 @@ class RunHost:
 
     async def start(self, order: RunOrder, by: str) -> RunState:
         """Begins a run. Raises Conflict, with who holds the robot, if one is not over yet."""
-        async with self._changing:
+        async with self._turn:
             state = self.state
             if state is not None and state.status is not RunStatus.ENDED:
                 raise Conflict(
@@ -163,7 +163,7 @@ class RunHost:
         Raises NotFound if the run is another one, Conflict if it is over or can't be asked that
         now, Unavailable if the request can't be kept, or the process takes nothing.
         """
-        async with self._changing:
+        async with self._turn:
             state, worker = self._present.of(run), self._worker
             if (known := self._present.book.known(request, by)) is not None:
                 return known
@@ -250,7 +250,7 @@ class RunHost:
 
     async def close(self) -> None:
         """Ends the process; the journal stays, and the run can go on from it."""
-        async with self._changing:
+        async with self._turn:
             self._worker = None
         while self._workers:
             await asyncio.to_thread(next(iter(self._workers)).end)
@@ -295,14 +295,14 @@ class RunHost:
                     worker.problem = problem
                 case RobotText(text=text) if worker is self._worker:
                     self.robot.post(text)
-        async with self._changing:
+        async with self._turn:
             if worker is self._worker:
                 await self._present.take(messages)
 
     async def _died(self, worker: RunProcess) -> None:
         """The process has ended: with the run, or before."""
         try:
-            async with self._changing:
+            async with self._turn:
                 if worker is self._worker:
                     self._worker = None
                     problem = worker.problem or f"its process has ended ({worker.how_it_ended()})"

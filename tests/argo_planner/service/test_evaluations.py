@@ -151,13 +151,13 @@ def test_the_evaluation_of_a_mission_that_is_deleted_ends(service: Served) -> No
 def test_one_that_goes_on_while_its_end_is_kept_is_under_way(
     service: Served, id: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    read, reads, go_on = EvaluationFolder.cut_short, Event(), Event()
+    as_before, reads, go_on = EvaluationFolder.cut_short, Event(), Event()
 
     def cut_short(folder: EvaluationFolder, job: EvaluationJob) -> EvaluationJob:
         if not reads.is_set():
             reads.set()
             assert go_on.wait(60)
-        return read(folder, job)
+        return as_before(folder, job)
 
     monkeypatch.setattr(EvaluationFolder, "cut_short", cut_short)
     job = begin(service, id, worlds=10_000)

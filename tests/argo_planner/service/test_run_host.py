@@ -140,12 +140,12 @@ async def test_a_run_is_that_of_the_simulation(tmp_path, site) -> None:
 
 @pytest.mark.long
 async def test_the_end_of_a_process_does_not_end_the_next_run(tmp_path, site, monkeypatch) -> None:
-    read, reads, go_on = RunFolder.entries, threading.Event(), threading.Event()
+    as_before, reads, go_on = RunFolder.entries, threading.Event(), threading.Event()
 
     def entries(folder: RunFolder, run: str) -> tuple[Entry, ...]:
         reads.set()
         assert go_on.wait(60)
-        return read(folder, run)
+        return as_before(folder, run)
 
     async with hosted(tmp_path) as host:
         await host.start(order(site), "ann")

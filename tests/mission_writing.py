@@ -2,16 +2,38 @@
 
 from argo_compiler.base.catalog import CheckpointInfo, CheckpointKind, Interval
 from argo_compiler.base.model import Pose
-from argo_compiler.il import Action, Mission, Task, Transition, WaitRule
+from argo_compiler.il import (
+    Action,
+    Condition,
+    ConditionType,
+    Mission,
+    Reaction,
+    Task,
+    Transition,
+    WaitRule,
+)
 
 
 def way(target, *conditions):
     return Transition(target=target, conditions=conditions)
 
 
+def above(object_id, value, **fields):
+    """Return the condition that a reading is greater than a value."""
+    return Condition(type=ConditionType.GREATER, object_id=object_id, param1=value, **fields)
+
+
+def reaction(event, response, **fields):
+    return Reaction(event=event, response=response, **fields)
+
+
 def _task(name, ways, usual, given):
     transitions = tuple(way(one) if isinstance(one, str) else one for one in ways)
     return Task(**{"name": name, "transitions": transitions, **usual, **given})
+
+
+def start(name, *ways, **fields):
+    return _task(name, ways, {"action": Action.START}, fields)
 
 
 def measure(name, *ways, **fields):

@@ -17,14 +17,14 @@ from argo_compiler.il import (
     Group,
     JointState,
     Mission,
-    Reaction,
     Stop,
     Task,
     TimeWindow,
     Transition,
 )
-from tests.mission_writing import checkpoint, wait
+from tests.mission_writing import checkpoint, start, wait
 from tests.mission_writing import measure as at_its_name
+from tests.mission_writing import reaction as react
 
 measure = partial(at_its_name, object_id="1")
 
@@ -34,7 +34,7 @@ def when(target, type=ConditionType.LESS, object_id="1", low=0.0, high=None):
     return Transition(target=target, conditions=(condition,))
 
 
-START = Task(name="S", action=Action.START, transitions=(Transition(target="A"),))
+START = start("S", "A")
 CHAIN = (measure("A", "B"), measure("B", "C"), measure("C", "D"), measure("D"))
 
 
@@ -213,10 +213,6 @@ def test_all_findings_come_at_once():
 def test_sound_mission_has_no_findings():
     way = Task(name="W", action=Action.WAYPOINT, pose=Pose(x=0, y=0, z=0))
     assert codes(chain(tasks=(START, *CHAIN, way))) == []
-
-
-def react(event, response, **fields):
-    return Reaction(event=event, response=response, **fields)
 
 
 DOCK = Pose(x=0, y=0, z=0)

@@ -7,19 +7,15 @@ import pytest
 
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import Severity
-from argo_compiler.il import Action, Condition, ConditionType, Mission, Order, Task, Transition
+from argo_compiler.il import Mission, Order
 from tests.conftest import examples
+from tests.mission_writing import above, measure, way
 
-ABOVE = Condition(type=ConditionType.GREATER, object_id="1", param1=5.0)
 
-
-def task(name, *ways):
+def task(name, *targets):
     """The last of the ways is without conditions."""
-    transitions = tuple(
-        Transition(target=way, conditions=() if i == len(ways) - 1 else (ABOVE,))
-        for i, way in enumerate(ways)
-    )
-    return Task(name=name, action=Action.MEASURE, object_id="1", transitions=transitions)
+    ways = (way(target, above("1", 5.0)) for target in targets[:-1])
+    return measure(name, *ways, *targets[-1:], object_id="1")
 
 
 ROW = (task("A", "B"), task("B", "C"), task("C"))

@@ -9,7 +9,7 @@ from argo_compiler.base.model import Pose
 from argo_compiler.checks import check
 from argo_compiler.files.mission_file import mission_text
 from argo_compiler.hfsm import lower
-from argo_compiler.il import Action, Mission, Task, Transition
+from argo_compiler.il import Mission
 from argo_compiler.isar import InspectionView, to_isar
 from argo_compiler.ros import Storage, to_ros1_bag, to_ros2_bag
 from argo_planner.terminal.files import read_upload
@@ -17,14 +17,10 @@ from argo_planner.use_cases.exporting import exporters
 from argo_planner.use_cases.importing import SourceKind, kind_of
 from argo_planner.use_cases.importing import load as load_upload
 from tests.argo_compiler.script.conftest import CATALOG
+from tests.mission_writing import measure
 
-PLAN = Mission(
-    designation="Round",
-    tasks=(
-        Task(name="A", action=Action.MEASURE, object_id="1", transitions=(Transition(target="B"),)),
-        Task(name="B", action=Action.MEASURE, object_id="4"),
-    ),
-)
+TASKS = measure("A", "B", object_id="1"), measure("B", object_id="4")
+PLAN = Mission(designation="Round", tasks=TASKS)
 VIEWS = {id: InspectionView(pose=Pose(x=1, y=2, z=0), target=(0, 2, 1)) for id in ("1", "4")}
 
 

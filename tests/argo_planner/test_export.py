@@ -8,13 +8,11 @@ from argo_compiler.base.errors import ArgoError
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.export import EXPORTERS
 from argo_compiler.files.mission_file import write_mission
-from argo_compiler.il import EventKind, Mission, Reaction, Response, Task, Transition
+from argo_compiler.il import EventKind, Mission, Reaction, Response
 from tests.argo_planner.conftest import argo
+from tests.mission_writing import measure
 
-TASKS = (
-    Task(name="A", action="MEASURE", object_id="1", transitions=(Transition(target="B"),)),
-    Task(name="B", action="MEASURE", object_id="4"),
-)
+TASKS = measure("A", "B", object_id="1"), measure("B", object_id="4")
 
 
 @pytest.fixture
@@ -41,7 +39,7 @@ def test_every_format_is_written(export, to):
 
 def test_all_that_a_format_can_not_say_is_said(export):
     reaction = Reaction(event=EventKind.GAS_LEAK, response=Response.PAUSE)
-    back = TASKS[1].model_copy(update={"transitions": (Transition(target="A"),)})
+    back = measure("B", "A", object_id="4")
     mission = Mission(tasks=(TASKS[0], back), reactions=(reaction,))
     with pytest.raises(DiagnosticError, match=r"mission\.json") as caught:
         export(mission, "btcpp")

@@ -15,9 +15,8 @@ import argparse
 import time
 from collections import Counter
 from collections.abc import Sequence
-from itertools import pairwise
 
-from argo_compiler.il import Action, EventKind, Mission, Task, Transition
+from argo_compiler.il import EventKind, Mission
 from argo_env.faults.walkway import Brick
 from argo_env.navigation import Navigator
 from argo_env.planning import OpenedSite, open_site
@@ -27,6 +26,8 @@ from argo_env.run.spec import RunSpec
 from argo_env.seeding import generator
 from argo_env.site import Site
 from benchmarks.options import seed_number
+from tests.mission_writing import drive as waypoint
+from tests.yard import from_place, measure
 
 
 def random_mission(navigator: Navigator, seed: int) -> Mission:
@@ -41,19 +42,8 @@ def random_mission(navigator: Navigator, seed: int) -> Mission:
 
 def _round(site: Site, start: int, end: int, checkpoints: Sequence[int]) -> Mission:
     """A mission from dock to dock, without what a header says of them."""
-    tasks = [
-        Task(name="START", action=Action.START, pose=site.docks[start]),
-        *(
-            Task(name=f"MEASURE {id}", action=Action.MEASURE, object_id=str(id))
-            for id in checkpoints
-        ),
-        Task(name="DOCK", action=Action.WAYPOINT, pose=site.docks[end]),
-    ]
-    linked = [
-        a.model_copy(update={"transitions": (Transition(target=b.name),)})
-        for a, b in pairwise(tasks)
-    ]
-    return Mission(site=site.name, tasks=(*linked, tasks[-1]))
+    home = waypoint("DOCK", pose=site.docks[end])
+    return from_place(site.docks[start], *map(measure, checkpoints), home, site=site.name)
 
 
 def clean(navigator: Navigator, count: int, first_seed: int, drive: str) -> None:

@@ -15,16 +15,7 @@ import pytest
 
 from argo_compiler.hfsm import Occurred, Pause, Resume
 from argo_compiler.hfsm.events import ReadingGiven
-from argo_compiler.il import (
-    Action,
-    Condition,
-    ConditionType,
-    EventKind,
-    Group,
-    Task,
-    TimeWindow,
-    WaitRule,
-)
+from argo_compiler.il import EventKind, Group, TimeWindow
 from argo_env.run.journal import open_journal
 from argo_env.run.record import RunRecord
 from argo_env.run.session import resume
@@ -32,27 +23,21 @@ from argo_env.run.spec import logged
 from tests.conftest import FIRST_SEED, examples
 from tests.e2e.conftest import reported, started
 from tests.e2e.test_errors import refused
+from tests.mission_writing import above, wait
 from tests.yard import measure, mission, opened, shelter, simulated, waypoint, write_yard
 
 KILLS = examples(32)
 LONGEST = 1.2  # s that a process lives; a whole run takes somewhat longer
 
 PLAN = mission(
-    Task(name="Rest", action=Action.WAIT, wait=WaitRule(duration=6.0)),
+    wait("Rest", duration=6.0),
     measure(1),
     waypoint("A", 2.05, 2.05),
     measure(2),
-    Task(name="Join", action=Action.WAIT, wait=WaitRule(duration=0.0)),
+    wait("Join", duration=0.0),
     measure(3, window=TimeWindow(earliest=260.0)),
     waypoint("C", 3.05, 2.05, window=TimeWindow(latest=270.0, missed_target="Told"), optional=True),
-    Task(
-        name="Told",
-        action=Action.WAIT,
-        wait=WaitRule(
-            conditions=(Condition(type=ConditionType.GREATER, object_id="2", param1=8.0),),
-            limit=300.0,
-        ),
-    ),
+    wait("Told", conditions=(above("2", 8.0),), limit=300.0),
     measure(1).model_copy(update={"name": "MEASURE 1 again"}),
     groups=(
         Group(
@@ -61,7 +46,7 @@ PLAN = mission(
             end="Join",
             max_repeat_count=4,
             every=100.0,
-            until=(Condition(type=ConditionType.GREATER, object_id="3", param1=8.0),),
+            until=(above("3", 8.0),),
         ),
     ),
     reactions=(shelter(2.05, 1.55),),

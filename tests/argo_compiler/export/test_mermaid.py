@@ -16,9 +16,8 @@ from argo_compiler.il import (
     Stop,
     Task,
     TimeWindow,
-    Transition,
 )
-from tests.mission_writing import measure, wait
+from tests.mission_writing import above, measure, wait, way
 
 STATE = re.compile(r'state "((?:[\w ,().-]|#\d+;)*)" as (\w+)( \{)?')
 CHOICE = re.compile(r"state (\w+) <<choice>>")
@@ -52,11 +51,11 @@ def read(text):
 
 @pytest.fixture
 def mission():
-    hot = Condition(type=ConditionType.GREATER, object_id="B", param1=7.5, max_age=60)
+    hot = above("B", 7.5, max_age=60)
     return Mission(
         tasks=(
             measure("A", "B"),
-            measure("B", "C", Transition(target="D", conditions=(hot,))),
+            measure("B", "C", way("D", hot)),
             measure("C", "D"),
             measure("D"),
         ),
@@ -148,7 +147,7 @@ def test_failures_and_reactions():
 
 
 def test_version_3_is_on_the_boxes_and_arrows():
-    hot = Condition(type=ConditionType.GREATER, object_id="B", param1=7.5)
+    hot = above("B", 7.5)
     unreadable = Condition(type=ConditionType.UNREADABLE, object_id="B")
     window = TimeWindow(earliest=60, latest=90, missed_target="D")
     mission = Mission(

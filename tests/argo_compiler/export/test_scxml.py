@@ -22,25 +22,15 @@ from argo_compiler.hfsm import (
     Tick,
     lower,
 )
-from argo_compiler.il import (
-    EventKind,
-    Group,
-    Mission,
-    OnFailure,
-    Reaction,
-    Stop,
-    Task,
-    TimeWindow,
-    Transition,
-)
+from argo_compiler.il import EventKind, Group, Mission, OnFailure, Stop, Task, TimeWindow
 from tests.argo_compiler.export.charts import ARGO, NS, Chart
 from tests.argo_compiler.export.executing import Both
 from tests.argo_compiler.hfsm.random_missions import busy_cases, cases
 from tests.argo_compiler.hfsm.world import World
 from tests.conftest import examples
 from tests.mission_parts import HERE, assume_sound
+from tests.mission_writing import drive, reaction, start, wait
 from tests.mission_writing import measure as a
-from tests.mission_writing import wait
 
 
 def without_handwork(case):
@@ -59,10 +49,6 @@ def test_chart_does_what_the_executor_does(case):
 @given(busy_cases())
 def test_chart_is_interrupted_as_the_executor_is(case):
     World(Both(assume_sound(case.mission)), without_handwork(case)).run()
-
-
-def reaction(event, response, **fields):
-    return Reaction(event=event, response=response, **fields)
 
 
 def occurs(event):
@@ -201,9 +187,8 @@ def test_names_are_labels():
 
 
 def test_states_say_what_a_driver_needs():
-    start = Task(name="S", action="START", velocity=0.5, transitions=(Transition(target="A"),))
-    task = Task(name="A", action="WAYPOINT", pose=Pose(x=1, y=2.5, z=0), velocity=0.25)
-    mission = Mission(tasks=(start, task), max_duration=60)
+    there = drive("A", pose=Pose(x=1, y=2.5, z=0), velocity=0.25)
+    mission = Mission(tasks=(start("S", "A", velocity=0.5), there), max_duration=60)
     root = ET.fromstring(to_scxml(mission, lower(mission)))
     assert root.get(f"{ARGO}max_duration") == "60"
     states = {e.get("id"): e for e in root.iter(f"{{{NS['s']}}}state")}

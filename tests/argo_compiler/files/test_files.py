@@ -4,17 +4,15 @@ from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, Span
 from argo_compiler.files import mission_file as files
 from argo_compiler.files.mission_file import decode_mission, read_mission, write_mission
-from argo_compiler.il import Action, Group, Mission, Stop, Task, Transition
+from argo_compiler.il import Group, Mission, Stop
+from tests.mission_writing import measure, start
 
 
 @pytest.fixture
 def mission():
     return Mission(
         designation="Öl #1",
-        tasks=(
-            Task(name="S", action=Action.START, transitions=(Transition(target="A"),)),
-            Task(name="A", action=Action.MEASURE, object_id="4"),
-        ),
+        tasks=(start("S", "A"), measure("A", object_id="4")),
         groups=(Group(name="G", start="A", end="A", max_repeat_count=2, stop=Stop.SOFT),),
     )
 
@@ -154,11 +152,8 @@ def test_keys_that_stand_twice_are_refused_with_both_places(tmp_path):
 
 
 def test_findings_about_a_mission_point_into_its_file(tmp_path):
-    script = Span(line=700, column=1)
-    wrong = Transition(target="Z")
-    mission = Mission(
-        tasks=(Task(name="A", action=Action.MEASURE, object_id="1", transitions=(wrong,)),)
-    ).model_copy(update={"groups": (Group(name="G", start="A", end="Y", source=script),)})
+    group = Group(name="G", start="A", end="Y", source=Span(line=700, column=1))
+    mission = Mission(tasks=(measure("A", "Z", object_id="1"),), groups=(group,))
     path = tmp_path / "plan.json"
     write_mission(mission, path)
     file = decode_mission(path.read_bytes(), str(path))
@@ -188,5 +183,4 @@ def test_file_that_can_not_be_written(tmp_path, mission):
 def test_a_file_of_version_1_is_read_as_what_it_meant(tmp_path):
     old = b'{"version": 1, "tasks": [{"name": "A", "action": "MEASURE", "object_id": "1"}]}'
     mission = read_mission(write(tmp_path, old))
-    task = Task(name="A", action=Action.MEASURE, object_id="1")
-    assert mission == Mission(tasks=(task,))
+    assert mission == Mission(tasks=(measure("A", object_id="1"),))

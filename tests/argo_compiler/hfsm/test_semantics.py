@@ -16,11 +16,8 @@ from argo_compiler.il import (
     Transition,
 )
 from tests.argo_compiler.hfsm.play import build, drive, path
+from tests.mission_writing import above
 from tests.mission_writing import way as when
-
-
-def greater(object_id: str, limit: float, max_age: float | None = None) -> Condition:
-    return Condition(type=ConditionType.GREATER, object_id=object_id, param1=limit, max_age=max_age)
 
 
 class TestTasks:
@@ -35,16 +32,16 @@ class TestTasks:
     @pytest.mark.rule("G8")
     @pytest.mark.parametrize(("value", "expected"), [(5.0, "A@0 C@1 end@2"), (3.0, "A@0 B@1")])
     def test_unconditional_comes_last_wherever_it_stands(self, value, expected):
-        mission = build("A B C", ways={"A": ["B", when("C", greater("A", 3))]})
+        mission = build("A B C", ways={"A": ["B", when("C", above("A", 3))]})
         assert path(drive(mission, reads={"A": [value]})).startswith(expected)
 
     @pytest.mark.rule("T2")
     def test_first_transition_whose_conditions_all_hold(self):
         ways = {
             "A": [
-                when("B", greater("A", 1), greater("A", 9)),
-                when("C", greater("A", 1)),
-                when("D", greater("A", 0)),
+                when("B", above("A", 1), above("A", 9)),
+                when("C", above("A", 1)),
+                when("D", above("A", 0)),
             ]
         }
         executor = drive(build("A B C D", ways=ways), reads={"A": [5]})
@@ -54,14 +51,14 @@ class TestTasks:
 
     @pytest.mark.rule("M3", "T4")
     def test_mission_ends_when_no_condition_holds(self):
-        executor = drive(build("A B", ways={"A": [when("B", greater("A", 1))]}))
+        executor = drive(build("A B", ways={"A": [when("B", above("A", 1))]}))
         assert path(executor) == "A@0 end@1"
         assert executor.finished
         assert executor.configuration == ("mission", "done")
 
     @pytest.mark.rule("T8", "C4")
     def test_failure_is_recorded_and_the_mission_goes_on(self):
-        ways = {"A": [when("C", greater("A", -1)), "B"]}
+        ways = {"A": [when("C", above("A", -1)), "B"]}
         executor = drive(build("A B C", ways=ways), reads={"A": [None]})
         assert path(executor) == "A@0 B@1 C@2 end@3"
         assert executor.trace[1].failure == "no view"
@@ -69,9 +66,9 @@ class TestTasks:
 
     @pytest.mark.rule("T8", "C3", "C4", "C6")
     def test_failure_takes_the_place_of_the_value_before(self):
-        executor = drive(build("A B", ways={"B": [when("A", greater("B", 0))]}), reads={"B": [1]})
+        executor = drive(build("A B", ways={"B": [when("A", above("B", 0))]}), reads={"B": [1]})
         assert executor.values["B"].value == 0
-        mission = build("A", ways={"A": [when("A", greater("A", 0))]})
+        mission = build("A", ways={"A": [when("A", above("A", 0))]})
         executor = drive(mission, reads={"A": [4, None, 0]})
         assert [entry.failure for entry in executor.trace[1:]] == [None, "no view"]
         assert executor.readings["A"].kind is ReadingKind.FAILED
@@ -80,7 +77,7 @@ class TestTasks:
     @pytest.mark.rule("C5")
     @pytest.mark.parametrize(("takes", "reached"), [(5.0, "A"), (5.5, "end")])
     def test_value_counts_up_to_its_greatest_age(self, takes, reached):
-        mission = build("A B", ways={"B": [when("A", greater("A", 0, max_age=5))]})
+        mission = build("A B", ways={"B": [when("A", above("A", 0, max_age=5))]})
         executor = drive(mission, takes={"B": takes}, reads={"A": [1, 0]})
         assert (executor.trace[2].target or "end") == reached
 
@@ -110,7 +107,7 @@ class TestTasks:
 
     @pytest.mark.rule("C3")
     def test_value_is_the_last_one_whoever_measured_it(self):
-        ways = {"B": [when("D", greater("A", 5)), "C"]}
+        ways = {"B": [when("D", above("A", 5)), "C"]}
         mission = build("A B C D", ways=ways)
         again = mission.tasks[1].model_copy(update={"object_id": "A"})
         mission = mission.model_copy(
@@ -205,21 +202,21 @@ class TestRounds:
     @pytest.mark.rule("G4")
     def test_jump_inside_changes_no_round(self):
         group = Group(name="G", start="A", end="B", max_repeat_count=2)
-        mission = build("A B C", group, ways={"B": [when("A", greater("B", 0)), "C"]})
+        mission = build("A B C", group, ways={"B": [when("A", above("B", 0)), "C"]})
         executor = drive(mission, reads={"B": [1, 0, 0]})
         assert path(executor) == "A@0 B@1 A@2 B@3 A@4 B@5 C@6 end@7"
 
     @pytest.mark.rule("G3")
     def test_condition_leaves_in_the_middle_and_entry_starts_anew(self):
         group = Group(name="G", start="A", end="B", max_repeat_count=2)
-        ways = {"A": [when("C", greater("A", 0)), "B"], "C": [when("A", greater("A", 0))]}
+        ways = {"A": [when("C", above("A", 0)), "B"], "C": [when("A", above("A", 0))]}
         executor = drive(build("A B C", group, ways=ways), reads={"A": [0, 1, 0, 0]})
         assert path(executor) == "A@0 B@1 A@2 C@3 A@4 B@5 A@6 B@7 C@8 end@9"
 
     @pytest.mark.rule("G6")
     def test_unconditional_to_a_member_after_the_last_round_enters_anew(self):
         group = Group(name="G", start="A", end="B", max_repeat_count=2)
-        ways = {"B": ["A"], "A": [when("C", greater("A", 0)), "B"], "C": []}
+        ways = {"B": ["A"], "A": [when("C", above("A", 0)), "B"], "C": []}
         executor = drive(build("A B C", group, ways=ways), reads={"A": [0, 0, 0, 0, 1]})
         assert path(executor) == "A@0 B@1 A@2 B@3 A@4 B@5 A@6 B@7 A@8 C@9 end@10"
         assert [e.cause for e in executor.trace if e.source == "B"] == [
@@ -232,7 +229,7 @@ class TestRounds:
     @pytest.mark.rule("G9")
     def test_endless_group_is_left_by_a_condition(self):
         group = Group(name="G", start="A", end="B")
-        ways = {"B": ["C", when("C", greater("B", 0))]}
+        ways = {"B": ["C", when("C", above("B", 0))]}
         executor = drive(build("A B C", group, ways=ways), reads={"B": [0, 0, 1]})
         assert path(executor) == "A@0 B@1 A@2 B@3 A@4 B@5 C@6 end@7"
 
@@ -313,7 +310,7 @@ class TestDurations:
 @pytest.mark.rule("G13", "W5", "W7")
 def test_window_that_is_over_is_missed_when_the_round_is_due():
     """Or rounds without a limit would follow each other in no time."""
-    mission = build("A", Group(name="G", start="A", end="A", every=10, until=(greater("A", 9),)))
+    mission = build("A", Group(name="G", start="A", end="A", every=10, until=(above("A", 9),)))
     window = TimeWindow(latest=5)
     task = mission.tasks[0].model_copy(update={"window": window})
     executor = Executor(lower(mission.model_copy(update={"tasks": (task,)})))

@@ -30,7 +30,7 @@ from argo_compiler.il import (
 )
 from argo_compiler.isar import InspectionView, from_isar, read_isar, to_isar
 from tests.argo_compiler.isar.conftest import assert_isar_takes
-from tests.mission_writing import checkpoint, drive, measure, wait, way
+from tests.mission_writing import checkpoint, drive, measure, start, wait, way
 
 VIEWS = {
     "1": InspectionView(
@@ -73,12 +73,7 @@ def test_what_is_written():
     mission = Mission(
         designation="Round",
         tasks=(
-            Task(
-                name="S",
-                action=Action.START,
-                pose=Pose(x=0, y=0, z=0),
-                transitions=(Transition(target="A"),),
-            ),
+            start("S", "A", pose=Pose(x=0, y=0, z=0)),
             measure("A", "B", object_id="1"),
             measure("B", object_id="2", pose=Pose(x=9, y=0, z=0)),
         ),

@@ -11,8 +11,6 @@ from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import lower
 from argo_compiler.il import (
     Action,
-    Condition,
-    ConditionType,
     EventKind,
     Group,
     Mission,
@@ -28,8 +26,9 @@ from argo_compiler.reorder.requirements import Requirements, parse_seconds
 from argo_compiler.reorder.rewriting import apply_route
 from argo_compiler.reorder.travel_matrix import TravelMatrix
 from argo_compiler.route import Tour, evaluate
+from tests.mission_writing import above as greater
 from tests.mission_writing import measure as measuring
-from tests.mission_writing import wait
+from tests.mission_writing import wait, way
 
 HERE = Pose(x=0, y=0, z=0)
 DOCK = Pose(x=9, y=9, z=0)
@@ -40,10 +39,7 @@ def measure(id, *ways, **fields):
 
 
 def above(object_id, target, value=5.0, **fields):
-    condition = Condition(
-        type=ConditionType.GREATER, object_id=str(object_id), param1=value, **fields
-    )
-    return Transition(target=target, conditions=(condition,))
+    return way(target, greater(str(object_id), value, **fields))
 
 
 def row(*tasks, docked=True, order=Order.ANY, **fields):

@@ -14,7 +14,7 @@ from rosbags.rosbag2 import Writer as Ros2Writer
 
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.il import Action, Mission, Task, Transition
+from argo_compiler.il import Mission
 from argo_compiler.ros import (
     Storage,
     compression,
@@ -29,14 +29,12 @@ from argo_compiler.ros import (
 from argo_compiler.ros import types as ros_types
 from argo_compiler.ros.package import SPECIFICATION
 from tests.conftest import examples
+from tests.mission_writing import measure, start
 from tests.missions_all import carried_missions
 
 PLAN = Mission(
     designation="Öl #1",
-    tasks=(
-        Task(name="S", action=Action.START, transitions=(Transition(target="A"),)),
-        Task(name="A", action=Action.MEASURE, object_id="4"),
-    ),
+    tasks=(start("S", "A"), measure("A", object_id="4")),
 )
 FORMS = ["ros1", *Storage]
 

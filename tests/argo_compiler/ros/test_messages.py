@@ -19,7 +19,6 @@ from argo_compiler.il import (
     Response,
     Task,
     TimeWindow,
-    Transition,
     WaitRule,
 )
 from argo_compiler.ros import (
@@ -31,7 +30,7 @@ from argo_compiler.ros import (
 )
 from argo_compiler.ros.package import SPECIFICATION, definitions
 from tests.conftest import examples
-from tests.mission_writing import drive
+from tests.mission_writing import drive, start
 from tests.missions_all import FLOATS, carried_missions
 
 VERSIONS = pytest.mark.parametrize("types", [ros1_types(), ros2_types()], ids=["ros1", "ros2"])
@@ -235,14 +234,7 @@ def test_what_a_message_can_not_hold_is_refused_by_its_place(task, said):
 def test_the_largest_numbers_fit():
     types = ros1_types()
     mission = Mission(
-        tasks=(
-            Task(
-                name="A",
-                action=Action.START,
-                retries=10**6,
-                source=Span(line=2**63 - 1, column=1, length=1),
-            ),
-        ),
+        tasks=(start("A", retries=10**6, source=Span(line=2**63 - 1, column=1, length=1)),),
         start_area=-(10**9),
     )
     assert (
@@ -251,7 +243,7 @@ def test_the_largest_numbers_fit():
     )
 
 
-START = Task(name="S", action=Action.START, transitions=(Transition(target="A"),))
+START = start("S", "A")
 
 
 @pytest.mark.rule("T6")

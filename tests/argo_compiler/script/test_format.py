@@ -13,7 +13,6 @@ from argo_compiler.files.mission_file import read_mission
 from argo_compiler.il import (
     Action,
     Afterwards,
-    Condition,
     ConditionType,
     EventKind,
     Group,
@@ -23,15 +22,15 @@ from argo_compiler.il import (
     Response,
     Task,
     TimeWindow,
-    Transition,
     WaitRule,
 )
 from argo_compiler.script import format_script, import_script
 from argo_compiler.script.write.reading import read_back
 from tests.argo_compiler.hfsm.random_missions import missions as tangled_missions
 from tests.conftest import examples
-from tests.mission_writing import unplaced
+from tests.mission_writing import above, drive, measure, unplaced, way
 from tests.missions_sound import sound_missions
+from tests.yard import in_order
 
 HERE = Pose(x=1, y=2, z=0)
 
@@ -141,15 +140,7 @@ def test_all_that_a_mission_has_is_said(catalog: Catalog) -> None:
 
 def test_names_of_ones_own_beside_the_usual_ones(catalog: Catalog) -> None:
     names = ["WAYPOINT 2", "WAYPOINT 1", "WAYPOINT 3", "DOCK"]
-    tasks = tuple(
-        Task(
-            name=name,
-            action=Action.WAYPOINT,
-            pose=HERE,
-            transitions=(Transition(target=following),) if following else (),
-        )
-        for name, following in zip(names, [*names[1:], None], strict=True)
-    )
+    tasks = in_order(*(drive(name, pose=HERE) for name in names))
     text = assert_kept(Mission(site=catalog.site, tasks=tasks), catalog)
     assert '1. "WAYPOINT 2": go to (1, 2, 0).\n2. Go to (1, 2, 0).' in text
 
@@ -169,14 +160,9 @@ def test_originals_are_kept(originals: Path, catalog: Catalog) -> None:
 
 def test_long_texts_and_many_ways_are_broken_into_lines(catalog: Catalog) -> None:
     name = "long " * 100
-    held = tuple(Condition(type=ConditionType.GREATER, object_id="1", param1=k) for k in range(120))
-    ways = tuple(Transition(target=name, conditions=(c,)) for c in held)
-    task = Task(
-        name=name,
-        action=Action.MEASURE,
-        object_id="1",
-        transitions=(*ways, Transition(target=name, conditions=held)),
-    )
+    held = [above("1", k) for k in range(120)]
+    ways = (way(name, condition) for condition in held)
+    task = measure(name, *ways, way(name, *held), object_id="1")
     mission = Mission(site=catalog.site, designation="x*" * 3_000, tasks=(task,))
     text = assert_kept(mission, catalog)
     assert max(map(len, text.splitlines())) <= 110
@@ -212,10 +198,7 @@ def refused(mission: Mission, catalog: Catalog) -> str:
     ("changed", "named"),
     [
         (Task(name="a", action=Action.WAIT, wait=WaitRule(duration=1, limit=2)), "`limit`"),
-        (
-            Task(name="a", action=Action.MEASURE, object_id="1", failure_target="a"),
-            "failure_target",
-        ),
+        (measure("a", object_id="1", failure_target="a"), "failure_target"),
         (Task(name="a", action=Action.WAYPOINT, pose=HERE, wait=WaitRule(duration=1)), "`wait`"),
     ],
 )

@@ -7,7 +7,7 @@ import pytest
 
 from argo_compiler.base.catalog import CheckpointKind, Interval
 from argo_compiler.diagnostics import Diagnostic, Severity
-from argo_compiler.il import Action, Condition, ConditionType, Group, Mission, Task, Transition
+from argo_compiler.il import Condition, ConditionType, Group, Mission
 from argo_env.run.record import (
     Contact,
     PathSample,
@@ -18,7 +18,8 @@ from argo_env.run.record import (
     TraceStep,
 )
 from argo_env.site import load_site
-from tests.yard import record_of
+from tests.mission_writing import measure, way
+from tests.yard import in_order, record_of
 
 CORNERS = ((3.05, -2.55, 0.0), (8.0, -2.0, 0.0), (8.0, 1.5, 0.0), (1.4, 1.5, 0.0), (0.85, 3.5, 0.0))
 STAIRS = ((0.85, 7.14, 2.5), (1.9, 7.8, 2.5), (1.9, 10.4, 2.5), (8.0, 10.4, 2.5))
@@ -92,17 +93,13 @@ def make():
     return make
 
 
-def measure(name, *ways):
-    return Task(name=name, action=Action.MEASURE, object_id=name, transitions=ways)
-
-
 @pytest.fixture
 def simple(make):
     """One storey up: two readings, one of them abnormal, a failed task, a contact, a warning."""
     low = Condition(type=ConditionType.LESS, object_id="1", param1=3.0)
     tasks = (
-        measure("1", Transition(target="6", conditions=(low,)), Transition(target="8")),
-        measure("8", Transition(target="6")),
+        measure("1", way("6", low), "8"),
+        measure("8", "6"),
         measure("6"),
     )
     mission = Mission(designation="Morning round", tasks=tasks)
@@ -156,9 +153,9 @@ def simple(make):
 def patrol(make):
     """A group of four tasks, gone through 25 times in 600 s."""
     names = ["1", "3", "4", "2"]
-    tasks = [measure(a, Transition(target=b)) for a, b in pairwise(names)] + [measure("2")]
+    tasks = in_order(*map(measure, names))
     group = Group(name="Patrol", start="1", end="2", max_repeat_count=25, max_repeat_duration=600)
-    mission = Mission(designation="Patrol", tasks=tuple(tasks), groups=(group,))
+    mission = Mission(designation="Patrol", tasks=tasks, groups=(group,))
     ring = ((7.6, 1.6, 0.0), (12.3, 1.6, 0.0), (12.3, 10.4, 0.0), (1.9, 10.4, 0.0), (1.9, 1.6, 0.0))
     rounds = tuple(
         RoundRun(group="Patrol", number=k + 1, since=24.0 * k, began=24.0 * k) for k in range(25)

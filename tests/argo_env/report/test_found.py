@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 from argo_compiler.base.model import Pose
-from argo_compiler.il import Action, EventKind, Mission, Task, Transition
+from argo_compiler.il import EventKind, Mission
 from argo_env.faults.plant import GasLeakFault, PlatformAlarm
 from argo_env.report.html import page
 from argo_env.report.timeline import charge_curve
 from argo_env.report.track import beside
 from argo_env.run.record import Anomaly, Interruption
+from tests.mission_writing import drive
 
 
 def anomaly(t, kind=EventKind.GAS_LEAK, place=None, floor=None):
@@ -194,13 +195,7 @@ def test_waits_stand_between_the_runs_by_their_time(simple, site):
 
 def test_a_way_into_the_station_is_called_so(make, site):
     dock = Pose(x=0.0, y=0.0, z=0.0, yaw=0.0)
-    tasks = (
-        Task(
-            name="there", action=Action.WAYPOINT, pose=Pose(x=1.0, y=0.0, z=0.0, yaw=0.0),
-            transitions=(Transition(target="DOCK"),),
-        ),
-        Task(name="DOCK", action=Action.WAYPOINT, pose=dock),
-    )  # fmt: skip
+    tasks = drive("there", "DOCK", pose=Pose(x=1.0, y=0.0, z=0.0)), drive("DOCK", pose=dock)
     text = page(make(Mission(tasks=tasks, dock=dock), ["there", "DOCK"]), site)
     rows = re.findall(r'<tr class="done"><td>(\w+)</td><td>(\w+)</td>', section(text, "tasks"))
     assert rows == [("there", "WAYPOINT"), ("DOCK", "DOCK")]

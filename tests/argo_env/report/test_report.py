@@ -7,12 +7,13 @@ from xml.etree import ElementTree
 import pytest
 
 from argo_compiler.base.errors import ArgoError
-from argo_compiler.il import Action, Group, Mission, Task, Transition
+from argo_compiler.il import Group, Mission
 from argo_env.report import write_report
 from argo_env.report.html import page
 from argo_env.report.machine import MAX_STATES, machine
 from argo_env.report.rounds import blocks
 from argo_env.run.record import RoundRun, RunRecord
+from tests.mission_writing import measure
 from tests.yard import in_order
 
 SECTIONS = [
@@ -161,7 +162,7 @@ def test_old_records_do_not_tell_when_it_measured(site, simple):
 
 def test_scripts_can_not_put_markup_into_the_page(site, make):
     bad = "<script>alert('x')</script>\x01"
-    task = Task(name=bad, action=Action.MEASURE, object_id="1")
+    task = measure(bad, object_id="1")
     record = make(Mission(designation=bad, tasks=(task,)), [bad], {0: ("failed", bad)})
     text = page(record, site)
     assert "<script" not in text
@@ -190,8 +191,7 @@ def test_labels_of_ways_are_apart(record):
 def test_large_machine_is_not_drawn(site, make):
     names = [f"t{i}" for i in range(MAX_STATES + 1)]
     tasks = tuple(
-        Task(name=a, action=Action.MEASURE, object_id="1", transitions=(Transition(target=b),))
-        for a, b in zip(names, [*names[1:], names[0]], strict=True)
+        measure(a, b, object_id="1") for a, b in zip(names, [*names[1:], names[0]], strict=True)
     )
     text = page(make(Mission(tasks=tasks), names[:2]), site)
     assert "too many for a drawing" in text
@@ -199,7 +199,7 @@ def test_large_machine_is_not_drawn(site, make):
 
 
 def test_empty_run(site, make):
-    task = Task(name="A", action=Action.MEASURE, object_id="1")
+    task = measure("A", object_id="1")
     text = page(make(Mission(tasks=(task,)), []), site)
     for words in ("Nothing was measured", "No task was started", "No path was recorded"):
         assert words in text
@@ -215,7 +215,7 @@ def test_refusals(tmp_path, site, simple):
 
 def test_jumps_and_inner_rounds_begin_no_round(make):
     names = ["1", "2", "3"]
-    tasks = in_order(*(Task(name=a, action=Action.MEASURE, object_id=a) for a in names))
+    tasks = in_order(*map(measure, names))
     groups = (
         Group(name="Outer", start="1", end="3", max_repeat_count=2),
         Group(name="Outer/Inner", start="1", end="2", max_repeat_count=2),

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import Cancel, Occurred, Outcome, Pause, Resume
-from argo_compiler.il import Afterwards, EventKind, Group, OnFailure, Reaction, Response
+from argo_compiler.il import Afterwards, EventKind, Group, OnFailure, Response
 from argo_env.formatting import clock
 from argo_env.report import write_report
 from argo_env.report.rounds import waits
@@ -20,15 +20,12 @@ from argo_env.run.spec import logged
 from argo_env.run.verdict_line import Tone
 from tests.argo_env.run.test_at_the_place import foggy
 from tests.conftest import examples
+from tests.mission_writing import reaction as react
 from tests.yard import fast_rig, measure, mission, run, run_with, simulated, waypoint
 
 DOCK = Pose(x=1.05, y=1.05, z=0.02)
 SHELTER = Pose(x=3.05, y=1.55, z=0.02)
 NOWHERE = Pose(x=30.0, y=30.0, z=0.02)
-
-
-def react(event, response, **fields):
-    return Reaction(event=event, response=response, **fields)
 
 
 def names(record):

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import argo_env.run.ending
 from argo_compiler.base.errors import ArgoError, Invalid
 from argo_compiler.base.model import Pose
-from argo_compiler.il import Action, Condition, ConditionType, Group, Mission, Task, Transition
+from argo_compiler.il import Action, Group, Mission, Task
 from argo_compiler.il.docked import at_dock
 from argo_env.faults.walkway import Brick
 from argo_env.navigation import Path
@@ -21,6 +21,7 @@ from argo_env.run.drives_and_sensors import DRIVES
 from argo_env.run.record import Anomaly, RunRecord
 from argo_env.run.rig import true_values
 from argo_env.run.simulation import SAMPLE_PERIOD
+from tests.mission_writing import above, way
 from tests.yard import Watching, from_place, in_order, measure, resumed, simulated
 
 FRONT = Pose(x=8.05, y=-2.05, z=-0.03, yaw=0.0)
@@ -170,14 +171,7 @@ def test_same_seed_same_record(short, navigator):
     ("value", "branch", "normal"), [(4.8, "HIGH", True), (5.5, "HIGH", False), (4.0, "LOW", True)]
 )
 def test_branches_on_the_measured_value(navigator, value, branch, normal):
-    high = Condition(type=ConditionType.GREATER, object_id="1", param1=4.5)
-    asked = measure(
-        1,
-        transitions=(
-            Transition(target="HIGH", conditions=(high,)),
-            Transition(target="LOW"),
-        ),
-    )
+    asked = measure(1, transitions=(way("HIGH", above("1", 4.5)), way("LOW")))
     tasks = (start(Pose(x=6.05, y=1.55, z=0.0)), asked)
     ends = (waypoint("HIGH", 7.05, 1.55, 0.0), waypoint("LOW", 5.05, 1.55, 0.0))
     # The two ends do not lead to each other.

@@ -4,24 +4,13 @@ import pytest
 
 from argo_compiler.hfsm import ByHand, GiveBack, Occurred, Outcome, Pause, Resume, TakeOver
 from argo_compiler.hfsm.events import ReadingGiven
-from argo_compiler.il import (
-    Action,
-    Condition,
-    ConditionType,
-    EventKind,
-    Group,
-    Mode,
-    OnFailure,
-    Task,
-    TimeWindow,
-    Transition,
-    WaitRule,
-)
+from argo_compiler.il import Condition, ConditionType, EventKind, Group, Mode, OnFailure, TimeWindow
 from argo_env.report.rounds import waits, with_readings
 from argo_env.run.journal import open_journal
 from argo_env.run.record import RunRecord, WindowKept
 from argo_env.run.spec import logged
 from argo_env.run.verdict_line import Tone
+from tests.mission_writing import above, wait, way
 from tests.yard import (
     Entries,
     cut_after,
@@ -33,14 +22,6 @@ from tests.yard import (
     simulated,
     waypoint,
 )
-
-
-def wait(name, **rule):
-    return Task(name=name, action=Action.WAIT, wait=WaitRule(**rule))
-
-
-def above(id, value):
-    return Condition(type=ConditionType.GREATER, object_id=str(id), param1=value)
 
 
 def run(yard, plan, *events, values=None):
@@ -103,7 +84,7 @@ class TestWaits:
 
     @pytest.mark.rule("C8")
     def test_until_somebody_tells_a_value(self, yard):
-        rest = wait("REST", conditions=(above(3, 4.0),))
+        rest = wait("REST", conditions=(above("3", 4.0),))
         plan = mission(HERE, rest, THERE)
         record = run(yard, plan, (30.0, ReadingGiven("3", 3.0)), (45.0, ReadingGiven("3", 9)))
         assert record.waits[0].end == 45.0
@@ -149,7 +130,7 @@ class TestRounds:
     def test_until_a_value(self, yard):
         first = measure(1)
         group = Group(
-            name="Watch", start="MEASURE 1", end="B", until=(above(1, 2.0),), max_repeat_count=5
+            name="Watch", start="MEASURE 1", end="B", until=(above("1", 2.0),), max_repeat_count=5
         )
         record = run(yard, mission(first, THERE, groups=(group,)), values={1: 3.0})
         assert [(r.number, r.due, r.began) for r in record.rounds] == [(1, None, 0.0)]
@@ -159,7 +140,7 @@ class TestRounds:
     def test_a_measurement_that_failed_is_what_the_round_ended_with(self, yard):
         first = measure(1).model_copy(update={"reading_limit": 0.01})
         group = Group(
-            name="Watch", start="MEASURE 1", end="B", until=(above(1, 2.0),), max_repeat_count=1
+            name="Watch", start="MEASURE 1", end="B", until=(above("1", 2.0),), max_repeat_count=1
         )
         plan = mission(first, THERE, groups=(group,))
         record = run(yard, plan, (0.5, ReadingGiven("1", 3.0)), values={1: 3.0})
@@ -201,7 +182,7 @@ class TestWindows:
     @pytest.mark.rule("W5")
     def test_a_hard_window_that_is_missed_has_its_branch(self, yard):
         window = TimeWindow(latest=3.0, missed_target="C")
-        late = waypoint("A", 2.05, 2.05, window=window, transitions=(Transition(target="B"),))
+        late = waypoint("A", 2.05, 2.05, window=window, transitions=(way("B"),))
         tasks = late, THERE, waypoint("C", 3.05, 2.05)
         plan = mission(*tasks)
         record = run(yard, plan)
@@ -256,7 +237,7 @@ class TestFailures:
     def test_a_branch_after_a_failure(self, yard):
         lost = waypoint(
             "A", 30.0, 30.0, on_failure=OnFailure.BRANCH, failure_target="C",
-            transitions=(Transition(target="B"),),
+            transitions=(way("B"),),
         )  # fmt: skip
         record = run(yard, mission(lost, THERE, waypoint("C", 3.05, 2.05)))
         assert [(t.task, t.outcome) for t in record.tasks] == [("A", "failed"), ("C", "done")]
@@ -304,7 +285,7 @@ def test_ends_have_the_ids_of_their_actions(yard):
 def test_what_a_person_read_is_abnormal_outside_the_nominal_range(yard):
     entries = Entries()
     odd = Condition(type=ConditionType.ABNORMAL, object_id="1")
-    first = measure(1, transitions=(Transition(target="B", conditions=(odd,)),))
+    first = measure(1, transitions=(way("B", odd),))
     plan = mission(first, HERE, THERE)
     done = GiveBack((ByHand(task="MEASURE 1", value=9.0),))
     events = logged((1.0, TakeOver()), (5.0, done))
@@ -317,7 +298,7 @@ def test_what_a_person_read_is_abnormal_outside_the_nominal_range(yard):
 def test_a_run_goes_on_in_a_wait_before_a_round_and_in_a_window(yard, tmp_path, until):
     """At these times it rests, drives, waits for a round, for a window, and for a value."""
     group = Group(name="Watch", start="A", end="B", max_repeat_count=2, every=70.0)
-    told = wait("TOLD", conditions=(above(3, 4.0),), limit=100.0)
+    told = wait("TOLD", conditions=(above("3", 4.0),), limit=100.0)
     plan = mission(
         wait("REST", duration=5.0), HERE, THERE,
         measure(1, window=TimeWindow(earliest=120.0)),

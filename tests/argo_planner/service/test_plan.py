@@ -12,7 +12,7 @@ from argo_compiler.base.errors import ArgoError
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import Severity
 from argo_compiler.editing import commands as edits
-from argo_compiler.il import Action, Group, Mission, Task, Transition
+from argo_compiler.il import Group, Mission, Transition
 from argo_planner.service.core.change import HEADER, applied, difference
 from argo_planner.service.core.commands import (
     EditPlan,
@@ -33,22 +33,16 @@ from argo_planner.service.core.refusals import (
 )
 from tests.argo_compiler.editing.random_edits import random_edit
 from tests.conftest import seeds
+from tests.mission_writing import measure
+from tests.yard import in_order
 
 AT = datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC)
 
 
 def mission(*names: str) -> Mission:
     """Measurements, one after the other."""
-    tasks = [
-        Task(
-            name=name,
-            action=Action.MEASURE,
-            object_id=str(number),
-            transitions=(Transition(target=after),) if after else (),
-        )
-        for number, (name, after) in enumerate(zip(names, [*names[1:], None], strict=True), 1)
-    ]
-    return Mission(tasks=tuple(tasks))
+    tasks = (measure(name, object_id=str(number)) for number, name in enumerate(names, 1))
+    return Mission(tasks=in_order(*tasks))
 
 
 class People:

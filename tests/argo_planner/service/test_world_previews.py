@@ -8,17 +8,7 @@ import pytest
 
 from argo_compiler.base.errors import Conflict, NotFound
 from argo_compiler.base.model import Pose
-from argo_compiler.il import (
-    Action,
-    Condition,
-    ConditionType,
-    Group,
-    Mission,
-    Task,
-    TimeWindow,
-    Transition,
-    WaitRule,
-)
+from argo_compiler.il import Condition, ConditionType, Group, Mission, TimeWindow, Transition
 from argo_env.planning.opening import OpenedSite
 from argo_env.run.journal import open_journal
 from argo_env.run.session import resume, simulate
@@ -27,6 +17,10 @@ from argo_planner.service.world.description import describe, world_digest
 from argo_planner.service.world.obstacles import with_obstacles
 from argo_planner.service.world.previews import WayKind, preview_mission, preview_way
 from tests.argo_planner.service.test_world_standing import crate
+from tests.mission_writing import drive as waypoint
+from tests.mission_writing import measure as measuring
+from tests.mission_writing import start as starting
+from tests.mission_writing import wait
 from tests.yard import in_order
 
 
@@ -34,12 +28,8 @@ def chain(*tasks, **fields):
     return Mission(site="umad", start_area=1, tasks=in_order(*tasks), **fields)
 
 
-def measure(id, **fields):
-    return Task(name=f"M{id}", action=Action.MEASURE, object_id=str(id), **fields)
-
-
-def waypoint(name, pose, **fields):
-    return Task(name=name, action=Action.WAYPOINT, pose=pose, **fields)
+def measure(id, *ways, **fields):
+    return measuring(f"M{id}", *ways, object_id=str(id), **fields)
 
 
 def random_tasks(site, rng, count):
@@ -52,7 +42,7 @@ def random_tasks(site, rng, count):
             places = site.navigator.turning_places(int(rng.integers(1, 4)))
             x, y, z, _ = places[int(rng.integers(len(places)))].tolist()
             pose = Pose(x=x, y=y, z=z, yaw=float(rng.uniform(-3, 3)))
-            yield waypoint(f"T{k}", pose, velocity=velocity)
+            yield waypoint(f"T{k}", pose=pose, velocity=velocity)
 
 
 def driven(site, mission, drive="route"):
@@ -91,7 +81,7 @@ def test_what_cant_be_reached_says_why(site):
     way = preview_way(site, site.site.docks[1], nowhere)
     assert way.time is None
     assert "no place that the robot can reach" in way.problem
-    seen = preview_mission(site, chain(waypoint("far", nowhere), measure(1)))
+    seen = preview_mission(site, chain(waypoint("far", pose=nowhere), measure(1)))
     assert seen.problems == (f"task 'far': {way.problem}",)
     assert seen.at_least == ("there is no way to task 'far'",)
     assert seen.ways[1].way.time > 0
@@ -100,14 +90,12 @@ def test_what_cant_be_reached_says_why(site):
 def test_branches_rounds_and_waits_are_told_apart(site):
     hot = Condition(type=ConditionType.ABNORMAL, object_id="1")
     tasks = (
-        measure(1, transitions=(
-            Transition(target="M3", conditions=(hot,)), Transition(target="M2"),
-        )),
-        measure(2, transitions=(Transition(target="rest"),)),
-        Task(name="rest", action=Action.WAIT, wait=WaitRule(duration=30.0)),
-        measure(3, transitions=(Transition(target="M4"),)),
+        measure(1, Transition(target="M3", conditions=(hot,)), "M2"),
+        measure(2, "rest"),
+        wait("rest", duration=30.0),
+        measure(3, "M4"),
         measure(4, window=TimeWindow(earliest=10.0)),
-    )  # fmt: skip
+    )
     groups = (Group(name="round", start="M1", end="M2", max_repeat_count=3),)
     seen = preview_mission(site, Mission(site="umad", tasks=tasks, groups=groups))
     told = {(w.source, w.target): w.kind for w in seen.ways}
@@ -126,17 +114,12 @@ def test_branches_rounds_and_waits_are_told_apart(site):
 
 
 def test_totals_that_leave_something_open_say_so(site):
-    waiting = Task(
-        name="wait",
-        action=Action.WAIT,
-        wait=WaitRule(event="all_clear", limit=60.0),
-        transitions=(Transition(target="M1"),),
-    )
-    late = measure(1, window=TimeWindow(earliest=500.0), transitions=(Transition(target="wait"),))
+    waiting = wait("wait", "M1", event="all_clear", limit=60.0)
+    late = measure(1, "wait", window=TimeWindow(earliest=500.0))
     seen = preview_mission(site, Mission(site="umad", tasks=(late, waiting)))
     assert len(seen.at_least) == 3
     assert preview_mission(site, Mission(site="umad")).ways == ()
-    broken = measure(1, transitions=(Transition(target="gone"),))
+    broken = measure(1, "gone")
     with pytest.raises(NotFound, match="no task 'gone'"):
         preview_mission(site, Mission(site="umad", tasks=(broken,)))
 
@@ -150,10 +133,7 @@ def test_ways_and_runs_go_round_an_obstacle_alike(site):
     crates = (crate("a", x, y, 0.0, (0.4, 0.4, 0.8), 0.3),)
     round_it = preview_way(site, start, goal, crates)
     assert round_it.time > free.time
-    tasks = (
-        Task(name="START", action=Action.START, pose=start),
-        waypoint("there", goal),
-    )
+    tasks = starting("START", pose=start), waypoint("there", pose=goal)
     mission, altered = chain(*tasks), with_obstacles(site, crates)
     seen = preview_mission(site, mission, crates)
     for drive in ("route", "kinematic"):

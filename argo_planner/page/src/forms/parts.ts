@@ -15,6 +15,9 @@ export interface FieldOptions {
 }
 
 const NONE: readonly Option[] = [];
+type Given = number | null | undefined;
+/** Takes the number that was typed, null where the field was left empty; what is wrong with it. */
+type TakeNumber = (value: number | null) => ReturnType<Commit>;
 
 function field(
   kind: FormField["kind"],
@@ -56,12 +59,7 @@ export function selectField(
 }
 
 /** A number; empty is null. */
-export function numberField(
-  label: string,
-  value: number | null | undefined,
-  commit: (value: number | null) => ReturnType<Commit>,
-  options: FieldOptions = {},
-) {
+export function numberField(label: string, value: Given, commit: TakeNumber, options: FieldOptions = {}) {
   const take = (text: string) => {
     if (text.trim() === "") return commit(null);
     const number = Number(text.trim().replace(",", "."));
@@ -71,36 +69,22 @@ export function numberField(
 }
 
 /** A whole number; empty is null. */
-export function countField(
-  label: string,
-  value: number | null | undefined,
-  commit: (value: number | null) => ReturnType<Commit>,
-  options: FieldOptions = {},
-) {
-  const take = (number: number | null) =>
+export function countField(label: string, value: Given, commit: TakeNumber, options: FieldOptions = {}) {
+  const take: TakeNumber = (number) =>
     number === null || (Number.isInteger(number) && number >= 0) ? commit(number) : t().forms.noCount;
   return numberField(label, value, take, options);
 }
 
 /** A speed (m/s), at most what the robot drives; empty is null. */
-export function speedField(
-  label: string,
-  value: number | null | undefined,
-  commit: (value: number | null) => ReturnType<Commit>,
-) {
+export function speedField(label: string, value: Given, commit: TakeNumber) {
   const most = world.value?.robot.speed ?? Infinity;
-  const take = (speed: number | null) =>
+  const take: TakeNumber = (speed) =>
     speed === null || (speed > 0 && speed <= most) ? commit(speed) : t().forms.tooFast(most);
   return numberField(label, value, take, { note: "m/s", placeholder: Number.isFinite(most) ? String(most) : "" });
 }
 
 /** A time, held in s; empty is null. */
-export function timeField(
-  label: string,
-  value: number | null | undefined,
-  commit: (value: number | null) => ReturnType<Commit>,
-  options: FieldOptions = {},
-) {
+export function timeField(label: string, value: Given, commit: TakeNumber, options: FieldOptions = {}) {
   const take = (text: string) => {
     if (text.trim() === "") return commit(null);
     const time = readTime(text);

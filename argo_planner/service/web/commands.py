@@ -1,7 +1,7 @@
 """Commands to a mission, its script, its reading and its analysis."""
 
 import asyncio
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import Response
 from pydantic import Discriminator, Field
@@ -41,6 +41,8 @@ MOST_SCRIPT = 1_000_000
 """characters"""
 
 router = routes("commands", prefix="/api/missions/{id}")
+COMMAND: dict[str, Any] = {"response_model": CommandDone, "responses": documented(412, 428)}
+"""how routes answer that carry out a command"""
 
 AnyCommand = Annotated[EditPlan | UndoEdit | RedoEdit | ReplacePlan, Discriminator("kind")]
 
@@ -52,12 +54,7 @@ class ScriptGiven(Model):
     script: str = Field(max_length=MOST_SCRIPT)
 
 
-@router.post(
-    "/commands",
-    operation_id="carry_out_command",
-    response_model=CommandDone,
-    responses=documented(412, 428),
-)
+@router.post("/commands", operation_id="carry_out_command", **COMMAND)
 async def carry_out_command(
     service: Service,
     visitor: Planner,
@@ -70,12 +67,7 @@ async def carry_out_command(
     return await carried_out(room, command, visitor.author, made_on)
 
 
-@router.put(
-    "/script",
-    operation_id="write_script",
-    response_model=CommandDone,
-    responses=documented(412, 428),
-)
+@router.put("/script", operation_id="write_script", **COMMAND)
 async def write_script(
     service: Service,
     visitor: Planner,

@@ -11,11 +11,9 @@ from argo_compiler.reorder.mission import require_known
 from argo_compiler.reorder.requirements import Requirements
 from argo_planner.service.core.commands import CommandId, ReplacePlan
 from argo_planner.service.jobs.job import JOB_ID, AnyJob, OrderJob
-from argo_planner.service.rooms.messages import CommandDone
 from argo_planner.service.web.bodies import Sent
-from argo_planner.service.web.commands import carried_out
+from argo_planner.service.web.commands import COMMAND, carried_out
 from argo_planner.service.web.missions import sound_plan
-from argo_planner.service.web.problems import documented
 from argo_planner.service.web.requests import (
     MadeOn,
     PlanId,
@@ -98,12 +96,7 @@ async def cancel_job(service: Service, _: Planner, id: JobId) -> Response:
     return said(await service.jobs.cancel(id))
 
 
-@router.post(
-    "/jobs/{id}/accept",
-    operation_id="accept_order",
-    response_model=CommandDone,
-    responses=documented(412, 428),
-)
+@router.post("/jobs/{id}/accept", operation_id="accept_order", **COMMAND)
 async def accept_order(
     service: Service,
     visitor: Planner,

@@ -7,9 +7,9 @@ from fastapi import Path, Response
 from argo_compiler.base.model import Model
 from argo_planner.service.core.commands import CommandId, ReplaceFrom, ReplacePlan
 from argo_planner.service.core.document import PlanVersion
-from argo_planner.service.rooms.messages import CommandDone, VersionSummary
+from argo_planner.service.rooms.messages import VersionSummary
 from argo_planner.service.web.bodies import Sent
-from argo_planner.service.web.commands import carried_out
+from argo_planner.service.web.commands import COMMAND, carried_out
 from argo_planner.service.web.problems import documented
 from argo_planner.service.web.requests import (
     MadeOn,
@@ -92,12 +92,7 @@ async def drop_version(service: Service, _: Planner, id: PlanId, number: Version
     return Response(status_code=204)
 
 
-@router.post(
-    "/missions/{id}/versions/{number}/restore",
-    operation_id="restore_version",
-    response_model=CommandDone,
-    responses=documented(412, 428),
-)
+@router.post("/missions/{id}/versions/{number}/restore", operation_id="restore_version", **COMMAND)
 async def restore_version(
     service: Service,
     visitor: Planner,

@@ -1,6 +1,8 @@
 """Patience of a robot that does not move, as at a blocked way, until it gives its way up.
 
-The tracked drive notices sooner that it is stuck, and tries to get free: see `tracked/drive.py`.
+The tracked drive notices sooner that it is stuck, and tries to get free: see `tracked/drive.py`. At
+an obstacle that the robot sees it does not wait, but takes another way or fails: see
+`argo_env/run/action.py`.
 """
 
 import math

@@ -3,6 +3,8 @@
 A new one is listed here. Its words are in `report/sections.py`, for the page in
 `argo_planner/page/src/texts/evaluate.ts`, and for the terminal, whose tables have columns of their
 own, in `argo_planner/terminal/evaluation_tables.py`; how sure an estimate is, `estimates/` says.
+Numbers, such as how long a run took, are fields of `row.py`; `controlled.py` has those that cheap
+runs help to estimate.
 """
 
 from collections.abc import Callable

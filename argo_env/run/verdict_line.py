@@ -1,6 +1,7 @@
 """The headline of a run: the same words on the terminal, in reports, recordings and films.
 
-It begins with how the run ended, and goes on with the verdict, which `result.py` finds.
+It begins with how the run ended, and goes on with the verdict, which `result.py` finds. Its colour
+on the terminal is chosen in `argo_planner/terminal/record_tables.py`.
 """
 
 from collections import Counter

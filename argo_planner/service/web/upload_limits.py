@@ -3,7 +3,8 @@
 from argo_compiler.files.mission_file import MAX_BYTES
 
 MOST_UPLOADED = MAX_BYTES
-"""of a mission that is imported; readers have limits of their own as well, that of scripts in
+"""of a mission that is imported: as much as a mission file may have, which
+`argo_compiler/files/mission_file.py` says; scripts have a limit of their own as well, in
 `argo_compiler/script/syntax/reading.py`"""
 MOST_OF_A_BODY = 2_000_000
 """of any other request's body"""

@@ -1,4 +1,7 @@
-/** The colours of paths: by the time at which they are driven, and where one stands out. */
+/**
+ * The colours of paths: by the time at which they are driven, and where one stands out. Dashed ways
+ * and the route that is compared have colours of the theme, chosen in `scene/paths-view.ts`.
+ */
 
 type Colour = readonly [number, number, number];
 

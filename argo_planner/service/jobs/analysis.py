@@ -16,6 +16,8 @@ from argo_env.worker_processes import end_with_parent
 from argo_planner.service.processes.context import CONTEXT
 from argo_planner.use_cases.checking import MOST_PLACES
 
+_PERIOD = 1.0  # s between two looks whether the process is there
+
 
 class AnalysisFound(Model):
     """What the analysis of a revision has found."""
@@ -40,7 +42,7 @@ class Analyst:
             try:
                 # The first process begins when its modules are loaded, which takes seconds.
                 job = await asyncio.to_thread(pool.submit, _analysed, self._site, mission, revision)
-                return await asyncio.wrap_future(job)
+                return await _result(pool, asyncio.wrap_future(job))
             except BrokenProcessPool:
                 problem = "the process that analyses it has died"
                 pool.shutdown(wait=False)
@@ -60,6 +62,20 @@ class Analyst:
 
 def _pool() -> ProcessPoolExecutor:
     return ProcessPoolExecutor(1, mp_context=CONTEXT, initializer=end_with_parent)
+
+
+async def _result(pool: ProcessPoolExecutor, job: asyncio.Future[AnalysisFound]) -> AnalysisFound:
+    """Return the result of a job. Raises BrokenProcessPool also for a job that the pool took at the
+    moment at which it broke: CPython 3.11 never ends that one."""
+    try:
+        while True:
+            broken = pool._broken  # then all jobs that it knows of end at once
+            if (await asyncio.wait({job}, timeout=_PERIOD))[0]:
+                return job.result()
+            if broken:
+                raise BrokenProcessPool
+    finally:
+        job.cancel()
 
 
 def _analysed(reference: str, mission: Mission, revision: int) -> AnalysisFound:

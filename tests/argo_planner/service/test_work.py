@@ -4,6 +4,7 @@ import asyncio
 import errno
 import threading
 from collections.abc import Callable, Coroutine
+from concurrent.futures import Future
 from importlib.util import find_spec
 
 import pytest
@@ -134,6 +135,29 @@ def test_missions_are_analysed_again_whose_process_is_killed(site: OpenedSite) -
             process.kill()
             together = (analyst.analyse(Mission(tasks=()), 1) for _ in range(5))
             assert await asyncio.gather(*together) == [first] * 5
+        finally:
+            analyst.close()
+
+    asyncio.run(killed())
+
+
+def test_a_mission_that_is_taken_while_the_process_dies_is_analysed_again(
+    site: OpenedSite, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The pool may take it and never end it."""
+
+    async def killed() -> None:
+        analyst = Analyst(site)
+        try:
+            first = await analyst.analyse(Mission(tasks=()), 1)
+            pool = analyst._pool
+            (process,) = pool._processes.values()
+            process.kill()
+            while not pool._broken:
+                await asyncio.sleep(0.01)
+            monkeypatch.setattr(pool, "submit", lambda *_: Future())
+            assert await analyst.analyse(Mission(tasks=()), 1) == first
+            assert analyst._pool is not pool
         finally:
             analyst.close()
 

@@ -1,13 +1,14 @@
 """Many problems, one a process at a time."""
 
 from collections.abc import Iterable, Iterator
-from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from itertools import islice
-from multiprocessing import get_context
 from typing import Any
 
-from argo_compiler.base.errors import ArgoError, located
+from loky import ProcessPoolExecutor
+from loky.process_executor import BrokenProcessPool
+
+from argo_compiler.base.errors import ArgoError, Unavailable, located
 from argo_compiler.route.problem import RouteProblem
 from argo_compiler.route.suggested import RouteSuggestion
 from argo_compiler.route.suggestion import suggest_route
@@ -19,13 +20,12 @@ def suggest_routes(
     """What `suggest_route` suggests for each problem with these arguments, in the problems' order,
     each as soon as those before it are there.
 
-    The arguments go to other processes: what can't be pickled, such as a lambda, can't be one; nor
-    does a solver that is registered in this process take part, unless it is one of `solvers`. A
-    program's own module needs `if __name__ == "__main__":` around the call. Raises what
-    `suggest_route` raises, with the number of the problem, from 0.
+    The arguments go to other processes: a solver that is registered in this process takes part only
+    if it is one of `solvers`. Raises what `suggest_route` raises, with the number of the problem,
+    from 0; and Unavailable if a process is killed.
     """
     numbered = iter(enumerate(problems))
-    pool = ProcessPoolExecutor(processes, mp_context=get_context("spawn"))
+    pool = ProcessPoolExecutor(processes)
     try:
         # So that no more problems are asked for than are under way.
         ahead = [
@@ -42,5 +42,7 @@ def suggest_routes(
                 again = pool.submit(partial(suggest_route, **arguments), problem)
                 ahead.append((following, again))
             yield found
+    except BrokenProcessPool:
+        raise Unavailable("a process that searched was ended: is there enough memory?") from None
     finally:
-        pool.shutdown(wait=True, cancel_futures=True)
+        pool.shutdown(wait=True, kill_workers=True)

@@ -1,8 +1,11 @@
 """The analysis of a mission over all its paths, in a process of its own."""
 
 import asyncio
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
+import os
+
+from loky import ProcessPoolExecutor
+from loky.backend.context import LokyContext
+from loky.process_executor import BrokenProcessPool
 
 from argo_compiler.analysis import Analysis, analyse
 from argo_compiler.base.errors import ArgoError
@@ -15,8 +18,6 @@ from argo_env.planning.site_warnings import unseen_from_poses
 from argo_env.worker_processes import end_with_parent
 from argo_planner.service.processes.context import CONTEXT
 from argo_planner.use_cases.checking import MOST_PLACES
-
-_PERIOD = 1.0  # s between two looks whether the process is there
 
 
 class AnalysisFound(Model):
@@ -42,7 +43,7 @@ class Analyst:
             try:
                 # The first process begins when its modules are loaded, which takes seconds.
                 job = await asyncio.to_thread(pool.submit, _analysed, self._site, mission, revision)
-                return await _result(pool, asyncio.wrap_future(job))
+                return await asyncio.wrap_future(job)
             except BrokenProcessPool:
                 problem = "the process that analyses it has died"
                 pool.shutdown(wait=False)
@@ -54,28 +55,16 @@ class Analyst:
 
     def close(self) -> None:
         """Ends the process, whatever it does."""
-        processes = self._pool._processes  # filled as long as it is not shut down
-        self._pool.shutdown(wait=False, cancel_futures=True)
-        for process in [*processes.values()]:
-            process.terminate()
+        self._pool.shutdown(wait=True, kill_workers=True)
 
 
 def _pool() -> ProcessPoolExecutor:
-    return ProcessPoolExecutor(1, mp_context=CONTEXT, initializer=end_with_parent)
-
-
-async def _result(pool: ProcessPoolExecutor, job: asyncio.Future[AnalysisFound]) -> AnalysisFound:
-    """Return the result of a job. Raises BrokenProcessPool also for a job that the pool took at the
-    moment at which it broke: CPython 3.11 never ends that one."""
-    try:
-        while True:
-            broken = pool._broken  # then all jobs that it knows of end at once
-            if (await asyncio.wait({job}, timeout=_PERIOD))[0]:
-                return job.result()
-            if broken:
-                raise BrokenProcessPool
-    finally:
-        job.cancel()
+    # The pool of Python 3.11 may take a job while it breaks, and never end it: loky's does not.
+    context = LokyContext()
+    context.Process = CONTEXT.Process
+    return ProcessPoolExecutor(
+        1, context=context, initializer=end_with_parent, initargs=(os.getpid(),)
+    )
 
 
 def _analysed(reference: str, mission: Mission, revision: int) -> AnalysisFound:

@@ -1,5 +1,7 @@
 """How a search is limited, watched and taken part in."""
 
+import os
+import signal
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -7,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from argo_compiler.base.errors import Conflict, Invalid, NotFound
+from argo_compiler.base.errors import Conflict, Invalid, NotFound, Unavailable
 from argo_compiler.route import (
     Precedence,
     RouteProblem,
@@ -194,6 +196,13 @@ class TestOnesOwnSolver:
             suggest_route(ordered, solvers=(Reversed(),))
 
 
+class Killed(Reversed):
+    """A solver that takes its process with it."""
+
+    def solve(self, _search: Search, /) -> None:
+        os.kill(os.getpid(), signal.SIGKILL)
+
+
 class TestBatches:
     def test_they_are_what_one_by_one_gives(self) -> None:
         problems = [random_problem(np.random.default_rng(seed), 6) for seed in range(7)]
@@ -206,3 +215,7 @@ class TestBatches:
         many = [plain(3), long]
         with pytest.raises(Invalid, match=r"^problem 1: the times"):
             list(suggest_routes(many, time_limit=5.0))
+
+    def test_a_process_that_is_killed_is_told(self) -> None:
+        with pytest.raises(Unavailable, match="a process that searched was ended"):
+            list(suggest_routes([plain(3)], 1, time_limit=5.0, solvers=(Killed(),)))

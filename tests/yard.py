@@ -24,11 +24,11 @@ from argo_env.navigation import Navigator
 from argo_env.planning.opening import OpenedSite
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import load_robot
-from argo_env.run.beginning import machine_of
+from argo_env.run.initial_state import make_machine
 from argo_env.run.journal import Header, create_journal, open_journal
 from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
-from argo_env.run.rig import Rig
+from argo_env.run.run_setup import RunSetup
 from argo_env.run.session import resume, simulate
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec, logged
@@ -205,9 +205,9 @@ class Oracle:
         return Measurement(self._values.get(checkpoint_id, 1.5 + checkpoint_id), 1.0)
 
 
-def fast_rig(navigator, values=None):
+def fast_setup(navigator, values=None):
     """All that a mission is carried out with, without physics."""
-    return Rig(EmptyWorld(), navigator, GlidingDrive(navigator.robot), Oracle(values))
+    return RunSetup(EmptyWorld(), navigator, GlidingDrive(navigator.robot), Oracle(values))
 
 
 class Entries(Observer):
@@ -247,26 +247,26 @@ def simulated(plan, navigator, *, observers=(), journal=None, gui=False, pace=No
     return simulate(spec, site, observers=observers, journal=journal, gui=gui, pace=pace)
 
 
-def run_with(plan, rig, *, observers=(), journal=None, interrupted=lambda: False, **fields):
-    """The record of a run with such a rig: of all of it, or from where a journal ends."""
-    spec = RunSpec(mission=plan, site=rig.navigator.site.name, **fields)
+def run_with(plan, setup, *, observers=(), journal=None, interrupted=lambda: False, **fields):
+    """The record of a run with such a setup: of all of it, or from where a journal ends."""
+    spec = RunSpec(mission=plan, site=setup.navigator.site.name, **fields)
     past = journal.entries if journal else ()
     if journal:
         observers = (journal, *observers)
     with simulation_of(
-        spec, opened(rig.navigator), past=past, observers=observers, rig=rig
+        spec, opened(setup.navigator), past=past, observers=observers, setup=setup
     ) as simulation:
         return simulation.run(interrupted)
 
 
 def run(navigator, plan, *events, values=None):
     """The record of a run without physics that is told of these events at their times."""
-    return run_with(plan, fast_rig(navigator, values), events=logged(*events))
+    return run_with(plan, fast_setup(navigator, values), events=logged(*events))
 
 
 def simulation_of(spec, site, **arguments):
     """A simulation of the spec's mission."""
-    return Simulation(machine_of(spec.mission, spec.beginning), site, spec, **arguments)
+    return Simulation(make_machine(spec.mission, spec.beginning), site, spec, **arguments)
 
 
 @contextmanager

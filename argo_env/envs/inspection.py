@@ -40,10 +40,10 @@ from argo_env.faults.kinds import KINDS, AnyFault, settle
 from argo_env.faults.robot import EmergencyStop
 from argo_env.planning import open_site
 from argo_env.run.drives_and_sensors import DRIVES, ROUTE
-from argo_env.run.fitting_together import check_run
 from argo_env.run.record import RunRecord
-from argo_env.run.rig import check_spec
+from argo_env.run.run_setup import check_spec
 from argo_env.run.spec import RunSpec
+from argo_env.run.validation import check_run
 from argo_env.seeding import draw
 from argo_env.site import Site
 

@@ -21,13 +21,13 @@ from argo_env.drives.battery import ESTIMATE_ERROR, estimated_charge
 from argo_env.navigation import Navigator
 from argo_env.planning.opening import OpenedSite
 from argo_env.robot.pose import BodyPose, Places, place_of
-from argo_env.run.fitting_together import CheckedRun
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine, OpenMachine
 from argo_env.run.observer import Observer
 from argo_env.run.record import Anomaly, Contact, Mishap, Reading, RunRecord
+from argo_env.run.run_commands import StopRun
 from argo_env.run.simulation import Simulation
-from argo_env.run.steering import StopRun
+from argo_env.run.validation import CheckedRun
 from argo_env.site.shapes import Vector
 
 FULL = 0.999  # charge from where on the battery counts as full
@@ -62,7 +62,7 @@ class Inspection(Closing):
         self._told = _Told()
         told = [self._told, *observers]
         self._simulation = Simulation(self._machine, run.site, run, observers=told)
-        self._drive = self._simulation.rig.drive
+        self._drive = self._simulation.setup.drive
         self._limit = limit
         self._tasks: dict[str, int] = {}
         self._noticed: list[EventKind] = []
@@ -85,13 +85,13 @@ class Inspection(Closing):
     @property
     def dead(self) -> bool:
         """Whether the battery is empty."""
-        battery = self._simulation.rig.battery
+        battery = self._simulation.setup.battery
         return battery is not None and battery.empty
 
     @property
     def charge(self) -> float:
         """0 to 1, as the robot makes it out of the battery's voltage and current."""
-        battery = self._simulation.rig.battery
+        battery = self._simulation.setup.battery
         return 1.0 if battery is None else estimated_charge(battery.voltage, battery.current)
 
     @property
@@ -106,7 +106,7 @@ class Inspection(Closing):
     @property
     def navigator(self) -> Navigator:
         """The site as the robot knows it, less what it has found to be closed."""
-        return self._simulation.rig.navigator
+        return self._simulation.setup.navigator
 
     @property
     def noticed(self) -> tuple[EventKind, ...]:
@@ -144,9 +144,12 @@ class Inspection(Closing):
     @property
     def _surely_not_full(self) -> float:
         """s, a time up to which the battery can't be found full, however it is charged."""
-        battery = self._simulation.rig.battery
+        battery = self._simulation.setup.battery
         assert battery is not None
-        watts, seconds = self._simulation.rig.navigator.robot.power.charging, self._drive.time_step
+        watts, seconds = (
+            self._simulation.setup.navigator.robot.power.charging,
+            self._drive.time_step,
+        )
         missing = (FULL - ESTIMATE_ERROR - battery.charge) * battery.capacity
         charges = battery.current < 0.0
         if missing > 0.0 or not charges:

@@ -26,7 +26,7 @@ from argo_env.evaluation.row import RunRow
 from argo_env.planning.opening import open_site
 from argo_env.robot.spec import load_robot
 from argo_env.run.drives_and_sensors import IDEAL, ROUTE
-from argo_env.run.rig import check_spec
+from argo_env.run.run_setup import check_spec
 
 PILOT = 30
 """worlds in which both are run first"""

@@ -9,7 +9,7 @@ from argo_env.drives.battery import ESTIMATE_ERROR
 from argo_env.faults.checkpoints import AbnormalValue
 from argo_env.faults.kinds import AnyFault
 from argo_env.run.record import Anomaly, Finding, Reading, RunRecord
-from argo_env.run.rig import shown_at, true_values
+from argo_env.run.run_setup import displayed_value, true_values
 from argo_env.run.spec import RunSpec, ValueProfile
 from argo_env.sensing.onboard import LOW
 from argo_env.site import Site
@@ -91,7 +91,7 @@ class _TrueWorld:
         checkpoint = self.site.checkpoint(reading.checkpoint)
         first = true_values(self.site, self.spec.seed, self.spec.values)[checkpoint.id]
         profile = self.spec.conditions.values.get(checkpoint.id, ValueProfile())
-        shown = shown_at(checkpoint, first, profile, self.spec.seed, finding.t)
+        shown = displayed_value(checkpoint, first, profile, self.spec.seed, finding.t)
         return not checkpoint.nominal.contains(shown)
 
     def was_low(self, finding: Finding) -> bool:

@@ -18,7 +18,7 @@ from argo_env.evaluation.store import RowStore
 from argo_env.evaluation.worlds import NO_VARIATION, Variation
 from argo_env.faults.kinds import AnyFault
 from argo_env.planning.opening import OpenedSite, open_site
-from argo_env.run.rig import check_spec
+from argo_env.run.run_setup import check_spec
 from argo_env.run.spec import RunSpec
 
 

@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Model
 from argo_env.faults.reading import FaultDistribution
-from argo_env.run.rig import true_values
+from argo_env.run.run_setup import true_values
 from argo_env.run.spec import RunConditions, RunSpec, ValueProfile, ValueStep
 from argo_env.seeding import generator
 from argo_env.site import Site

@@ -16,8 +16,8 @@ from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
 from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
-from argo_env.run.rig import Rig
 from argo_env.run.robot import RobotAction
+from argo_env.run.run_setup import RunSetup
 from argo_env.run.spec import RunSpec
 
 if TYPE_CHECKING:
@@ -35,8 +35,8 @@ class BestEffort(Observer):
         self.loss = ""
         """why the recording ends before the run, and where; empty if it does not"""
 
-    def on_begin(self, rig: Rig, spec: RunSpec) -> None:
-        self._try(lambda: self._recorder.on_begin(rig, spec))
+    def on_begin(self, setup: RunSetup, spec: RunSpec) -> None:
+        self._try(lambda: self._recorder.on_begin(setup, spec))
 
     def on_entry(self, entry: Entry) -> None:
         self._try(lambda: self._recorder.on_entry(entry))

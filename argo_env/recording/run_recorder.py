@@ -26,8 +26,8 @@ from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
 from argo_env.run.observer import Observer
 from argo_env.run.record import Anomaly, Contact, Reading, RunRecord, TaskRun, TraceStep
-from argo_env.run.rig import Rig
 from argo_env.run.robot import RobotAction
+from argo_env.run.run_setup import RunSetup
 from argo_env.run.spec import RunSpec
 from argo_env.run.verdict_line import Tone
 from argo_env.site import Site, SiteCheckpoint
@@ -110,7 +110,7 @@ class RunRecorder(Observer):
         self._source = source
         self._warn = warn
         self._begun = False
-        self._rig: Rig | None = None
+        self._setup: RunSetup | None = None
         self._motion: MotionTopics | None = None
         self._next = -math.inf  # s, when the next pose is due
         self._now = 0.0
@@ -125,12 +125,12 @@ class RunRecorder(Observer):
         self._latest: dict[int, Reading] = {}
         self._drawn: list[SiteCheckpoint] = []
 
-    def on_begin(self, rig: Rig, spec: RunSpec) -> None:
+    def on_begin(self, setup: RunSetup, spec: RunSpec) -> None:
         """Writes what does not change: what the run is made from, the site and the robot."""
-        site, robot = rig.navigator.site, rig.navigator.robot
+        site, robot = setup.navigator.site, setup.navigator.robot
         path = robot_folder() / robot.urdf
         model = read_model(path)
-        self._rig = rig
+        self._setup = setup
         self._writer.describe(
             "argo",
             {
@@ -139,8 +139,8 @@ class RunRecorder(Observer):
                 "time": "nanoseconds of simulated time since the mission's start",
                 "site": site.name,
                 "robot": robot.name,
-                "drive": rig.drive.name,
-                "sensor": rig.sensor.name,
+                "drive": setup.drive.name,
+                "sensor": setup.sensor.name,
                 "seed": str(spec.seed),
             },
         )
@@ -151,15 +151,15 @@ class RunRecorder(Observer):
         attach("settings.json", "application/json", json.dumps(spec.settings, indent=2))
         attach("site.json", "application/json", site.spec.model_dump_json(indent=2))
         attach(path.name, "application/xml", model.text)
-        for number, update in scene.site_scenes(_as_it_is(rig), 0.0).items():
+        for number, update in scene.site_scenes(_as_it_is(setup), 0.0).items():
             self._writer.put(f"/site/floor_{number}", update, 0.0)
         self._writer.put("/robot", scene.robot_scene(model, 0.0), 0.0)
         self._draw_checkpoints(0.0)
-        self._motion = MotionTopics(self._writer, model, _limbs(rig))
+        self._motion = MotionTopics(self._writer, model, _limbs(setup))
         self._motion.begin(0.0)
-        if isinstance(rig.world, World):
+        if isinstance(setup.world, World):
             # They are written at the end of the step in which they were taken.
-            rig.world.on_shot = self._shots.append
+            setup.world.on_shot = self._shots.append
         self._writer.flush(0.0)
         self._begun = True
 
@@ -190,14 +190,14 @@ class RunRecorder(Observer):
             if isinstance(original, Occurred):
                 detail = f": {original.detail}" if original.detail else ""
                 self._log(f"{original.event.replace('_', ' ')}{detail}", Log.WARNING, "event", now)
-        assert self._rig is not None, "on_begin comes first"
-        found = (*entry.found, *entry.told(self._rig.navigator.site))
+        assert self._setup is not None, "on_begin comes first"
+        found = (*entry.found, *entry.told(self._setup.navigator.site))
         for anomaly in found:
             self._found.append(anomaly)
             self._writer.put_json("/findings", anomaly, now)
         if found:
             self._writer.put("/findings/markers", scene.finding_scene(self._found, now), now)
-        for told in entry.given_values(self._rig.navigator.site):
+        for told in entry.given_values(self._setup.navigator.site):
             self._log(told.in_words, Log.INFO, "told", now)
         for mishap in entry.mishaps:
             self._log(f"{mishap.trouble}: {mishap.detail}", Log.WARNING, "drive", now)
@@ -238,8 +238,8 @@ class RunRecorder(Observer):
     def give_up(self) -> None:
         """Keeps nothing any more of what there is to record."""
         self._shots.clear()
-        if self._rig is not None and isinstance(self._rig.world, World):
-            self._rig.world.on_shot = None
+        if self._setup is not None and isinstance(self._setup.world, World):
+            self._setup.world.on_shot = None
 
     def _sources(self) -> dict[str, bytes]:
         """The file that the mission was read from, or the files of its folder, by their names."""
@@ -258,17 +258,17 @@ class RunRecorder(Observer):
         return {}
 
     def _sample(self, now: float) -> None:
-        assert self._rig is not None, "on_begin comes first"
+        assert self._setup is not None, "on_begin comes first"
         assert self._motion is not None
         self._sampled = now
-        self._motion.sample(self._rig.drive.pose, now)
+        self._motion.sample(self._setup.drive.pose, now)
         if self._checkpoints() != self._drawn:
             self._draw_checkpoints(now)
 
     def _checkpoints(self) -> list[SiteCheckpoint]:
         """The checkpoints where they really are."""
-        assert self._rig is not None
-        world = self._rig.world
+        assert self._setup is not None
+        world = self._setup.world
         return [world.in_place(c.id) for c in world.site.checkpoints]
 
     def _draw_checkpoints(self, now: float) -> None:
@@ -288,7 +288,7 @@ class RunRecorder(Observer):
             self._writer.put_json("/mission", state, now)
 
     def _battery(self, now: float) -> None:
-        battery = self._rig.battery if self._rig else None
+        battery = self._setup.battery if self._setup else None
         if battery is not None:
             state = BatteryState(
                 charge=battery.charge, voltage=battery.voltage, current=battery.current
@@ -323,18 +323,18 @@ class RunRecorder(Observer):
         self._writer.put("/log", messages.log(text, level, name, now), now)
 
 
-def _as_it_is(rig: Rig) -> Site:
+def _as_it_is(setup: RunSetup) -> Site:
     """The site with what faults have put into the way, and without what they have taken away."""
-    site, world = rig.navigator.site, rig.world
+    site, world = setup.navigator.site, setup.world
     if not isinstance(world, World):
         return site
     return site.with_elements(tuple(e for e in world.solids if e.solids))
 
 
-def _limbs(rig: Rig) -> Limbs:
+def _limbs(setup: RunSetup) -> Limbs:
     """Where the robot's joints are; on paper its arm is stowed and its flippers are level."""
-    world = rig.world
+    world = setup.world
     if isinstance(world, World):
         return world.joint_positions
-    stowed = {name: math.radians(a) for name, a in rig.navigator.robot.arm_stowed.items()}
+    stowed = {name: math.radians(a) for name, a in setup.navigator.robot.arm_stowed.items()}
     return lambda names: [stowed.get(name, 0.0) for name in names]

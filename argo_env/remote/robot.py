@@ -1,5 +1,5 @@
 """A robot that is somewhere else, as the run's own: its actions, what it reports, and what stands
-in a rig for its parts."""
+in a setup for its parts."""
 
 import logging
 import math
@@ -24,13 +24,13 @@ from argo_env.remote.messages import (
     StartOrder,
 )
 from argo_env.robot.pose import BodyPose
-from argo_env.run.beginning import RunBeginning
+from argo_env.run.initial_state import InitialState
 from argo_env.run.log import Entry
 from argo_env.run.odometry import Odometry
 from argo_env.run.perception import abnormal_reading
 from argo_env.run.record import DIGITS, Anomaly, Reading, TaskRun
-from argo_env.run.rig import Rig
 from argo_env.run.robot import ActionEnd, RobotAction, Sensed
+from argo_env.run.run_setup import RunSetup
 from argo_env.sensing.sensor import Measurement, MeasurementError
 from argo_env.site import Site
 from argo_env.world.paper_world import PaperWorld
@@ -157,7 +157,7 @@ class RemoteAction:
             self.cancelled, self._interrupted = reason, interrupted
             self._order_to_cancel()
 
-    def detour(self, rig: Rig) -> None:
+    def detour(self, setup: RunSetup) -> None:
         """The robot finds its way itself."""
 
     def end(self, report: EndReport, abnormal: bool) -> ActionEnd:
@@ -222,7 +222,7 @@ class RemoteRobot:
         self._channel, self._run, self._clock, self._sleep = channel, run, clock, sleep
         site, robot = navigator.site, navigator.robot
         self._drive = ToldDrive(time_step, BodyPose(0.0, 0.0, 0.0, 0.0))
-        self.rig = Rig(PaperWorld(site, robot), navigator, self._drive, ToldSensor())
+        self.setup = RunSetup(PaperWorld(site, robot), navigator, self._drive, ToldSensor())
         self.odometry = Odometry(site)
         self.supply = ToldPower()
         self._offset = 0.0  # of the clock from the run's time
@@ -254,7 +254,7 @@ class RemoteRobot:
             self._channel.take()
         return not self._channel.pending
 
-    def begin(self, beginning: RunBeginning) -> None:
+    def begin(self, beginning: InitialState) -> None:
         self.odometry.distance, self.odometry.climbed = beginning.distance, beginning.climbed
 
     def restore(self, last: Entry) -> None:
@@ -267,7 +267,7 @@ class RemoteRobot:
         """What goes wrong is real."""
 
     def avoid(self, blockages: Sequence[Blockage]) -> None:
-        self.rig = replace(self.rig, navigator=self.rig.navigator.avoiding(blockages))
+        self.setup = replace(self.setup, navigator=self.setup.navigator.avoiding(blockages))
 
     def start(self, command: StartAction, now: float, came: Path | None) -> RobotAction:  # noqa: ARG002
         """Orders an action. One of the same run and id that the robot knows already goes on."""
@@ -292,7 +292,7 @@ class RemoteRobot:
                 self._cancel()
         self._sleep(max(0.0, now + self._offset - self._clock()))
         self._channel.flush()
-        site, ended = self.rig.navigator.site, None
+        site, ended = self.setup.navigator.site, None
         found: list[Anomaly] = []
         before = self._drive.pose
         for body in self._channel.take():

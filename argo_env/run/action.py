@@ -13,8 +13,8 @@ from argo_env.navigation.closed_areas import leads_through
 from argo_env.navigation.retreat import way_back
 from argo_env.robot.pose import BodyPose
 from argo_env.run.record import DIGITS, Reading, TaskRun
-from argo_env.run.rig import Rig
 from argo_env.run.robot import ActionEnd
+from argo_env.run.run_setup import RunSetup
 from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError
 from argo_env.site import SiteCheckpoint
 
@@ -28,7 +28,7 @@ TURNS = (0.0, math.radians(55.0), math.radians(-55.0))
 other: it may be turned by up to 90 degrees, and is read at up to 60 degrees"""
 
 
-class ActionUnderWay:
+class SimulatedAction:
     """The action of one task. Changes with every step, from the first one to its end.
 
     The robot drives to the place, and stands there until the time at which it may begin. A
@@ -41,7 +41,7 @@ class ActionUnderWay:
     def __init__(
         self,
         start: StartAction,
-        rig: Rig,
+        setup: RunSetup,
         started: float,
         distance_before: float,
         climbed_before: float,
@@ -65,7 +65,7 @@ class ActionUnderWay:
         self.came = came
         """the path that the robot came by, back along which it goes where it is cornered"""
         self._velocity = task.velocity
-        self._rig = rig
+        self._setup = setup
         self._retreated = False
         self._views = 0  # that have been gone to
         self._looked = False
@@ -87,9 +87,9 @@ class ActionUnderWay:
             self._measured.append((self._since, now))
             self._since = None
         if end is not None:
-            self._rig.world.move_arm(self._rig.navigator.robot.arm_stowed)
+            self._setup.world.move_arm(self._setup.navigator.robot.arm_stowed)
             if isinstance(end, ActionFailed):
-                self._rig.drive.halt()
+                self._setup.drive.halt()
         return end
 
     def cancel(self, reason: str, interrupted: bool) -> None:
@@ -102,22 +102,24 @@ class ActionUnderWay:
         elif self._phase in (self._brake_unread, self._stow_unread):
             pass  # it cleans up already
         elif self._phase in (self._drive, self._turn_off, self._retreat):
-            self._rig.drive.halt()
+            self._setup.drive.halt()
             self._phase = self._brake
         elif not self._has_looked:
             self._begin_to_stow(self._stow)
 
-    def detour(self, rig: Rig) -> None:
-        """Goes on with a rig whose navigator knows of something new in the way. If the present way
-        leads there, the robot halts and takes another."""
-        self._rig = rig
-        navigator = rig.navigator
+    def detour(self, setup: RunSetup) -> None:
+        """Continue with a setup whose navigator knows of a new blockage.
+
+        If the current path leads through the blockage, the robot halts and takes another path.
+        """
+        self._setup = setup
+        navigator = setup.navigator
         blocked = self.path is not None and leads_through(
             self.path, navigator.blockages, navigator.robot
         )
         if blocked and self._phase == self._drive:
             self._retreated = False
-            rig.drive.halt()
+            setup.drive.halt()
             self._phase = self._turn_off
 
     @property
@@ -134,7 +136,7 @@ class ActionUnderWay:
         """How many time steps, at most so many, it measures on without looking or ending."""
         if self._phase != self._measure or self._give_up_at < math.inf:
             return 0
-        left, step = self._left, self._rig.drive.time_step
+        left, step = self._left, self._setup.drive.time_step
         for count in range(most):
             left -= step
             if left <= 1e-9:
@@ -147,7 +149,7 @@ class ActionUnderWay:
         self._now = now
         if self._phase == self._measure:
             for _ in range(count):
-                self._left -= self._rig.drive.time_step
+                self._left -= self._setup.drive.time_step
 
     def reading(self, now: float) -> Reading | None:
         """What was measured, at time `now` (s), if anything was."""
@@ -199,10 +201,10 @@ class ActionUnderWay:
 
     @property
     def _measuring_time(self) -> float:
-        return self._rig.navigator.robot.sensor.measuring_time
+        return self._setup.navigator.robot.sensor.measuring_time
 
     def _set_off(self) -> ActionEnd | None:
-        navigator, drive = self._rig.navigator, self._rig.drive
+        navigator, drive = self._setup.navigator, self._setup.drive
         may_retreat = self.came is not None and bool(navigator.blockages) and not self._retreated
         try:
             if may_retreat and not _is_free(navigator, drive.pose):
@@ -226,8 +228,8 @@ class ActionUnderWay:
         """Sets off back the way that the robot came, to plan from there."""
         assert self.came is not None
         self._retreated = True
-        back = way_back(self.came, _standing(self._rig.drive.pose), RETREAT)
-        self._rig.drive.begin(back, self._velocity)
+        back = way_back(self.came, _standing(self._setup.drive.pose), RETREAT)
+        self._setup.drive.begin(back, self._velocity)
         self._phase = self._retreat
         return None
 
@@ -239,17 +241,17 @@ class ActionUnderWay:
 
     def _then(self, following: Callable[[], ActionEnd | None]) -> ActionEnd | None:
         """What follows when the drive has arrived, or come to rest."""
-        match self._rig.drive.step():
+        match self._setup.drive.step():
             case DriveStatus.MOVING:
                 return None
             case DriveStatus.FAILED:
-                return self._failed(self._rig.drive.failure or "the drive failed")
+                return self._failed(self._setup.drive.failure or "the drive failed")
             case DriveStatus.ARRIVED:
                 return following()
 
     def _drive(self) -> ActionEnd | None:
         if self._tried_enough:
-            self._rig.drive.halt()
+            self._setup.drive.halt()
             self._phase = self._brake_unread
             return self._brake_unread()
         return self._then(self._arrived)
@@ -266,7 +268,7 @@ class ActionUnderWay:
         if limit is not None and not self._looked:
             self._give_up_at = min(self._give_up_at, self._now + limit)
         self._left = self._measuring_time
-        self._rig.world.move_arm(self._raised())
+        self._setup.world.move_arm(self._raised())
         self._phase = self._measure
         return None
 
@@ -282,7 +284,7 @@ class ActionUnderWay:
             return None
         self._looked = True
         try:
-            self.measurement = self._rig.read(self._checkpoint_id(), self._now)
+            self.measurement = self._setup.read(self._checkpoint_id(), self._now)
         except PoorViewError as error:
             return self._look_again(str(error))
         except MeasurementError as error:
@@ -294,7 +296,7 @@ class ActionUnderWay:
     def _look_again(self, failure: str) -> ActionEnd | None:
         """Goes to the next view, as of a face that is turned; with none left, or where the mission
         says from where to look, `failure` stands."""
-        navigator, pose = self._rig.navigator, self._rig.drive.pose
+        navigator, pose = self._setup.navigator, self._setup.drive.pose
         last = self.task.pose is not None or self.cancelled is not None
         while not last and self._views < len(TURNS):
             turned = TURNS[self._views]
@@ -303,9 +305,9 @@ class ActionUnderWay:
                 path = navigator.plan_to_view(_standing(pose), self._checkpoint_id(), turned)
             except Unreachable:
                 continue
-            self._rig.world.move_arm(navigator.robot.arm_stowed)
+            self._setup.world.move_arm(navigator.robot.arm_stowed)
             self.path = self.came = path
-            self._rig.drive.begin(path, self._velocity)
+            self._setup.drive.begin(path, self._velocity)
             self._phase = self._drive
             return None
         return self._failed(failure)
@@ -327,14 +329,14 @@ class ActionUnderWay:
 
     def _begin_to_stow(self, phase: Callable[[], ActionEnd | None]) -> None:
         """Stows the arm, as far as it has been raised."""
-        third = self._rig.navigator.robot.sensor.stowing_time
+        third = self._setup.navigator.robot.sensor.stowing_time
         self._left = min(self._measuring_time - self._left, third)
         self._phase = phase
 
     @property
     def _has_looked(self) -> bool:
         """Of a measurement under way: whether only the arm is left to be stowed."""
-        return self._left <= self._rig.navigator.robot.sensor.stowing_time + _INSTANT
+        return self._left <= self._setup.navigator.robot.sensor.stowing_time + _INSTANT
 
     def _brake(self) -> ActionEnd | None:
         return self._then(self._stop)
@@ -349,22 +351,22 @@ class ActionUnderWay:
         return ActionFailed(self.task.name, reason, self._looked, self._id)
 
     def _time_over(self) -> bool:
-        self._left -= self._rig.drive.time_step
+        self._left -= self._setup.drive.time_step
         return self._left <= 1e-9
 
     def _path(self) -> Path:
-        start = _standing(self._rig.drive.pose)
+        start = _standing(self._setup.drive.pose)
         if self.task.action is Action.MEASURE and self.task.pose is None:
             self._views = max(1, self._views)
             turned = TURNS[self._views - 1]
-            return self._rig.navigator.plan_to_view(start, self._checkpoint_id(), turned)
+            return self._setup.navigator.plan_to_view(start, self._checkpoint_id(), turned)
         if self.task.pose is None:
             raise Unreachable(f"task {self.task.name} has no pose")
-        return self._rig.navigator.plan(start, self.task.pose)
+        return self._setup.navigator.plan(start, self.task.pose)
 
     def _checkpoint(self) -> SiteCheckpoint:
         """The task's checkpoint; ArgoError if the site does not have it."""
-        return self._rig.navigator.site.measured_by(self.task.object_id)
+        return self._setup.navigator.site.measured_by(self.task.object_id)
 
     def _checkpoint_id(self) -> int:
         return self._checkpoint().id
@@ -372,13 +374,13 @@ class ActionUnderWay:
     def _unmoved(self) -> tuple[str, ...]:
         """The joints that the task asks for, and nothing in the world moves."""
         joints = self.task.joint_states
-        moves = self._rig.watches_world and self.task.action is Action.MEASURE
-        moved = _asked(self.task).keys() & self._rig.navigator.robot.arm_raised if moves else ()
+        moves = self._setup.watches_world and self.task.action is Action.MEASURE
+        moved = _asked(self.task).keys() & self._setup.navigator.robot.arm_raised if moves else ()
         return () if joints is None else tuple(n for n in joints.names if n not in moved)
 
     def _raised(self) -> dict[str, float]:
         """The arm's joints (deg) when it measures: where the mission wants them, or the robot."""
-        raised = self._rig.navigator.robot.arm_raised
+        raised = self._setup.navigator.robot.arm_raised
         return raised | {name: at for name, at in _asked(self.task).items() if name in raised}
 
 

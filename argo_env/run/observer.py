@@ -3,8 +3,8 @@
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
 from argo_env.run.record import RunRecord
-from argo_env.run.rig import Rig
 from argo_env.run.robot import RobotAction
+from argo_env.run.run_setup import RunSetup
 from argo_env.run.spec import RunSpec
 
 
@@ -17,7 +17,7 @@ class Observer:
     hears_samples = True
     """whether it is told as well where the robot was while nothing happened"""
 
-    def on_begin(self, rig: Rig, spec: RunSpec) -> None:
+    def on_begin(self, setup: RunSetup, spec: RunSpec) -> None:
         """The run is about to begin, or to go on from its journal."""
 
     def on_entry(self, entry: Entry) -> None:

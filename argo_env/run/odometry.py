@@ -14,7 +14,7 @@ from argo_env.world.world import Touch
 CONTACT_GAP = 0.5  # s without a touch that end a contact; shorter, it is the same scrape
 
 
-class ContactWatch:
+class ContactTracker:
     """Joins touches to contacts, one for each pair of parts. Holds those that may still go on."""
 
     def __init__(self) -> None:
@@ -67,7 +67,7 @@ class Odometry:
         """those that are not yet told"""
         self._seen = 0  # of the drive's incidents
         self._site = site
-        self._contacts = ContactWatch()
+        self._contacts = ContactTracker()
 
     @property
     def touching(self) -> tuple[Contact, ...]:

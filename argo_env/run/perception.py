@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from argo_compiler.il import EventKind
 from argo_env.navigation import Blockage
 from argo_env.robot.pose import BodyPose
-from argo_env.run.record import DIGITS, Anomaly, Reading, found_by
+from argo_env.run.record import DIGITS, Anomaly, Reading, anomaly_from_reading
 from argo_env.sensing.signals.terrain_watch import KNOWN, ObstacleDetection
 from argo_env.sensing.watch import Detection, PatientWatch, RememberingWatch, Told, Watch
 from argo_env.site import Site
@@ -103,7 +103,7 @@ def blockage(anomaly: Anomaly) -> Blockage | None:
 
 def abnormal_reading(reading: Reading, site: Site) -> Anomaly:
     """What a reading outside the checkpoint's nominal range tells."""
-    return found_by(reading, _rounded(site.checkpoint(reading.checkpoint).position))
+    return anomaly_from_reading(reading, _rounded(site.checkpoint(reading.checkpoint).position))
 
 
 def _rounded(place: Vector) -> Vector:

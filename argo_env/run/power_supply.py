@@ -14,7 +14,7 @@ from argo_env.site import Site
 
 
 @dataclass(frozen=True, eq=False)
-class PowerAhead:
+class PredictedSupply:
     """How the supply stands after each of n steps, arrays of the shape (n,)."""
 
     charging: NDArray[np.bool_]
@@ -28,7 +28,7 @@ class PowerAhead:
         return len(self.left)
 
 
-NO_STEPS = PowerAhead(np.empty(0, dtype=bool), np.empty(0), np.empty(0))
+NO_STEPS = PredictedSupply(np.empty(0, dtype=bool), np.empty(0), np.empty(0))
 
 
 class PowerSupply:
@@ -76,13 +76,13 @@ class PowerSupply:
             watts = -self._power.charging if self.charging else 0.0
         self._battery.use(watts, seconds)
 
-    def ahead(self, loads: NDArray[np.float64], places: Places, seconds: float) -> PowerAhead:
+    def ahead(self, loads: NDArray[np.float64], places: Places, seconds: float) -> PredictedSupply:
         """How it stands after each of n steps (s) with such loads (W), shape (n,), after which the
         robot is at these places: up to where the battery is empty, before which nothing can
         happen."""
         charging = np.zeros(len(loads), dtype=bool)
         if self._battery is None:
-            return PowerAhead(charging, np.zeros(len(loads)), np.zeros(len(loads)))
+            return PredictedSupply(charging, np.zeros(len(loads)), np.zeros(len(loads)))
         docked = self._docked_after(loads, places)
         if docked.any():
             charging, left, loads = self._ahead_docked(loads, docked, seconds)
@@ -91,7 +91,7 @@ class PowerSupply:
             left = np.cumsum(np.concatenate([[before], -(loads * seconds / 3600.0)]))[1:]
         empty = left <= 0.0
         last = int(empty.argmax()) if empty.any() else len(left)
-        return PowerAhead(charging[:last], left[:last], loads[:last])
+        return PredictedSupply(charging[:last], left[:last], loads[:last])
 
     def _ahead_docked(
         self, loads: NDArray[np.float64], docked: NDArray[np.bool_], seconds: float
@@ -123,17 +123,17 @@ class PowerSupply:
             docked[near] = np.array([self._docked(BodyPose(*kind)) for kind in kinds])[which]
         return docked
 
-    def go_to(self, ahead: PowerAhead, step: int) -> None:
+    def go_to(self, ahead: PredictedSupply, step: int) -> None:
         """It stands as after that step, from 0, from now on."""
         self.charging = bool(ahead.charging[step])
         if self._battery is not None:
             self._battery.state = float(ahead.left[step]), float(ahead.watts[step])
 
-    def charge_after(self, ahead: PowerAhead, step: int) -> float | None:
+    def charge_after(self, ahead: PredictedSupply, step: int) -> float | None:
         """Of the battery, 0 to 1, after that step, from 0."""
         return None if self._battery is None else float(ahead.left[step]) / self._battery.capacity
 
-    def charges(self, ahead: PowerAhead) -> tuple[float, float]:
+    def charges(self, ahead: PredictedSupply) -> tuple[float, float]:
         """The least and the most charge, 0 to 1, after the steps; full without a battery."""
         if self._battery is None or not len(ahead):
             return 1.0, 1.0

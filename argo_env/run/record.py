@@ -277,7 +277,7 @@ class WaitRun(Model):
     """what ended it, in words"""
 
 
-class WindowKept(StrEnum):
+class WindowOutcome(StrEnum):
     """What came of a task's time window."""
 
     KEPT = "kept"
@@ -306,7 +306,7 @@ class WindowRun(Model):
     """s, when the mission came to it"""
     ended: float | None
     """s"""
-    kept: WindowKept
+    kept: WindowOutcome
 
 
 class RoundRun(Model):
@@ -458,7 +458,7 @@ class RunRecord(Model):
     def findings(self) -> tuple[Finding, ...]:
         """All that was out of the ordinary, each once, and what came of it."""
         told = {anomaly.t for anomaly in self.anomalies if anomaly.is_reading}
-        bare = [found_by(r) for r in self.readings if not (r.normal or r.t in told)]
+        bare = [anomaly_from_reading(r) for r in self.readings if not (r.normal or r.t in told)]
         found = [
             self._finding(anomaly, number, self.anomalies[number:])
             for number, anomaly in enumerate(self.anomalies, start=1)
@@ -489,7 +489,7 @@ class RunRecord(Model):
     @property
     def late(self) -> tuple[WindowRun, ...]:
         """The visits that ended after their soft window."""
-        return tuple(run for run in self.windows if run.kept is WindowKept.LATE)
+        return tuple(run for run in self.windows if run.kept is WindowOutcome.LATE)
 
     @property
     def missed_faults(self) -> tuple[AnyFault, ...]:
@@ -536,7 +536,7 @@ class RunRecord(Model):
         return False, "the reaction to it did not begin"
 
 
-def found_by(reading: Reading, place: Vector | None = None) -> Anomaly:
+def anomaly_from_reading(reading: Reading, place: Vector | None = None) -> Anomaly:
     """Return what a reading outside the nominal range tells; `place` (m) is its checkpoint's, None
     for one that no anomaly was made of, as one made by hand."""
     return Anomaly(

@@ -14,11 +14,26 @@ from argo_compiler.il.reserved import RESERVED_NAMES
 from argo_env.formatting import told_apart
 from argo_env.run.log import RunLog
 from argo_env.run.machine import Machine
-from argo_env.run.record import DIGITS, Result, RunRecord, TaskRun, TraceStep, WindowKept, WindowRun
-from argo_env.run.rig import Rig
+from argo_env.run.record import (
+    DIGITS,
+    Result,
+    RunRecord,
+    TaskRun,
+    TraceStep,
+    WindowOutcome,
+    WindowRun,
+)
+from argo_env.run.run_setup import RunSetup
 from argo_env.run.spec import RunSpec
-from argo_env.run.stays import InterruptionWatch, RoundWatch, Stay, stays_of, waits_of, windows_of
 from argo_env.run.verdict_line import AS_PLANNED
+from argo_env.run.visits_and_rounds import (
+    InterruptionTracker,
+    RoundTracker,
+    Visit,
+    visits_from_trace,
+    wait_runs,
+    window_runs,
+)
 
 _ENDINGS = {
     Outcome.RETURNED: "the mission was given up, and the robot returned to its dock",
@@ -30,7 +45,7 @@ _ENDINGS = {
 
 
 def failed_tasks(
-    runs: Sequence[TaskRun], trace: Sequence[TraceEntry], stays: Sequence[Stay]
+    runs: Sequence[TaskRun], trace: Sequence[TraceEntry], visits: Sequence[Visit]
 ) -> tuple[str, ...]:
     """The tasks that failed for good, by name and in order."""
     retried = {(e.time, e.source) for e in trace if e.cause is Cause.RETRY}
@@ -39,7 +54,7 @@ def failed_tasks(
         for r in runs
         if r.outcome == "failed" and not r.by_hand and (r.end, r.task) not in retried
     ]
-    failed += [(s.end, s.task) for s in stays if s.failure is not None and s.end is not None]
+    failed += [(s.end, s.task) for s in visits if s.failure is not None and s.end is not None]
     return tuple(dict.fromkeys(task for _, task in sorted(failed, key=lambda f: f[0])))
 
 
@@ -49,7 +64,7 @@ def judge(
     log: RunLog,
     outcome: Outcome | None,
     trace: Sequence[TraceEntry],
-    stays: Sequence[Stay],
+    visits: Sequence[Visit],
     windows: Sequence[WindowRun],
     before: Progress,
 ) -> Result:
@@ -71,10 +86,10 @@ def judge(
         missing.append(_ENDINGS[outcome])
     optional = {task.name for task in mission.tasks if task.optional}
     failed = tuple(
-        dict.fromkeys((*_failed_before(before, mission), *failed_tasks(log.tasks, trace, stays)))
+        dict.fromkeys((*_failed_before(before, mission), *failed_tasks(log.tasks, trace, visits)))
     )
     needed = [name for name in failed if name not in optional]
-    missed = {run.task for run in windows if run.kept is WindowKept.MISSED}
+    missed = {run.task for run in windows if run.kept is WindowOutcome.MISSED}
     for what, names in (
         ("failed", [name for name in needed if name not in missed]),
         ("missed the time window", [name for name in needed if name in missed]),
@@ -98,7 +113,7 @@ def judge(
     return Result(
         success=success,
         ended=last.ended,
-        verdict=_praise(mission, log.tasks, trace, stays, failed, before)
+        verdict=_praise(mission, log.tasks, trace, visits, failed, before)
         if success
         else "; ".join(missing),
         outcome=outcome,
@@ -115,7 +130,7 @@ def _praise(
     mission: Mission,
     runs: Sequence[TaskRun],
     trace: Sequence[TraceEntry],
-    stays: Sequence[Stay],
+    visits: Sequence[Visit],
     failed: Sequence[str],
     before: Progress,
 ) -> str:
@@ -125,7 +140,7 @@ def _praise(
     done = {
         run.task for run in runs if run.outcome != "interrupted" and not run.by_hand
     } | RESERVED_NAMES
-    ended = done.union(by_hand, skipped, (stay.task for stay in stays if stay.end is not None))
+    ended = done.union(by_hand, skipped, (visit.task for visit in visits if visit.end is not None))
     ended |= {tally.task for tally in before.tallies}
     # Of all tasks: a machine that was restored has only those that it could still come to.
     own_tasks = (task.name for task in mission.tasks if task.action is not Action.START)
@@ -162,26 +177,26 @@ def _by_hand(trace: Sequence[TraceEntry], *, skipped: bool) -> tuple[str, ...]:
 
 def make_record(
     spec: RunSpec,
-    rig: Rig,
+    setup: RunSetup,
     machine: Machine,
     log: RunLog,
-    interruptions: InterruptionWatch,
-    rounds: RoundWatch,
+    interruptions: InterruptionTracker,
+    rounds: RoundTracker,
 ) -> RunRecord:
     """The record of a run with this log, whose machine stands like this."""
-    site = rig.navigator.site
+    site = setup.navigator.site
     assert log.last is not None
     trace = tuple(machine.trace)
     progress = spec.beginning.progress if spec.beginning else Progress(active=None)
-    stays = tuple(stays_of(trace, progress.since))
-    windows = windows_of(spec.mission, stays, {tally.task for tally in progress.tallies})
+    visits = tuple(visits_from_trace(trace, progress.since))
+    windows = window_runs(spec.mission, visits, {tally.task for tally in progress.tallies})
     result = judge(
         spec.mission,
         site.docks,
         log,
         machine.outcome if machine.finished else None,
         trace,
-        stays,
+        visits,
         windows,
         progress,
     )
@@ -189,9 +204,9 @@ def make_record(
         mission=spec.mission,
         hfsm=machine.hfsm,
         site=site.name,
-        robot=rig.navigator.robot.name,
-        drive=rig.drive.name,
-        sensor=rig.sensor.name,
+        robot=setup.navigator.robot.name,
+        drive=setup.drive.name,
+        sensor=setup.sensor.name,
         seed=spec.seed,
         diagnostics=spec.diagnostics,
         result=result,
@@ -203,13 +218,13 @@ def make_record(
         ),
         path=tuple(log.path),
         interruptions=interruptions.all(log.last.t),
-        waits=waits_of(spec.mission, stays, log.last.t),
+        waits=wait_runs(spec.mission, visits, log.last.t),
         windows=windows,
         rounds=rounds.all(),
         given_values=tuple(log.given_values),
         mishaps=tuple(log.mishaps),
         anomalies=tuple(log.anomalies),
-        faults=rig.schedule.faults if rig.schedule else (),
+        faults=setup.schedule.faults if setup.schedule else (),
         began=spec.beginning.at if spec.beginning else 0.0,
         before=progress.tallies,
         resumed=tuple(log.resumed),

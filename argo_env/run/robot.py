@@ -11,11 +11,11 @@ from argo_compiler.hfsm import ActionFailed, ActionStopped, ActionSucceeded, Sta
 from argo_compiler.il import Task
 from argo_env.navigation import Blockage, Path
 from argo_env.robot.pose import BodyPose
-from argo_env.run.beginning import RunBeginning
+from argo_env.run.initial_state import InitialState
 from argo_env.run.log import Entry
 from argo_env.run.odometry import Odometry
 from argo_env.run.record import Anomaly, Reading, TaskRun
-from argo_env.run.rig import Rig
+from argo_env.run.run_setup import RunSetup
 
 ActionEnd = ActionSucceeded | ActionFailed | ActionStopped
 
@@ -45,8 +45,8 @@ class RobotAction(Protocol):
     def cancel(self, reason: str, interrupted: bool) -> None:
         """Ends the action as soon as it has cleaned up, which a following step tells."""
 
-    def detour(self, rig: Rig) -> None:
-        """Goes on with a rig whose navigator knows of something new in the way."""
+    def detour(self, setup: RunSetup) -> None:
+        """Goes on with a setup whose navigator knows of something new in the way."""
 
     def run(self, end: ActionEnd, now: float, distance: float, climbed: float) -> TaskRun:
         """The action as it goes into the record: it ended at `now` (s), after the robot's whole way
@@ -73,7 +73,7 @@ class AnyRobot(Protocol):
     """what its way adds up to"""
 
     @property
-    def rig(self) -> Rig:
+    def setup(self) -> RunSetup:
         """the site as the robot knows it, its time step and its pose"""
 
     @property
@@ -87,7 +87,7 @@ class AnyRobot(Protocol):
         """The run begins or goes on, at `now`; a robot that can be put somewhere stands at `pose`
         from now on."""
 
-    def begin(self, beginning: RunBeginning) -> None:
+    def begin(self, beginning: InitialState) -> None:
         """The run goes on from where another one stood."""
 
     def restore(self, last: Entry) -> None:

@@ -10,14 +10,14 @@ from pathlib import Path
 from argo_compiler.base.errors import Invalid
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.robot.spec import load_robot
-from argo_env.run.beginning import machine_of
-from argo_env.run.fitting_together import CheckedRun, check_run
+from argo_env.run.initial_state import make_machine
 from argo_env.run.journal import Header, Journal, create_journal
 from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
 from argo_env.run.robot import RobotAction
 from argo_env.run.simulation import LoggedEvents, Simulation, never
 from argo_env.run.spec import RunSpec
+from argo_env.run.validation import CheckedRun, check_run
 
 _log = logging.getLogger(__name__)
 
@@ -57,7 +57,7 @@ def simulate(
     """
     known = check_run(spec, site)
     spec, site = known.spec, known.site
-    machine = machine_of(spec.mission, spec.beginning)
+    machine = make_machine(spec.mission, spec.beginning)
     _log.info(
         "a run on %s: drive %s, sensor %s, seed %d", site.name, spec.drive, spec.sensor, spec.seed
     )
@@ -119,7 +119,7 @@ def go_on(
 ) -> RunRecord:
     """Resume the run of a journal that is known to go on with what it began with."""
     spec = journal.header.spec
-    machine = machine_of(spec.mission, spec.beginning)
+    machine = make_machine(spec.mission, spec.beginning)
     told = [journal, *_paced(pace), *observers]
     with Simulation(
         machine, site, spec, past=journal.entries, events=events, observers=told, gui=gui
@@ -127,7 +127,7 @@ def go_on(
         return simulation.run(interrupted)
 
 
-class PacedRun(Observer):
+class RealTimeClock(Observer):
     """Lets a run go on no faster than so many simulated seconds a second. Holds when it began."""
 
     def __init__(self, pace: float, sleep: Callable[[float], None] = time.sleep) -> None:
@@ -147,4 +147,4 @@ def _paced(pace: float | None) -> tuple[Observer, ...]:
         return ()
     if not 0 < pace < math.inf:
         raise Invalid(f"pace {pace:g}: give the simulated seconds a second, more than 0")
-    return (PacedRun(pace),)
+    return (RealTimeClock(pace),)

@@ -17,37 +17,37 @@ from argo_env.planning.opening import OpenedSite
 from argo_env.planning.start import start_pose
 from argo_env.robot.pose import BodyPose, Places
 from argo_env.run import ending
-from argo_env.run.beginning import matched, progress_now
-from argo_env.run.course import Course
-from argo_env.run.ending import exhausted, standstill
-from argo_env.run.fitting_together import (
-    CheckedRun,
-    require_begun,
-    require_machine,
-    require_site,
-)
+from argo_env.run.initial_state import matched, progress_now
 from argo_env.run.log import Entry, LoggedEvent
 from argo_env.run.machine import Machine, OpenMachine
 from argo_env.run.observer import Observer, hears
 from argo_env.run.record import RunRecord
-from argo_env.run.rig import Rig, check_spec, fit_out
 from argo_env.run.robot import AnyRobot, Sensed
-from argo_env.run.spec import RunSpec, checked
-from argo_env.run.steering import (
+from argo_env.run.run_commands import (
     DoByHand,
-    ReachIn,
-    Steering,
+    InjectFault,
+    RunCommand,
     StopByHand,
     StopRun,
-    as_seen_on,
     check_by_hand,
     check_event,
-    check_given,
-    from_now,
-    require_at_rest,
-    require_hand_off,
+    check_scheduled_events,
+    mark_abnormal,
+    require_no_action,
+    require_no_action_by_hand,
     require_supervised,
     require_taken_over,
+    resolve_new_fault,
+)
+from argo_env.run.run_setup import RunSetup, check_spec, make_run_setup
+from argo_env.run.run_state import RunState
+from argo_env.run.spec import RunSpec, checked
+from argo_env.run.termination import exhaustion_reason, standstill_reason
+from argo_env.run.validation import (
+    CheckedRun,
+    require_begun,
+    require_machine,
+    require_site,
 )
 from argo_env.run.vehicle import Vehicle
 
@@ -87,19 +87,27 @@ class Simulation(Closing):
         past: Sequence[Entry] = (),
         events: LoggedEvents = (),
         observers: Sequence[Observer] = (),
-        rig: Rig | None = None,
+        setup: RunSetup | None = None,
         robot: AnyRobot | None = None,
         gui: bool = False,
     ) -> None:
-        """The robot stands where the mission begins, or where the `past` entries of the same run
-        have led it. Further `events` occur at their times (s), at once if these are over. A `rig`
-        that is given stays its owner's; else one is fitted out. Instead of a simulated robot with a
-        rig another `robot` may carry the actions out. A run on the site that was checked already is
-        not checked again.
+        """Set up the run on the site, with the robot where the mission begins.
 
-        Raises ArgoError if no such run can be on the site, the robot can't stand where it starts,
-        or the past is not this run's: Conflict for a site or a machine that is not the spec's, or a
-        machine that was used before.
+        Args:
+            machine: a machine of the spec's mission that has not been started.
+            site: the site that the spec names.
+            spec: the spec of the run. A `CheckedRun` on this site is not checked again.
+            past: entries of an earlier part of the same run: the robot stands where they have led.
+            events: further events at their times (s); those whose time has passed occur at once.
+            observers: objects that are called with each entry.
+            setup: a run setup of the caller, who closes it; None: the simulation makes its own.
+            robot: a robot that carries out the actions instead of a simulated robot with a setup.
+            gui: whether the world is shown in a window.
+
+        Raises:
+            ArgoError: no such run can be on the site, the robot can't stand where it starts, or the
+                past is not this run's. Conflict for a site or a machine that is not the spec's, or
+                a machine that was used before.
         """
         known = isinstance(spec, CheckedRun) and spec.site is site
         self._spec = spec = spec.spec if isinstance(spec, CheckedRun) else checked(spec)
@@ -121,25 +129,27 @@ class Simulation(Closing):
             require_site(site, spec)
         require_machine(machine, spec)
         if events or not known:
-            check_given([*(() if known else spec.events), *events], spec.mission, site.site)
-        if not known and rig is None and robot is None:
+            check_scheduled_events(
+                [*(() if known else spec.events), *events], spec.mission, site.site
+            )
+        if not known and setup is None and robot is None:
             check_spec(spec, site.site)
         with ExitStack() as stack:
             self._vehicle: AnyRobot = robot or Vehicle(
-                rig or fit_out(spec, site.navigator, gui, stack)
+                setup or make_run_setup(spec, site.navigator, gui, stack)
             )
-            self._course = Course(machine, self._vehicle, spec)
-            time_step = self.rig.drive.time_step
+            self._state = RunState(machine, self._vehicle, spec)
+            time_step = self.setup.drive.time_step
             self._sampled_every = max(1, round(SAMPLE_PERIOD / time_step))
             for observer in self._observers:
-                observer.on_begin(self.rig, spec)
+                observer.on_begin(self.setup, spec)
             self._set_up(past)
             self._stack = stack.pop_all()
 
     @property
     def now(self) -> float:
         """s of simulated time."""
-        return self._course.now
+        return self._state.now
 
     @property
     def over(self) -> bool:
@@ -152,17 +162,17 @@ class Simulation(Closing):
 
     @property
     def machine(self) -> Machine:
-        return self._course.machine
+        return self._state.machine
 
     @property
-    def rig(self) -> Rig:
+    def setup(self) -> RunSetup:
         """The world, the drive and the rest, with what the robot knows of the site by now."""
-        return self._vehicle.rig
+        return self._vehicle.setup
 
     @property
     def pose(self) -> BodyPose:
         """Where the robot is."""
-        return self.rig.drive.pose
+        return self.setup.drive.pose
 
     @property
     def silent_since(self) -> float | None:
@@ -172,34 +182,34 @@ class Simulation(Closing):
     @property
     def task(self) -> Task | None:
         """The task whose action is under way, by hand or not."""
-        return self._course.action.task if self._course.action else None
+        return self._state.action.task if self._state.action else None
 
     @property
     def taken_over(self) -> bool:
         """Whether a person has taken the robot over, and not given it back."""
-        return self._course.supervision.taken_over
+        return self._state.supervision.taken_over
 
     @property
     def by_hand(self) -> Task | None:
         """The task that a person lets the robot carry out."""
-        return self.task if self._course.supervision.acting else None
+        return self.task if self._state.supervision.acting else None
 
     @property
     def done_by_hand(self) -> tuple[ByHand, ...]:
         """The mission's tasks that a person let the robot do since they took it over, and how long
         ago: what `GiveBack` tells the machine if it is given this, now."""
-        return self._course.supervision.done(self.now)
+        return self._state.supervision.done(self.now)
 
     def record(self) -> RunRecord:
         """The record of the run: of the whole of it, or as it stands now."""
         if self._ended:
             if self._record is None:
-                self._record = self._course.record(self._spec)
+                self._record = self._state.record(self._spec)
             return self._record
-        present = self._course.entry(sample=self._course.unsampled)
+        present = self._state.entry(sample=self._state.unsampled)
         contacts = (*present.contacts, *present.touching)
         present = present.model_copy(update={"contacts": contacts})
-        return self._course.record(self._spec, present)
+        return self._state.record(self._spec, present)
 
     def step(self) -> None:
         """Lets one time step of the drive pass: the robot moves, and the machine hears what
@@ -213,7 +223,7 @@ class Simulation(Closing):
         with self._change():
             self._advance()
             for observer in self._observers:
-                observer.on_step(self._course.now, self._course.action)
+                observer.on_step(self._state.now, self._state.action)
         self.settle()
 
     def leap(self, until: float = math.inf) -> Places:
@@ -234,7 +244,7 @@ class Simulation(Closing):
         self.settle()
         return _NOWHERE if passed is None else passed
 
-    def handle(self, event: Steering) -> None:
+    def handle(self, event: RunCommand) -> None:
         """Tells the run something from outside, now.
 
         Raises Conflict if the run has ended, the robot is given back while an action still runs,
@@ -249,24 +259,24 @@ class Simulation(Closing):
                 if not isinstance(reason, str):
                     raise Invalid(f"{reason!r} is no reason: give one in words")
                 self._end(reason)
-            case ReachIn(fault):
-                settled = from_now(fault, self.rig, self._spec.seed, self.now)
-                self._tell(self._course.entry().model_copy(update={"faults": (settled,)}))
+            case InjectFault(fault):
+                settled = resolve_new_fault(fault, self.setup, self._spec.seed, self.now)
+                self._tell(self._state.entry().model_copy(update={"faults": (settled,)}))
                 self._vehicle.let_faults_happen(self.now)
             case DoByHand(task):
-                check_by_hand(task, self._spec.mission, self.rig.navigator.site)
-                require_supervised(self._course.supervision, self.machine.running or self.task)
-                self._tell(self._course.entry().model_copy(update={"by_hand": task}))
+                check_by_hand(task, self._spec.mission, self.setup.navigator.site)
+                require_supervised(self._state.supervision, self.machine.running or self.task)
+                self._tell(self._state.entry().model_copy(update={"by_hand": task}))
             case StopByHand():
                 if self.by_hand is None:
                     raise Conflict("the robot does nothing by hand that could be stopped")
-                self._tell(self._course.entry().model_copy(update={"stop_by_hand": True}))
+                self._tell(self._state.entry().model_copy(update={"stop_by_hand": True}))
             case _:
-                checked = check_event(event, self._spec.mission, self.rig.navigator.site)
-                require_hand_off(checked, self.by_hand)
+                checked = check_event(event, self._spec.mission, self.setup.navigator.site)
+                require_no_action_by_hand(checked, self.by_hand)
                 if isinstance(checked, GiveBack):
-                    require_at_rest(self.machine)
-                self._tell(self._course.entry([checked]))
+                    require_no_action(self.machine)
+                self._tell(self._state.entry([checked]))
         self.settle()
 
     def going_on(self, mission: Mission, by_hand: Sequence[ByHand] = ()) -> RunSpec:
@@ -277,19 +287,19 @@ class Simulation(Closing):
         Raises Conflict unless the mission is paused and no action runs, DiagnosticError if the
         edited mission can't go on from here, Invalid for what nobody can have done.
         """
-        site = self.rig.navigator.site
-        require_hand_off(GiveBack(), self.by_hand)
+        site = self.setup.navigator.site
+        require_no_action_by_hand(GiveBack(), self.by_hand)
         check_event(GiveBack(tuple(by_hand)), self._spec.mission, site)
-        seen = as_seen_on(site, self._spec.mission, GiveBack(tuple(by_hand)))
+        seen = mark_abnormal(site, self._spec.mission, GiveBack(tuple(by_hand)))
         assert isinstance(seen, GiveBack)
         progress = progress_now(self.machine, self.now, seen.by_hand)
         progress, diagnostics = matched(progress, mission)
         spec = self._spec.model_copy(
             update={
                 "mission": mission,
-                "beginning": self._course.beginning(progress),
-                "events": ((self.now, LoggedEvent.of(Resume())), *self._course.given.ahead),
-                "faults": self.rig.schedule.faults if self.rig.schedule else (),
+                "beginning": self._state.beginning(progress),
+                "events": ((self.now, LoggedEvent.of(Resume())), *self._state.given.ahead),
+                "faults": self.setup.schedule.faults if self.setup.schedule else (),
                 "diagnostics": (*self._spec.diagnostics, *diagnostics),
                 "reordering": None,
                 "source": None,
@@ -309,7 +319,7 @@ class Simulation(Closing):
             raise Conflict("the tasks of this run are those of its mission")
         commands = machine.give(task)
         self._spec = self._spec.model_copy(update={"mission": machine.mission})
-        self._course.obey(commands)
+        self._state.obey(commands)
 
     def run(self, interrupted: Callable[[], bool] = never) -> RunRecord:
         """Goes on to the end of the run; returns its record. A robot that stands still and waits
@@ -339,9 +349,9 @@ class Simulation(Closing):
         """Ends the run if its machine has come to its end, or nothing can go on."""
         if self.over:
             return
-        if self._course.machine.finished:
+        if self._state.machine.finished:
             self._end(None)
-        elif why := exhausted(self._course.now, self._vehicle.supply):
+        elif why := exhaustion_reason(self._state.now, self._vehicle.supply):
             self._end(why)
 
     def close(self) -> None:
@@ -351,16 +361,16 @@ class Simulation(Closing):
 
     def _set_up(self, past: Sequence[Entry]) -> None:
         """Puts everything to where the run begins, or goes on."""
-        course = self._course
+        state = self._state
         vehicle, beginning = self._vehicle, self._spec.beginning
         start = self._start_pose()
         if beginning:
             vehicle.begin(beginning)
-        course.start()
-        require_begun(course.machine, self._spec)
+        state.start()
+        require_begun(state.machine, self._spec)
         for entry in past:
-            course.replay(entry)
-        last = course.log.last
+            state.replay(entry)
+        last = state.log.last
         vehicle.place(last.body_pose if last else start, self.now)
         told = [(k.anomaly, BodyPose(*k.pose)) for k in (beginning.known if beginning else ())]
         told += [(anomaly, e.body_pose) for e in past for anomaly in e.found]
@@ -369,12 +379,12 @@ class Simulation(Closing):
         if last is None:
             return
         vehicle.restore(last)
-        course.look_back()
+        state.look_back()
         if last.ended:
             self._conclude()
 
     def _start_pose(self) -> BodyPose:
-        navigator, mission = self.rig.navigator, self._spec.mission
+        navigator, mission = self.setup.navigator, self._spec.mission
         docks = navigator.site.docks
         for area in (mission.start_area, mission.end_area):
             if area is not None and area not in docks:
@@ -393,102 +403,102 @@ class Simulation(Closing):
         """Makes the first entry, if there is none yet of this process; whether the run is over."""
         if not self._opened:
             self._opened = True
-            course = self._course
+            state = self._state
             events = []
-            if self._spec.beginning and course.log.last is None:
+            if self._spec.beginning and state.log.last is None:
                 # What was told while nothing ran, as that the robot was given back.
-                events = course.given.due(self.now, at_rest=course.machine.running is None)
-            resumed = course.log.last is not None and not course.machine.finished
+                events = state.given.due(self.now, at_rest=state.machine.running is None)
+            resumed = state.log.last is not None and not state.machine.finished
             first = {"resumed": resumed, "added": self._more}
-            entry = course.entry(events, sample=course.unsampled, task=course.lost)
+            entry = state.entry(events, sample=state.unsampled, task=state.lost)
             self._tell(entry.model_copy(update=first))
             self.settle()
         return self.over
 
     def _advance(self) -> None:
         """One step of simulated time."""
-        course = self._course
-        course.step_to(course.steps + 1)
-        self._react(self._vehicle.advance(course.steps, course.now, course.action))
+        state = self._state
+        state.step_to(state.steps + 1)
+        self._react(self._vehicle.advance(state.steps, state.now, state.action))
 
     def _quiet_steps(self, until: float) -> int:
         """In how many time steps, up to `until` (s), nothing is told, begins or ends; what the
         robot notices by itself, and the end of its action, may come before."""
-        course, machine, vehicle = self._course, self._course.machine, self._vehicle
+        state, machine, vehicle = self._state, self._state.machine, self._vehicle
         if not isinstance(vehicle, Vehicle) or not vehicle.glides:
             return 0
-        supervision, deadline = course.supervision, machine.next_deadline
+        supervision, deadline = state.supervision, machine.next_deadline
         if supervision.taken_over or supervision.acting:
             return 0
-        if (course.action is None) != (machine.running is None):
+        if (state.action is None) != (machine.running is None):
             return 0
         if machine.running is None and deadline is None and until == math.inf:
             return 0  # it waits for what is told
-        schedule = self.rig.schedule
+        schedule = self.setup.schedule
         next_time = min(
-            course.given.next_time,
+            state.given.next_time,
             schedule.next_change if schedule else math.inf,
             math.inf if deadline is None else deadline,
             ending.TIME_LIMIT,
             until,
         )
-        if ending.is_held(self.rig):
-            settled = ending.settled_at(self.rig, course.log)
-            next_time = min(next_time, settled if settled > course.now else math.inf)
-        steps = int((next_time - course.now) / self.rig.drive.time_step) - 1
+        if ending.is_held(self.setup):
+            settled = ending.settled_at(self.setup, state.log)
+            next_time = min(next_time, settled if settled > state.now else math.inf)
+        steps = int((next_time - state.now) / self.setup.drive.time_step) - 1
         return min(steps, _LONGEST)
 
     def _glide(self, most: int) -> Places | None:
         """Makes at most so many steps at once, up to where the robot notices something. Where it
         was after each of them but the last; None if there are none."""
-        course, vehicle = self._course, self._vehicle
+        state, vehicle = self._state, self._vehicle
         if most < 1 or not isinstance(vehicle, Vehicle):
             return None
-        glide, first = vehicle.glide(course.action, most), course.steps
+        glide, first = vehicle.glide(state.action, most), state.steps
         last, every = first + glide.steps, self._sampled_every
         looks = vehicle.steps_to_look(glide, first + 1)
         samples = range(first + every - first % every, last + 1, every)
         for step in sorted({*looks, *samples, last} if glide.steps else ()):
-            course.step_to(step)
+            state.step_to(step)
             if step in looks or step == last or self._hearing:
-                glide.go_to(step - first, course.now)
-            sensed = vehicle.look(step, course.now) if step in looks else None
+                glide.go_to(step - first, state.now)
+            sensed = vehicle.look(step, state.now) if step in looks else None
             if sensed and sensed.found:
                 self._react(sensed)
                 return glide.places(step - first - 1)
             if step in samples and self._hearing:
-                self._tell(course.entry(sample=True))
+                self._tell(state.entry(sample=True))
             elif step in samples:  # nobody is to hear of it
-                course.log.sample(course.now, *glide.sample(step - first))
+                state.log.sample(state.now, *glide.sample(step - first))
         return glide.places(glide.steps - 1) if glide.steps else None
 
     def _react(self, sensed: Sensed) -> None:
         """The machine hears what has happened by now."""
-        course, machine = self._course, self._course.machine
-        now = course.now
+        state, machine = self._state, self._state.machine
+        now = state.now
         # Before the end, so that a reaction to it comes first and no next task is begun.
         events: list[Event] = [Occurred(a.kind, a.detail) for a in sensed.found]
-        acting, reading = course.supervision.acting, sensed.reading
-        run = course.run_of(sensed.end) if sensed.end else None
+        acting, reading = state.supervision.acting, sensed.reading
+        run = state.run_of(sensed.end) if sensed.end else None
         if sensed.end and not acting:
             events.append(sensed.end)
         elif reading:
             events.append(ReadingGiven(str(reading.checkpoint), reading.value))
-        given = course.given
+        given = state.given
         at_rest = machine.running is None and not acting and not events
         events += given.due(now, at_rest, acting)
         if not events and given.waits_to_give_back(now):
             require_taken_over(machine, now)
-        due = course.steps % self._sampled_every == 0
+        due = state.steps % self._sampled_every == 0
         if events or due or run:
-            entry = course.entry(events, sample=due, task=run)
+            entry = state.entry(events, sample=due, task=run)
             if sensed.found or reading:
                 came = {"found": sensed.found, "reading": reading}
                 entry = entry.model_copy(update=came)
             self._tell(entry)
         deadline = machine.next_deadline
         if deadline is not None and deadline <= now and not machine.finished:
-            self._tell(course.entry([Tick()]))
+            self._tell(state.entry([Tick()]))
 
     def _tell(self, entry: Entry) -> None:
         """Tells an entry of the present moment, and acts on it."""
@@ -496,7 +506,7 @@ class Simulation(Closing):
             for observer in self._observers:
                 observer.on_entry(entry)
             self._vehicle.told()
-            self._course.take(entry)
+            self._state.take(entry)
             for observer in self._observers:
                 observer.on_change(entry, self.machine)
 
@@ -529,16 +539,16 @@ class Simulation(Closing):
             raise Conflict("an observer can't steer the run that it is told of: between two steps")
 
     def _standstill(self) -> str | None:
-        if self._course.given.pending or self._vehicle.supply.charging:
+        if self._state.given.pending or self._vehicle.supply.charging:
             return None
-        acting = self._course.supervision.acting
-        return standstill(self.now, self.machine, self.rig, self._course.log, acting)
+        acting = self._state.supervision.acting
+        return standstill_reason(self.now, self.machine, self.setup, self._state.log, acting)
 
     def _end(self, stopped: str | None) -> None:
-        course = self._course
-        run = course.break_off()
+        state = self._state
+        run = state.break_off()
         self._vehicle.odometry.close()
-        last = course.entry(sample=course.unsampled, task=run)
+        last = state.entry(sample=state.unsampled, task=run)
         self._tell(last.model_copy(update={"ended": True, "stopped": stopped}))
         self._conclude()
 

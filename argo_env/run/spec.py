@@ -14,7 +14,7 @@ from argo_compiler.hfsm import Event
 from argo_compiler.il import Mission
 from argo_env.faults.kinds import AnyFault
 from argo_env.files.yaml_messages import message_of
-from argo_env.run.beginning import RunBeginning
+from argo_env.run.initial_state import InitialState
 from argo_env.run.log import LoggedEvent, require_from_outside, require_time
 from argo_env.run.record import Reordering
 
@@ -101,7 +101,7 @@ class RunSpec(Model):
     """what goes wrong; the robot finds out by sensing"""
     conditions: RunConditions = AS_PLANNED
     """what is not as planned, and no fault"""
-    beginning: RunBeginning | None = None
+    beginning: InitialState | None = None
     """where another run stood, from which this one goes on; None: the mission begins"""
     diagnostics: tuple[Diagnostic, ...] = ()
     """what the mission's import had to say, for the record"""

@@ -20,15 +20,15 @@ from argo_env.drives.powertrain import Powertrain, StepsAhead
 from argo_env.navigation import Blockage, Path
 from argo_env.navigation.retreat import driven, recent
 from argo_env.robot.pose import BodyPose, Place, Places, place_of
-from argo_env.run.action import RETREAT, ActionUnderWay
-from argo_env.run.beginning import RunBeginning
+from argo_env.run.action import RETREAT, SimulatedAction
+from argo_env.run.initial_state import InitialState
 from argo_env.run.log import Entry, RunLog
 from argo_env.run.odometry import Odometry
 from argo_env.run.perception import Perception, abnormal_reading, blockage
 from argo_env.run.power_supply import NO_STEPS, PowerSupply
 from argo_env.run.record import Anomaly
-from argo_env.run.rig import Rig
 from argo_env.run.robot import RobotAction, Sensed
+from argo_env.run.run_setup import RunSetup
 
 
 class Glide:
@@ -36,14 +36,14 @@ class Glide:
 
     def __init__(
         self,
-        rig: Rig,
+        setup: RunSetup,
         odometry: Odometry,
         supply: PowerSupply,
-        action: ActionUnderWay | None,
+        action: SimulatedAction | None,
         most: int,
     ) -> None:
         """At most so many steps; `steps` says how many there are, which may be none."""
-        self._drive = rig.drive
+        self._drive = setup.drive
         self._odometry = odometry
         self._supply = supply
         self._action = action
@@ -53,16 +53,16 @@ class Glide:
         self.steps = 0
         """how many there are"""
         if (
-            not isinstance(rig.drive, Powertrain)
+            not isinstance(setup.drive, Powertrain)
             or odometry.touching
-            or rig.drive.pose.roll
-            or not rig.drive.glides
+            or setup.drive.pose.roll
+            or not setup.drive.glides
         ):
             return
-        pose = rig.drive.pose
+        pose = setup.drive.pose
         here = np.array([(pose.x, pose.y, pose.z, pose.yaw, pose.pitch)])
         if action and action.driving:
-            self._ahead = rig.drive.steps_ahead(most)
+            self._ahead = setup.drive.steps_ahead(most)
             self._places = np.concatenate([here, self._ahead.places])
             # As the odometry adds them up: a root by NumPy may differ in its last bit.
             points = [*zip(*(self._places[:, k].tolist() for k in range(3)), strict=True)]
@@ -75,7 +75,7 @@ class Glide:
         self._distance = _sums(odometry.distance, ways)
         self._climbed = _sums(odometry.climbed, rises)
         measuring = action is not None and action.measuring
-        power, time_step = rig.navigator.robot.power, rig.drive.time_step
+        power, time_step = setup.navigator.robot.power, setup.drive.time_step
         loads = loads_of_steps(power, ways, self._places, time_step, measuring)
         self._power = supply.ahead(loads, self._places[1:], time_step)
         self.steps = len(self._power)
@@ -117,27 +117,27 @@ _NOTHING = Sensed()
 
 
 class Vehicle:
-    """The simulated robot: what a run is carried out with. Holds the rig and all that adds up on
+    """The simulated robot: what a run is carried out with. Holds the setup and all that adds up on
     the way."""
 
     silent_since: float | None = None
 
-    def __init__(self, rig: Rig) -> None:
-        site, robot = rig.navigator.site, rig.navigator.robot
-        self.rig = rig
+    def __init__(self, setup: RunSetup) -> None:
+        site, robot = setup.navigator.site, setup.navigator.robot
+        self.setup = setup
         """its navigator knows of what was found in the way"""
         self.odometry = Odometry(site)
-        self.supply = PowerSupply(rig.battery, robot, site)
-        self._action: ActionUnderWay | None = None
+        self.supply = PowerSupply(setup.battery, robot, site)
+        self._action: SimulatedAction | None = None
         """the one started last"""
-        self._perception = Perception(rig.watches, site, rig.drive.time_step)
+        self._perception = Perception(setup.watches, site, setup.drive.time_step)
 
     def place(self, pose: BodyPose, now: float) -> None:
         """Puts the robot there, at time `now` (s)."""
-        self.rig.drive.place(pose)
+        self.setup.drive.place(pose)
         self.let_faults_happen(now)
 
-    def begin(self, beginning: RunBeginning) -> None:
+    def begin(self, beginning: InitialState) -> None:
         """Goes on from where another run stood."""
         self.odometry.distance, self.odometry.climbed = beginning.distance, beginning.climbed
         if beginning.charge is not None:
@@ -157,50 +157,50 @@ class Vehicle:
 
     def let_faults_happen(self, now: float) -> None:
         """Lets all begin and end that is due at time `now` (s)."""
-        if self.rig.schedule:
-            self.rig.schedule.advance(now)
+        if self.setup.schedule:
+            self.setup.schedule.advance(now)
 
     def avoid(self, blockages: Sequence[Blockage]) -> None:
         """From now on paths keep clear of these as well."""
-        navigator = self.rig.navigator.avoiding(blockages)
-        self.rig = replace(self.rig, navigator=navigator)
+        navigator = self.setup.navigator.avoiding(blockages)
+        self.setup = replace(self.setup, navigator=navigator)
 
     def start(self, command: StartAction, now: float, came: Path | None) -> RobotAction:
         """Starts an action at time `now` (s), after the robot `came` by that path."""
         way = self.odometry
-        self._action = ActionUnderWay(command, self.rig, now, way.distance, way.climbed, came)
+        self._action = SimulatedAction(command, self.setup, now, way.distance, way.climbed, came)
         return self._action
 
     def advance(self, step: int, now: float, action: RobotAction | None) -> Sensed:
         """Lets the time step of that number pass, up to time `now` (s), with `action` under way."""
-        rig, odometry, drive = self.rig, self.odometry, self.rig.drive
-        if rig.schedule:
-            rig.schedule.advance(now)
+        setup, odometry, drive = self.setup, self.odometry, self.setup.drive
+        if setup.schedule:
+            setup.schedule.advance(now)
         before = after = drive.pose
         end, measuring = None, False
         own = self._action if action else None
         if own:
             end = own.step(now)
             after, measuring = drive.pose, own.measuring
-            odometry.moved(before, after, rig.world.touches(), now)
+            odometry.moved(before, after, setup.world.touches(), now)
             odometry.trouble(drive.incidents, now)
         self.supply.spend(before, after, drive.time_step, measuring)
         found = self._perception.look(step, now, after)
         reading = own.reading(now) if own and end else None
         if reading and not reading.normal:
-            found = (*found, abnormal_reading(reading, rig.navigator.site))
+            found = (*found, abnormal_reading(reading, setup.navigator.site))
         return Sensed(end, reading, found) if end or found else _NOTHING
 
     @property
     def glides(self) -> bool:
         """Whether many steps can be made at once, as nothing can happen to the robot."""
-        drive = self.rig.drive
+        drive = self.setup.drive
         return isinstance(drive, Powertrain) and drive.glides
 
     def glide(self, action: RobotAction | None, most: int) -> Glide:
         """The steps ahead, at most so many, in which it only goes on with `action`."""
         own = self._action if action else None
-        return Glide(self.rig, self.odometry, self.supply, own, most)
+        return Glide(self.setup, self.odometry, self.supply, own, most)
 
     def steps_to_look(self, glide: Glide, first: int) -> set[int]:
         """The numbers of the steps of a glide, which begin with the `first`, in which it looks
@@ -210,12 +210,12 @@ class Vehicle:
 
     def look(self, step: int, now: float) -> Sensed:
         """What it notices in that step of a glide, which ends at `now` (s)."""
-        found = self._perception.look(step, now, self.rig.drive.pose)
+        found = self._perception.look(step, now, self.setup.drive.pose)
         return Sensed(found=found) if found else _NOTHING
 
     def state(self) -> dict[str, Any]:
         """What an entry tells of it."""
-        pose, odometry = self.rig.drive.pose, self.odometry
+        pose, odometry = self.setup.drive.pose, self.odometry
         return {
             "pose": (pose.x, pose.y, pose.z, pose.yaw, pose.pitch),
             "distance": odometry.distance,

@@ -15,12 +15,12 @@ from argo_env.faults.reading import MAX_BYTES, decode_faults
 from argo_env.files.folders import make_folder
 from argo_env.planning.opening import open_site
 from argo_env.run.drives_and_sensors import DRIVES, SENSORS
-from argo_env.run.fitting_together import check_run
 from argo_env.run.journal import require_free
 from argo_env.run.record import RunRecord
-from argo_env.run.rig import check_spec
+from argo_env.run.run_setup import check_spec
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec, logged
+from argo_env.run.validation import check_run
 from argo_planner.terminal.completion import among
 from argo_planner.terminal.conclusion import Conclusion
 from argo_planner.terminal.events import KINDS, READING_FORM, parse_events, parse_values

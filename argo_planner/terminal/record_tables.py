@@ -8,7 +8,7 @@ from rich.table import Table
 
 from argo_env.formatting import clock, where
 from argo_env.report.rounds import waits
-from argo_env.run.record import RunRecord, WindowKept
+from argo_env.run.record import RunRecord, WindowOutcome
 from argo_env.run.verdict_line import Tone
 
 _WIDE = 100
@@ -119,7 +119,7 @@ def _missed(record: RunRecord) -> list[tuple[str, float]]:
     return [
         (one.task, one.visited)
         for one in record.windows
-        if one.kept is WindowKept.MISSED and one.visited is not None and one.task not in waited
+        if one.kept is WindowOutcome.MISSED and one.visited is not None and one.task not in waited
         if not any(t.task == one.task and one.visited <= t.start for t in record.tasks)
     ]
 

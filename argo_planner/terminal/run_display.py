@@ -14,8 +14,8 @@ from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
 from argo_env.run.observer import Observer
 from argo_env.run.record import Anomaly, Reading, RunRecord
-from argo_env.run.rig import Rig
 from argo_env.run.robot import RobotAction
+from argo_env.run.run_setup import RunSetup
 from argo_env.run.spec import RunSpec
 from argo_env.site import Site
 from argo_planner.terminal.verbosity import is_quiet
@@ -30,9 +30,9 @@ class RunDisplay(Observer, Closing):
         self._bar = self._progress.add_task("setting off", total=total)
         self._site: Site | None = None
 
-    def on_begin(self, rig: Rig, spec: RunSpec) -> None:  # noqa: ARG002
+    def on_begin(self, setup: RunSetup, spec: RunSpec) -> None:  # noqa: ARG002
         """The run is about to begin on this site."""
-        self._site = rig.navigator.site
+        self._site = setup.navigator.site
 
     def on_step(self, now: float, action: RobotAction | None) -> None:
         """Shows the time (s) and the task under way."""

@@ -28,7 +28,7 @@ from argo_env.faults.reading import (
 )
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.robot.spec import load_robot
-from argo_env.run.rig import check_spec
+from argo_env.run.run_setup import check_spec
 from argo_env.run.spec import RunSpec
 from argo_env.worker_processes import context_with, usable_processors
 from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission

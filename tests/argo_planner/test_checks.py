@@ -10,16 +10,16 @@ from argo_env.envs.inspection import InspectEnv
 from argo_env.evaluation.evaluating import WorkOrder, carry_out
 from argo_env.evaluation.evaluation import Evaluation
 from argo_env.planning.opening import open_site
-from argo_env.run.fitting_together import require_site
 from argo_env.run.journal import Header, Journal, create_journal, open_journal
-from argo_env.run.rig import check_spec
+from argo_env.run.run_commands import check_scheduled_events
+from argo_env.run.run_setup import check_spec
 from argo_env.run.session import resume, simulate
 from argo_env.run.spec import RunSpec
-from argo_env.run.steering import check_given
+from argo_env.run.validation import require_site
 from tests.argo_planner.conftest import argo
 from tests.yard import measure, mission, simulation_of, write_yard
 
-CHECKS = (require_site, check_spec, check_given)
+CHECKS = (require_site, check_spec, check_scheduled_events)
 ONCE = {check.__name__: 1 for check in CHECKS}
 PLAN = mission(measure(2))
 

@@ -10,12 +10,12 @@ from argo_planner.terminal.conclusion import Conclusion
 from argo_planner.terminal.kept import Kept
 from argo_planner.terminal.signals import Interrupted, SignalWatch
 from argo_planner.use_cases.reporting import REPORT_FILES
-from tests.yard import fast_rig, measure, mission, run_with
+from tests.yard import fast_setup, measure, mission, run_with
 
 
 @pytest.fixture(scope="module")
 def record(yard_site):
-    return run_with(mission(measure(1)), fast_rig(yard_site.navigator))
+    return run_with(mission(measure(1)), fast_setup(yard_site.navigator))
 
 
 @pytest.fixture

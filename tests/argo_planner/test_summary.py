@@ -18,7 +18,7 @@ from argo_env.run.record import (
     Result,
     RunRecord,
     TaskRun,
-    WindowKept,
+    WindowOutcome,
     WindowRun,
 )
 from argo_planner.terminal.record_tables import show_record
@@ -192,9 +192,9 @@ def test_visits_in_which_nothing_ran_as_the_window_was_over_are_counted(record: 
             task=task, earliest=0.0, latest=90.0, hard=True, visited=visited, ended=ended, kept=kept
         )
         for task, visited, ended, kept in (
-            ("[bold]M[/]", 0.0, 30.0, WindowKept.KEPT),
-            ("[bold]M[/]", 120.0, 120.0, WindowKept.MISSED),
-            ("N", 130.0, 130.0, WindowKept.MISSED),
+            ("[bold]M[/]", 0.0, 30.0, WindowOutcome.KEPT),
+            ("[bold]M[/]", 120.0, 120.0, WindowOutcome.MISSED),
+            ("N", 130.0, 130.0, WindowOutcome.MISSED),
         )
     )
     text = shown(record.model_copy(update={"windows": windows}))

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from argo_compiler.hfsm import Outcome
-from argo_env.run.record import WindowKept
+from argo_env.run.record import WindowOutcome
 from tests.e2e.conftest import reported
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios" / "umad"
@@ -64,11 +64,11 @@ def test_a_missed_window_has_its_branch(done) -> None:
     names = [run.task for run in record.tasks]
     assert names[names.index("Valve R25") + 1] == "Lookout"
     kept = {one.task: one for one in record.windows}
-    assert kept["Valve R25"].kept is WindowKept.MISSED
+    assert kept["Valve R25"].kept is WindowOutcome.MISSED
     assert kept["Valve R25"].ended == pytest.approx(240.0)
     run = next(run for run in record.tasks if run.task == "Valve R25")
     assert (run.outcome, run.reason) == ("cancelled", "its time window is over")
-    assert kept["Level"].kept is WindowKept.KEPT
+    assert kept["Level"].kept is WindowOutcome.KEPT
     level = next(run for run in record.tasks if run.task == "Level")
     assert level.early[1] == 330.0
     assert level.measuring[0][0] == pytest.approx(330.0, abs=0.11)

@@ -12,9 +12,9 @@ from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
 from argo_env.run.observer import Observer
 from argo_env.run.record import Reading
+from argo_env.run.run_commands import DoByHand, InjectFault, StopByHand, StopRun
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
-from argo_env.run.steering import DoByHand, ReachIn, StopByHand, StopRun
 from argo_planner.service.runs import requests as asked
 from argo_planner.service.runs.requests import (
     RequestBook,
@@ -359,7 +359,7 @@ class RunDriver:
             case asked.TellReading(checkpoint=checkpoint, value=value):
                 simulation.handle(ReadingGiven(checkpoint, value))
             case asked.BeginFault(fault=fault):
-                simulation.handle(ReachIn(fault))
+                simulation.handle(InjectFault(fault))
         return lambda: True
 
     def _look(self) -> None:
@@ -409,7 +409,7 @@ class RunDriver:
     def _waits_for_person(self) -> bool:
         """Whether nothing goes on until somebody tells the run something."""
         simulation, machine = self._simulation, self._simulation.machine
-        drive = simulation.rig.drive
+        drive = simulation.setup.drive
         if isinstance(drive, Powertrain) and drive.pressed:
             return True
         if simulation.task is not None:
@@ -418,7 +418,7 @@ class RunDriver:
         return held or (machine.running is None and machine.next_deadline is None)
 
     def _charge(self) -> float | None:
-        battery = self._simulation.rig.battery
+        battery = self._simulation.setup.battery
         return None if battery is None else battery.charge
 
     def _pose(self) -> PoseTold:

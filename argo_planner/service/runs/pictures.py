@@ -6,7 +6,7 @@ from pathlib import Path
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
 from argo_env.run.observer import Observer
-from argo_env.run.rig import Rig
+from argo_env.run.run_setup import RunSetup
 from argo_env.run.spec import RunSpec
 from argo_env.world.world import Shot, World
 
@@ -25,18 +25,18 @@ class PictureKeeper(Observer):
         self._folder = folder
         self._last: Shot | None = None
 
-    def on_begin(self, rig: Rig, spec: RunSpec) -> None:  # noqa: ARG002
+    def on_begin(self, setup: RunSetup, spec: RunSpec) -> None:  # noqa: ARG002
         """Sees the pictures from now on; whoever sees them already goes on to."""
-        if not isinstance(rig.world, World):
+        if not isinstance(setup.world, World):
             return
-        before = rig.world.on_shot
+        before = setup.world.on_shot
 
         def seen(shot: Shot) -> None:
             self._last = shot
             if before is not None:
                 before(shot)
 
-        rig.world.on_shot = seen
+        setup.world.on_shot = seen
 
     def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
         """With a reading, its picture is kept. A run goes on where that is not possible."""

@@ -15,15 +15,15 @@ from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.recording.live import LiveWriter, served_live
 from argo_env.remote.channel import Channel
 from argo_env.remote.robot import RemoteRobot
-from argo_env.run.beginning import machine_of
 from argo_env.run.drives_and_sensors import ROUTE
+from argo_env.run.initial_state import make_machine
 from argo_env.run.journal import Header, Journal, create_journal, open_journal
 from argo_env.run.log import Entry
 from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
+from argo_env.run.run_commands import StopRun
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
-from argo_env.run.steering import StopRun
 from argo_env.worker_processes import end_with_parent
 from argo_planner.service.runs.driver import RunDriver, RunTeller
 from argo_planner.service.runs.pictures import PictureKeeper
@@ -173,7 +173,7 @@ class _Segments:
     ) -> tuple[RunDriver, Simulation]:
         spec, tell = journal.header.spec, self._pipe.tell
         simulation = Simulation(
-            machine_of(spec.mission, spec.beginning),
+            make_machine(spec.mission, spec.beginning),
             self._site,
             spec,
             past=journal.entries,

@@ -7,9 +7,9 @@ import pytest
 from argo_env.envs.inspection_run import Inspection, beginning
 from argo_env.faults.reading import decode_faults
 from argo_env.planning.opening import open_site
-from argo_env.run.fitting_together import check_run
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunConditions, RunSpec
+from argo_env.run.validation import check_run
 from tests.conftest import seeds
 
 SITE = open_site("umad")

@@ -16,7 +16,7 @@ from argo_env.planning.travel import SiteTravel
 from argo_env.run.record import Reordering
 from tests.yard import (
     cut,
-    fast_rig,
+    fast_setup,
     measure,
     mission,
     resumed,
@@ -30,7 +30,7 @@ STEP = 0.1  # s of the drive
 
 def driven(changed, yard):
     """How long a mission takes, s."""
-    return run_with(changed, fast_rig(yard)).result.duration
+    return run_with(changed, fast_setup(yard)).result.duration
 
 
 def around(**fields):

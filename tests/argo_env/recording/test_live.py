@@ -58,7 +58,7 @@ class Viewer:
 
 def observed(simulation: Simulation, recorder: RunRecorder) -> Simulation:
     simulation._observers = (*simulation._observers, recorder)
-    recorder.on_begin(simulation.rig, simulation.spec)
+    recorder.on_begin(simulation.setup, simulation.spec)
     return simulation
 
 

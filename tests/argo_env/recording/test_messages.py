@@ -22,7 +22,7 @@ from argo_env.recording.files import recording_to
 from argo_env.recording.scene import finding_scene
 from argo_env.robot.pose import BodyPose
 from argo_env.run.record import Anomaly
-from argo_env.run.rig import Rig
+from argo_env.run.run_setup import RunSetup
 from argo_env.site.shapes import Box
 from argo_env.site.urdf import COLOURS
 from argo_env.world.world import World
@@ -364,7 +364,7 @@ def taken(yard, tmp_path_factory):
         world.show_value(1, 3.0)
         sensor = CameraSensor(world, 1)
         with recording_to(file) as recorder:
-            recorder.on_begin(Rig(world, yard, drive, sensor), SPEC)
+            recorder.on_begin(RunSetup(world, yard, drive, sensor), SPEC)
             sensor.measure(1, drive.pose)
             recorder.on_step(4.2, None)
     messages = decoded(file, "/camera/image", "/camera/calibration", "/tf_camera")

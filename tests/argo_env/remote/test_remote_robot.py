@@ -12,8 +12,8 @@ from argo_compiler.il import EventKind
 from argo_env.remote.channel import Channel
 from argo_env.remote.messages import EndReport, FoundReport, message_schemas
 from argo_env.remote.robot import RemoteRobot
+from argo_env.run.run_commands import DoByHand, StopRun
 from argo_env.run.spec import RunSpec
-from argo_env.run.steering import DoByHand, StopRun
 from tests.argo_env.remote.fakes import FakeRobot, Time, Wires
 from tests.conftest import examples
 from tests.yard import (

@@ -9,7 +9,7 @@ from argo_compiler.il import JointState
 from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError
 from tests.yard import (
     Entries,
-    fast_rig,
+    fast_setup,
     measure,
     mission,
     run_with,
@@ -37,14 +37,14 @@ class Fog:
 
 
 def foggy(yard, failures, error=MeasurementError):
-    rig = fast_rig(yard)
-    return type(rig)(rig.world, rig.navigator, rig.drive, Fog(failures, error))
+    setup = fast_setup(yard)
+    return type(setup)(setup.world, setup.navigator, setup.drive, Fog(failures, error))
 
 
-def ends(plan, rig):
+def ends(plan, setup):
     """The ends of actions that the machine was told, and the record."""
     entries = Entries()
-    record = run_with(plan, rig, observers=[entries])
+    record = run_with(plan, setup, observers=[entries])
     kinds = ("succeeded", "failed", "stopped")
     return [e for one in entries.all for e in one.events if e.kind in kinds], record
 
@@ -69,7 +69,7 @@ class TestOwnPose:
 
     def test_where_it_can_not_stand_it_fails_with_a_reason(self, yard):
         nowhere = Pose(x=30.0, y=0.0, z=0.0)
-        (end,), record = ends(mission(measure(1, pose=nowhere)), fast_rig(yard))
+        (end,), record = ends(mission(measure(1, pose=nowhere)), fast_setup(yard))
         assert "no place that the robot can reach" in record.tasks[0].reason
         assert not end.unreadable
 
@@ -85,12 +85,12 @@ class TestReadings:
         assert (end.kind, end.unreadable) == ("failed", True)
 
     def test_a_place_that_is_not_reached_is_not(self, yard):
-        (end,), _ = ends(mission(waypoint("A", 30, 30)), fast_rig(yard))
+        (end,), _ = ends(mission(waypoint("A", 30, 30)), fast_setup(yard))
         assert (end.kind, end.unreadable) == ("failed", False)
 
     @pytest.mark.parametrize(("value", "abnormal"), [(4.9, False), (5.1, True)])
     def test_values_outside_the_nominal_range_are_abnormal(self, yard, value, abnormal):
-        (end,), record = ends(mission(measure(1)), fast_rig(yard, {1: value}))
+        (end,), record = ends(mission(measure(1)), fast_setup(yard, {1: value}))
         assert (end.value, end.abnormal) == (value, abnormal)
         assert [a.kind.value for a in record.anomalies] == ["abnormal_reading"] * abnormal
 
@@ -99,7 +99,7 @@ class TestReadingLimit:
     @pytest.mark.rule("T10")
     def test_it_is_unreadable_after_that_long(self, yard):
         plan = mission(measure(1, reading_limit=1.0), waypoint("A", 2.05, 2.05))
-        (failed, _), record = ends(plan, fast_rig(yard))
+        (failed, _), record = ends(plan, fast_setup(yard))
         assert (failed.kind, failed.unreadable) == ("failed", True)
         run = record.tasks[0]
         assert run.reason == "not read within 1 s"
@@ -113,8 +113,8 @@ class TestReadingLimit:
         assert fast.result.duration < slow.result.duration
 
     def test_a_limit_that_is_long_enough_changes_nothing(self, yard):
-        plain = run_with(mission(measure(1)), fast_rig(yard))
-        limited = run_with(mission(measure(1, reading_limit=60.0)), fast_rig(yard))
+        plain = run_with(mission(measure(1)), fast_setup(yard))
+        limited = run_with(mission(measure(1, reading_limit=60.0)), fast_setup(yard))
         assert limited.tasks == plain.tasks
 
 
@@ -136,8 +136,8 @@ class TestJoints:
     def test_the_arm_goes_where_the_task_wants_it(self, yard):
         joint = min(yard.robot.arm_raised)
         seen = []
-        rig = fast_rig(yard)
+        setup = fast_setup(yard)
         asked = JointState(names=(joint,), positions=(0.5,))
-        run_with(mission(measure(1, joint_states=asked)), rig)
-        seen = [round(math.radians(told[joint]), 6) for told in rig.world.arm]
+        run_with(mission(measure(1, joint_states=asked)), setup)
+        seen = [round(math.radians(told[joint]), 6) for told in setup.world.arm]
         assert 0.5 in seen

@@ -7,9 +7,9 @@ from argo_compiler.hfsm import ByHand, Cancel, GiveBack, Outcome, Pause, Resume
 from argo_compiler.il import Action, Task
 from argo_env.faults.checkpoints import AbnormalValue
 from argo_env.run.journal import open_journal
+from argo_env.run.run_commands import DoByHand, StopByHand
 from argo_env.run.session import resume
 from argo_env.run.spec import RunSpec, logged
-from argo_env.run.steering import DoByHand, StopByHand
 from tests.yard import (
     journaled,
     measure,

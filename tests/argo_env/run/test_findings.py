@@ -12,7 +12,7 @@ from argo_env.run.spec import RunSpec, logged
 from argo_env.run.verdict_line import Tone
 from tests.yard import (
     Entries,
-    fast_rig,
+    fast_setup,
     measure,
     mission,
     opened,
@@ -93,10 +93,10 @@ class TestEventsFromOutside:
     def test_what_was_written_down_gives_the_same(self, yard):
         kept, events = Entries(), logged((3.0, LEAK), (5.0, CLEAR))
         plan = answering()
-        record = run_with(plan, fast_rig(yard, {1: 9.0}), events=events, observers=[kept])
+        record = run_with(plan, fast_setup(yard, {1: 9.0}), events=events, observers=[kept])
         spec = RunSpec(mission=plan, site="yard", events=events)
-        rig = fast_rig(yard, {1: 9.0})
-        with simulation_of(spec, opened(yard), past=kept.all, rig=rig) as again:
+        setup = fast_setup(yard, {1: 9.0})
+        with simulation_of(spec, opened(yard), past=kept.all, setup=setup) as again:
             assert again.record() == record
         assert [f.kind for f in record.findings] == ["gas_leak", "abnormal_reading"]
 

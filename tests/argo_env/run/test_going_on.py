@@ -12,13 +12,13 @@ from argo_compiler.hfsm import ByHand, Executor, GiveBack, Outcome, TakeOver, lo
 from argo_compiler.il import EventKind, Group
 from argo_compiler.il.mission import TimeWindow
 from argo_env.faults.checkpoints import AbnormalValue
-from argo_env.run.beginning import KnownAnomaly
+from argo_env.run.initial_state import KnownAnomaly
 from argo_env.run.journal import open_journal
-from argo_env.run.record import Anomaly, WindowKept
+from argo_env.run.record import Anomaly, WindowOutcome
+from argo_env.run.run_commands import DoByHand
 from argo_env.run.session import resume, simulate
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
-from argo_env.run.steering import DoByHand
 from tests.conftest import examples
 from tests.yard import cut, journaled, measure, mission, simulation_of, take_over, to_rest, waypoint
 
@@ -165,7 +165,7 @@ class TestRecord:
         record = simulate(spec, site)
         run = record.tasks[-1]
         assert run.end == pytest.approx(60.0, abs=0.2)
-        assert record.windows[0].kept is WindowKept.KEPT
+        assert record.windows[0].kept is WindowOutcome.KEPT
         late = spec.mission.model_copy(update={"max_duration": 30.0})
         record = simulate(spec.model_copy(update={"mission": late}), site)
         assert record.result.within_max_duration is False
@@ -175,7 +175,7 @@ class TestRecord:
         plan = mission(measure(1, window=window), measure(2, window=window))
         _, spec = handed_over(site, plan, 1)
         (run,) = simulate(spec, site).windows
-        assert (run.task, run.kept) == ("MEASURE 2", WindowKept.KEPT)
+        assert (run.task, run.kept) == ("MEASURE 2", WindowOutcome.KEPT)
 
 
 class TestEdited:
@@ -235,7 +235,7 @@ def test_what_was_found_before_is_known(site):
     more = (known, KnownAnomaly(anomaly=told, pose=spec.beginning.pose))
     beginning = spec.beginning.model_copy(update={"known": more})
     with simulation_of(spec.model_copy(update={"beginning": beginning}), site) as rest:
-        (closed,) = rest.rig.navigator.blockages
+        (closed,) = rest.setup.navigator.blockages
         stopped_after(rest, 1)
         assert rest.going_on(PLAN).beginning.known[:2] == more
     assert closed.rect[0] < 2.9 < 3.1 < closed.rect[2]

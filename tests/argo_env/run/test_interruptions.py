@@ -21,7 +21,7 @@ from argo_env.run.verdict_line import Tone
 from tests.argo_env.run.test_at_the_place import foggy
 from tests.conftest import examples
 from tests.mission_writing import reaction as react
-from tests.yard import fast_rig, measure, mission, run, run_with, simulated, waypoint
+from tests.yard import fast_setup, measure, mission, run, run_with, simulated, waypoint
 
 DOCK = Pose(x=1.05, y=1.05, z=0.02)
 SHELTER = Pose(x=3.05, y=1.55, z=0.02)
@@ -76,15 +76,15 @@ class TestCleanUp:
         plan = mission(
             measure(1), reactions=(react(EventKind.GAS_LEAK, Response.SAFE_AREA, pose=SHELTER),)
         )
-        rig = fast_rig(yard)
+        setup = fast_setup(yard)
         events = ((arrival + 4.0, Occurred(EventKind.GAS_LEAK)),)
-        record = run_with(plan, rig, events=logged(*events))
+        record = run_with(plan, setup, events=logged(*events))
         first, second = record.tasks
         assert first.outcome == "interrupted"
         assert second.start == first.end
         assert first.end == pytest.approx(arrival + 4.0 + 8 / 3, abs=0.11)
         stowed, raised = yard.robot.arm_stowed, yard.robot.arm_raised
-        assert rig.world.arm[:2] == [raised, stowed]
+        assert setup.world.arm[:2] == [raised, stowed]
 
 
 class TestPersons:
@@ -230,17 +230,17 @@ class TestReactions:
         )
         a, b = waypoint("A", 3.05, 2.05, velocity=0.2), waypoint("B", 4.55, 2.05, velocity=0.3)
         plan = mission(a, b, waypoint("C", 2.05, 2.05), reactions=(shelter,))
-        rig = fast_rig(yard)
-        run_with(plan, rig, events=logged((16.0, Occurred(EventKind.GAS_LEAK))))
-        assert rig.drive.velocities == [0.2, None, 0.2, 0.3, None]
+        setup = fast_setup(yard)
+        run_with(plan, setup, events=logged((16.0, Occurred(EventKind.GAS_LEAK))))
+        assert setup.drive.velocities == [0.2, None, 0.2, 0.3, None]
 
 
 def test_velocity_of_a_way_back_to_the_same_task(yard):
     again = Group(name="Twice", start="A", end="A", max_repeat_count=2)
     plan = mission(waypoint("A", 3.05, 2.05, velocity=0.2), groups=(again,))
-    rig = fast_rig(yard)
-    run_with(plan, rig)
-    assert rig.drive.velocities == [0.2, 0.2]
+    setup = fast_setup(yard)
+    run_with(plan, setup)
+    assert setup.drive.velocities == [0.2, 0.2]
 
 
 class TestFailures:

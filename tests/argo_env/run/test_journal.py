@@ -42,7 +42,7 @@ from tests.conftest import examples, sample
 from tests.yard import (
     EmptyWorld,
     Watching,
-    fast_rig,
+    fast_setup,
     measure,
     mission,
     opened,
@@ -82,7 +82,7 @@ def header(yard, plan=PLAN, events=EVENTS, source=None):
 def go_on(yard, journal, plan=PLAN, events=EVENTS, observe=None, announce=None, **options):
     """The record of a run from where the journal ends."""
     return run_with(
-        plan, fast_rig(yard, {2: 5.5}), journal=journal, observers=[Watching(observe, announce)],
+        plan, fast_setup(yard, {2: 5.5}), journal=journal, observers=[Watching(observe, announce)],
         seed=1, events=logged(*events), **options,
     )  # fmt: skip
 
@@ -231,14 +231,16 @@ def test_an_interruption_is_told_and_the_simulation_can_go_on(yard):
             told.append(record)
 
     spec = RunSpec(mission=PLAN, site="yard")
-    with simulation_of(spec, opened(yard), observers=[Told()], rig=fast_rig(yard)) as simulation:
+    with simulation_of(
+        spec, opened(yard), observers=[Told()], setup=fast_setup(yard)
+    ) as simulation:
         record = simulation.run(lambda: next(looks))
         assert told == [record]
         assert record.result.duration == 2.0
         whole = simulation.run()
         assert told == [record]
     assert whole.result.ended
-    assert whole == run_with(PLAN, fast_rig(yard))
+    assert whole == run_with(PLAN, fast_setup(yard))
 
 
 def test_a_run_that_has_ended_can_be_told_nothing(yard, whole, path):
@@ -337,9 +339,9 @@ class Scraping(EmptyWorld):
 
 def test_contacts_go_on_as_well(yard, path):
     def run(journal):
-        rig = fast_rig(yard)
-        rig = replace(rig, world=Scraping(rig.drive))
-        return run_with(plan, rig, journal=journal, seed=1)
+        setup = fast_setup(yard)
+        setup = replace(setup, world=Scraping(setup.drive))
+        return run_with(plan, setup, journal=journal, seed=1)
 
     plan = mission(waypoint("A", 3.05, 1.05), waypoint("B", 1.05, 1.05))
     with create_journal(path, header(yard, plan, ())) as journal:

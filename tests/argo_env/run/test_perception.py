@@ -15,13 +15,13 @@ from argo_env.faults.schedule import Schedule
 from argo_env.navigation import Blockage
 from argo_env.robot.pose import BodyPose
 from argo_env.run.action import TURNS
-from argo_env.run.ending import SETTLING
 from argo_env.run.journal import open_journal
 from argo_env.run.perception import Perception, blockage
 from argo_env.run.record import Anomaly
-from argo_env.run.rig import Rig
+from argo_env.run.run_setup import RunSetup
 from argo_env.run.session import resume
 from argo_env.run.spec import logged
+from argo_env.run.termination import SETTLING
 from argo_env.sensing.sensor import Measurement, PoorViewError
 from argo_env.sensing.signals.terrain_watch import ObstacleDetection
 from argo_env.sensing.watch import Detection
@@ -30,7 +30,7 @@ from tests.yard import (
     Watching,
     cut,
     cut_after,
-    fast_rig,
+    fast_setup,
     faults_of,
     measure,
     mission,
@@ -62,9 +62,9 @@ class Scripted:
 
 
 def run(yard, plan, *watches, values=None, events=(), announce=None):
-    rig = fast_rig(yard, values)
-    rig = Rig(rig.world, rig.navigator, rig.drive, rig.sensor, watches)
-    return run_with(plan, rig, events=logged(*events), observers=[Watching(announce=announce)])
+    setup = fast_setup(yard, values)
+    setup = RunSetup(setup.world, setup.navigator, setup.drive, setup.sensor, watches)
+    return run_with(plan, setup, events=logged(*events), observers=[Watching(announce=announce)])
 
 
 def obstacle(x, y, half=0.15, kind=EventKind.POSITIVE_OBSTACLE):
@@ -181,10 +181,10 @@ class TestObstacles:
                 view = yard.plan_to_view(self._left[0], 1, TURNS[1]).end
                 return (obstacle((pose.x + view.x) / 2, (pose.y + view.y) / 2, 0.05),)
 
-        rig = fast_rig(yard)
+        setup = fast_setup(yard)
         watch = OnTheWay(period=0.1)
-        rig = replace(rig, sensor=Turned(), watches=(watch,))
-        record = run_with(mission(measure(1)), rig)
+        setup = replace(setup, sensor=Turned(), watches=(watch,))
+        record = run_with(mission(measure(1)), setup)
         (found,), (reading,) = record.anomalies, record.readings
         assert record.result.success
         assert len(looks) == reading.views == 2

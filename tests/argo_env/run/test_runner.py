@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import argo_env.run.ending
+import argo_env.run.termination
 from argo_compiler.base.errors import ArgoError, Invalid
 from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, Group, Mission, Task
@@ -19,7 +19,7 @@ from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import MotionKind
 from argo_env.run.drives_and_sensors import DRIVES
 from argo_env.run.record import Anomaly, RunRecord
-from argo_env.run.rig import true_values
+from argo_env.run.run_setup import true_values
 from argo_env.run.simulation import SAMPLE_PERIOD
 from tests.mission_writing import above, way
 from tests.yard import Watching, from_place, in_order, measure, resumed, simulated
@@ -270,7 +270,7 @@ def test_the_dock_of_another_area_is_named(navigator):
 
 
 def test_endless_round_is_stopped(navigator, monkeypatch):
-    monkeypatch.setattr(argo_env.run.ending, "TIME_LIMIT", 30.0)
+    monkeypatch.setattr(argo_env.run.termination, "TIME_LIMIT", 30.0)
     there, back = waypoint("A", 9.05, -2.05), waypoint("B", 8.05, -2.05)
     group = Group(name="Round", start="A", end="B", max_repeat_duration=1e6)
     record = simulated(mission(start(), there, back, groups=(group,)), navigator)

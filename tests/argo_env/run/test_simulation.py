@@ -31,15 +31,15 @@ from argo_env.faults.plant import GasLeakFault
 from argo_env.faults.robot import ConnectionLoss, DriveDysfunction, LowBattery, SensorDysfunction
 from argo_env.faults.walkway import Brick
 from argo_env.planning.opening import OpenedSite
-from argo_env.run.fitting_together import check_run
 from argo_env.run.journal import open_journal
 from argo_env.run.machine import OpenMachine
 from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
+from argo_env.run.run_commands import InjectFault, StopRun
 from argo_env.run.session import resume, run, simulate
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec, logged, read_spec
-from argo_env.run.steering import ReachIn, StopRun
+from argo_env.run.validation import check_run
 from tests.conftest import examples
 from tests.yard import (
     Entries,
@@ -123,7 +123,7 @@ def whole(site):
     for drive in PLANS:
         with simulation_of(spec_of(drive), site) as simulation:
             record = simulation.run()
-            found[drive] = read(record), round(simulation.now / simulation.rig.drive.time_step)
+            found[drive] = read(record), round(simulation.now / simulation.setup.drive.time_step)
             assert record.readings
     return found
 
@@ -202,7 +202,7 @@ class TestSteering:
 
     def test_a_fault_from_now_on(self, simulation):
         steps(simulation, 30)
-        simulation.handle(ReachIn(SensorDysfunction(effect="fails")))
+        simulation.handle(InjectFault(SensorDysfunction(effect="fails")))
         record = simulation.run()
         assert record.readings == ()
         (fault,) = record.faults
@@ -212,7 +212,7 @@ class TestSteering:
 
     def test_a_fault_that_comes_later_and_ends(self, simulation):
         steps(simulation, 10)
-        simulation.handle(ReachIn(ConnectionLoss(at=5.0, until=9.0)))
+        simulation.handle(InjectFault(ConnectionLoss(at=5.0, until=9.0)))
         lost, restored = simulation.run().anomalies
         assert (lost.kind, restored.kind) == (
             EventKind.CONNECTION_LOST, EventKind.CONNECTION_RESTORED,
@@ -222,16 +222,16 @@ class TestSteering:
     @pytest.mark.parametrize(
         ("event", "kind", "says"),
         [
-            (ReachIn(Brick(floor=1)), Conflict, "from the run's start or not at all"),
-            (ReachIn(LowBattery(charge=0.3)), Conflict, "from the run's start or not at all"),
-            (ReachIn(GasLeakFault(place=(2.0, 2.0, 1.0))), Conflict, "`route` has no world"),
+            (InjectFault(Brick(floor=1)), Conflict, "from the run's start or not at all"),
+            (InjectFault(LowBattery(charge=0.3)), Conflict, "from the run's start or not at all"),
+            (InjectFault(GasLeakFault(place=(2.0, 2.0, 1.0))), Conflict, "`route` has no world"),
             (
-                ReachIn(ConnectionLoss(until=0.5)), Invalid,
+                InjectFault(ConnectionLoss(until=0.5)), Invalid,
                 r"would end at 0.5 s, and it is 1 s already",
             ),
-            (ReachIn(AbnormalValue(checkpoint=99)), ArgoError, "has no checkpoint 99"),
+            (InjectFault(AbnormalValue(checkpoint=99)), ArgoError, "has no checkpoint 99"),
             *((wrong, Invalid, None) for wrong in (
-                ReachIn(None), StopRun(5), Occurred("nonsense"), GiveBack(5), GiveBack((5,)),
+                InjectFault(None), StopRun(5), Occurred("nonsense"), GiveBack(5), GiveBack((5,)),
                 Occurred("time_up"),
             )),
             *((untold, Invalid, r"outside|occurs by itself") for untold in (
@@ -435,7 +435,7 @@ def steered(site, tmp_path_factory):
     spec = spec_of("route")
     with journaled(path, spec, site) as simulation:
         steps(simulation, 20)
-        simulation.handle(ReachIn(AbnormalValue(checkpoint=3, value=8.0)))
+        simulation.handle(InjectFault(AbnormalValue(checkpoint=3, value=8.0)))
         take_over(simulation, after=10)
         steps(simulation, 30)
         simulation.handle(GiveBack((ByHand(task="MEASURE 1", value=3.0),)))

@@ -7,14 +7,14 @@ from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import Condition, ConditionType, EventKind, Group, Mode, OnFailure, TimeWindow
 from argo_env.report.rounds import waits, with_readings
 from argo_env.run.journal import open_journal
-from argo_env.run.record import RunRecord, WindowKept
+from argo_env.run.record import RunRecord, WindowOutcome
 from argo_env.run.spec import logged
 from argo_env.run.verdict_line import Tone
 from tests.mission_writing import above, wait, way
 from tests.yard import (
     Entries,
     cut_after,
-    fast_rig,
+    fast_setup,
     measure,
     mission,
     resumed,
@@ -25,7 +25,7 @@ from tests.yard import (
 
 
 def run(yard, plan, *events, values=None):
-    record = run_with(plan, fast_rig(yard, values), events=logged(*events))
+    record = run_with(plan, fast_setup(yard, values), events=logged(*events))
     assert RunRecord.model_validate_json(record.model_dump_json()) == record
     return record
 
@@ -124,7 +124,7 @@ class TestRounds:
         record = run(yard, mission(first, wait("B", duration=0.0), groups=(group,)))
         assert [r.began for r in record.rounds] == [0.0, 60.0, 120.0]
         assert [r.due for r in record.rounds] == [0.0, 60.0, 120.0]
-        assert [w.kept for w in record.windows] == [WindowKept.KEPT] + [WindowKept.MISSED] * 2
+        assert [w.kept for w in record.windows] == [WindowOutcome.KEPT] + [WindowOutcome.MISSED] * 2
 
     @pytest.mark.rule("G8")
     def test_until_a_value(self, yard):
@@ -149,7 +149,7 @@ class TestRounds:
 
     def test_a_run_that_ends_before_a_round_is_due(self, yard):
         plan = mission(HERE, THERE, groups=(self.group(every=600.0, max_repeat_count=2),))
-        record = run_with(plan, fast_rig(yard), interrupted=iter([False] * 500 + [True]).__next__)
+        record = run_with(plan, fast_setup(yard), interrupted=iter([False] * 500 + [True]).__next__)
         assert [(r.number, r.began) for r in record.rounds] == [(1, 0.0), (2, None)]
         assert waits(record)[-1].outcome == "still waiting at the end"
 
@@ -163,7 +163,7 @@ class TestWindows:
         assert task.early[0] < 40.0
         assert task.early[1] == 60.0
         assert task.measuring[0][0] == pytest.approx(60.0, abs=0.11)
-        assert [w.kept for w in record.windows] == [WindowKept.KEPT]
+        assert [w.kept for w in record.windows] == [WindowOutcome.KEPT]
         assert [w.what for w in waits(record)] == ["the time window (MEASURE 1)"]
 
     def test_it_stands_at_a_waypoint_as_well(self, yard):
@@ -188,7 +188,12 @@ class TestWindows:
         record = run(yard, plan)
         assert [(t.task, t.outcome) for t in record.tasks] == [("A", "cancelled"), ("C", "done")]
         (seen,) = record.windows
-        assert (seen.task, seen.kept, seen.ended, seen.hard) == ("A", WindowKept.MISSED, 3.0, True)
+        assert (seen.task, seen.kept, seen.ended, seen.hard) == (
+            "A",
+            WindowOutcome.MISSED,
+            3.0,
+            True,
+        )
         assert record.result.outcome is Outcome.COMPLETED_WITH_FAILURES
         assert record.result.verdict == "missed the time window: A"
         assert record.headline.tone is Tone.NOTICE
@@ -199,13 +204,13 @@ class TestWindows:
         late = waypoint("C", 3.05, 2.05, window=TimeWindow(latest=1.0))
         record = run(yard, mission(HERE, late))
         assert [t.task for t in record.tasks] == ["A"]
-        assert [w.kept for w in record.windows] == [WindowKept.MISSED]
+        assert [w.kept for w in record.windows] == [WindowOutcome.MISSED]
         assert "missed the time window: C" in record.result.verdict
 
     def test_a_soft_window_is_done_late_and_told(self, yard):
         late = waypoint("A", 2.05, 2.05, window=TimeWindow(latest=3.0, hard=False))
         record = run(yard, mission(late))
-        assert [w.kept for w in record.windows] == [WindowKept.LATE]
+        assert [w.kept for w in record.windows] == [WindowOutcome.LATE]
         assert record.result.success
         assert record.headline.word == "Done, 1 late task"
         assert "A ended after its time window" in record.headline.text
@@ -216,12 +221,12 @@ class TestWindows:
         plan = mission(HERE, skip, apart)
         tasks = (*plan.tasks[:2], plan.tasks[2].model_copy(update={"transitions": ()}), apart)
         record = run(yard, plan.model_copy(update={"tasks": tasks}))
-        assert [w.kept for w in record.windows] == [WindowKept.NOT_VISITED]
+        assert [w.kept for w in record.windows] == [WindowOutcome.NOT_VISITED]
 
     def test_other_failures_are_none_of_the_window(self, yard):
         nowhere = waypoint("A", 30.0, 30.0, window=TimeWindow(latest=100.0))
         record = run(yard, mission(nowhere, THERE))
-        assert [w.kept for w in record.windows] == [WindowKept.FAILED]
+        assert [w.kept for w in record.windows] == [WindowOutcome.FAILED]
         assert record.result.verdict == "failed: A"
 
 
@@ -277,7 +282,7 @@ class TestSupervision:
 @pytest.mark.rule("I4")
 def test_ends_have_the_ids_of_their_actions(yard):
     entries = Entries()
-    run_with(mission(HERE, THERE), fast_rig(yard), observers=[entries])
+    run_with(mission(HERE, THERE), fast_setup(yard), observers=[entries])
     ids = [e.id for one in entries.all for e in one.events if e.kind == "succeeded"]
     assert ids == [1, 2]
 
@@ -289,7 +294,7 @@ def test_what_a_person_read_is_abnormal_outside_the_nominal_range(yard):
     plan = mission(first, HERE, THERE)
     done = GiveBack((ByHand(task="MEASURE 1", value=9.0),))
     events = logged((1.0, TakeOver()), (5.0, done))
-    record = run_with(plan, fast_rig(yard), observers=[entries], events=events)
+    record = run_with(plan, fast_setup(yard), observers=[entries], events=events)
     assert [t.task for t in record.tasks if t.outcome == "done"] == ["B"]
 
 

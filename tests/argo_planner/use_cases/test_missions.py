@@ -14,7 +14,7 @@ from argo_env.faults.reading import decode_faults
 from argo_env.planning import open_site
 from argo_env.report.files import PAGE
 from argo_env.run.record import RunRecord
-from argo_env.run.rig import check_spec
+from argo_env.run.run_setup import check_spec
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_planner.use_cases.checking import Format, check_source, write_diagnostics

@@ -9,7 +9,7 @@ from argo_compiler.hfsm.conditions import awaited
 from argo_compiler.hfsm.progress import GroupProgress
 from argo_compiler.il import Action, EventKind, Mission, Task
 from argo_env.run.machine import Machine
-from argo_env.run.record import Interruption, RoundRun, WaitRun, WindowKept, WindowRun
+from argo_env.run.record import Interruption, RoundRun, WaitRun, WindowOutcome, WindowRun
 
 MOVES = frozenset(
     {
@@ -29,8 +29,8 @@ BEGINNINGS = MOVES | {Cause.START, Cause.RESTORE}
 
 
 @dataclass(frozen=True)
-class Stay:
-    """The machine's stay at a task."""
+class Visit:
+    """The machine's visit at a task."""
 
     task: str
     start: float
@@ -54,7 +54,7 @@ class Stay:
         return by_itself and self.failure is None
 
 
-def stays_of(trace: Sequence[TraceEntry], since: float = 0.0) -> Iterator[Stay]:
+def visits_from_trace(trace: Sequence[TraceEntry], since: float = 0.0) -> Iterator[Visit]:
     """All of them, in the order of time. A round that is not due yet is not begun.
 
     A machine that was restored had stood at its task for `since` (s).
@@ -68,37 +68,37 @@ def stays_of(trace: Sequence[TraceEntry], since: float = 0.0) -> Iterator[Stay]:
             start = entry.time
         elif entry.cause in MOVES:
             if task is not None:
-                yield Stay(task, start, entry.time, entry.failure, entry)
+                yield Visit(task, start, entry.time, entry.failure, entry)
             task, start = entry.target, entry.time
     if task is not None:
-        yield Stay(task, start, None)
+        yield Visit(task, start, None)
 
 
-def waits_of(mission: Mission, stays: Sequence[Stay], now: float) -> tuple[WaitRun, ...]:
+def wait_runs(mission: Mission, visits: Sequence[Visit], now: float) -> tuple[WaitRun, ...]:
     """The visits of WAITs that are no mere places, up to time `now` (s)."""
     tasks = {t.name: t for t in mission.tasks if t.action is Action.WAIT and not _is_place(t)}
     return tuple(
         WaitRun(
-            task=stay.task,
-            what=_what_is_awaited(tasks[stay.task]),
-            start=stay.start,
-            end=now if stay.end is None else stay.end,
-            ended=stay.end is not None,
-            failure=stay.failure,
-            why=_why(stay),
+            task=visit.task,
+            what=_what_is_awaited(tasks[visit.task]),
+            start=visit.start,
+            end=now if visit.end is None else visit.end,
+            ended=visit.end is not None,
+            failure=visit.failure,
+            why=_why(visit),
         )
-        for stay in stays
-        if stay.task in tasks
+        for visit in visits
+        if visit.task in tasks
     )
 
 
-def windows_of(
-    mission: Mission, stays: Sequence[Stay], before: Collection[str] = ()
+def window_runs(
+    mission: Mission, visits: Sequence[Visit], before: Collection[str] = ()
 ) -> tuple[WindowRun, ...]:
     """The visits of tasks with time windows, then those that the mission has not come to, nor had
-    come to `before` these stays."""
+    come to `before` these visits."""
     tasks = {t.name: t for t in mission.tasks if t.window is not None}
-    found = [_window(tasks[stay.task], stay) for stay in stays if stay.task in tasks]
+    found = [_window(tasks[visit.task], visit) for visit in visits if visit.task in tasks]
     seen = {run.task for run in found}
     found += [_window(task, None) for name, task in tasks.items() if name not in {*seen, *before}]
     return tuple(found)
@@ -119,34 +119,34 @@ def _is_place(task: Task) -> bool:
     return task.wait is not None and task.wait.duration == 0 and task.window is None
 
 
-def _why(stay: Stay) -> str | None:
+def _why(visit: Visit) -> str | None:
     """What ended it, in words."""
-    if stay.left is None:
+    if visit.left is None:
         return None
-    return stay.failure or stay.left.detail or stay.left.why
+    return visit.failure or visit.left.detail or visit.left.why
 
 
-def _window(task: Task, stay: Stay | None) -> WindowRun:
+def _window(task: Task, visit: Visit | None) -> WindowRun:
     window = task.window
     assert window is not None
-    end = None if stay is None else stay.end
+    end = None if visit is None else visit.end
     over = end is not None and window.latest is not None and end >= window.latest
     late = end is not None and window.latest is not None and end > window.latest
-    kept = WindowKept.OPEN
-    if stay is None:
-        kept = WindowKept.NOT_VISITED
-    elif stay.failure is not None:
-        kept = WindowKept.MISSED if window.hard and over else WindowKept.FAILED
-    elif stay.done:
-        kept = WindowKept.LATE if late else WindowKept.KEPT
+    kept = WindowOutcome.OPEN
+    if visit is None:
+        kept = WindowOutcome.NOT_VISITED
+    elif visit.failure is not None:
+        kept = WindowOutcome.MISSED if window.hard and over else WindowOutcome.FAILED
+    elif visit.done:
+        kept = WindowOutcome.LATE if late else WindowOutcome.KEPT
     elif end is not None:
-        kept = WindowKept.LEFT
+        kept = WindowOutcome.LEFT
     return WindowRun(
         task=task.name,
         earliest=window.earliest,
         latest=window.latest,
         hard=window.hard,
-        visited=None if stay is None else stay.start,
+        visited=None if visit is None else visit.start,
         ended=end,
         kept=kept,
     )
@@ -163,7 +163,7 @@ class _Seen:
     """of its present round in the list"""
 
 
-class RoundWatch:
+class RoundTracker:
     """Notes the rounds of all groups. Holds those that it has seen."""
 
     def __init__(self) -> None:
@@ -237,7 +237,7 @@ def _entered(
     )
 
 
-class InterruptionWatch:
+class InterruptionTracker:
     """Notes each pause and each reaction. Holds the one that goes on."""
 
     def __init__(self) -> None:

@@ -1,4 +1,4 @@
-"""The rig: all that a mission is carried out with, how it is fitted out for a run, and what the
+"""The setup: all that a mission is carried out with, how it is fitted out for a run, and what the
 site's instruments show meanwhile."""
 
 import math
@@ -55,14 +55,14 @@ class Instruments:
         if profile is None:
             return
         checkpoint = self._site.checkpoint(checkpoint_id)
-        value = shown_at(checkpoint, self._first[checkpoint_id], profile, self._seed, now)
+        value = displayed_value(checkpoint, self._first[checkpoint_id], profile, self._seed, now)
         as_usual = self._targets.truth[checkpoint_id] == self._targets.usual[checkpoint_id]
         self._targets.usual[checkpoint_id] = value
         if as_usual:
             self._targets.show(checkpoint_id, value)
 
 
-def shown_at(
+def displayed_value(
     checkpoint: SiteCheckpoint, first: float, profile: ValueProfile, seed: int, now: float
 ) -> float:
     """What the checkpoint shows at time `now` (s), in its unit, if it showed `first` at 0 s and no
@@ -78,7 +78,7 @@ def shown_at(
 
 
 @dataclass(frozen=True)
-class Rig:
+class RunSetup:
     """What a mission is carried out with."""
 
     world: AnyWorld
@@ -107,8 +107,8 @@ class Rig:
         return isinstance(self.world, World)
 
 
-def fit_out(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitStack) -> Rig:
-    """Return the rig of a run whose spec was checked; `stack` closes it. With `gui` its world is
+def make_run_setup(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitStack) -> RunSetup:
+    """Return the setup of a run whose spec was checked; `stack` closes it. With `gui` its world is
     shown in a window.
 
     Raises ArgoError if there can be no window.
@@ -144,7 +144,7 @@ def fit_out(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitStack) ->
     watches += onboard_watches(robot, battery, network, drive, sensor, level)
     instruments = Instruments(targets, site, seed, given.values)
     schedule = Schedule(faults, targets)
-    return Rig(world, navigator, drive, sensor, watches, battery, schedule, instruments)
+    return RunSetup(world, navigator, drive, sensor, watches, battery, schedule, instruments)
 
 
 def check_spec(spec: RunSpec, site: Site, said: FaultText | None = None) -> None:

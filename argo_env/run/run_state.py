@@ -1,4 +1,4 @@
-"""The course of a run: what its entries add up to, the machine that they are told to, and the
+"""The state of a run: what its entries add up to, the machine that they are told to, and the
 events that are given beforehand."""
 
 import math
@@ -16,20 +16,20 @@ from argo_compiler.hfsm import (
     StartAction,
 )
 from argo_env.navigation import Path
-from argo_env.run.beginning import KnownAnomaly, RunBeginning
+from argo_env.run.initial_state import InitialState, KnownAnomaly
 from argo_env.run.log import Entry, LoggedEvent, RunLog
 from argo_env.run.machine import Machine
 from argo_env.run.perception import blockage
 from argo_env.run.record import RunRecord, TaskRun
 from argo_env.run.result import make_record
 from argo_env.run.robot import ActionEnd, AnyRobot, RobotAction
+from argo_env.run.run_commands import Supervision, mark_abnormal
 from argo_env.run.spec import RunSpec
-from argo_env.run.stays import InterruptionWatch, RoundWatch
-from argo_env.run.steering import Supervision, as_seen_on
 from argo_env.run.vehicle import way_come
+from argo_env.run.visits_and_rounds import InterruptionTracker, RoundTracker
 
 
-class GivenEvents:
+class ScheduledEvents:
     """Gives out events when they are due. Holds how many have occurred."""
 
     def __init__(self, events: Iterable[tuple[float, LoggedEvent]]) -> None:
@@ -79,7 +79,7 @@ class GivenEvents:
         return isinstance(self._events[self.occurred][1], GiveBack)
 
 
-class Course:
+class RunState:
     """Where a run stands. Holds the machine, the log and the action under way, which change with
     the entries that it takes: equal entries lead to the same place, made now or read again."""
 
@@ -87,11 +87,11 @@ class Course:
         self.machine = machine
         self.action: RobotAction | None = None
         """the one under way"""
-        self.log = RunLog(vehicle.rig.navigator.site)
+        self.log = RunLog(vehicle.setup.navigator.site)
         self.supervision = Supervision(spec.mission)
         self.lost: TaskRun | None = None
         """the action by hand that was under way when the process before this one died"""
-        self.given = GivenEvents(spec.events)
+        self.given = ScheduledEvents(spec.events)
         self.steps = 0
         """time steps of the drive since the run began"""
         self._beginning = spec.beginning
@@ -99,10 +99,10 @@ class Course:
         self.now = self._begun
         """s of simulated time"""
         self._mission = spec.mission
-        self._time_step = vehicle.rig.drive.time_step
+        self._time_step = vehicle.setup.drive.time_step
         self._vehicle = vehicle
-        self._interruptions = InterruptionWatch()
-        self._rounds = RoundWatch()
+        self._interruptions = InterruptionTracker()
+        self._rounds = RoundTracker()
         self._came: Path | None = None
 
     @property
@@ -135,7 +135,7 @@ class Course:
         """Adds an entry to the log and tells the machine its events."""
         self.log.add(entry)
         self.given.add(entry.added)
-        if schedule := self._vehicle.rig.schedule:
+        if schedule := self._vehicle.setup.schedule:
             for fault in entry.faults:
                 schedule.add(fault)
         if closed := [b for anomaly in entry.found if (b := blockage(anomaly))]:
@@ -156,7 +156,7 @@ class Course:
         if entry.stop_by_hand and self.action:
             self.action.cancel("a person stopped it", interrupted=False)
         if closed and self.action:
-            self.action.detour(self._vehicle.rig)
+            self.action.detour(self._vehicle.setup)
 
     def start(self) -> None:
         """Starts the machine."""
@@ -218,13 +218,13 @@ class Course:
         self.action.cancel("the run was stopped", interrupted=False)
         return self.run_of(ActionStopped(self.action.task.name))
 
-    def beginning(self, progress: Progress) -> RunBeginning:
+    def beginning(self, progress: Progress) -> InitialState:
         """Where a run begins that goes on from here, with such a progress."""
-        drive, odometry = self._vehicle.rig.drive, self._vehicle.odometry
+        drive, odometry = self._vehicle.setup.drive, self._vehicle.odometry
         before = self._beginning.known if self._beginning else ()
         found = (KnownAnomaly(anomaly=a, pose=pose) for a, pose in self.log.found)
         pose = drive.pose
-        return RunBeginning(
+        return InitialState(
             progress=progress,
             pose=(pose.x, pose.y, pose.z, pose.yaw, pose.pitch),
             charge=self._vehicle.supply.charge,
@@ -237,14 +237,14 @@ class Course:
         """The record of the run as far as its log goes, or up to the `present` entry."""
         log = self.log if present is None else self.log.with_entry(present)
         return make_record(
-            spec, self._vehicle.rig, self.machine, log, self._interruptions, self._rounds
+            spec, self._vehicle.setup, self.machine, log, self._interruptions, self._rounds
         )
 
     def _begin(self, command: StartAction) -> None:
         self.action = self._vehicle.start(command, self.now, self._came)
 
     def _seen(self, event: Event) -> Event:
-        return as_seen_on(self.log.site, self._mission, event)
+        return mark_abnormal(self.log.site, self._mission, event)
 
     def _look(self) -> None:
         for watch in (self._interruptions, self._rounds):

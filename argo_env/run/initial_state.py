@@ -21,7 +21,7 @@ class KnownAnomaly(Model):
     """x, y, z (m), yaw, pitch (rad)"""
 
 
-class RunBeginning(Model):
+class InitialState(Model):
     """What a run goes on from: how far its mission has come, and where the robot stands."""
 
     progress: Progress
@@ -47,7 +47,7 @@ class RunBeginning(Model):
         return BodyPose(*self.pose)
 
 
-def machine_of(mission: Mission, beginning: RunBeginning | None = None) -> Executor:
+def make_machine(mission: Mission, beginning: InitialState | None = None) -> Executor:
     """A machine for a run of the mission, from its start or from a beginning.
 
     Raises ArgoError if the mission has errors, or the beginning is not one of it.

@@ -7,9 +7,9 @@ from argo_compiler.hfsm import Cause, lower
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.robot.spec import load_robot
 from argo_env.run.machine import Machine
-from argo_env.run.rig import check_spec
+from argo_env.run.run_commands import check_scheduled_events
+from argo_env.run.run_setup import check_spec
 from argo_env.run.spec import RunSpec, checked
-from argo_env.run.steering import check_given
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ def check_run(
     require_site(site, spec)
     if settings:
         check_spec(spec, site.site)
-    check_given(spec.events, spec.mission, site.site)
+    check_scheduled_events(spec.events, spec.mission, site.site)
     return CheckedRun(spec, site)
 
 
@@ -61,7 +61,7 @@ def require_begun(machine: Machine, spec: RunSpec) -> None:
         restored and machine.trace[0].target != expected
     ):
         raise Conflict(
-            "the machine does not stand where the run begins: make it with `machine_of` from the "
+            "the machine does not stand where the run begins: make it with `make_machine` from the "
             "spec's mission and beginning"
         )
 

@@ -24,7 +24,7 @@ from argo_env.faults.kinds import AnyFault, settle_one
 from argo_env.run.log import Entry, LoggedEvent, require_from_outside, require_time
 from argo_env.run.machine import Machine
 from argo_env.run.record import TaskRun
-from argo_env.run.rig import Rig
+from argo_env.run.run_setup import RunSetup
 from argo_env.site import Site
 
 _DRIVEN = (Action.WAYPOINT, Action.MEASURE)
@@ -104,7 +104,7 @@ def require_supervised(supervision: Supervision, running: Task | None) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class ReachIn:
+class InjectFault:
     """Something goes wrong from now on, as long as the fault says."""
 
     fault: AnyFault
@@ -130,15 +130,15 @@ class StopByHand:
     """The action that a person let the robot carry out is cancelled, and cleans up."""
 
 
-Steering = (
-    Pause | Resume | TakeOver | GiveBack | Cancel | Occurred | ReadingGiven | ReachIn | StopRun
+RunCommand = (
+    Pause | Resume | TakeOver | GiveBack | Cancel | Occurred | ReadingGiven | InjectFault | StopRun
     | DoByHand | StopByHand
 )  # fmt: skip
 
 _TO_THE_MACHINE = (Pause, Resume, TakeOver, GiveBack, Cancel, Occurred, ReadingGiven)
 
 
-def check_event(event: Steering, mission: Mission, site: Site) -> Event:
+def check_event(event: RunCommand, mission: Mission, site: Site) -> Event:
     """The event as one for the machine of the mission; Invalid if nobody outside can tell it,
     NotFound for a checkpoint that the site does not have."""
     if not isinstance(event, _TO_THE_MACHINE):
@@ -148,7 +148,9 @@ def check_event(event: Steering, mission: Mission, site: Site) -> Event:
     return logged.original()
 
 
-def check_given(events: Sequence[tuple[float, LoggedEvent]], mission: Mission, site: Site) -> None:
+def check_scheduled_events(
+    events: Sequence[tuple[float, LoggedEvent]], mission: Mission, site: Site
+) -> None:
     """Raises Invalid for events and times (s) that no run of the mission can be given."""
     for t, event in events:
         if not isinstance(event, LoggedEvent):
@@ -160,7 +162,7 @@ def check_given(events: Sequence[tuple[float, LoggedEvent]], mission: Mission, s
             raise Invalid(f"the event {event.kind} given at {t:g} s: {error}") from None
 
 
-def require_hand_off(event: Event, acting: Task | None) -> None:
+def require_no_action_by_hand(event: Event, acting: Task | None) -> None:
     """Raises Conflict if the mission were to go on while an action by hand is under way."""
     if acting is not None and isinstance(event, Resume | GiveBack):
         raise Conflict(
@@ -169,7 +171,7 @@ def require_hand_off(event: Event, acting: Task | None) -> None:
         )
 
 
-def require_at_rest(machine: Machine) -> None:
+def require_no_action(machine: Machine) -> None:
     """Raises Conflict while an action still runs: nothing can be given back."""
     if running := machine.running:
         raise Conflict(
@@ -187,7 +189,7 @@ def require_taken_over(machine: Machine, now: float) -> None:
         )
 
 
-def as_seen_on(site: Site, mission: Mission, event: Event) -> Event:
+def mark_abnormal(site: Site, mission: Mission, event: Event) -> Event:
     """The event with what the site tells of it: whether values that a person gives are abnormal."""
 
     def abnormal(object_id: str | None, value: float) -> bool:
@@ -228,7 +230,7 @@ def _check_by_hand(done: Sequence[ByHand], mission: Mission) -> None:
             raise Invalid(f"{finding.message}: {finding.hint}")
 
 
-def from_now(fault: AnyFault, rig: Rig, seed: int, now: float) -> AnyFault:
+def resolve_new_fault(fault: AnyFault, setup: RunSetup, seed: int, now: float) -> AnyFault:
     """The fault, settled, as it begins at time `now` (s), or later if it says so.
 
     Raises Conflict for one that can't begin while a run goes on, ArgoError for what the site does
@@ -237,16 +239,16 @@ def from_now(fault: AnyFault, rig: Rig, seed: int, now: float) -> AnyFault:
     if not isinstance(fault, Fault):
         raise Invalid(f"{fault!r} is no fault")
     kind = f"a fault of kind `{fault.kind}`"
-    if rig.schedule is None:
+    if setup.schedule is None:
         raise Conflict(f"{kind} finds nothing to act on: this run has no parts that go wrong")
     if not isinstance(fault, TimedFault):
         raise Conflict(
             f"{kind} is there from the run's start or not at all: give it in the faults of the "
             "run's spec"
         )
-    if fault.needs_world and not rig.watches_world:
+    if fault.needs_world and not setup.watches_world:
         raise Conflict(
-            f"the drive `{rig.drive.name}` has no world in which {kind} could be found; "
+            f"the drive `{setup.drive.name}` has no world in which {kind} could be found; "
             "take another drive"
         )
     if fault.until is not None and fault.until <= now:
@@ -255,8 +257,8 @@ def from_now(fault: AnyFault, rig: Rig, seed: int, now: float) -> AnyFault:
     try:
         return settle_one(
             fault.model_copy(update={"at": begins}),
-            len(rig.schedule.faults),
-            rig.navigator.site,
+            len(setup.schedule.faults),
+            setup.navigator.site,
             seed,
         )
     except ArgoError as error:

@@ -1,9 +1,9 @@
-"""Editing: functions from a mission to a mission that keep the rules of the language.
+"""Edits: functions that return a changed mission and keep the rules of the language.
 
-Each returns `Edited`: the mission, and what else had to change. What can't be done is refused by an
-`EditError` that names what is in the way. The missions are frozen and share what did not change, so
-that a person's steps can be kept and undone. The edits are data as well
-(`argo_compiler.editing.commands`), which `apply` makes. `docs/editing.md` shows them at work.
+Each returns `Edited`: the mission, and what else had to change. An edit that is not possible raises
+an `EditError` that names the reason. Missions are frozen and share what did not change, so a
+person's steps can be stored and undone. An edit can also be data
+(`argo_compiler.editing.commands`), which `apply` executes. `docs/editing.md` shows examples.
 """
 
 from typing import TYPE_CHECKING
@@ -46,10 +46,10 @@ __all__ = [
 if TYPE_CHECKING:
     from argo_compiler.editing.commands import Edit, apply, read_edit
     from argo_compiler.editing.consequences import Consequence, Edited
+    from argo_compiler.editing.errors import EditConflict, EditError, EditInvalid, EditNotFound
     from argo_compiler.editing.groups import change_group, dissolve_group, rename_group, wrap_tasks
     from argo_compiler.editing.header import set_header
     from argo_compiler.editing.reactions import add_reaction, change_reaction, remove_reaction
-    from argo_compiler.editing.refusals import EditConflict, EditError, EditInvalid, EditNotFound
     from argo_compiler.editing.removal import remove_task
     from argo_compiler.editing.tasks import (
         add_task,
@@ -77,7 +77,7 @@ else:
             "groups": ["change_group", "dissolve_group", "rename_group", "wrap_tasks"],
             "header": ["set_header"],
             "reactions": ["add_reaction", "change_reaction", "remove_reaction"],
-            "refusals": ["EditConflict", "EditError", "EditInvalid", "EditNotFound"],
+            "errors": ["EditConflict", "EditError", "EditInvalid", "EditNotFound"],
             "removal": ["remove_task"],
             "tasks": ["add_task", "change_task", "move_task", "rename_task", "replace_task"],
             "transitions": [

@@ -1,8 +1,8 @@
-"""The edits as data, so that they can be sent, kept and made again.
+"""Edits as data, so that they can be sent, stored and executed again.
 
 Each is the call of a function of this package: its `kind` is the function's name, its other fields
-are the function's parameters. As JSON an edit has only what was given: in a header `null` takes a
-value away, and what is not there stays.
+are the function's parameters. As JSON an edit has only the fields that were set: in a header `null`
+removes a value, and a missing field leaves the value unchanged.
 """
 
 import json
@@ -21,8 +21,8 @@ from pydantic import (
 from argo_compiler.base.model import Model, Pose
 from argo_compiler.editing import groups, header, reactions, removal, tasks, transitions
 from argo_compiler.editing.consequences import Edited
-from argo_compiler.editing.header import wrong_values
-from argo_compiler.editing.refusals import EditInvalid, invalid
+from argo_compiler.editing.errors import EditInvalid, invalid
+from argo_compiler.editing.header import invalid_value_diagnostics
 from argo_compiler.il import (
     Condition,
     EventKind,
@@ -42,31 +42,34 @@ from argo_compiler.il import (
 
 
 class EditCommand(Model):
-    """The call of one function of `argo_compiler.editing` on a mission."""
+    """Call of one function of `argo_compiler.editing` on a mission."""
 
     kind: str
 
-    def given(self) -> dict[str, Any]:
-        """What the edit says: what is not there keeps its default, or stays as it is."""
+    def given_fields(self) -> dict[str, Any]:
+        """Return the fields that the edit sets.
+
+        For each other field the function's default applies, or the mission's value stays.
+        """
         return {name: getattr(self, name) for name in self.model_fields_set if name != "kind"}
 
     def __eq__(self, other: object) -> bool:
-        # A value that is given changes something where one that is not given stays.
+        # A field that is set to its default differs from one that is not set: it changes a value.
         if not isinstance(other, EditCommand):
             return NotImplemented
-        return self.kind == other.kind and self.given() == other.given()
+        return self.kind == other.kind and self.given_fields() == other.given_fields()
 
     def __hash__(self) -> int:
-        return hash((self.kind, frozenset(self.given().items())))
+        return hash((self.kind, frozenset(self.given_fields().items())))
 
     @model_serializer(mode="wrap")
-    def _as_given(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        written: dict[str, Any] = write(self)
-        return {k: v for k, v in written.items() if k == "kind" or k in self.model_fields_set}
+    def _serialize_given_fields(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        values: dict[str, Any] = write(self)
+        return {k: v for k, v in values.items() if k == "kind" or k in self.model_fields_set}
 
 
 class AddTask(EditCommand):
-    """See `add_task`."""
+    """Call of `add_task`."""
 
     kind: Literal["add_task"] = "add_task"
     task: Task
@@ -77,14 +80,14 @@ class AddTask(EditCommand):
 
 
 class RemoveTask(EditCommand):
-    """See `remove_task`."""
+    """Call of `remove_task`."""
 
     kind: Literal["remove_task"] = "remove_task"
     name: str
 
 
 class ReplaceTask(EditCommand):
-    """See `replace_task`."""
+    """Call of `replace_task`."""
 
     kind: Literal["replace_task"] = "replace_task"
     name: str
@@ -92,7 +95,7 @@ class ReplaceTask(EditCommand):
 
 
 class ChangeTask(EditCommand):
-    """See `change_task`. What is not given stays."""
+    """Call of `change_task`. Fields that are not set stay unchanged."""
 
     kind: Literal["change_task"] = "change_task"
     name: str
@@ -112,7 +115,7 @@ class ChangeTask(EditCommand):
 
 
 class MoveTask(EditCommand):
-    """See `move_task`."""
+    """Call of `move_task`."""
 
     kind: Literal["move_task"] = "move_task"
     name: str
@@ -123,7 +126,7 @@ class MoveTask(EditCommand):
 
 
 class RenameTask(EditCommand):
-    """See `rename_task`."""
+    """Call of `rename_task`."""
 
     kind: Literal["rename_task"] = "rename_task"
     name: str
@@ -131,21 +134,21 @@ class RenameTask(EditCommand):
 
 
 class WrapTasks(EditCommand):
-    """See `wrap_tasks`."""
+    """Call of `wrap_tasks`."""
 
     kind: Literal["wrap_tasks"] = "wrap_tasks"
     group: Group
 
 
 class DissolveGroup(EditCommand):
-    """See `dissolve_group`."""
+    """Call of `dissolve_group`."""
 
     kind: Literal["dissolve_group"] = "dissolve_group"
     name: str
 
 
 class RenameGroup(EditCommand):
-    """See `rename_group`."""
+    """Call of `rename_group`."""
 
     kind: Literal["rename_group"] = "rename_group"
     name: str
@@ -153,7 +156,7 @@ class RenameGroup(EditCommand):
 
 
 class ChangeGroup(EditCommand):
-    """See `change_group`. What is not given stays."""
+    """Call of `change_group`. Fields that are not set stay unchanged."""
 
     kind: Literal["change_group"] = "change_group"
     name: str
@@ -168,7 +171,7 @@ class ChangeGroup(EditCommand):
 
 
 class SetTransitions(EditCommand):
-    """See `set_transitions`."""
+    """Call of `set_transitions`."""
 
     kind: Literal["set_transitions"] = "set_transitions"
     task: str
@@ -176,7 +179,7 @@ class SetTransitions(EditCommand):
 
 
 class AddTransition(EditCommand):
-    """See `add_transition`."""
+    """Call of `add_transition`."""
 
     kind: Literal["add_transition"] = "add_transition"
     task: str
@@ -185,7 +188,7 @@ class AddTransition(EditCommand):
 
 
 class RemoveTransition(EditCommand):
-    """See `remove_transition`."""
+    """Call of `remove_transition`."""
 
     kind: Literal["remove_transition"] = "remove_transition"
     task: str
@@ -193,7 +196,7 @@ class RemoveTransition(EditCommand):
 
 
 class SetTarget(EditCommand):
-    """See `set_target`."""
+    """Call of `set_target`."""
 
     kind: Literal["set_target"] = "set_target"
     task: str
@@ -202,7 +205,7 @@ class SetTarget(EditCommand):
 
 
 class SetConditions(EditCommand):
-    """See `set_conditions`."""
+    """Call of `set_conditions`."""
 
     kind: Literal["set_conditions"] = "set_conditions"
     task: str
@@ -211,7 +214,7 @@ class SetConditions(EditCommand):
 
 
 class AddCondition(EditCommand):
-    """See `add_condition`."""
+    """Call of `add_condition`."""
 
     kind: Literal["add_condition"] = "add_condition"
     task: str
@@ -220,7 +223,7 @@ class AddCondition(EditCommand):
 
 
 class RemoveCondition(EditCommand):
-    """See `remove_condition`."""
+    """Call of `remove_condition`."""
 
     kind: Literal["remove_condition"] = "remove_condition"
     task: str
@@ -229,14 +232,14 @@ class RemoveCondition(EditCommand):
 
 
 class AddReaction(EditCommand):
-    """See `add_reaction`."""
+    """Call of `add_reaction`."""
 
     kind: Literal["add_reaction"] = "add_reaction"
     reaction: Reaction
 
 
 class ChangeReaction(EditCommand):
-    """See `change_reaction`."""
+    """Call of `change_reaction`."""
 
     kind: Literal["change_reaction"] = "change_reaction"
     event: EventKind
@@ -244,14 +247,14 @@ class ChangeReaction(EditCommand):
 
 
 class RemoveReaction(EditCommand):
-    """See `remove_reaction`."""
+    """Call of `remove_reaction`."""
 
     kind: Literal["remove_reaction"] = "remove_reaction"
     event: EventKind
 
 
 class SetHeader(EditCommand):
-    """See `set_header`. What is not given stays."""
+    """Call of `set_header`. Fields that are not set stay unchanged."""
 
     kind: Literal["set_header"] = "set_header"
     designation: str = ""
@@ -294,7 +297,7 @@ Edit = Annotated[
     | SetHeader,
     Field(discriminator="kind"),
 ]
-"""all edits there are, told apart by `kind`"""
+"""any edit; `kind` distinguishes them"""
 
 _KINDS = {command.model_fields["kind"].default for command in EditCommand.__subclasses__()}
 FUNCTIONS: dict[str, Callable[..., Edited]] = {
@@ -303,34 +306,37 @@ FUNCTIONS: dict[str, Callable[..., Edited]] = {
     for name, function in vars(module).items()
     if name in _KINDS
 }
-"""what makes the edit of each kind"""
+"""the function that executes each kind of edit, by `kind`"""
 
 _EDIT: TypeAdapter[Edit] = TypeAdapter(Edit)
 
 
 def apply(mission: Mission, edit: Edit) -> Edited:
-    """The mission after the edit. Raises what the function of the edit's kind raises, and
-    EditInvalid for what is no edit or mission."""
+    """Return the mission after the edit.
+
+    Raises what the function of the edit's kind raises, and EditInvalid if an argument is not a
+    mission or not an edit.
+    """
     if not isinstance(mission, Mission):
-        message = f"a {type(mission).__name__} is no mission"
+        message = f"a {type(mission).__name__} is not a mission"
         raise invalid("edit.value", message, "read the mission from its file first")
     if not isinstance(edit, EditCommand):
-        message = f"a {type(edit).__name__} is no edit"
+        message = f"a {type(edit).__name__} is not an edit"
         raise invalid("edit.value", message, "read an edit in JSON with read_edit first")
-    return FUNCTIONS[edit.kind](mission, **edit.given())
+    return FUNCTIONS[edit.kind](mission, **edit.given_fields())
 
 
 def read_edit(text: str | bytes) -> Edit:
-    """The edit that a JSON text holds. Raises EditInvalid."""
+    """Parse an edit from JSON text. Raises EditInvalid."""
     try:
         edit = _EDIT.validate_json(text)
     except ValidationError as error:
-        raise EditInvalid(wrong_values(error)) from None
-    json.loads(text, object_pairs_hook=_require_once, parse_int=str, parse_float=str)
+        raise EditInvalid(invalid_value_diagnostics(error)) from None
+    json.loads(text, object_pairs_hook=_require_unique_names, parse_int=str, parse_float=str)
     return edit
 
 
-def _require_once(pairs: list[tuple[str, object]]) -> None:
+def _require_unique_names(pairs: list[tuple[str, object]]) -> None:
     for name, count in Counter(name for name, _ in pairs).items():
         if count > 1:
             message = f"`{name}` is given {count} times in one object"

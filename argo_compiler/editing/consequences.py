@@ -1,4 +1,4 @@
-"""What an edit has made of a mission, what else had to change for it, and whether it may stay."""
+"""Result of an edit: the mission, its consequences, and the errors that forbid the edit."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
@@ -7,11 +7,11 @@ from argo_compiler.base.model import Model
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.editing.refusals import EditConflict, EditInvalid
+from argo_compiler.editing.errors import EditConflict, EditInvalid
 from argo_compiler.il import Action, Group, Mission, Task, Transition
 from argo_compiler.il.ways import beginning, branches, default_target
 
-_SENSELESS = frozenset(
+_INVALID_IN_THEMSELVES = frozenset(
     [
         "il.battery-level",
         "il.branch-without-target",
@@ -30,87 +30,93 @@ _SENSELESS = frozenset(
         "il.within-bounds",
     ]
 )
-"""errors that lie in what was given alone"""
+"""codes of errors that the given values have in every mission"""
 
 
 class Consequence(Model):
-    """Something that changed with an edit besides what was asked for."""
+    """Change that an edit caused besides the requested one."""
 
     subject: str
-    """what it is about in the mission as it is now, as diagnostics name it; what is gone has the
-    name that it had"""
+    """the changed part of the edited mission, named as in diagnostics; a removed part has its
+    former name"""
     message: str
-    """the same in words"""
+    """the change in words"""
     before: str | None = None
+    """former value; None if there was none"""
     after: str | None = None
-    """None: there is none"""
+    """new value; None if there is none"""
 
 
 class Edited(Model):
-    """A mission after an edit."""
+    """Mission after an edit, with the consequences of the edit."""
 
     mission: Mission
     consequences: tuple[Consequence, ...] = ()
-    """what else had to change, in the mission's order"""
+    """further changes that the edit required, in the mission's order"""
 
 
-def edited(
+def edit_result(
     before: Mission,
     after: Mission,
     *,
-    asked: frozenset[str] = frozenset(),
-    tasks: Mapping[str, str] | None = None,
-    groups: Mapping[str, str] | None = None,
+    requested: frozenset[str] = frozenset(),
+    renamed_tasks: Mapping[str, str] | None = None,
+    renamed_groups: Mapping[str, str] | None = None,
 ) -> Edited:
-    """The result of an edit: `after`, with all that differs from `before` and was not asked for.
+    """Return `after` with all differences from `before` that were not requested.
 
-    `asked` has the subjects that were, without what is inside of them; `tasks` and `groups` the new
-    names of what was renamed. Linear time.
+    `requested` are the subjects whose change was requested, with all their parts; `renamed_tasks`
+    and `renamed_groups` map former names to new names. Takes linear time.
 
-    Raises:
-        EditConflict, EditInvalid: `check` finds errors in the mission that it had not before.
+    Raises EditConflict or EditInvalid if `check` finds errors in `after` that `before` does not
+    have: EditInvalid if all of them are errors in every mission.
     """
     new = new_errors(before, after)
     if new:
-        kind = EditInvalid if all(f.code in _SENSELESS for f in new) else EditConflict
+        kind = EditInvalid if all(f.code in _INVALID_IN_THEMSELVES for f in new) else EditConflict
         raise kind(new)
-    found = (
-        *_of_tasks(before, after, asked, tasks or {}),
-        *_of_groups(before, after, asked, groups or {}),
-        *_of_header(before, after, asked),
+    consequences = (
+        *_task_consequences(before, after, requested, renamed_tasks or {}),
+        *_group_consequences(before, after, requested, renamed_groups or {}),
+        *_header_consequences(before, after, requested),
     )
-    return Edited.model_construct(mission=after, consequences=found)
+    return Edited.model_construct(mission=after, consequences=consequences)
 
 
 # ---- errors
 
 
 def new_errors(before: Mission, after: Mission) -> list[Diagnostic]:
-    """The errors of a kind of which the mission had fewer before the edit."""
+    """Return the errors of `after` whose codes occur there more often than in `before`.
+
+    If some of them have a subject that had no error of this code before, only these are returned.
+    """
     if not before.tasks:
-        # Of a mission without tasks nothing else is looked at.
-        begun = {"tasks": (Task(name="START", action=Action.START),)}
-        before = before.model_copy(update=begun)
-        after = after if after.tasks else after.model_copy(update=begun)
+        # `check` examines nothing else in a mission without tasks.
+        start_only = {"tasks": (Task(name="START", action=Action.START),)}
+        before = before.model_copy(update=start_only)
+        after = after if after.tasks else after.model_copy(update=start_only)
     errors = [f for f in check(after) if f.severity is Severity.ERROR]
     if not errors:
         return []
-    had = [f for f in check(before) if f.severity is Severity.ERROR]
-    counts = Counter(f.code for f in had)
-    if any(f.subject and f.subject.startswith("groups") for f in had):
-        # Whether a group is endless is looked at only where nothing else is wrong with groups.
+    former_errors = [f for f in check(before) if f.severity is Severity.ERROR]
+    counts = Counter(f.code for f in former_errors)
+    if any(f.subject and f.subject.startswith("groups") for f in former_errors):
+        # `check` looks for endless groups only if it finds no other error in groups.
         counts["il.endless-group"] = len(before.groups)
-    subjects = {(f.code, f.subject) for f in had}
-    grown = {code for code, n in Counter(f.code for f in errors).items() if n > counts[code]}
-    new = [f for f in errors if f.code in grown]
+    subjects = {(f.code, f.subject) for f in former_errors}
+    more_frequent = {
+        code for code, n in Counter(f.code for f in errors).items() if n > counts[code]
+    }
+    new = [f for f in errors if f.code in more_frequent]
     return [f for f in new if (f.code, f.subject) not in subjects] or new
 
 
 # ---- tasks
 
 
-def _of_tasks(
-    before: Mission, after: Mission, asked: frozenset[str], renamed: Mapping[str, str]
+def _task_consequences(
+    before: Mission, after: Mission, requested: frozenset[str], renamed: Mapping[str, str]
 ) -> Iterator[Consequence]:
     first = beginning(after)
     former = beginning(before)
@@ -123,21 +129,23 @@ def _of_tasks(
         if id(task) in same or (old := known.get(task.name)) is None:
             continue
         at = subject_of("tasks", task.name)
-        if at in asked:
+        if at in requested:
             continue
         if old.transitions is not task.transitions:
-            yield from _of_ways(at, old, task, first)
-        yield from _of_branches(at, old, task)
+            yield from _transition_consequences(at, old, task, first)
+        yield from _branch_consequences(at, old, task)
         if old.group != task.group:
-            place = f"in group '{task.group}'" if task.group else "outside of all groups"
-            message = f"task '{task.name}' is shown {place} now"
+            where = f"in group '{task.group}'" if task.group else "outside of all groups"
+            message = f"task '{task.name}' is shown {where} now"
             yield _consequence(f"{at}.group", message, old.group or None, task.group or None)
     if first != former and first is not None and renamed.get(former or "", former) != first:
         message = f"the mission begins with '{first}' now" + (f", not '{former}'" if former else "")
         yield _consequence("tasks", message, former, first)
 
 
-def _of_ways(at: str, old: Task, new: Task, first: str | None) -> Iterator[Consequence]:
+def _transition_consequences(
+    at: str, old: Task, new: Task, first: str | None
+) -> Iterator[Consequence]:
     was, is_now = default_target(old), default_target(new)
     if was != is_now:
         if new.action is Action.START and is_now is None and first is not None:
@@ -150,50 +158,62 @@ def _of_ways(at: str, old: Task, new: Task, first: str | None) -> Iterator[Conse
             message = f"task '{new.name}' leads to '{is_now}' now; the mission ended there"
         else:
             message = f"task '{new.name}' leads to '{is_now}' now, not to '{was}'"
-        place = next((k for k, way in enumerate(new.transitions) if not way.conditions), None)
-        where = f"{at}.transitions" if place is None else f"{at}.transitions[{place}].target"
-        yield _consequence(where, message, was, is_now)
-    kept = iter([(k, way) for k, way in enumerate(new.transitions) if way.conditions])
-    k, now = next(kept, (0, None))
-    for way in old.transitions:
-        if not way.conditions:
+        position = next(
+            (k for k, transition in enumerate(new.transitions) if not transition.conditions), None
+        )
+        subject = (
+            f"{at}.transitions" if position is None else f"{at}.transitions[{position}].target"
+        )
+        yield _consequence(subject, message, was, is_now)
+    conditional = iter(
+        [(k, transition) for k, transition in enumerate(new.transitions) if transition.conditions]
+    )
+    k, now = next(conditional, (0, None))
+    for transition in old.transitions:
+        if not transition.conditions:
             continue
-        if now is None or now.conditions != way.conditions:
+        if now is None or now.conditions != transition.conditions:
             message = (
-                f"a transition of task '{new.name}' with conditions, to '{way.target}', is gone"
+                f"a conditional transition of task '{new.name}', to '{transition.target}', was "
+                "removed"
             )
-            yield _consequence(f"{at}.transitions", message, way.target, None)
+            yield _consequence(f"{at}.transitions", message, transition.target, None)
             continue
-        if now.target != way.target:
-            message = f"{_which(new, way)} leads to '{now.target}' now, not to '{way.target}'"
-            yield _consequence(f"{at}.transitions[{k}].target", message, way.target, now.target)
-        k, now = next(kept, (0, None))
+        if now.target != transition.target:
+            message = (
+                f"{_conditional_transition(new, transition)} leads to '{now.target}' now, not to "
+                f"'{transition.target}'"
+            )
+            yield _consequence(
+                f"{at}.transitions[{k}].target", message, transition.target, now.target
+            )
+        k, now = next(conditional, (0, None))
 
 
-def _of_branches(at: str, old: Task, new: Task) -> Iterator[Consequence]:
+def _branch_consequences(at: str, old: Task, new: Task) -> Iterator[Consequence]:
     if (old.failure_target, old.window) == (new.failure_target, new.window):
         return
     former, now = branches(old), branches(new)
-    for field, words in _BRANCHES.items():
+    for field, occasion in _BRANCHES.items():
         was, is_now = former.get(field), now.get(field)
         if was != is_now:
-            message = f"when task '{new.name}' has {words}, '{is_now}' follows now, not '{was}'"
+            message = f"when task '{new.name}' has {occasion}, '{is_now}' follows now, not '{was}'"
             yield _consequence(f"{at}.{field}", message, was, is_now)
 
 
 _BRANCHES = {"failure_target": "failed", "window.missed_target": "missed its window"}
 
 
-def _which(task: Task, way: Transition) -> str:
-    about = " and ".join(f"checkpoint {c.object_id}" for c in way.conditions)
+def _conditional_transition(task: Task, transition: Transition) -> str:
+    about = " and ".join(f"checkpoint {c.object_id}" for c in transition.conditions)
     return f"the transition of task '{task.name}' on {about}"
 
 
 # ---- groups and header
 
 
-def _of_groups(
-    before: Mission, after: Mission, asked: frozenset[str], renamed: Mapping[str, str]
+def _group_consequences(
+    before: Mission, after: Mission, requested: frozenset[str], renamed: Mapping[str, str]
 ) -> Iterator[Consequence]:
     if before.groups is after.groups or before.groups == after.groups:
         return
@@ -203,20 +223,20 @@ def _of_groups(
         name = renamed.get(old.name, old.name)
         at = subject_of("groups", name)
         new = now.get(name)
-        inherited = name != old.name and name in former  # from a group around it, which is gone
-        if at in asked and not inherited:
+        inherited = name != old.name and name in former  # the name of a dissolved group around it
+        if at in requested and not inherited:
             continue
         if new is None:
-            message = f"group '{old.name}' is gone, as it has no tasks any more"
+            message = f"group '{old.name}' was removed because it has no tasks any more"
             yield _consequence(at, message, old.name, None)
             continue
         if name != old.name:
             message = f"group '{old.name}' is called '{name}' now"
             yield _consequence(f"{at}.name", message, old.name, name)
-        yield from _of_ends(at, old, new)
+        yield from _border_consequences(at, old, new)
 
 
-def _of_ends(at: str, old: Group, new: Group) -> Iterator[Consequence]:
+def _border_consequences(at: str, old: Group, new: Group) -> Iterator[Consequence]:
     if old.start != new.start:
         message = f"group '{new.name}' begins with task '{new.start}' now, not '{old.start}'"
         yield _consequence(f"{at}.start", message, old.start, new.start)
@@ -225,15 +245,17 @@ def _of_ends(at: str, old: Group, new: Group) -> Iterator[Consequence]:
         yield _consequence(f"{at}.end", message, old.end, new.end)
 
 
-def _of_header(before: Mission, after: Mission, asked: frozenset[str]) -> Iterator[Consequence]:
-    if before.current != after.current and "current" not in asked:
-        what = f"task '{after.current}' is" if after.current is not None else "no task is"
-        yield _consequence("current", f"{what} the current one now", before.current, after.current)
-    if len(after.before) < len(before.before) and "before" not in asked:
-        gone = {task.name for task in before.tasks} - {task.name for task in after.tasks}
+def _header_consequences(
+    before: Mission, after: Mission, requested: frozenset[str]
+) -> Iterator[Consequence]:
+    if before.current != after.current and "current" not in requested:
+        which = f"task '{after.current}' is" if after.current is not None else "no task is"
+        yield _consequence("current", f"{which} the current one now", before.current, after.current)
+    if len(after.before) < len(before.before) and "before" not in requested:
+        removed = {task.name for task in before.tasks} - {task.name for task in after.tasks}
         for first, second in before.before:
-            if not gone.isdisjoint((first, second)):
-                message = f"that '{first}' comes before '{second}' is not asked for any more"
+            if not removed.isdisjoint((first, second)):
+                message = f"the rule that '{first}' comes before '{second}' was removed"
                 yield _consequence("before", message, f"'{first}' before '{second}'", None)
 
 

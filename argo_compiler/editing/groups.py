@@ -1,7 +1,7 @@
-"""Edits of a mission's groups: tasks wrapped into one, a group dissolved or changed.
+"""Edits of a mission's groups: wrap tasks into a group, dissolve, rename or change a group.
 
-The full name of a group is that of the group around it, a `/`, and its own; an edit that changes
-what lies in what changes the names with it.
+The full name of a group is the name of the group around it, a `/`, and its own name; an edit that
+changes the nesting also changes the names.
 """
 
 from collections.abc import Iterable, Mapping
@@ -10,10 +10,9 @@ from typing import TypedDict, Unpack
 from pydantic import ValidationError
 
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.editing.consequences import Edited, edited
+from argo_compiler.editing.consequences import Edited, edit_result
 from argo_compiler.editing.draft import DraftGroup, DraftTask, MissionDraft
-from argo_compiler.editing.header import require_fields, wrong_values
-from argo_compiler.editing.refusals import (
+from argo_compiler.editing.errors import (
     EditInvalid,
     conflict,
     invalid,
@@ -21,13 +20,14 @@ from argo_compiler.editing.refusals import (
     require_kind,
     require_name,
 )
+from argo_compiler.editing.header import invalid_value_diagnostics, require_known_fields
 from argo_compiler.il import Action, Condition, Group, Mission, Stop
 from argo_compiler.il.grouping import parent_name
 from argo_compiler.il.ways import default_target
 
 
 class GroupFields(TypedDict, total=False):
-    """What may be changed of a group; see `Group`."""
+    """Fields of a group that an edit can change; see `Group`."""
 
     start: str
     end: str
@@ -40,26 +40,27 @@ class GroupFields(TypedDict, total=False):
 
 
 def wrap_tasks(mission: Mission, group: Group) -> Edited:
-    """The mission with one more group, over the tasks from its start to its end.
+    """Add a group around the tasks from its start to its end.
 
-    Groups that lie in it are renamed to say so, and if it lies in another one, so is the new one.
-    Of a group over the same tasks it becomes the outer one, unless its name says otherwise.
+    Groups inside it get its name as a prefix; if it is inside another group, it gets that group's
+    name as a prefix. If a group has the same tasks, the new group becomes the outer one, unless its
+    name starts with that group's name.
 
     Raises:
-        EditNotFound: its start or end is no task.
+        EditNotFound: its start or end is not a task.
         EditConflict: it would overlap another group, its name is taken, START is among its tasks,
             or it would never end.
-        EditInvalid: its end stands before its start, or its name is no name.
+        EditInvalid: its end comes before its start, or its name can't be a group's name.
     """
     require_kind(group, Group, "the group")
     draft = MissionDraft(mission)
-    new = _drafted(draft, group)
-    spans = _Spans(draft)
+    new = _draft_group(draft, group)
+    ranges = _TaskRanges(draft)
     inner: list[str] = []
     parent: str | None = None
     for g in draft.groups:
         name = g.group.name
-        relation = spans.relation(g, new)
+        relation = ranges.relation(g, new)
         if relation == "same":
             relation = "around" if group.name.startswith(f"{name}/") else "inside"
         if relation == "inside":
@@ -75,31 +76,32 @@ def wrap_tasks(mission: Mission, group: Group) -> Edited:
     _require_free(mission, renamed.values(), without=renamed)
     draft.groups.append(new)
     new.group = new.group.model_copy(update={"name": full})
-    return _renamed(draft, renamed, asked=full)
+    return _with_renamed_groups(draft, renamed, requested=full)
 
 
 def dissolve_group(mission: Mission, name: str) -> Edited:
-    """The mission without a group: its tasks stay, and the groups in it lie where it lay.
+    """Remove a group; its tasks stay, and the groups in it move one level up.
 
-    Raises EditNotFound, EditConflict if a group in it would get a name that is taken.
+    Raises EditNotFound, or EditConflict if a group in it would get a name that is taken.
     """
     draft = MissionDraft(mission)
-    found = draft.find_group(name)
+    dissolved = draft.find_group(name)
     outer = parent_name(name)
     prefix = "" if outer is None else f"{outer}/"
     inner = [g.group.name for g in draft.groups if g.group.name.startswith(f"{name}/")]
     renamed = {old: prefix + old.removeprefix(f"{name}/") for old in inner}
-    draft.groups.remove(found)
+    draft.groups.remove(dissolved)
     _require_free(mission, renamed.values(), without=(*renamed, name))
-    return _renamed(draft, renamed, asked=name)
+    return _with_renamed_groups(draft, renamed, requested=name)
 
 
 def rename_group(mission: Mission, name: str, own_name: str) -> Edited:
-    """The mission with another name for a group, and for the groups in it.
+    """Rename a group, and with it the groups inside it.
 
-    `own_name` is without that of the group around it, or with it.
+    `own_name` may have the name of the group around it as a prefix, or not.
 
-    Raises EditNotFound, EditConflict if the name is taken, EditInvalid if it is no name.
+    Raises EditNotFound, EditConflict if the name is taken, EditInvalid if it can't be a group's
+    name.
     """
     draft = MissionDraft(mission)
     draft.find_group(name)
@@ -111,60 +113,60 @@ def rename_group(mission: Mission, name: str, own_name: str) -> Edited:
     _require_own_name(own)
     full = prefix + own
     if full == name:
-        return edited(mission, mission)
+        return edit_result(mission, mission)
     renamed = {
         old: full + old.removeprefix(name)
         for g in draft.groups
         if (old := g.group.name) == name or old.startswith(f"{name}/")
     }
     _require_free(mission, renamed.values(), without=renamed)
-    return _renamed(draft, renamed, asked=full)
+    return _with_renamed_groups(draft, renamed, requested=full)
 
 
 def change_group(mission: Mission, name: str, **fields: Unpack[GroupFields]) -> Edited:
-    """The mission with other values of a group's fields that are given.
+    """Set fields of a group; fields that are not given stay unchanged.
 
-    What lies in what stays: its borders can't cross those of another group.
+    The nesting stays: the group's borders can't cross those of another group.
 
     Raises:
-        EditNotFound: there is no such group, or its new start or end is no task.
+        EditNotFound: there is no such group, or its new start or end is not a task.
         EditConflict: it would overlap another group, START would be among its tasks, it would never
-            end, or its rounds would, with the task that ends it now and leads out of it.
-        EditInvalid: a value that the field can't have.
+            end, or a round would end too early, because its former last task leads out of it.
+        EditInvalid: a value is invalid, or an edit can't change this field.
     """
     draft = MissionDraft(mission)
-    found = draft.find_group(name)
-    require_fields(fields, GroupFields.__annotations__, "a group")
+    changed = draft.find_group(name)
+    require_known_fields(fields, GroupFields.__annotations__, "a group")
     try:
         values = Group.model_validate({"name": name, "start": "", "end": "", **fields})
     except ValidationError as error:
-        raise EditInvalid(wrong_values(error)) from None
-    group = found.group.model_copy(update={field: getattr(values, field) for field in fields})
-    found.group = group
+        raise EditInvalid(invalid_value_diagnostics(error)) from None
+    group = changed.group.model_copy(update={field: getattr(values, field) for field in fields})
+    changed.group = group
     if "start" in fields or "end" in fields:
-        new = _drafted(draft, group)
-        former, found.first, found.last = found.last, new.first, new.last
-        spans = _Spans(draft)
-        if former is not None:
-            spans.require_way_on(former, found)
+        new = _draft_group(draft, group)
+        former_end, changed.first, changed.last = changed.last, new.first, new.last
+        ranges = _TaskRanges(draft)
+        if former_end is not None:
+            ranges.require_end_is_reached(former_end, changed)
         for g in draft.groups:
-            if g is not found:
-                _require_relation(g, found, spans.relation(g, found))
-    return edited(mission, draft.mission(), asked=frozenset([subject_of("groups", name)]))
+            if g is not changed:
+                _require_nesting_stays(g, changed, ranges.relation(g, changed))
+    return edit_result(mission, draft.mission(), requested=frozenset([subject_of("groups", name)]))
 
 
 # ---- ranges
 
 
-class _Spans:
-    """Where the groups of a draft lie in its list of tasks."""
+class _TaskRanges:
+    """Ranges of a draft's groups in its list of tasks."""
 
     def __init__(self, draft: MissionDraft) -> None:
         self.names = [entry.task.name for entry in draft.tasks]
         self.position = draft.positions()
 
     def relation(self, g: DraftGroup, new: DraftGroup) -> str:
-        """Where `g` lies: inside of `new`, around it, apart from it, or over the same tasks.
+        """Return how `g` lies to `new`: "inside", "around", "apart" or "same" (the same tasks).
 
         Raises EditConflict if they overlap in part.
         """
@@ -180,23 +182,23 @@ class _Spans:
             return "around"
         raise _overlap(g.group, new.group)
 
-    def require_way_on(self, former: DraftTask, changed: DraftGroup) -> None:
-        """That the task that ended a group does not lead out of it before its new end."""
+    def require_end_is_reached(self, former_end: DraftTask, changed: DraftGroup) -> None:
+        """Raise EditConflict if the former last task leads out of the group before its new end."""
         first, last = self._range(changed)
-        at = self.position[id(former)]
+        at = self.position[id(former_end)]
         if not first <= at < last:
             return
-        target = default_target(former.task)
+        target = default_target(former_end.task)
         if target in self.names[at + 1 : last + 1]:
             return
-        name, end = former.task.name, changed.group.end
+        name, end = former_end.task.name, changed.group.end
         leads = "ends the mission" if target is None else f"leads to '{target}'"
         following = self.names[at + 1]
         raise conflict(
             "edit.ends-round",
             f"group '{changed.group.name}' ends with '{name}', which {leads}: a round would never "
-            f"get to '{end}'",
-            f"lead '{name}' to '{following}' first, and '{end}' to where the group is to lead",
+            f"reach '{end}'",
+            f"lead '{name}' to '{following}' first, and '{end}' to the task after the group",
             subject_of("tasks", name),
         )
 
@@ -211,13 +213,13 @@ def _overlap(other: Group, group: Group) -> Exception:
         "edit.group-overlap",
         f"the tasks from '{group.start}' to '{group.end}' and those of group '{other.name}', from "
         f"'{other.start}' to '{other.end}', overlap",
-        f"let one lie in the other, or dissolve group '{other.name}' first",
+        f"nest one in the other, or dissolve group '{other.name}' first",
         subject_of("groups", other.name),
     )
 
 
-def _require_relation(g: DraftGroup, changed: DraftGroup, relation: str) -> None:
-    """That another group lies where its name says."""
+def _require_nesting_stays(g: DraftGroup, changed: DraftGroup, relation: str) -> None:
+    """Raise EditConflict if the relation of the two groups contradicts their names."""
     name, own = g.group.name, changed.group.name
     wanted: tuple[str, ...]
     if name.startswith(f"{own}/"):
@@ -230,21 +232,21 @@ def _require_relation(g: DraftGroup, changed: DraftGroup, relation: str) -> None
         raise _overlap(g.group, changed.group)
 
 
-def _drafted(draft: MissionDraft, group: Group) -> DraftGroup:
+def _draft_group(draft: MissionDraft, group: Group) -> DraftGroup:
     first, last = draft.find(group.start), draft.find(group.end)
     entry: DraftTask | None = first
     while entry is not None:
         if entry.task.action is Action.START:
             raise conflict(
                 "edit.start-in-group",
-                f"the START task '{entry.task.name}' would lie in group '{group.name}'",
-                "move START before the group: it is not repeated",
+                f"the START task '{entry.task.name}' would be in group '{group.name}'",
+                "move START before the group: START can't be repeated",
                 subject_of("tasks", entry.task.name),
             )
         if entry is last:
             return DraftGroup(group, first, last)
         entry = entry.after
-    message = f"task '{group.end}' stands before task '{group.start}'"
+    message = f"task '{group.end}' comes before task '{group.start}'"
     raise invalid("edit.group-order", message, "swap the group's start and end, or move a task")
 
 
@@ -256,27 +258,27 @@ def _require_own_name(own: str) -> None:
         raise invalid(
             "edit.group-name",
             f"'{own}' can't be a group's own name",
-            "give it a name without `/`: that of the group around it is put before it",
+            "give it a name without `/`: the name of the group around it is added as a prefix",
         )
 
 
 def _require_free(mission: Mission, names: Iterable[str], without: Iterable[str]) -> None:
-    kept = {g.name for g in mission.groups}.difference(without)
+    taken = {g.name for g in mission.groups}.difference(without)
     for name in names:
-        if name in kept:
+        if name in taken:
             raise name_taken("group", name, subject_of("groups", name))
 
 
-def _renamed(draft: MissionDraft, renamed: Mapping[str, str], asked: str) -> Edited:
-    """The result, with the groups' new names wherever groups are named."""
+def _with_renamed_groups(draft: MissionDraft, renamed: Mapping[str, str], requested: str) -> Edited:
+    """Return the result of an edit with the groups' new names wherever groups are named."""
     for g in draft.groups:
         name = renamed.get(g.group.name)
         if name is not None:
             g.group = g.group.model_copy(update={"name": name})
     for entry in draft.tasks:
-        shown = renamed.get(entry.task.group)
-        if shown is not None:
-            entry.task = entry.task.model_copy(update={"group": shown})
-    made = draft.mission()
-    subjects = frozenset([subject_of("groups", asked)])
-    return edited(draft.before, made, asked=subjects, groups=renamed)
+        new_name = renamed.get(entry.task.group)
+        if new_name is not None:
+            entry.task = entry.task.model_copy(update={"group": new_name})
+    after = draft.mission()
+    subjects = frozenset([subject_of("groups", requested)])
+    return edit_result(draft.original, after, requested=subjects, renamed_groups=renamed)

@@ -1,4 +1,4 @@
-"""Edits of a mission's header."""
+"""Edit of a mission's header."""
 
 from collections.abc import Collection, Iterable
 from typing import TypedDict, Unpack
@@ -7,13 +7,13 @@ from pydantic import ValidationError
 
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Diagnostic, diagnostic_of
-from argo_compiler.editing.consequences import Edited, edited
-from argo_compiler.editing.refusals import EditInvalid, unknown
+from argo_compiler.editing.consequences import Edited, edit_result
+from argo_compiler.editing.errors import EditInvalid, unknown
 from argo_compiler.il import Mission, Mode, Order
 
 
 class HeaderFields(TypedDict, total=False):
-    """The fields of a mission's header; see `Mission`."""
+    """Fields of a mission's header; see `Mission`."""
 
     designation: str
     site: str
@@ -32,49 +32,51 @@ class HeaderFields(TypedDict, total=False):
 
 
 def set_header(mission: Mission, **fields: Unpack[HeaderFields]) -> Edited:
-    """The mission with other values of the fields that are given.
+    """Set fields of the header; fields that are not given stay unchanged.
 
     Raises:
-        EditNotFound: `current` is no task.
-        EditInvalid: a value that the field can't have, or a field that the header does not have.
-        EditConflict: the mission needs what is taken away, as a dock to return to.
+        EditNotFound: `current` is not the name of a task.
+        EditInvalid: a value is invalid, or the header has no such field.
+        EditConflict: the mission needs the removed value, such as a dock to return to.
     """
-    require_fields(fields, HeaderFields.__annotations__, "the header")
+    require_known_fields(fields, HeaderFields.__annotations__, "the header")
     try:
         checked = Mission.model_validate(dict(fields))
     except ValidationError as error:
-        raise EditInvalid(wrong_values(error)) from None
+        raise EditInvalid(invalid_value_diagnostics(error)) from None
     values = {name: getattr(checked, name) for name in fields}
     current = values.get("current")
     if current is not None and mission.task(current) is None:
         raise unknown("task", current, [task.name for task in mission.tasks])
-    return edited(mission, mission.model_copy(update=values), asked=frozenset(fields))
+    return edit_result(mission, mission.model_copy(update=values), requested=frozenset(fields))
 
 
-def require_fields(given: Iterable[str], known: Collection[str], of: str) -> None:
-    """Raises EditInvalid for fields that are not among those that an edit can change."""
-    wrong = [name for name in given if name not in known]
-    if wrong:
+def require_known_fields(given: Iterable[str], known: Collection[str], owner: str) -> None:
+    """Raise EditInvalid if a given field is not one of the fields that an edit can change."""
+    unknown_names = [name for name in given if name not in known]
+    if unknown_names:
         hint = f"the fields that can be changed: {', '.join(known)}"
         raise EditInvalid(
-            diagnostic_of("edit.value", f"`{name}` is no field of {of} that can be changed", hint)
-            for name in wrong
+            diagnostic_of(
+                "edit.value", f"`{name}` is no field of {owner} that can be changed", hint
+            )
+            for name in unknown_names
         )
 
 
-def wrong_values(error: ValidationError) -> list[Diagnostic]:
-    """What is said of values that a field can't have."""
+def invalid_value_diagnostics(error: ValidationError) -> list[Diagnostic]:
+    """Return the diagnostics of values that the model rejected."""
     return [
         diagnostic_of(
             "edit.value",
-            _said(fault["loc"], fault["msg"]),
+            _fault_message(fault["loc"], fault["msg"]),
             "give it a value that the mission format allows",
         )
         for fault in error.errors(include_url=False, include_input=False)
     ]
 
 
-def _said(place: tuple[int | str, ...], message: str) -> str:
-    if not place:
+def _fault_message(location: tuple[int | str, ...], message: str) -> str:
+    if not location:
         return f"the edit can't be read: {message}"
-    return f"`{'.'.join(map(str, place))}`: {message[:1].lower()}{message[1:]}"
+    return f"`{'.'.join(map(str, location))}`: {message[:1].lower()}{message[1:]}"

@@ -1,32 +1,33 @@
-"""Taking a task out of a mission so that every run of it is otherwise the same.
+"""Removal of a task from a mission so that every run is otherwise the same.
 
-What led to the task leads to where the task's unconditional transition led. Where a mission can't
-say that, the removal is refused: a transition with conditions can't end a mission, and none can end
-a round.
+What led to the task leads to the target of the task's unconditional transition. If a mission can't
+express that, the removal is refused: a conditional transition can't end a mission, and no
+conditional transition or branch can end a round.
 """
 
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.editing.consequences import Consequence, Edited, edited
+from argo_compiler.editing.consequences import Consequence, Edited, edit_result
 from argo_compiler.editing.draft import DraftGroup, DraftTask, MissionDraft
-from argo_compiler.editing.refusals import EditConflict, conflict
-from argo_compiler.editing.ways import defaults, retargeted
+from argo_compiler.editing.errors import EditConflict, conflict
+from argo_compiler.editing.targets import default_targets, retargeted
 from argo_compiler.il import Action, Mission, Task
 from argo_compiler.il.ways import beginning, branches, default_target
 
 _NAMES = 3
-"""names that a message lists"""
+"""largest number of names that a message lists"""
 
 
 def remove_task(mission: Mission, name: str) -> Edited:
-    """The mission without a task: what led to it leads to its successor.
+    """Remove a task and lead what led to it to its successor.
 
-    The successor is where its unconditional transition led; its other ways go with it. The
-    groups that it began or ended begin or end with its neighbour; a group of this task alone goes.
+    The successor is the target of its unconditional transition; its other transitions are removed
+    with it. A group that started or ended with it now starts or ends with its neighbour; a group of
+    this task alone is removed.
 
     Raises:
         EditNotFound: there is no such task.
         EditConflict: without it a run of the mission would differ by more than the task, and the
-            diagnostic says at which other task; or it is the only one.
+            diagnostic names the other task concerned; or it is the only task.
     """
     draft = MissionDraft(mission)
     entry = draft.find(name)
@@ -39,44 +40,44 @@ def remove_task(mission: Mission, name: str) -> Edited:
         )
     successor = None
     if entry.task.action is not Action.START:
-        successor = _Removal(draft, entry).lead_on()
+        successor = _Removal(draft, entry).redirect()
         if draft.current == name:
             draft.current = successor
     elif draft.current == name:
         draft.current = None
-    draft.take_out(entry)
-    made = draft.mission()
-    _require_beginning(name, successor, mission, made)
-    result = edited(mission, made)
+    draft.remove(entry)
+    after = draft.mission()
+    _require_beginning(name, successor, mission, after)
+    result = edit_result(mission, after)
     if default_target(entry.task) != name or entry.task.action is Action.START:
         return result
-    told = Consequence(
+    consequence = Consequence(
         subject="tasks",
-        message=f"a run that came to '{name}' stayed there, as it led to itself; it "
-        + ("ends now" if successor is None else f"goes on with '{successor}' now"),
+        message=f"a run that reached '{name}' stayed there, because it led to itself; it "
+        + ("ends now" if successor is None else f"continues with '{successor}' now"),
         before=name,
         after=successor,
     )
-    return Edited(mission=made, consequences=(*result.consequences, told))
+    return Edited(mission=after, consequences=(*result.consequences, consequence))
 
 
 def _require_beginning(name: str, successor: str | None, before: Mission, after: Mission) -> None:
     first = beginning(before)
-    wanted = successor if first == name else first
-    found = beginning(after)
-    if found != wanted:
-        ends = f"with '{wanted}'" if wanted is not None else "and end at once"
+    required = successor if first == name else first
+    actual = beginning(after)
+    if actual != required:
+        how = f"with '{required}'" if required is not None else "and end at once"
         raise conflict(
             "edit.beginning",
-            f"without '{name}' the mission would begin with '{found}', and it would have to begin "
-            + ends,
-            "lead a START task to where it is to begin, or move that task to the front",
+            f"without '{name}' the mission would begin with '{actual}', but it would have to begin "
+            + how,
+            "lead a START task to the task that it must begin with, or move that task to the front",
             subject_of("tasks", name),
         )
 
 
 class _Removal:
-    """A task that is to be taken out, and what stands around it."""
+    """Removal of one task: its successor and the tasks that lead to it. Changes the draft."""
 
     def __init__(self, draft: MissionDraft, entry: DraftTask) -> None:
         self.draft = draft
@@ -85,59 +86,71 @@ class _Removal:
         self.position = draft.positions()
         self.successor = self._successor()
         self.leading = [
-            other for other in draft.tasks if other is not entry and self._leads_here(other.task)
+            other for other in draft.tasks if other is not entry and self._leads_to_it(other.task)
         ]
 
-    def lead_on(self) -> str | None:
-        """Leads all that leads to the task to its successor, and returns that."""
+    def redirect(self) -> str | None:
+        """Redirect all that leads to the task to its successor, and return the successor's name.
+
+        Returns None if the mission ends after the task. Raises EditConflict.
+        """
         self._require_round_ends()
         self._require_round_starts()
         self._require_same_groups()
         for other in self.leading:
-            if self.name in defaults(other.task):
-                other.goes_on = other.goes_on and self.entry.goes_on
+            if self.name in default_targets(other.task):
+                other.leads_to_next = other.leads_to_next and self.entry.leads_to_next
             if self.successor is not None:
                 other.task = retargeted(other.task, {self.name: self.successor})
             else:
-                self._end_after(other)
+                self._end_mission_after(other)
         return self.successor
 
-    def _leads_here(self, task: Task) -> bool:
-        return any(way.target == self.name for way in task.transitions) or self._branches_here(task)
+    def _leads_to_it(self, task: Task) -> bool:
+        return any(
+            transition.target == self.name for transition in task.transitions
+        ) or self._branches_to_it(task)
 
-    def _branches_here(self, task: Task) -> bool:
+    def _branches_to_it(self, task: Task) -> bool:
         return self.name in branches(task).values()
 
     def _successor(self) -> str | None:
         target = default_target(self.entry.task)
         if target != self.name:
             return target
-        # It led to itself: a run never went on from there.
+        # It led to itself, so a run never left it: take the next task of the list.
         following = self.entry.after
         while following is not None and following.task.action is Action.START:
             following = following.after
         return None if following is None else following.task.name
 
-    def _end_after(self, other: DraftTask) -> None:
-        """Lets the mission end where a task led to the one that goes."""
+    def _end_mission_after(self, other: DraftTask) -> None:
+        """Let the mission end after a task that led to the removed one. Raises EditConflict."""
         task = other.task
-        conditional = [way for way in task.transitions if way.conditions]
+        conditional = [transition for transition in task.transitions if transition.conditions]
         while conditional and conditional[-1].target == self.name:
             conditional.pop()
-        # Where nothing else can be done, the mission ends, but for another round of a group.
-        ends = all(target == self.name for target in defaults(task))
+        # Conditional transitions to the removed task can be dropped if they come last and the
+        # mission ends anyway after `task`: it has no other target and is not the last of a group.
+        ends = all(target == self.name for target in default_targets(task))
         ends = ends and all(g.last is not other for g in self.draft.groups)
-        dropped = [way for way in task.transitions if way.conditions and way.target == self.name]
+        dropped = [
+            transition
+            for transition in task.transitions
+            if transition.conditions and transition.target == self.name
+        ]
         hint = f"lead it to another task before '{self.name}' is removed"
-        if dropped and not (ends and all(way.target != self.name for way in conditional)):
+        if dropped and not (
+            ends and all(transition.target != self.name for transition in conditional)
+        ):
             raise self._conflict(
                 "edit.ends-by-condition",
-                f"a transition of task '{task.name}' with conditions leads to '{self.name}', after "
+                f"a conditional transition of task '{task.name}' leads to '{self.name}', after "
                 "which the mission ends, and no condition can end a mission",
                 hint,
                 task.name,
             )
-        if self._branches_here(task):
+        if self._branches_to_it(task):
             raise self._conflict(
                 "edit.ends-by-condition",
                 f"when task '{task.name}' has failed or missed its window, '{self.name}' follows, "
@@ -145,24 +158,26 @@ class _Removal:
                 hint,
                 task.name,
             )
-        kept = tuple(way for way in task.transitions if way.target != self.name)
-        other.task = task.model_copy(update={"transitions": kept})
+        remaining = tuple(
+            transition for transition in task.transitions if transition.target != self.name
+        )
+        other.task = task.model_copy(update={"transitions": remaining})
 
     # ---- groups
 
     def _require_round_ends(self) -> None:
-        """A round that ends with the task has to end with the one before it."""
+        """Raise EditConflict if a round that ends with the task can't end one task earlier."""
         ended = [g for g in self.draft.groups if g.last is self.entry and g.first is not self.entry]
         before = self.entry.before
         if not ended or before is None:
             return
-        ways = [(o, way) for o in self.leading for way in o.task.transitions]
+        transitions = [(o, transition) for o in self.leading for transition in o.task.transitions]
         wrong = {
             o.task.name: None
-            for o, way in ways
-            if way.target == self.name and (o is not before or way.conditions)
+            for o, transition in transitions
+            if transition.target == self.name and (o is not before or transition.conditions)
         }
-        wrong |= {o.task.name: None for o in self.leading if self._branches_here(o.task)}
+        wrong |= {o.task.name: None for o in self.leading if self._branches_to_it(o.task)}
         if default_target(before.task) != self.name:
             wrong[before.task.name] = None
         if default_target(self.entry.task) == self.name:
@@ -180,7 +195,7 @@ class _Removal:
             )
 
     def _require_round_starts(self) -> None:
-        """A round that starts with the task has to start with its successor."""
+        """Raise EditConflict if a round that starts with the task can't start one task later."""
         after = self.entry.after
         for g in self.draft.groups:
             if g.first is not self.entry or g.last is self.entry or after is None:
@@ -195,7 +210,7 @@ class _Removal:
                 )
 
     def _require_same_groups(self) -> None:
-        """What left a group and entered it anew by the task has to do so without it."""
+        """Raise EditConflict if a task leaves a group and enters it again through this task."""
         target = None if self.successor is None else self.draft.find(self.successor)
         if target is None:
             return
@@ -203,21 +218,21 @@ class _Removal:
             if not self._contains(g, target) or self._contains(g, self.entry):
                 continue
             for other in self.leading:
-                if self._contains(g, other) and self._jumps(other, g):
+                if self._contains(g, other) and self._is_jump_in_round(other, g):
                     raise self._conflict(
                         "edit.leaves-group",
-                        f"by way of '{self.name}', task '{other.task.name}' leaves group "
-                        f"'{g.group.name}' and enters it anew; without it that would be a jump "
-                        "inside the round",
+                        f"task '{other.task.name}' leaves group '{g.group.name}' and enters it "
+                        f"again through '{self.name}'; without '{self.name}' it would jump inside "
+                        "the round",
                         f"lead '{other.task.name}' elsewhere first",
                         other.task.name,
                     )
 
-    def _jumps(self, other: DraftTask, g: DraftGroup) -> bool:
-        """Whether a transition to the task can be taken without ending a round of the group."""
-        return self._branches_here(other.task) or any(
-            way.target == self.name and (way.conditions or g.last is not other)
-            for way in other.task.transitions
+    def _is_jump_in_round(self, other: DraftTask, g: DraftGroup) -> bool:
+        """Return True if a transition to the task can be taken without ending the group's round."""
+        return self._branches_to_it(other.task) or any(
+            transition.target == self.name and (transition.conditions or g.last is not other)
+            for transition in other.task.transitions
         )
 
     def _contains(self, g: DraftGroup, entry: DraftTask) -> bool:

@@ -1,5 +1,4 @@
-"""Edits of a mission's tasks: added, changed, replaced, moved, renamed. `removal` takes them
-out."""
+"""Edits of a mission's tasks: add, replace, change, move and rename; `removal` removes them."""
 
 from collections.abc import Collection
 from typing import TypedDict, Unpack
@@ -8,24 +7,24 @@ from pydantic import ValidationError
 
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.editing.consequences import Edited, edited
+from argo_compiler.editing.consequences import Edited, edit_result
 from argo_compiler.editing.draft import DraftTask, MissionDraft
-from argo_compiler.editing.header import require_fields, wrong_values
-from argo_compiler.editing.refusals import (
+from argo_compiler.editing.errors import (
     EditInvalid,
     invalid,
     name_taken,
-    only_one,
     require_kind,
     require_name,
+    require_unique,
     unknown,
 )
+from argo_compiler.editing.header import invalid_value_diagnostics, require_known_fields
 from argo_compiler.il import Action, JointState, Mission, OnFailure, Task, TimeWindow, WaitRule
 from argo_compiler.il.ways import branches
 
 
 class TaskFields(TypedDict, total=False):
-    """What may be changed of a task; see `Task`."""
+    """Fields of a task that an edit can change; see `Task`."""
 
     object_id: str | None
     pose: Pose | None
@@ -51,34 +50,37 @@ def add_task(
     first: bool = False,
     into: str | None = None,
 ) -> Edited:
-    """The mission with one more task: before or after another one, `first` of all but START, or
-    last.
+    """Add a task: before or after another one, `first` of all but START, or last.
 
-    A task without transitions goes on with what follows it; one with transitions keeps them as they
-    are. What went on with the following task goes on with the new one. At a group's border the task
-    stands outside of the group, with `into` it stands in that one. Without a `group` of its own it
-    is shown in the group around it.
+    A task without transitions leads to the next task of the list; one with transitions keeps them.
+    A task that led to the next task of the list now leads to the new one. At a group's border the
+    task is outside of the group; with `into` it is in that group. Without a `group` of its own it
+    is displayed in the group around it.
 
     Raises:
-        EditConflict: there is a task of this name, or the group does not reach to the place.
-        EditNotFound: there is no such task or group to put it beside or into, or to lead to.
-        EditInvalid: more than one place, or a task that makes no sense.
+        EditConflict: a task of this name exists, or the group does not extend to this position.
+        EditNotFound: the task that it is placed next to or leads to does not exist, or the group.
+        EditInvalid: more than one position is given, or the task is invalid for every mission.
     """
     require_kind(task, Task, "the task")
     draft = MissionDraft(mission)
     if draft.has_task(task.name):
         raise name_taken("task", task.name, subject_of("tasks", task.name))
     _require_targets(draft.names, task)
-    entry = DraftTask(task, goes_on=not task.transitions, shown=draft.nested and not task.group)
-    draft.put(entry, _place(draft, before, after, first), into)
-    return edited(mission, draft.mission())
+    entry = DraftTask(
+        task,
+        leads_to_next=not task.transitions,
+        shown_in_group=draft.names_match_nesting and not task.group,
+    )
+    draft.insert(entry, _anchor(draft, before, after, first), into)
+    return edit_result(mission, draft.mission())
 
 
 def replace_task(mission: Mission, name: str, task: Task) -> Edited:
-    """The mission with another task in the place of one, under its own name.
+    """Replace a task by another one, which has a name of its own.
 
-    Without transitions it gets those of the task that it replaces, without a `group` the place
-    where that is shown. What named the former task names it.
+    If the new task has no transitions, it gets those of the replaced task; if it has no `group`, it
+    is displayed where the replaced task was. References to the replaced task name the new one.
 
     Raises EditNotFound, EditConflict and EditInvalid as `add_task` does.
     """
@@ -91,41 +93,41 @@ def replace_task(mission: Mission, name: str, task: Task) -> Edited:
         draft.rename(entry, task.name)
     _require_targets(draft.names, task)
     if task.transitions:
-        entry.goes_on = False
+        entry.leads_to_next = False
     else:
         task = task.model_copy(update={"transitions": entry.task.transitions})
     if not task.group:
         task = task.model_copy(update={"group": entry.task.group})
     else:
-        entry.shown = False
+        entry.shown_in_group = False
     entry.task = task
-    asked = frozenset([subject_of("tasks", task.name)])
-    return edited(mission, draft.mission(), asked=asked, tasks=draft.renamed)
+    requested = frozenset([subject_of("tasks", task.name)])
+    return edit_result(mission, draft.mission(), requested=requested, renamed_tasks=draft.new_names)
 
 
 def change_task(mission: Mission, name: str, **fields: Unpack[TaskFields]) -> Edited:
-    """The mission with other values of a task's fields that are given.
+    """Set fields of a task; fields that are not given stay unchanged.
 
     Raises:
-        EditNotFound: there is no such task, or none that is to follow when it has failed.
-        EditInvalid: a value that the field can't have, or a field that can't be changed like this.
-        EditConflict: the mission does not have what is needed, as a dock to return to.
+        EditNotFound: there is no such task, or a new target of its failure or window is missing.
+        EditInvalid: a value is invalid, or this edit can't change the field.
+        EditConflict: the mission lacks what the task needs, such as a dock to return to.
     """
-    # No draft: none of these fields changes where anything stands or leads on.
+    # No draft: none of these fields changes the order of tasks or a transition.
     known = dict.fromkeys(task.name for task in mission.tasks)
-    places = [place for place, task in enumerate(mission.tasks) if task.name == name]
-    at = only_one(name, places, known)
+    positions = [i for i, task in enumerate(mission.tasks) if task.name == name]
+    at = require_unique(name, positions, known)
     task = mission.tasks[at]
-    require_fields(fields, TaskFields.__annotations__, "a task")
+    require_known_fields(fields, TaskFields.__annotations__, "a task")
     try:
         values = Task.model_validate({"name": name, "action": task.action, **fields})
     except ValidationError as error:
-        raise EditInvalid(wrong_values(error)) from None
+        raise EditInvalid(invalid_value_diagnostics(error)) from None
     _require_targets(known, values)
     changed = task.model_copy(update={field: getattr(values, field) for field in fields})
     tasks = (*mission.tasks[:at], changed, *mission.tasks[at + 1 :])
     after = mission.model_copy(update={"tasks": tasks})
-    return edited(mission, after, asked=frozenset([subject_of("tasks", name)]))
+    return edit_result(mission, after, requested=frozenset([subject_of("tasks", name)]))
 
 
 def move_task(
@@ -137,26 +139,26 @@ def move_task(
     first: bool = False,
     into: str | None = None,
 ) -> Edited:
-    """The mission with a task in another place: before or after another one, `first` or last.
+    """Move a task: before or after another one, `first` of all but START, or last.
 
-    What went on in the list's order goes on in the new order; a transition that led elsewhere still
-    leads there. At a group's border the task stands outside of the group, with `into` it stands in
-    that one. The groups that it began or ended begin or end with its neighbour; a group of this
-    task alone goes.
+    A task that led to the next task of the list leads to the next one in the new order; a
+    transition that led elsewhere still leads there. At a group's border the task is outside of the
+    group; with `into` it is in that group. A group that started or ended with it now starts or ends
+    with its neighbour; a group of this task alone is removed.
 
     Raises EditNotFound, EditConflict and EditInvalid as `add_task` does.
     """
     draft = MissionDraft(mission)
     entry = draft.find(name)
     if name in (before, after):
-        message = f"task '{name}' is to stand before or after itself"
+        message = f"task '{name}' can't be moved before or after itself"
         raise invalid("edit.place", message, "name another task")
-    draft.move(entry, _place(draft, before, after, first), into)
-    return edited(mission, draft.mission())
+    draft.move(entry, _anchor(draft, before, after, first), into)
+    return edit_result(mission, draft.mission())
 
 
 def rename_task(mission: Mission, name: str, new_name: str) -> Edited:
-    """The mission with another name for a task, wherever the task is named.
+    """Rename a task wherever it is named.
 
     Raises EditNotFound, EditConflict if the name is taken, EditInvalid if it can't be a name.
     """
@@ -167,15 +169,15 @@ def rename_task(mission: Mission, name: str, new_name: str) -> Edited:
         if draft.has_task(new_name):
             raise name_taken("task", new_name, subject_of("tasks", new_name))
         draft.rename(entry, new_name)
-    return edited(mission, draft.mission(), tasks=draft.renamed)
+    return edit_result(mission, draft.mission(), renamed_tasks=draft.new_names)
 
 
-def _place(
+def _anchor(
     draft: MissionDraft, before: str | None, after: str | None, first: bool
 ) -> DraftTask | None:
-    """The task behind which something is put; None: it is put before all."""
+    """Return the task behind which a task is inserted, or None for the start of the list."""
     if (before is not None) + (after is not None) + first > 1:
-        message = "more than one of `before`, `after` and `first` says where the task is to stand"
+        message = "more than one of `before`, `after` and `first` is given for the task's position"
         raise invalid("edit.place", message, "keep one of them")
     if after is not None:
         return draft.find(after)
@@ -189,6 +191,9 @@ def _place(
 
 
 def _require_targets(known: Collection[str], task: Task) -> None:
-    for target in (*(way.target for way in task.transitions), *branches(task).values()):
+    for target in (
+        *(transition.target for transition in task.transitions),
+        *branches(task).values(),
+    ):
         if target != task.name and target not in known:
             raise unknown("task", target, known)

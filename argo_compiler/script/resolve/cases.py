@@ -123,7 +123,7 @@ class Cases:
     def _other_case(self, case: Case, block: ProgramBlock) -> ProgramBlock:
         """Where a condition of `otherwise, if ...` stands."""
         before = self.context.choice
-        if isinstance(before, Choice) and before.listed and before.otherwise.first is None:
+        if isinstance(before, Choice) and before.is_listed and before.otherwise.first is None:
             return before.otherwise
         do = block.last
         if isinstance(before, Way) and isinstance(do, Do) and before in do.ways:
@@ -170,7 +170,7 @@ class Cases:
     def _otherwise(self, case: Case, block: ProgramBlock) -> None:
         before = self.context.choice
         do = block.last
-        if isinstance(before, Choice) and before.listed and before.block is not None:
+        if isinstance(before, Choice) and before.is_listed and before.block is not None:
             if before.otherwise.first is not None:
                 message = "there are two `otherwise` for one condition"
                 self.diagnostics.refuse("second-route", message, case.span, "leave one out")

@@ -141,7 +141,7 @@ class Context:
     def _of_point(self, point: int | str, span: Span) -> list[ProgramNode]:
         if isinstance(point, str):
             do = self.named.get(point)
-            if do is None or not do.listed:
+            if do is None or not do.is_listed:
                 do = self._by_own_name(point)
             if do is None:
                 message = f"there is no task `{point}`"
@@ -157,7 +157,7 @@ class Context:
             message = f"more than one step has the number {point}"
             hint = "number the steps anew, or name the task"
             self.diagnostics.refuse("ambiguous-step", message, span, hint)
-        return [node for node in nodes if node.listed]
+        return [node for node in nodes if node.is_listed]
 
     def require_reached(self, span: Span, block: ProgramBlock) -> None:
         """Raise RefusedError unless the mission comes to the end of a block, or a step begins."""

@@ -338,7 +338,7 @@ class Planner:
         RefusedError if it is told anything else."""
         context = self.context
         docked = context.docked
-        if docked is None or not docked.listed or block is not context.program:
+        if docked is None or not docked.is_listed or block is not context.program:
             return False
         if docked.ways or isinstance(order, orders.Plain):
             return False

@@ -12,7 +12,7 @@ from enum import StrEnum
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Span
-from argo_compiler.editing.linked import Linked, LinkedList
+from argo_compiler.editing.linked_list import LinkedList, ListItem
 from argo_compiler.il import Action, Condition, JointState, OnFailure, TimeWindow, WaitRule
 from argo_compiler.script.syntax.tree.places import Steps
 
@@ -53,7 +53,7 @@ class Way:
 
 
 @dataclass(eq=False, slots=True)
-class ProgramNode(Linked):
+class ProgramNode(ListItem):
     """A part of a block."""
 
     block: "ProgramBlock | None" = field(default=None, init=False, repr=False)

@@ -205,14 +205,14 @@ class Starting:
             self.diagnostics.refuse("nothing-to-do", "the script has nothing to do", None, hint)
         if self.start_at is None:
             self._start_unsaid()
-        if self.start is not None and not self.start.listed:
+        if self.start is not None and not self.start.is_listed:
             context.put([self.start], context.program, None)
         if self.wanted.as_planned:
             self.start_area = self.wanted.area
         end = self.end
         if end.as_planned:
             self.end_area = end.area
-        elif end.area is not None and (context.docked is None or not context.docked.listed):
+        elif end.area is not None and (context.docked is None or not context.docked.is_listed):
             area = self.lookup.area(end.area, end.span)
             self.end_area = area.number
             context.docked = dock(area.dock, end.span)

@@ -39,7 +39,7 @@ class MissionChange(Model):
     @property
     def subjects(self) -> frozenset[tuple[str, str]]:
         """What it touches: kinds of things, and their names."""
-        found = {("header", name) for name in (self.header.given() if self.header else ())}
+        found = {("header", name) for name in (self.header.given_fields() if self.header else ())}
         for kind in LISTS:
             change: ListChange[Any] | None = getattr(self, kind)
             if change is not None:
@@ -122,7 +122,7 @@ def _longest_rising(numbers: Sequence[int]) -> list[int]:
 
 def applied(mission: Mission, change: MissionChange) -> Mission:
     """The mission that the change leads to. KeyError if it is a change of another mission."""
-    update: dict[str, Any] = dict(change.header.given()) if change.header else {}
+    update: dict[str, Any] = dict(change.header.given_fields()) if change.header else {}
     for kind in LISTS:
         of_list: ListChange[Any] | None = getattr(change, kind)
         if of_list is not None:

@@ -55,7 +55,7 @@ def require_fitting(mission: Mission, change: MissionChange) -> None:
             )
     for what, name in _names(change):
         require_name(name, what)
-    for field, value in (change.header.given() if change.header else {}).items():
+    for field, value in (change.header.given_fields() if change.header else {}).items():
         if isinstance(value, str) and len(value) > LONGEST_TEXT:
             raise PlanTooLarge(
                 f"`{field}` has {len(value)} characters, and may have {LONGEST_TEXT}: shorten it"

@@ -1,4 +1,4 @@
-"""Random edits of a mission: of every kind, most of them possible, some of them nonsense."""
+"""Random edits of a mission: of every kind, most of them possible, some of them invalid."""
 
 import random
 
@@ -23,11 +23,11 @@ from argo_compiler.il import (
     WaitRule,
 )
 
-HERE = Pose(x=1, y=2, z=0)
+POSE = Pose(x=1, y=2, z=0)
 
 
 def random_edit(mission: Mission, rng: random.Random) -> commands.Edit:
-    """An edit of a random kind, of what the mission has or nearly has."""
+    """Return an edit of a random kind; most of the names in it exist in the mission."""
     kind = rng.choice(sorted(_KINDS))
     return _KINDS[kind](mission, rng)
 
@@ -47,13 +47,13 @@ def new_task(mission: Mission, rng: random.Random) -> Task:
         name=name,
         action=action,
         object_id=number if action is Action.MEASURE and rng.random() < 0.97 else None,
-        pose=HERE if action is Action.WAYPOINT else None,
+        pose=POSE if action is Action.WAYPOINT else None,
         group=rng.choice(["", "", "", "shown"]),
         on_failure=rng.choice([*OnFailure, OnFailure.CONTINUE, OnFailure.CONTINUE]),
         failure_target=rng.choice([None, any_task(mission, rng)]),
         wait=wait(rng) if action is Action.WAIT else None,
         window=rng.choice([None, None, window(mission, rng)]),
-        transitions=ways(mission, rng) if rng.random() < 0.2 else (),
+        transitions=random_transitions(mission, rng) if rng.random() < 0.2 else (),
     )
 
 
@@ -80,7 +80,7 @@ def window(mission: Mission, rng: random.Random) -> TimeWindow:
 def changed_task(mission: Mission, rng: random.Random) -> dict[str, object]:
     values = {
         "object_id": rng.choice([None, "1"]),
-        "pose": rng.choice([None, HERE]),
+        "pose": rng.choice([None, POSE]),
         "wait": wait(rng),
         "velocity": rng.choice([None, 0.3, 0.0]),
         "retries": rng.randint(-1, 2),
@@ -108,21 +108,21 @@ def condition(rng: random.Random) -> Condition:
     )
 
 
-def ways(mission: Mission, rng: random.Random) -> tuple[Transition, ...]:
-    return tuple(way(mission, rng) for _ in range(rng.randint(0, 2)))
+def random_transitions(mission: Mission, rng: random.Random) -> tuple[Transition, ...]:
+    return tuple(random_transition(mission, rng) for _ in range(rng.randint(0, 2)))
 
 
-def way(mission: Mission, rng: random.Random) -> Transition:
-    held = tuple(condition(rng) for _ in range(rng.choice([0, 1, 1, 2])))
-    return Transition(target=any_task(mission, rng), conditions=held)
+def random_transition(mission: Mission, rng: random.Random) -> Transition:
+    conditions = tuple(condition(rng) for _ in range(rng.choice([0, 1, 1, 2])))
+    return Transition(target=any_task(mission, rng), conditions=conditions)
 
 
-def place(mission: Mission, rng: random.Random) -> dict[str, object]:
+def random_position(mission: Mission, rng: random.Random) -> dict[str, object]:
     anchor = any_task(mission, rng)
-    found = rng.choice([{"before": anchor}, {"after": anchor}, {"first": True}, {}])
+    position = rng.choice([{"before": anchor}, {"after": anchor}, {"first": True}, {}])
     if mission.groups and rng.random() < 0.3:
-        found = {**found, "into": any_group(mission, rng)}
-    return found
+        position = {**position, "into": any_group(mission, rng)}
+    return position
 
 
 def any_group(mission: Mission, rng: random.Random) -> str:
@@ -160,12 +160,12 @@ def changed_group(mission: Mission, rng: random.Random) -> dict[str, object]:
 
 def reaction(rng: random.Random) -> Reaction:
     event, response = rng.choice(list(EventKind)), rng.choice(list(Response))
-    pose = HERE if response is Response.SAFE_AREA and rng.random() < 0.9 else None
+    pose = POSE if response is Response.SAFE_AREA and rng.random() < 0.9 else None
     returns = response is Response.RETURN and rng.random() < 0.3
     return Reaction(
         event=event,
         response=response,
-        pose=HERE if returns else pose,
+        pose=POSE if returns else pose,
         area=2 if returns else None,
         hold_limit=rng.choice([None, 60.0]),
         priority=rng.choice([None, 3]),
@@ -184,7 +184,7 @@ def header(mission: Mission, rng: random.Random) -> dict[str, object]:
         "max_duration": rng.choice([None, 60.0, -1.0]),
         "start_area": rng.choice([None, 1, 2]),
         "end_area": rng.choice([None, 1, 2]),
-        "dock": rng.choice([None, HERE]),
+        "dock": rng.choice([None, POSE]),
         "order": rng.choice(list(Order)),
         "anomaly_specification": rng.choice(["", "all"]),
         "current": rng.choice([None, any_task(mission, rng)]),
@@ -193,11 +193,11 @@ def header(mission: Mission, rng: random.Random) -> dict[str, object]:
 
 
 _KINDS = {
-    "add_task": lambda m, r: commands.AddTask(task=new_task(m, r), **place(m, r)),
+    "add_task": lambda m, r: commands.AddTask(task=new_task(m, r), **random_position(m, r)),
     "remove_task": lambda m, r: commands.RemoveTask(name=any_task(m, r)),
     "replace_task": lambda m, r: commands.ReplaceTask(name=any_task(m, r), task=new_task(m, r)),
     "change_task": lambda m, r: commands.ChangeTask(name=any_task(m, r), **changed_task(m, r)),
-    "move_task": lambda m, r: commands.MoveTask(name=any_task(m, r), **place(m, r)),
+    "move_task": lambda m, r: commands.MoveTask(name=any_task(m, r), **random_position(m, r)),
     "rename_task": lambda m, r: commands.RenameTask(
         name=any_task(m, r), new_name=r.choice([f"R{r.randint(0, 99)}", any_task(m, r), ""])
     ),
@@ -208,10 +208,10 @@ _KINDS = {
     ),
     "change_group": lambda m, r: commands.ChangeGroup(name=any_group(m, r), **changed_group(m, r)),
     "set_transitions": lambda m, r: commands.SetTransitions(
-        task=any_task(m, r), transitions=ways(m, r)
+        task=any_task(m, r), transitions=random_transitions(m, r)
     ),
     "add_transition": lambda m, r: commands.AddTransition(
-        task=any_task(m, r), transition=way(m, r), at=r.choice([None, 0, 1])
+        task=any_task(m, r), transition=random_transition(m, r), at=r.choice([None, 0, 1])
     ),
     "remove_transition": lambda m, r: commands.RemoveTransition(
         task=any_task(m, r), at=r.randint(0, 1)
@@ -220,7 +220,7 @@ _KINDS = {
         task=any_task(m, r), at=r.randint(0, 1), target=any_task(m, r)
     ),
     "set_conditions": lambda m, r: commands.SetConditions(
-        task=any_task(m, r), at=r.randint(0, 1), conditions=way(m, r).conditions
+        task=any_task(m, r), at=r.randint(0, 1), conditions=random_transition(m, r).conditions
     ),
     "add_condition": lambda m, r: commands.AddCondition(
         task=any_task(m, r), at=r.randint(0, 1), condition=condition(r)

@@ -1,13 +1,15 @@
-"""The rules of docs/language.md that every mission keeps, read anew: shares no code with the
-package, so that an edit is not judged by what made it."""
+"""Independent check of the rules of docs/language.md that every mission keeps.
+
+It shares no code with the package, so the code that makes an edit does not judge it.
+"""
 
 from collections import Counter
 
 from argo_compiler.il import Action, EventKind, Mission, OnFailure, Response
 
 
-def broken(mission: Mission) -> Counter[str]:
-    """Which rules a mission breaks, and how often."""
+def broken_rules(mission: Mission) -> Counter[str]:
+    """Return the rules that a mission breaks, and how often it breaks each."""
     return Counter([*_tasks(mission), *_groups(mission), *_reactions(mission)])
 
 

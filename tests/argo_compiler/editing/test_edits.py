@@ -1,4 +1,4 @@
-"""Single edits: what becomes of a mission, what else changes, and what is refused."""
+"""Single edits give the expected mission and consequences, or are refused for a stated reason."""
 
 import inspect
 from functools import partial
@@ -53,7 +53,7 @@ MISSION = Mission(
 )
 
 
-def told(edited):
+def changes(edited):
     return [(c.subject, c.before, c.after) for c in edited.consequences]
 
 
@@ -64,7 +64,7 @@ def order(edited):
 def test_a_task_is_added_where_the_list_goes_on():
     edited = editing.add_task(MISSION, task("new"), after="A")
     assert order(edited) == "START A new B C D E"
-    assert told(edited) == [("tasks['A'].transitions[0].target", "B", "new")]
+    assert changes(edited) == [("tasks['A'].transitions[0].target", "B", "new")]
     assert edited.mission.task("new").transitions == (way("B"),)
     assert order(editing.add_task(MISSION, task("new"))) == "START A B C D E new"
     assert order(editing.add_task(MISSION, task("new"), first=True)) == "START new A B C D E"
@@ -84,19 +84,19 @@ def test_at_the_border_of_a_group_a_task_is_outside_unless_it_is_to_be_inside():
 def test_a_removed_task_leaves_its_place_to_its_neighbours():
     edited = editing.remove_task(MISSION, "C")
     assert order(edited) == "START A B D E"
-    assert told(edited) == [
+    assert changes(edited) == [
         ("tasks['B'].transitions[1].target", "C", "D"),
         ("groups['Alpha'].end", "C", "B"),
         ("groups['Alpha/Beta']", "Alpha/Beta", None),
         ("current", "C", "D"),
     ]
     assert "no tasks any more" in edited.consequences[2].message
-    assert told(editing.remove_task(MISSION, "START")) == []
+    assert changes(editing.remove_task(MISSION, "START")) == []
 
 
 def test_a_task_is_renamed_wherever_it_is_named():
     edited = editing.rename_task(MISSION, "C", "gauge")
-    assert told(edited) == [
+    assert changes(edited) == [
         ("tasks['B'].transitions[1].target", "C", "gauge"),
         ("groups['Alpha'].end", "C", "gauge"),
         ("groups['Alpha/Beta'].start", "C", "gauge"),
@@ -134,8 +134,8 @@ def test_the_names_of_groups_follow_from_what_lies_in_what():
     renamed = editing.rename_group(edited.mission, "Round/Alpha", "Gamma").mission
     assert [g.name for g in renamed.groups] == ["Round/Gamma", "Round/Gamma/Beta", "Round"]
     assert renamed.task("B").group == "Round/Gamma"
-    left = editing.dissolve_group(edited.mission, "Round").mission
-    assert left.groups == MISSION.groups
+    dissolved = editing.dissolve_group(edited.mission, "Round").mission
+    assert dissolved.groups == MISSION.groups
     wide = editing.change_group(MISSION, "Alpha", start="A", max_repeat_count=5).mission
     assert (wide.groups[0].start, wide.groups[0].max_repeat_count) == ("A", 5)
     assert wide.task("A").group == "Alpha"
@@ -147,7 +147,7 @@ def test_a_group_that_gets_the_name_of_the_one_around_it_is_told():
     assert [g.name for g in wrapped.groups] == ["Alpha/Alpha", "Alpha/Alpha/Beta", "Alpha"]
     edited = editing.dissolve_group(wrapped, "Alpha")
     assert edited.mission.groups == MISSION.groups
-    assert [c for c in told(edited) if c[0].startswith("groups")] == [
+    assert [c for c in changes(edited) if c[0].startswith("groups")] == [
         ("groups['Alpha'].name", "Alpha/Alpha", "Alpha"),
         ("groups['Alpha/Beta'].name", "Alpha/Alpha/Beta", "Alpha/Beta"),
     ]
@@ -171,7 +171,7 @@ def test_ways_conditions_reactions_and_header():
 
 
 def call(name, *arguments, **fields):
-    """Return an edit of the mission that can be made."""
+    """Return a function without arguments that makes one edit of MISSION."""
     return partial(getattr(editing, name), MISSION, *arguments, **fields)
 
 
@@ -240,14 +240,14 @@ REFUSED = {
     ],
 }
 REFUSALS = [(kind, *case) for kind, cases in REFUSED.items() for case in cases]
-ELSEWHERE = {
+TESTED_ELSEWHERE = {
     "edit.beginning",
     "edit.ends-by-condition",
     "edit.ends-round",
     "edit.leaves-group",
     "edit.starts-round",
 }
-"""met by the removals in `test_runs`"""
+"""codes that the removals in `test_runs` cover"""
 
 
 @pytest.mark.parametrize(("kind", "code", "edit"), REFUSALS)
@@ -260,7 +260,7 @@ def test_what_can_not_be_is_refused_by_its_kind_and_reason(kind, code, edit):
 
 def test_every_reason_to_refuse_is_tried():
     tried = {code for _, code, _ in REFUSALS if code.startswith("edit.")}
-    assert tried | ELSEWHERE == {code for code in CODES if code.startswith("edit.")}
+    assert tried | TESTED_ELSEWHERE == {code for code in CODES if code.startswith("edit.")}
 
 
 def test_a_nearly_right_name_is_met_with_the_right_one():
@@ -277,7 +277,7 @@ def test_what_did_not_change_is_shared():
 
 @pytest.mark.parametrize("kind", FUNCTIONS)
 def test_an_edit_as_data_is_the_call_of_its_function(kind):
-    """The models and the functions can't come apart: fields are parameters, and so are defaults."""
+    """The fields of a model and their defaults equal the parameters of its function."""
     model = next(
         m
         for m in vars(commands).values()
@@ -310,7 +310,7 @@ def test_an_edit_is_written_with_what_was_given_and_nothing_else():
 
 
 def test_edits_that_set_other_fields_differ():
-    """A value that is given changes something, though it may be the default."""
+    """A field that is set to its default is not the same as a field that is not set."""
     assert commands.SetHeader() != commands.SetHeader(max_duration=None)
     assert commands.ChangeGroup(name="G") != commands.ChangeGroup(name="G", max_repeat_count=0)
     assert len({commands.SetHeader(), commands.SetHeader(max_duration=None)}) == 2
@@ -321,8 +321,8 @@ def test_edits_that_set_other_fields_differ():
 
 def test_a_start_that_is_moved_does_not_end_the_mission():
     mission = Mission(tasks=(START, task("A", "B"), task("B")))
-    (told_of,) = editing.move_task(mission, "START", after="B").consequences
-    assert told_of.message == "task 'START' leads nowhere now; the mission begins with 'A'"
+    (consequence,) = editing.move_task(mission, "START", after="B").consequences
+    assert consequence.message == "task 'START' leads nowhere now; the mission begins with 'A'"
 
 
 def test_without_a_task_that_led_to_itself_a_run_goes_on_and_that_is_told():
@@ -330,15 +330,15 @@ def test_without_a_task_that_led_to_itself_a_run_goes_on_and_that_is_told():
     edited = editing.remove_task(mission, "B")
     assert edited.mission.task("A").transitions == (way("C"),)
     assert edited.consequences[-1].message == (
-        "a run that came to 'B' stayed there, as it led to itself; it goes on with 'C' now"
+        "a run that reached 'B' stayed there, because it led to itself; it continues with 'C' now"
     )
 
 
-# ---- what version 3 has
+# ---- fields of version 3
 
 
 def chain():
-    """a, b, c; a goes on with b when it has failed, or missed its window."""
+    """Return a mission of the tasks a, b, c; b also follows if a failed or missed its window."""
     window = TimeWindow(latest=60, missed_target="b")
     first = drive("a", "b", on_failure=OnFailure.BRANCH, failure_target="b", window=window)
     return Mission(tasks=(first, drive("b", "c"), drive("c")))

@@ -1,5 +1,8 @@
-"""Tasks that are moved to, away from and behind the ends of groups that lead elsewhere than the
-list: the rounds stay, shown by comparing runs with those of a mission that is built anew."""
+"""Edits at the ends of groups that do not lead to the next task of the list keep the rounds.
+
+Tasks are moved to, away from and behind such an end; the runs of the edited mission must equal
+those of a mission that a model builds from scratch.
+"""
 
 import random
 from collections import Counter
@@ -14,7 +17,7 @@ from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.editing import EditConflict, add_task, change_group, move_task, set_target
 from argo_compiler.il import Group, Mission
-from tests.argo_compiler.editing.test_runs import run, tried
+from tests.argo_compiler.editing.test_runs import run, try_edit
 from tests.conftest import examples
 from tests.mission_writing import measure
 
@@ -105,47 +108,50 @@ def test_a_group_ends_where_a_round_can_get_to():
 
 
 @dataclass
-class Story:
-    """What a mission of groups whose ends lead elsewhere is to do, in whatever order. Mutable."""
+class RoundsModel:
+    """Model of a mission whose groups may lead elsewhere than to the next task. Mutable."""
 
     names: list[str]
     members: dict[str, set[str]] = field(default_factory=dict)
     counts: dict[str, int] = field(default_factory=dict)
     exits: dict[str, str | None] = field(default_factory=dict)
-    """where a group leads; one that is not here goes on"""
+    """target of a group that does not lead to the next task of the list"""
     jumps: dict[str, str | None] = field(default_factory=dict)
-    """where a task itself leads; one that is not here goes on"""
+    """target of a task that does not lead to the next task of the list"""
 
-    def ends(self, group):
+    def last_task(self, group):
         return max(self.members[group], key=self.names.index)
 
-    def around(self, name):
-        """The groups that a task is in, the outermost first."""
+    def groups_around(self, name):
+        """Return the groups that contain a task, outermost first."""
         return sorted(g for g, inside in self.members.items() if name in inside)
 
-    def leads(self, name):
+    def target_of(self, name):
         if name in self.jumps:
             return self.jumps[name]
-        for group in self.around(name):
-            if group in self.exits and self.ends(group) == name:
+        for group in self.groups_around(name):
+            if group in self.exits and self.last_task(group) == name:
                 return self.exits[group]
         return next(iter(self.names[self.names.index(name) + 1 :]), None)
 
     def mission(self):
-        leads = ((name, self.leads(name)) for name in self.names)
-        tasks = tuple(task(name, *([] if to is None else [to])) for name, to in leads)
+        targets = ((name, self.target_of(name)) for name in self.names)
+        tasks = tuple(task(name, *([] if to is None else [to])) for name, to in targets)
         groups = tuple(
-            rounds(g, min(self.members[g], key=self.names.index), self.ends(g), self.counts[g])
+            rounds(g, min(self.members[g], key=self.names.index), self.last_task(g), self.counts[g])
             for g in sorted(self.members)
         )
         return Mission(tasks=tasks, groups=groups)
 
-    def put(self, name, anchor, after):
-        """Puts a task beside another one, into the groups of that."""
-        former, ended = self.names.index(name) if name in self.names else None, self.around(name)
-        ended = [g for g in ended if self.ends(g) == name and len(self.members[g]) > 1]
-        exits = self.leads(name) if ended and any(g in self.exits for g in ended) else ()
-        for group in self.around(name):
+    def move_next_to(self, name, anchor, after):
+        """Insert or move a task next to the anchor, into the anchor's groups."""
+        former, ended = (
+            self.names.index(name) if name in self.names else None,
+            self.groups_around(name),
+        )
+        ended = [g for g in ended if self.last_task(g) == name and len(self.members[g]) > 1]
+        exits = self.target_of(name) if ended and any(g in self.exits for g in ended) else ()
+        for group in self.groups_around(name):
             self.members[group].remove(name)
             if not self.members[group]:
                 del self.members[group]
@@ -153,23 +159,25 @@ class Story:
             self.names.remove(name)
         place = self.names.index(anchor) + after
         self.names.insert(place, name)
-        for group in self.around(anchor):
+        for group in self.groups_around(anchor):
             self.members[group].add(name)
         for group in list(self.exits):
             if group not in self.members:
                 self.jumps[name] = self.exits.pop(group)
-            elif self.ends(group) == name and (name in self.jumps or self.exits[group] == name):
+            elif self.last_task(group) == name and (
+                name in self.jumps or self.exits[group] == name
+            ):
                 del self.exits[group]
-        if former == place and exits != () and not {*ended} & {*self.around(name)}:
+        if former == place and exits != () and not {*ended} & {*self.groups_around(name)}:
             self.jumps[name] = exits
             for group in ended:
                 self.exits.pop(group, None)
 
 
-def random_story(rng):
-    """Up to two groups, perhaps with one in the first of them, of three to ten tasks."""
+def random_model(rng):
+    """Return a model of three to ten tasks and one to three groups, one possibly in another."""
     names = list("abcdefghij"[: rng.randint(3, 10)])
-    story = Story(names)
+    model = RoundsModel(names)
     cut = rng.randint(1, len(names))
     ranges = {"G": sorted(rng.choices(range(cut), k=2))}
     if cut < len(names) and rng.random() < 0.4:
@@ -178,51 +186,51 @@ def random_story(rng):
     if rng.random() < 0.5:
         ranges["G/H"] = sorted(rng.choices(range(first, last + 1), k=2))
     for group, (first, last) in ranges.items():
-        story.members[group] = {*names[first : last + 1]}
-        story.counts[group] = rng.randint(2, 3)
+        model.members[group] = {*names[first : last + 1]}
+        model.counts[group] = rng.randint(2, 3)
     for group, (_, last) in ranges.items():
         shared = group == "G/H" and last == ranges["G"][1]
         beyond = [*names[last + 2 :], *([None] if last + 1 < len(names) else [])]
         if beyond and not shared and rng.random() < 0.7:
-            story.exits[group] = rng.choice(beyond)
+            model.exits[group] = rng.choice(beyond)
     for i, name in enumerate(names[:-2]):
-        if not story.around(name) and rng.random() < 0.15:
-            story.jumps[name] = rng.choice(names[i + 2 :])
-    return story
+        if not model.groups_around(name) and rng.random() < 0.15:
+            model.jumps[name] = rng.choice(names[i + 2 :])
+    return model
 
 
 def test_the_rounds_of_groups_that_lead_elsewhere_stay_whatever_is_moved_or_added():
-    met = Counter()
+    outcomes = Counter()
 
     @settings(max_examples=examples(600))
     @given(st.integers(0, 2**32))
-    def moved(seed):
+    def move_or_add(seed):
         rng = random.Random(seed)
-        story = random_story(rng)
-        mission = story.mission()
+        model = random_model(rng)
+        mission = model.mission()
         assert not has_errors(check(mission))
-        anchor, after = rng.choice(story.names), rng.random() < 0.5
+        anchor, after = rng.choice(model.names), rng.random() < 0.5
         place = {"after" if after else "before": anchor}
-        into = story.around(anchor)
+        into = model.groups_around(anchor)
         place |= {"into": into[-1]} if into else {}
         if rng.random() < 0.3:
-            new = task("n", *rng.choice([(), (), (rng.choice(story.names),)]))
+            new = task("n", *rng.choice([(), (), (rng.choice(model.names),)]))
             if new.transitions:
-                story.jumps["n"] = new.transitions[0].target
+                model.jumps["n"] = new.transitions[0].target
             name, edit = "n", lambda: add_task(mission, new, **place)
         else:
-            name = rng.choice(story.names)
+            name = rng.choice(model.names)
             if name == anchor:
                 return
             edit = lambda: move_task(mission, name, **place)  # noqa: E731
-        made, codes = tried(edit)
-        met.update(codes or {"made"})
+        made, codes = try_edit(edit)
+        outcomes.update(codes or {"made"})
         if made is None:
             # A task that ends an inner group and leads elsewhere would end the outer one.
             assert codes == {"edit.ends-round"}
             return
-        story.put(name, anchor, after)
-        assert run(made) == run(story.mission()), (mission, name, place)
+        model.move_next_to(name, anchor, after)
+        assert run(made) == run(model.mission()), (mission, name, place)
 
-    moved()
-    assert met["made"] > 20 * met["edit.ends-round"]
+    move_or_add()
+    assert outcomes["made"] > 20 * outcomes["edit.ends-round"]

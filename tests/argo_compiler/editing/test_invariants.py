@@ -1,4 +1,4 @@
-"""Whatever is edited, the mission keeps the rules of the language, and no step is lost."""
+"""Random edits keep the rules of the language, can be undone, and report what they change."""
 
 import random
 from collections import Counter
@@ -16,7 +16,7 @@ from argo_compiler.editing.commands import FUNCTIONS, apply, read_edit
 from argo_compiler.hfsm import lower
 from argo_compiler.il import Mission
 from tests.argo_compiler.editing.random_edits import random_edit
-from tests.argo_compiler.editing.rules import broken
+from tests.argo_compiler.editing.rules import broken_rules
 from tests.argo_compiler.hfsm.random_missions import missions as tangled_missions
 from tests.argo_compiler.script.conftest import make_catalog
 from tests.conftest import examples
@@ -31,8 +31,8 @@ def errors(mission: Mission) -> Counter[str]:
     return Counter(f.code for f in check(mission) if f.severity is Severity.ERROR)
 
 
-def tried(mission, edit):
-    """What an edit makes of a mission, or None where it is refused for a reason."""
+def try_edit(mission, edit):
+    """Return the result of an edit, or None if it is refused with diagnostics."""
     try:
         return apply(mission, edit)
     except EditError as error:
@@ -47,12 +47,12 @@ def tried(mission, edit):
 
 
 def run(mission: Mission, seed: int) -> list[tuple[Mission, object]]:
-    """Each mission of a sequence of edits, with the edit that made it."""
+    """Return each mission of a sequence of random edits, with the edit that produced it."""
     rng = random.Random(seed)
     steps = []
     for _ in range(EDITS):
         edit = random_edit(mission, rng)
-        made = tried(mission, edit)
+        made = try_edit(mission, edit)
         if made is not None:
             mission = made.mission
             steps.append((mission, edit))
@@ -63,18 +63,18 @@ def run(mission: Mission, seed: int) -> list[tuple[Mission, object]]:
 @given(sound_missions(make_catalog()) | tangled_missions(), seeds)
 def test_fifty_edits_keep_the_rules_and_snapshots_undo_them(mission, seed):
     written = mission.model_dump_json()
-    ruled = errors(mission)
-    kept = [(mission, written)]
+    initial_errors = errors(mission)
+    snapshots = [(mission, written)]
     for made, edit in run(mission, seed):
-        # What a task or transition may be worth (an endless group) is only `check`'s to say.
-        assert not errors(made) - ruled
-        assert not broken(made) - broken(mission)
-        if not ruled:
+        # The independent rules do not include endless groups: only `check` finds those.
+        assert not errors(made) - initial_errors
+        assert not broken_rules(made) - broken_rules(mission)
+        if not initial_errors:
             lower(made)
-        again = apply(kept[-1][0], read_edit(edit.model_dump_json()))
+        again = apply(snapshots[-1][0], read_edit(edit.model_dump_json()))
         assert again.mission == made
-        kept.append((made, made.model_dump_json()))
-    for snapshot, text in reversed(kept):
+        snapshots.append((made, made.model_dump_json()))
+    for snapshot, text in reversed(snapshots):
         assert snapshot.model_dump_json() == text
         assert Mission.model_validate_json(text) == snapshot
 
@@ -82,10 +82,10 @@ def test_fifty_edits_keep_the_rules_and_snapshots_undo_them(mission, seed):
 @settings(max_examples=examples(60))
 @given(all_missions(), seeds)
 def test_a_mission_that_makes_no_sense_is_not_made_worse(mission, seed):
-    before, ruled = errors(mission), broken(mission)
+    before, broken_before = errors(mission), broken_rules(mission)
     for made, _ in run(mission, seed):
         assert set(errors(made)) <= set(before) | {"il.endless-group"} or not mission.tasks
-        assert set(broken(made)) <= set(ruled)
+        assert set(broken_rules(made)) <= set(broken_before)
 
 
 @settings(max_examples=examples(80))
@@ -94,22 +94,22 @@ def test_what_else_changed_is_told_and_nothing_that_did_not(mission, seed):
     rng = random.Random(seed)
     for _ in range(10):
         edit = random_edit(mission, rng)
-        made = tried(mission, edit)
+        made = try_edit(mission, edit)
         if made is None:
             continue
-        told = [c.subject for c in made.consequences]
+        subjects = [c.subject for c in made.consequences]
         assert all(c.before != c.after and c.message for c in made.consequences)
         changed = set(differences(mission, made.mission, edit))
-        named = {s.partition("']")[0] + "']" if "']" in s else s for s in told}
+        named = {s.partition("']")[0] + "']" if "']" in s else s for s in subjects}
         assert named - {"tasks"} == changed
         mission = made.mission
 
 
 def differences(before, after, edit):
-    """The subjects of all that differs between two missions and that the edit does not name."""
-    said = {getattr(edit, field, None) for field in ("name", "new_name")}
+    """Yield the subjects that differ between two missions and that the edit does not name."""
+    named_by_edit = {getattr(edit, field, None) for field in ("name", "new_name")}
     task = getattr(edit, "task", None)
-    asked = {task} if isinstance(task, str) else {getattr(task, "name", None)}
+    requested = {task} if isinstance(task, str) else {getattr(task, "name", None)}
     kind = edit.kind
     renamed = {edit.name: edit.new_name} if kind == "rename_task" else {}
     if kind == "replace_task":
@@ -117,11 +117,11 @@ def differences(before, after, edit):
     old = {renamed.get(t.name, t.name): t for t in before.tasks}
     for t in after.tasks:
         was = old.get(t.name)
-        if was is None or (t.name in asked and kind != "add_task"):
+        if was is None or (t.name in requested and kind != "add_task"):
             continue
         own = kind == "change_task" and t.name == edit.name  # sets what follows a failure itself
-        told = (was.transitions, was.group) != (t.transitions, t.group)
-        if told or (not own and leads(was) != leads(t)):
+        is_changed = (was.transitions, was.group) != (t.transitions, t.group)
+        if is_changed or (not own and branch_targets(was) != branch_targets(t)):
             yield subject_of("tasks", t.name)
     if kind != "set_header" and before.current != after.current:
         yield "current"
@@ -132,10 +132,10 @@ def differences(before, after, edit):
     if kind == "wrap_tasks":
         names = {a.name: b.name for a, b in zip(before.groups, after.groups[:-1], strict=True)}
     if kind == "dissolve_group":
-        left = [g for g in before.groups if g.name != edit.name]
-        names = {a.name: b.name for a, b in zip(left, after.groups, strict=True)}
+        remaining = [g for g in before.groups if g.name != edit.name]
+        names = {a.name: b.name for a, b in zip(remaining, after.groups, strict=True)}
     for g in before.groups:
-        if kind in ("change_group", "dissolve_group", "rename_group") and g.name in said:
+        if kind in ("change_group", "dissolve_group", "rename_group") and g.name in named_by_edit:
             continue
         new = groups.get(names.get(g.name, g.name))
         if new is None:
@@ -144,13 +144,13 @@ def differences(before, after, edit):
             yield subject_of("groups", new.name)
 
 
-def leads(task):
-    """What follows when the task has failed, or missed its window."""
+def branch_targets(task):
+    """Return the tasks that follow if the task failed, and if it missed its window."""
     return task.failure_target, task.window and task.window.missed_target
 
 
 def test_every_kind_of_edit_is_made_and_refused():
-    """The random edits are worth something: each kind is possible often, and refused sometimes."""
+    """The random edits are a useful sample: each kind is made often and refused sometimes."""
     made, refused = Counter(), Counter()
 
     @settings(max_examples=60)
@@ -159,7 +159,7 @@ def test_every_kind_of_edit_is_made_and_refused():
         rng = random.Random(seed)
         for _ in range(EDITS):
             edit = random_edit(mission, rng)
-            result = tried(mission, edit)
+            result = try_edit(mission, edit)
             (refused if result is None else made)[edit.kind] += 1
             mission = mission if result is None else result.mission
 

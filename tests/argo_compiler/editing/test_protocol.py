@@ -1,5 +1,4 @@
-"""Scripts and functions edit alike: the same edits, written as lines of a protocol, give the same
-mission."""
+"""Edits by functions and the same edits as lines of a script give the same mission."""
 
 import random
 from collections import Counter
@@ -27,41 +26,47 @@ from tests.missions_sound import sound_missions
 
 CATALOG = make_catalog()
 EDITS = 50
-made = Counter()
-"""how often each kind of edit was made"""
+edit_counts = Counter()
+"""number of edits that were made, by kind"""
 
 
-def own_names(mission: Mission) -> Mission:
-    """The mission with a name of its own for each task and what is meant if nothing is said of
-    where it is shown: in a script what goes by its place is called anew when that changes."""
-    called = {t.name: f"T{i}" for i, t in enumerate(mission.tasks)}
+def with_own_names(mission: Mission) -> Mission:
+    """Return the mission with an explicit name for each task and the default display group.
+
+    Without explicit names, a script names a task by its position, so an edit would rename it.
+    """
+    new_names = {t.name: f"T{i}" for i, t in enumerate(mission.tasks)}
 
     def way(w):
-        return w.model_copy(update={"target": called[w.target]})
+        return w.model_copy(update={"target": new_names[w.target]})
 
     names = [t.name for t in mission.tasks]
     ranges = [(names.index(g.start), names.index(g.end), g.name) for g in mission.groups]
     tasks = tuple(
         t.model_copy(
             update={
-                "name": called[t.name],
+                "name": new_names[t.name],
                 "transitions": tuple(map(way, t.transitions)),
-                "group": max((n for a, b, n in ranges if a <= i <= b), key=len, default=""),
+                "group": max(
+                    (n for a, b, n in ranges if a <= i <= b), key=len, unconditional_target=""
+                ),
             }
         )
         for i, t in enumerate(mission.tasks)
     )
     groups = tuple(
-        g.model_copy(update={"start": called[g.start], "end": called[g.end]})
+        g.model_copy(update={"start": new_names[g.start], "end": new_names[g.end]})
         for g in mission.groups
     )
     return mission.model_copy(update={"tasks": tasks, "groups": groups, "current": None})
 
 
-def plain(mission: Mission) -> Mission:
-    """The mission without the places in the script that it is from. The unconditional transition
-    of a task stands last: where it stands has no meaning (T3), and a mission does not keep where it
-    stood while the task was the last one."""
+def comparable(mission: Mission) -> Mission:
+    """Return the mission without source positions, each unconditional transition last.
+
+    The position of an unconditional transition has no meaning (T3), and a mission does not store
+    it while the task is the last one and has no such transition.
+    """
     bare = unplaced(mission)
     tasks = tuple(
         t.model_copy(
@@ -72,9 +77,12 @@ def plain(mission: Mission) -> Mission:
     return bare.model_copy(update={"tasks": tasks})
 
 
-def following(mission):
-    """Return what a script that says no more comes to after each task. It passes over a START,
-    unless that leads elsewhere: what stands before such a START comes to where that leads."""
+def following_tasks(mission):
+    """Return, for each task, the task that follows in a script that states no transition for it.
+
+    START is skipped, unless the script states its target: the task before such a START leads to
+    START's target.
+    """
     after, name = {}, None
     for t in reversed(mission.tasks):
         after[t.name] = name
@@ -84,22 +92,22 @@ def following(mission):
     return after
 
 
-def default(task):
+def unconditional_target(task):
     return next((w.target for w in task.transitions if not w.conditions), None)
 
 
-def stated(mission):
-    """Return where the tasks lead of which a script says it, as that is not to what follows."""
-    after = following(mission)
-    return {t.name: w for t in mission.tasks if (w := default(t)) != after[t.name]}
+def stated_targets(mission):
+    """Return the targets that a script has to state, because they are not the following task."""
+    after = following_tasks(mission)
+    return {t.name: w for t in mission.tasks if (w := unconditional_target(t)) != after[t.name]}
 
 
 class Editor:
-    """Makes the same edits by functions and in words. Mutable."""
+    """Maker of random edits, by functions and as lines of a script. Mutable."""
 
     def __init__(self, mission: Mission, rng: random.Random) -> None:
         self.mission, self.rng = mission, rng
-        self.stated = stated(mission)
+        self.stated_targets = stated_targets(mission)
         self.lines: list[str] = []
 
     def step(self) -> None:
@@ -113,11 +121,11 @@ class Editor:
         if proposed is None:
             return
         line, mission = proposed
-        # A way that a script gives in words stays, even where it now leads to what follows, and
-        # one that it leaves unsaid follows the order, even where an edit keeps it by its target.
-        if stated(mission) != self.stated:
+        # A transition that a script states stays, even if its target now follows anyway; one that
+        # it does not state follows the order, even if an edit by a function keeps its target.
+        if stated_targets(mission) != self.stated_targets:
             return
-        made[kind] += 1
+        edit_counts[kind] += 1
         self.mission = mission
         self.lines.append(line)
 
@@ -137,14 +145,14 @@ class Editor:
         if sum(t.action is not Action.START for t in self.mission.tasks) == 1:
             return None
         led = [t.name for t in self.mission.tasks for w in t.transitions if w.target == task.name]
-        by_order = [n for n, f in following(self.mission).items() if f == task.name]
+        by_order = [n for n, f in following_tasks(self.mission).items() if f == task.name]
         if (
             self.ends_a_group(task.name)
             or not set(led) <= set(by_order)
             or len(led) != len(set(led))
         ):
             return None
-        if task.name in self.stated or any(w.conditions for w in task.transitions):
+        if task.name in self.stated_targets or any(w.conditions for w in task.transitions):
             return None
         if any(
             w.target == task.name for t in self.mission.tasks for w in t.transitions if w.conditions
@@ -181,12 +189,13 @@ class Editor:
         name = f"R{len(self.lines)}"
         group = Group(name=name, start=names[first], end=names[last], max_repeat_count=2)
         inside = {*names[first : last + 1]}
-        # A script names the groups in a group anew from their own names, not from their paths.
+        # A script derives the names of nested groups from their own names, not from their paths.
         if any("/" in g.name or {g.start, g.end} <= inside for g in self.mission.groups):
             return None
-        # There `otherwise` leaves the round at once, and here what is unconditional ends it.
+        # In a script `otherwise` leaves the round at once; in a mission the unconditional
+        # transition ends it.
         end = self.mission.task(names[last])
-        if end.name in self.stated and any(w.conditions for w in end.transitions):
+        if end.name in self.stated_targets and any(w.conditions for w in end.transitions):
             return None
         wrapped = wrap_tasks(self.mission, group).mission
         return f'"{name}": repeat steps "{names[first]}" to "{names[last]}" twice', wrapped
@@ -216,22 +225,22 @@ def test_two_hundred_sequences_of_edits_give_the_same_mission(mission, seed):
 
 def edit_both(mission, seed):
     try:
-        script = format_script(own_names(mission), CATALOG)
-    except DiagnosticError:  # what has no effect is not said
+        script = format_script(with_own_names(mission), CATALOG)
+    except DiagnosticError:  # a script can't express what has no effect
         reject()
     base = import_script(script, CATALOG).mission
-    assert plain(base) == plain(own_names(mission))
+    assert comparable(base) == comparable(with_own_names(mission))
     editor = Editor(base, random.Random(seed))
     for _ in range(EDITS):
         editor.step()
     text = "\n".join([script.rstrip("\n"), *editor.lines])
-    assert plain(import_script(text, CATALOG).mission) == plain(editor.mission)
+    assert comparable(import_script(text, CATALOG).mission) == comparable(editor.mission)
 
 
 @pytest.mark.long
 def test_all_kinds_of_edits_were_written():
-    """The sequences above are long and have all that a protocol can say."""
-    if not made:
+    """The sequences above contain every kind of edit that a script can express."""
+    if not edit_counts:
         test_the_same_edits_written_as_a_protocol_give_the_same_mission()
-    assert set(made) == {"delete", "add", "move", "replace", "repeat", "react"}
-    assert min(made.values()) > 5
+    assert set(edit_counts) == {"delete", "add", "move", "replace", "repeat", "react"}
+    assert min(edit_counts.values()) > 5

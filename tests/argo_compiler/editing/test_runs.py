@@ -1,5 +1,8 @@
-"""What an edit leaves as it was, shown by carrying missions out: each task reads or fails as its
-name and the number of its visits say, so that two missions can be compared step by step."""
+"""Edits keep the rest of a run: missions before and after an edit are executed and compared.
+
+Each task's value or failure depends only on its name and the number of its visits, so two runs can
+be compared task by task.
+"""
 
 import random
 import zlib
@@ -38,8 +41,8 @@ from tests.mission_writing import drive
 STEPS = 120
 
 
-def run(mission, called=None, steps=STEPS):
-    """The tasks in the order in which they are carried out, and whether the mission has ended."""
+def run(mission, original_names=None, steps=STEPS):
+    """Return the tasks in the order of execution, and whether the mission has ended."""
     executor = Executor(lower(mission))
     executor.start(0.0)
     visits, order = Counter(), []
@@ -48,7 +51,7 @@ def run(mission, called=None, steps=STEPS):
         name = task.name
         order.append(name)
         visits[name] += 1
-        read = zlib.crc32(f"{(called or {}).get(name, name)} {visits[name]}".encode()) % 7
+        read = zlib.crc32(f"{(original_names or {}).get(name, name)} {visits[name]}".encode()) % 7
         value = float(read) if task.action is Action.MEASURE else None
         if task.on_failure is OnFailure.BRANCH and read < 3:
             executor.handle(ActionFailed(name, "stuck"), 0.0)
@@ -66,7 +69,7 @@ def condition(rng):
 
 
 def random_mission(rng, plain=False):
-    """A mission whose runs depend on values alone; a `plain` one is a chain with rounds."""
+    """Return a mission whose runs depend only on values; a `plain` one is a chain with rounds."""
     while True:
         kinds = "MW" if plain else "MMWWP"
         names = [f"{rng.choice(kinds)}{i}" for i in range(rng.randint(2, 7))]
@@ -74,9 +77,9 @@ def random_mission(rng, plain=False):
         if not plain and rng.random() < 0.5:
             ways = (Transition(target=rng.choice(names)),) if rng.random() < 0.7 else ()
             tasks = (Task(name="S", action=Action.START, transitions=ways), *tasks)
-        made = Mission(tasks=tasks, groups=random_groups(names, rng))
-        if not has_errors(check(made)):
-            return made
+        edited = Mission(tasks=tasks, groups=random_groups(names, rng))
+        if not has_errors(check(edited)):
+            return edited
 
 
 def random_task(names, i, rng, plain):
@@ -111,16 +114,16 @@ def random_groups(names, rng):
     )
 
 
-def silent(mission, name):
-    """Whether nothing depends on what the task reads, and it leads to one place."""
+def has_no_influence(mission, name):
+    """Return True if no condition depends on the task's value and it has at most one target."""
     task = mission.task(name)
     compared = {c.object_id for t in mission.tasks for w in t.transitions for c in w.conditions}
     one = all(not w.conditions for w in task.transitions) and task.failure_target is None
     return one and task.object_id not in compared
 
 
-def tried(edit):
-    """What an edit makes, or why it is refused."""
+def try_edit(edit):
+    """Return the edited mission, or None with the codes of the refusal."""
     try:
         return edit().mission, set()
     except EditError as refusal:
@@ -128,8 +131,10 @@ def tried(edit):
 
 
 def test_a_task_that_is_removed_is_missing_and_nothing_else_is():
-    """Each task of many missions, unless something depends on what it reads; and each reason why a
-    task can't be removed is met."""
+    """Without a task on whose value nothing depends, a run is the same but for its visits.
+
+    Each reason to refuse a removal occurs.
+    """
     refused = Counter()
 
     @settings(max_examples=examples(800))
@@ -138,14 +143,14 @@ def test_a_task_that_is_removed_is_missing_and_nothing_else_is():
         mission = random_mission(random.Random(seed))
         before, ended = run(mission)
         for name in (t.name for t in mission.tasks):
-            if not silent(mission, name):
+            if not has_no_influence(mission, name):
                 continue
-            made, codes = tried(lambda name=name: remove_task(mission, name))
+            edited, codes = try_edit(lambda name=name: remove_task(mission, name))
             refused.update(codes or {"no"})
-            if made is None:
+            if edited is None:
                 continue
             left = [task for task in before if task != name]
-            after, ends = run(made, steps=STEPS if ended else len(left))
+            after, ends = run(edited, steps=STEPS if ended else len(left))
             assert after == left
             assert ends or not ended
 
@@ -165,11 +170,11 @@ def test_a_task_that_is_removed_is_missing_and_nothing_else_is():
 @settings(max_examples=examples(200))
 @given(seeds)
 def test_any_task_of_a_chain_with_rounds_can_be_removed(seed):
-    """Until one is left, and whatever groups there are."""
+    """Tasks can be removed until one remains, with any groups."""
     rng = random.Random(seed)
     mission = random_mission(rng, plain=True)
     while len(mission.tasks) > 1:
-        mission = remove_task(mission, picked(mission, rng)).mission
+        mission = remove_task(mission, random_task_name(mission, rng)).mission
     assert all(g.start == g.end == mission.tasks[0].name for g in mission.groups)
 
 
@@ -179,16 +184,16 @@ def test_a_task_that_is_added_is_carried_out_between_what_was_there(seed, plain)
     rng = random.Random(seed)
     mission = random_mission(rng, plain)
     where = rng.choice(["before", "after", "first", "last"])
-    place = {where: picked(mission, rng)} if where in ("before", "after") else {}
+    place = {where: random_task_name(mission, rng)} if where in ("before", "after") else {}
     place |= {"first": True} if where == "first" else {}
     if mission.groups and rng.random() < 0.5:
         place["into"] = rng.choice([g.name for g in mission.groups])
-    made, codes = tried(lambda: add_task(mission, drive("new"), **place))
+    edited, codes = try_edit(lambda: add_task(mission, drive("new"), **place))
     assert codes <= {"edit.not-beside-group", "il.start-in-group"}
-    if made is None:
+    if edited is None:
         return
     before, ended = run(mission)
-    after, ends = run(made, steps=3 * STEPS if ended else STEPS)
+    after, ends = run(edited, steps=3 * STEPS if ended else STEPS)
     left = [task for task in after if task != "new"]
     assert left == before[: len(left)]
     assert ends == ended or not ends
@@ -200,10 +205,10 @@ def test_a_task_that_is_added_is_carried_out_between_what_was_there(seed, plain)
 def test_a_new_name_changes_no_run(seed):
     rng = random.Random(seed)
     mission = random_mission(rng)
-    name = picked(mission, rng)
-    made = rename_task(mission, name, "new").mission
+    name = random_task_name(mission, rng)
+    edited = rename_task(mission, name, "new").mission
     before, ended = run(mission)
-    after, ends = run(made, called={"new": name})
+    after, ends = run(edited, original_names={"new": name})
     assert [name if task == "new" else task for task in after] == before
     assert ends == ended
 
@@ -234,16 +239,16 @@ def test_a_group_around_tasks_repeats_them_and_without_it_they_are_done_once(see
     names = [t.name for t in mission.tasks]
     first, last = sorted(rng.randrange(len(names)) for _ in range(2))
     group = Group(name="new", start=names[first], end=names[last], max_repeat_count=2)
-    made, codes = tried(lambda: wrap_tasks(mission, group))
+    edited, codes = try_edit(lambda: wrap_tasks(mission, group))
     assert codes <= {"edit.group-overlap"}
-    if made is None:
+    if edited is None:
         return
-    (name,) = {g.name for g in made.groups if g.name.split("/")[-1] == "new"}
-    assert dissolve_group(made, name).mission == mission
+    (name,) = {g.name for g in edited.groups if g.name.split("/")[-1] == "new"}
+    assert dissolve_group(edited, name).mission == mission
     if not mission.groups:
         twice = [*names[: last + 1], *names[first : last + 1], *names[last + 1 :]]
-        assert run(made) == (twice, True)
+        assert run(edited) == (twice, True)
 
 
-def picked(mission, rng):
+def random_task_name(mission, rng):
     return rng.choice([t.name for t in mission.tasks])

@@ -1,8 +1,8 @@
-"""A list in which any item is put in, taken out or moved in the same short time.
+"""Linked list in which any item can be inserted, removed or moved in constant time.
 
-The order of tasks while it is edited, whether they are those of a mission or of the plan that a
-script's commands make: each item knows its neighbours, so that thousands of changes of a list of a
-hundred thousand take no longer than the list is long.
+It holds the order of the tasks while a mission or a script's program is edited. Each item knows its
+neighbours, so thousands of changes to a list of a hundred thousand items take no longer than one
+pass over the list.
 """
 
 from collections.abc import Iterator, Sequence
@@ -11,20 +11,20 @@ from typing import Generic, Self, TypeVar
 
 
 @dataclass(eq=False, slots=True)
-class Linked:
-    """What stands in a linked list. Mutable: the list changes its neighbours."""
+class ListItem:
+    """Item of a linked list. Mutable: the list changes its neighbours."""
 
     before: Self | None = field(default=None, init=False, repr=False)
     after: Self | None = field(default=None, init=False, repr=False)
-    listed: bool = field(default=False, init=False)
-    """whether it stands in a list now"""
+    is_listed: bool = field(default=False, init=False)
+    """whether it is in a list now"""
 
 
-_Item = TypeVar("_Item", bound=Linked)
+_Item = TypeVar("_Item", bound=ListItem)
 
 
 class LinkedList(Generic[_Item]):
-    """Items in order. Has state: what is put in, taken out or moved changes its neighbours."""
+    """Items in order. Mutable: an insertion or removal also changes the items next to it."""
 
     def __init__(self) -> None:
         self.first: _Item | None = None
@@ -37,13 +37,13 @@ class LinkedList(Generic[_Item]):
             item = item.after
 
     def append(self, item: _Item) -> None:
-        """Puts the item behind all."""
+        """Add the item at the end."""
         self.insert_after(self.last, item)
 
     def insert_after(self, anchor: _Item | None, item: _Item) -> None:
-        """Puts the item behind the anchor; None: before all."""
+        """Insert the item after the anchor, or at the start if the anchor is None."""
         after = anchor.after if anchor is not None else self.first
-        item.before, item.after, item.listed = anchor, after, True
+        item.before, item.after, item.is_listed = anchor, after, True
         if anchor is not None:
             anchor.after = item
         else:
@@ -53,14 +53,14 @@ class LinkedList(Generic[_Item]):
         else:
             self.last = item
 
-    def put(self, items: Sequence[_Item], behind: _Item | None) -> None:
-        """Puts the items one after the other behind the anchor; None: before all."""
+    def insert_all_after(self, items: Sequence[_Item], anchor: _Item | None) -> None:
+        """Insert the items in order after the anchor, or at the start if the anchor is None."""
         for item in items:
-            self.insert_after(behind, item)
-            behind = item
+            self.insert_after(anchor, item)
+            anchor = item
 
     def remove(self, item: _Item) -> None:
-        """Takes the item out; its neighbours follow each other."""
+        """Remove the item and link its neighbours to each other."""
         if item.before is not None:
             item.before.after = item.after
         else:
@@ -70,4 +70,4 @@ class LinkedList(Generic[_Item]):
         else:
             self.last = item.before
         item.before = item.after = None
-        item.listed = False
+        item.is_listed = False

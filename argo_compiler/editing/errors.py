@@ -1,4 +1,4 @@
-"""What stands in the way of an edit, as errors of a kind, with diagnostics."""
+"""Errors of edits that can't be made, with diagnostics, and functions that create or raise them."""
 
 import re
 import reprlib
@@ -13,9 +13,9 @@ _SURROGATE = re.compile("[\ud800-\udfff]")
 
 
 class EditError(ArgoError):
-    """An edit that can't be made; `diagnostics` names what is in the way. The mission is as it was.
+    """Raised when an edit can't be made; `diagnostics` states why. The mission is unchanged.
 
-    Its kinds are `EditNotFound`, `EditInvalid` and `EditConflict`.
+    Its subclasses are `EditNotFound`, `EditInvalid` and `EditConflict`.
     """
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
@@ -27,19 +27,19 @@ class EditError(ArgoError):
 
 
 class EditNotFound(EditError, NotFound):
-    """The edit names a task, group, transition or reaction that the mission does not have."""
+    """Raised when the mission lacks the task, group, transition, condition or reaction named."""
 
 
 class EditInvalid(EditError, Invalid):
-    """What the edit says makes no sense, whatever the mission is."""
+    """Raised when an edit has values that are invalid for every mission."""
 
 
 class EditConflict(EditError, Conflict):
-    """The edit does not fit the mission as it is."""
+    """Raised when an edit does not fit the current mission."""
 
 
 def unknown(kind: str, name: str, known: Collection[str]) -> EditNotFound:
-    """The refusal of an edit that names a task or group that is not there."""
+    """Return the error of an edit that names a task or group that does not exist."""
     near = nearest_name(name, known)
     return EditNotFound(
         [
@@ -53,48 +53,51 @@ def unknown(kind: str, name: str, known: Collection[str]) -> EditNotFound:
 
 
 def ambiguous(name: str) -> EditConflict:
-    """The refusal of an edit of one task where several have its name."""
+    """Return the error of an edit of one task where several tasks have its name."""
     message = f"more than one task is named '{name}'"
-    hint = "write the mission with a name for each task first"
+    hint = "give each task of the mission its own name first"
     return conflict("edit.ambiguous-task", message, hint, subject_of("tasks", name))
 
 
-def only_one(name: str, places: Sequence[int], known: Collection[str]) -> int:
-    """The only one of the places at which tasks have a name; `known` are all names. Raises
-    EditNotFound if there is none, EditConflict if there are several."""
-    if not places:
+def require_unique(name: str, positions: Sequence[int], known: Collection[str]) -> int:
+    """Return the position of the only task with a name.
+
+    `positions` are those of the tasks with this name; `known` are the names of all tasks.
+    Raises EditNotFound if there is no such task, EditConflict if there are several.
+    """
+    if not positions:
         raise unknown("task", name, known)
-    if len(places) > 1:
+    if len(positions) > 1:
         raise ambiguous(name)
-    return places[0]
+    return positions[0]
 
 
 def name_taken(kind: str, name: str, subject: str) -> EditConflict:
-    """The refusal of a name that something else has."""
+    """Return the error of a name that another task or group already has."""
     hint = f"choose another name, or rename the {kind} that has it"
-    message = f"there is a {kind} '{name}' already"
+    message = f"a {kind} '{name}' already exists"
     return conflict("edit.name-taken", message, hint, subject)
 
 
 def conflict(code: str, message: str, hint: str, subject: str | None = None) -> EditConflict:
-    """A refusal for one reason."""
+    """Return an EditConflict with one diagnostic."""
     return EditConflict([diagnostic_of(code, message, hint, subject)])
 
 
 def invalid(code: str, message: str, hint: str) -> EditInvalid:
-    """A refusal of what was given."""
+    """Return an EditInvalid with one diagnostic."""
     return EditInvalid([diagnostic_of(code, message, hint)])
 
 
 def require_kind(value: object, kind: type, what: str) -> None:
-    """Raises EditInvalid for what is not of a kind."""
+    """Raise EditInvalid if a value is not of the given type."""
     if not isinstance(value, kind):
-        message = f"{what} is to be a {kind.__name__}, not {reprlib.repr(value)}"
-        raise invalid("edit.value", message, f"make a {kind.__name__} of it")
+        message = f"{what} must be a {kind.__name__}, not {reprlib.repr(value)}"
+        raise invalid("edit.value", message, f"pass a {kind.__name__} instead")
 
 
 def require_name(thing: str, name: object) -> None:
-    """Raises EditInvalid for what can't be the name of a task or group."""
+    """Raise EditInvalid if a value can't be the name of a task or group."""
     if not isinstance(name, str):
         message, hint = (
             f"{thing} needs a text as its name, not {reprlib.repr(name)}",
@@ -103,7 +106,7 @@ def require_name(thing: str, name: object) -> None:
     elif not name:
         message, hint = f"{thing} needs a name that is not empty", "give it a name"
     elif _SURROGATE.search(name):
-        message = f"{thing} can't be named {name!a}, which has half a character"
+        message = f"{thing} can't be named {name!a}, which contains half a character"
         hint = "leave out the surrogates, which can't be written to a file"
     else:
         return

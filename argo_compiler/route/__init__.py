@@ -1,4 +1,4 @@
-"""The best order of a mission's checkpoints: the problem, its solvers, and what they suggest."""
+"""Search for the best order of a mission's checkpoints: problems, solvers and suggestions."""
 
 from argo_compiler.route.evaluation import RouteEvaluation, evaluate
 from argo_compiler.route.problem import (

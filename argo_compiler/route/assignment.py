@@ -1,4 +1,4 @@
-"""A quick bound: each step has one successor, whether or not that makes a single route."""
+"""Assignment relaxation: a quick bound, as each step has one successor, in any number of cycles."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +10,11 @@ from argo_compiler.route.pruning import Pruned, shortest
 
 
 def assignment_bound(network: StepNetwork, pruned: Pruned) -> int | None:
-    """The least time that arcs and services take if each step is left once and entered once; 0
-    where something may be left out. None: there is no route."""
+    """Compute a lower bound on the time of arcs and services, by an assignment problem.
+
+    In the relaxation, each step is entered once and left once. Returns 0 if the network has
+    optional steps, and None if there is no route.
+    """
     if not pruned.possible:
         return None
     if network.selective:
@@ -29,11 +32,13 @@ def assignment_bound(network: StepNetwork, pruned: Pruned) -> int | None:
 def least_between_steps(
     network: StepNetwork, pruned: Pruned, costs: NDArray[np.int64]
 ) -> NDArray[np.int64]:
-    """The least cost of the arcs that are left from each step to each other; the last row is that
-    of the start, the last column that of the end; NEVER: no arc."""
+    """Compute the least cost of the unpruned arcs from each step to each other.
+
+    The last row belongs to the start, the last column to the end; NEVER: there is no arc.
+    """
     count = len(network.prize)
     least = np.full((count + 1, count + 1), NEVER, np.int64)
-    home = np.append(network.step, count)
-    left = np.where(pruned.arcs, np.minimum(costs, NEVER), NEVER)
-    np.minimum.at(least, (home[:, None], home[None, :]), left)
+    step_of_node = np.append(network.step, count)
+    arc_costs = np.where(pruned.arcs, np.minimum(costs, NEVER), NEVER)
+    np.minimum.at(least, (step_of_node[:, None], step_of_node[None, :]), arc_costs)
     return least

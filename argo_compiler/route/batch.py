@@ -1,4 +1,4 @@
-"""Many problems, one a process at a time."""
+"""Routes for many problems, in several processes."""
 
 from collections.abc import Iterable, Iterator
 from functools import partial
@@ -17,32 +17,32 @@ from argo_compiler.route.suggestion import suggest_route
 def suggest_routes(
     problems: Iterable[RouteProblem], processes: int = 2, **arguments: Any
 ) -> Iterator[RouteSuggestion]:
-    """What `suggest_route` suggests for each problem with these arguments, in the problems' order,
-    each as soon as those before it are there.
+    """Yield the result of `suggest_route` for each problem, in the problems' order.
 
-    The arguments go to other processes: a solver that is registered in this process takes part only
-    if it is one of `solvers`. Raises what `suggest_route` raises, with the number of the problem,
+    `arguments` are passed to `suggest_route` in other processes: a solver that is registered in
+    this process takes part only if it is one of `solvers`. Yields each result as soon as all
+    earlier ones are ready. Raises the errors of `suggest_route`, with the number of the problem,
     from 0; and Unavailable if a process is killed.
     """
     numbered = iter(enumerate(problems))
     pool = ProcessPoolExecutor(processes)
     try:
-        # So that no more problems are asked for than are under way.
-        ahead = [
+        # Bounded, so that no problem is taken from the iterable long before a process needs it.
+        pending = [
             (number, pool.submit(partial(suggest_route, **arguments), problem))
             for number, problem in islice(numbered, 2 * processes)
         ]
-        while ahead:
-            number, future = ahead.pop(0)
+        while pending:
+            number, future = pending.pop(0)
             try:
-                found = future.result()
+                suggestion = future.result()
             except ArgoError as error:
                 raise located(error, f"problem {number}") from error
-            for following, problem in islice(numbered, 1):
-                again = pool.submit(partial(suggest_route, **arguments), problem)
-                ahead.append((following, again))
-            yield found
+            for next_number, problem in islice(numbered, 1):
+                next_future = pool.submit(partial(suggest_route, **arguments), problem)
+                pending.append((next_number, next_future))
+            yield suggestion
     except BrokenProcessPool:
-        raise Unavailable("a process that searched was ended: is there enough memory?") from None
+        raise Unavailable("a search process was killed: is there enough memory?") from None
     finally:
         pool.shutdown(wait=True, kill_workers=True)

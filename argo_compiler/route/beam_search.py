@@ -63,7 +63,7 @@ class Space:
         self._bits, self._guide, self._level = bits, guide, level
         self._battery = network.problem.battery
         # The other measure: energy, or travel where that is not the time as well.
-        self._travels = network.problem.waits
+        self._counts_travel = network.problem.waits
 
     def beam(self, width: int, best: LabelSolution | None, search: Search) -> Beam:
         """The best path of a search that keeps the `width` most promising labels of a layer."""
@@ -114,7 +114,7 @@ class Space:
         way = network.time[last, node]
         if battery is None:
             service = int(network.service[node]) if node < network.size else 0
-            more = way + service if self._travels else 0
+            more = way + service if self._counts_travel else 0
             yield self._leg(rows, time + way, other + more, way < NEVER, _DIRECT)
             return
         assert network.energy is not None
@@ -144,7 +144,7 @@ class Space:
         rules = self._bits.layer(number)
         parts = [labels.take(np.zeros(0, np.int64))]
         for node in range(network.size):
-            if search.left() <= 0.0:
+            if search.remaining() <= 0.0:
                 return None
             rows = rules.rows(labels.mask, node)
             rows = rows[pruned.arcs[labels.last[rows], node]]
@@ -180,7 +180,7 @@ class Space:
 
     def _least(self, number: int, labels: _Labels) -> Vector:
         """The least cost of a path of each label."""
-        if self._travels:
+        if self._counts_travel:
             to_come = self._guide.to_come(number, labels.mask, labels.last)
             return np.asarray(labels.other + to_come[0])
         return self._ends(number, labels)
@@ -208,7 +208,7 @@ class Space:
             if not fits.any():
                 continue
             won = prizes(network, masks[origin[fits]])
-            costs = (other if self._travels else time)[fits]
+            costs = (other if self._counts_travel else time)[fits]
             if network.objective is Objective.PRIZE:
                 costs = np.zeros_like(costs)
             k = int(np.lexsort((costs, -won))[0])

@@ -1,7 +1,7 @@
-"""CP-SAT as a solver: proves routes, and finds some.
+"""Solver that uses CP-SAT, to prove routes and to find some.
 
-One worker with the linear relaxation at its strongest proves single tours much faster than many
-workers do, so that is what is set.
+It is set to one worker with the strongest linear relaxation, which proves single tours much faster
+than many workers do.
 """
 
 from math import ceil, floor
@@ -15,14 +15,14 @@ from argo_compiler.route.problem import Objective, RouteProblem, Tour
 from argo_compiler.route.search import Search, Solution
 
 _MOST_ARCS = 80_000
-"""of a model"""
+"""highest number of arcs in a model"""
 _PATIENCE = 0.5
-"""s for which a first try goes on although a better route was found elsewhere; twice as long from
-try to try"""
+"""minimum s of the first attempt before a better route of another solver may end it; it doubles
+from one attempt to the next"""
 
 
 class CpSat:
-    """Looks for what is better than the best route that is known, until there is none."""
+    """Search for routes better than the best known one, until it is proven that there is none."""
 
     name = "CP-SAT"
 
@@ -30,92 +30,97 @@ class CpSat:
         return True
 
     def solve(self, search: Search) -> None:
-        """First the most prize, then the least cost with it."""
+        """Maximise the prize first, then minimise the cost at that prize."""
         network = search.network
         if int(search.pruned.arcs.sum()) * (1 + len(network.chargers)) > _MOST_ARCS:
-            search.say(f"{len(network.prize)} steps are too many for CP-SAT")
+            search.add_reason(f"{len(network.prize)} steps are too many for CP-SAT")
             return
         if not network.mandatory.any():
-            offer_nothing(search)
+            offer_empty_routes(search)
         patience = _PATIENCE
-        while search.left() > time_to_build(network, search.pruned):
-            _Try(search, self.name, patience).run()
+        while search.remaining() > time_to_build(network, search.pruned):
+            _Attempt(search, self.name, patience).run()
             patience *= 2.0
 
 
-def offer_nothing(search: Search) -> None:
-    """The routes that make nothing, straight or by a charger."""
+def offer_empty_routes(search: Search) -> None:
+    """Offer the feasible routes without visits: straight to the end, or by one charger."""
     for charges in ({}, *({0: number} for number in range(len(search.network.chargers)))):
         tour = Tour((), charges)
         if evaluate(search.problem, tour).feasible:
             search.offer_tour(tour)
 
 
-class _Try:
-    """One model, from the best route that is known. Has state: its solver."""
+class _Attempt:
+    """Model and solver for one search, which starts from the best known route."""
 
     def __init__(self, search: Search, name: str, patience: float) -> None:
         self._search, self._name, self._patience = search, name, patience
         self._best = best = search.best
         network = search.network
-        self._prizes = network.selective and (best is None or best.prize < search.prize_bound)
-        self._least = best.prize if best is not None and network.selective else 0
-        """the prize of the routes that what is said of the cost is about"""
-        # With times, what order costs is told apart sooner where a better route is looked for.
-        ordered = network.plain and bool(search.pruned.before.any())
-        tight = ordered and best is not None and not self._prizes and best.cost > 0
+        self._maximises_prize = network.selective and (
+            best is None or best.prize < search.prize_bound
+        )
+        self._least_prize = best.prize if best is not None and network.selective else 0
+        """lowest prize of the routes to which bounds on the cost apply"""
+        # With times in the model, the costs of precedence show sooner if the route must be better.
+        is_ordered = network.plain and bool(search.pruned.before.any())
+        is_tight = is_ordered and best is not None and not self._maximises_prize and best.cost > 0
         self._model = CircuitModel(
-            network, search.pruned, best.cost - 1 if best is not None and tight else None
+            network, search.pruned, best.cost - 1 if best is not None and is_tight else None
         )
 
     def run(self) -> None:
         search, best, model = self._search, self._best, self._model
-        if self._prizes:
+        if self._maximises_prize:
             model.maximise_prize(None if best is None else best.prize + 1)
         elif search.network.objective is not Objective.PRIZE:
             most = None if best is None else best.cost - 1
-            model.minimise_cost(self._least if search.network.selective else None, most)
+            model.minimise_cost(self._least_prize if search.network.selective else None, most)
         if best is not None and best.path is not None:
             model.hint(best.path, best.charges)
         solver = solver_for(search)
-        solver.best_bound_callback = self._bound
+        solver.best_bound_callback = self._report_bound
         begun = search.now()
 
-        def over() -> bool:
+        def must_stop() -> bool:
             now = search.best
-            better = now is not best and now is not None and now.method != self._name
-            return search.left() <= 0.0 or (better and search.now() - begun >= self._patience)
+            is_beaten = now is not best and now is not None and now.method != self._name
+            return search.remaining() <= 0.0 or (
+                is_beaten and search.now() - begun >= self._patience
+            )
 
-        status = run_solver(solver, model.model, _Watch(model, search), over)
+        status = run_solver(solver, model.model, _SolutionCallback(model, search), must_stop)
         spend(search, solver)
         if status == cp_model.INFEASIBLE:
-            self._nothing_better(best)
+            self._report_optimality(best)
         elif status == cp_model.OPTIMAL:
-            self._bound(solver.objective_value)
+            self._report_bound(solver.objective_value)
 
-    def _bound(self, value: float) -> None:
-        """What CP-SAT says of the prize or the cost of all routes that it may find."""
-        if abs(value) > 1e15:  # there is none yet
+    def _report_bound(self, value: float) -> None:
+        """Report CP-SAT's bound on the prize or the cost of all routes of the model."""
+        if abs(value) > 1e15:  # there is no bound yet
             return
-        if self._prizes:
+        if self._maximises_prize:
             least = 0 if self._best is None else self._best.prize
-            self._search.known(prize_bound=max(least, floor(value + 1e-6)))
+            self._search.report_bounds(prize_bound=max(least, floor(value + 1e-6)))
         elif self._search.network.objective is not Objective.PRIZE:
             bound = ceil(value - 1e-6)
             bound = bound if self._best is None else min(bound, self._best.cost)
-            self._search.known(bound=bound, prize=self._least)
+            self._search.report_bounds(bound=bound, prize=self._least_prize)
 
-    def _nothing_better(self, best: Solution | None) -> None:
+    def _report_optimality(self, best: Solution | None) -> None:
+        """Report that no route is better than the best one, or that there is none if it is None."""
         if best is None:
-            self._search.impossible()
-        elif self._prizes:
-            self._search.known(prize_bound=best.prize)
+            self._search.report_infeasible()
+        elif self._maximises_prize:
+            self._search.report_bounds(prize_bound=best.prize)
         else:
-            self._search.known(bound=best.cost, prize=self._least)
+            self._search.report_bounds(bound=best.cost, prize=self._least_prize)
 
 
-class _Watch(cp_model.CpSolverSolutionCallback):
-    """Takes each solution as it is found."""
+class _SolutionCallback(cp_model.CpSolverSolutionCallback):
+    """Callback of CP-SAT that offers each of its solutions to the search."""
 
     def __init__(self, model: CircuitModel, search: Search) -> None:
         super().__init__()

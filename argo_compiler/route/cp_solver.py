@@ -1,4 +1,4 @@
-"""CP-SAT's solver as part of a Python program: it ends when it is asked to, and by Ctrl-C."""
+"""CP-SAT's solver in a Python program: it can be stopped by the program and by Ctrl-C."""
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -8,16 +8,16 @@ from ortools.sat.python import cp_model
 from argo_compiler.route.search import Search
 
 _NOMINAL = 8.0
-"""s for a second of CP-SAT's own count of its work, with the linear relaxation at its strongest"""
-_LOOKS = 0.02
-"""s between two looks at whether to go on"""
+"""s of a second of CP-SAT's deterministic time, with the strongest linear relaxation"""
+_POLLING_INTERVAL = 0.02
+"""s between two checks of whether the search must stop"""
 
 
 def new_solver() -> cp_model.CpSolver:
-    """A solver of one worker that leaves SIGINT to Python.
+    """Return a solver with one worker that leaves SIGINT to Python.
 
-    Its own handler would stay in Python's place after the search, so that the next Ctrl-C ends the
-    process without a word; and aborts it where the search runs in another thread.
+    CP-SAT's own handler would replace Python's for good: the next Ctrl-C after the search would end
+    the process without a message. And it aborts the process if the search runs in another thread.
     """
     solver = cp_model.CpSolver()
     solver.parameters.catch_sigint_signal = False
@@ -26,19 +26,19 @@ def new_solver() -> cp_model.CpSolver:
 
 
 def solver_for(search: Search) -> cp_model.CpSolver:
-    """A solver with the limits of a search, and the linear relaxation at its strongest."""
+    """Return a solver with the limits of a search and the strongest linear relaxation."""
     solver = new_solver()
     solver.parameters.linearization_level = 2
     solver.parameters.random_seed = search.seed % (1 << 31)
     if search.timed:
-        solver.parameters.max_time_in_seconds = max(search.left(), 0.01)
+        solver.parameters.max_time_in_seconds = max(search.remaining(), 0.01)
     else:
-        solver.parameters.max_deterministic_time = search.left() / _NOMINAL
+        solver.parameters.max_deterministic_time = search.remaining() / _NOMINAL
     return solver
 
 
 def spend(search: Search, solver: cp_model.CpSolver) -> None:
-    """Counts what the solver has worked as the search's."""
+    """Add the solver's work to that of the search."""
     search.spend(_NOMINAL * solver.deterministic_time)
 
 
@@ -46,19 +46,22 @@ def run_solver(
     solver: cp_model.CpSolver,
     model: cp_model.CpModel,
     callback: cp_model.CpSolverSolutionCallback | None = None,
-    over: Callable[[], bool] = lambda: False,
+    must_stop: Callable[[], bool] = lambda: False,
 ) -> int:
-    """Searches until it is over, and returns the status. KeyboardInterrupt stops the search and is
-    raised."""
-    # Python answers signals in the main thread and between its own steps only, so that one waits.
+    """Run the solver to its end, or until `must_stop` returns True, and return its status.
+
+    KeyboardInterrupt stops the solver and is raised.
+    """
+    # Python handles signals only in the main thread and between its own instructions. So the solver
+    # runs in a thread, and this one waits for it.
     with ThreadPoolExecutor(1) as pool:
         status = pool.submit(solver.solve, model, callback)
         try:
             while True:
                 try:
-                    return int(status.result(_LOOKS))
+                    return int(status.result(_POLLING_INTERVAL))
                 except TimeoutError:
-                    if over():
+                    if must_stop():
                         solver.stop_search()
         except BaseException:
             solver.stop_search()

@@ -51,11 +51,11 @@ class ExchangeSearch:
         state = _state(kernel, ways, search.seed)
         worst = int(search.network.prize.sum()) + 1
         work, iterations, length = 0, 0, _ROUND
-        while search.left() > 0.0:
+        while search.remaining() > 0.0:
             _begin(kernel, ways, state, search)
-            begun, left = search.now(), search.left()
+            begun, left = search.now(), search.remaining()
             length = left if left < 2.0 * length else length
-            while search.left() > 0.0 and (passed := (search.now() - begun) / length) < 1.0:
+            while search.remaining() > 0.0 and (passed := (search.now() - begun) / length) < 1.0:
                 cost, missed = state[kernel.WORTH, 4:6].tolist()
                 mean = state[kernel.WORTH, 1] / max(1, state[kernel.WORTH, 0])
                 kernel.run(ways, state, _SLICE, _HOT * mean * (_COLD / _HOT) ** passed)
@@ -83,7 +83,7 @@ class _Kernel:
             if cls._thread is None:
                 cls._thread = Thread(target=cls._compile)
                 cls._thread.start()
-        while cls._thread.is_alive() and (not search.timed or search.left() > 0.0):
+        while cls._thread.is_alive() and (not search.timed or search.remaining() > 0.0):
             cls._thread.join(0.02)
         return cls._module
 

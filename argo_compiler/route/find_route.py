@@ -1,4 +1,4 @@
-"""From a problem to a suggestion: modes, pruning, bounds, the portfolio; why there is none."""
+"""Pipeline from a problem to a suggestion: modes, pruning, bounds, the portfolio, explanations."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -19,12 +19,12 @@ from argo_compiler.route.solvers import RouteSolver
 from argo_compiler.route.stop import FirstFeasible
 from argo_compiler.route.suggested import RouteSuggestion
 
-_CHECK = 2.0
-"""s for one check of whether some requirements can be met together"""
-_BEGUN = 0.3
-"""s that it takes at most until a check looks at the time"""
-_ROUNDS = 0.2
-"""share of the time in which the ways to make rounds are found"""
+_CHECK_TIME = 2.0
+"""limit of one check of whether some requirements can be met together, in s"""
+_CHECK_START = 0.3
+"""longest time until a check reads the clock, in s"""
+_ROUNDS_SHARE = 0.2
+"""share of the time in which the modes of rounds are computed"""
 
 Clock = Callable[[], float]
 
@@ -40,22 +40,22 @@ def find_route(
     observers: Observers,
     solvers: Sequence[str | RouteSolver] | None = None,
 ) -> RouteSuggestion:
-    """See `argo_compiler.route.suggestion.suggest_route`."""
+    """Search for the best route, as `argo_compiler.route.suggestion.suggest_route` does."""
     begun = clock()
-    search = _searched(problem, limits, seed, workers, clock, observers, solvers)
+    search = _run_search(problem, limits, seed, workers, clock, observers, solvers)
     words: tuple[str, ...] = ()
     if explain and search.infeasible:
-        words = _explained(problem, search, limits, begun, clock)
+        words = _explain(problem, search, limits, begun, clock)
     best = search.best
-    made = set(best.tour.order) if best else set()
+    visited = set(best.tour.order) if best else set()
     return RouteSuggestion(
         None if best is None else best.tour,
         0 if best is None else best.prize,
         search.prize_bound,
         0 if best is None else best.cost,
         search.bound,
-        search.done,
-        () if best is None else tuple(v for v in range(problem.size) if v not in made),
+        search.proven,
+        () if best is None else tuple(v for v in range(problem.size) if v not in visited),
         words,
         search.method,
         search.reasons,
@@ -64,7 +64,7 @@ def find_route(
     )
 
 
-def _searched(
+def _run_search(
     problem: RouteProblem,
     limits: SearchLimits,
     seed: int,
@@ -75,72 +75,81 @@ def _searched(
 ) -> Search:
     begun = clock()
 
-    def order_of(step: Step) -> tuple[Step, ...]:
-        return _cycle(problem, step, limits, seed, clock)
+    def cyclic_order(step: Step) -> tuple[Step, ...]:
+        return _shortest_cycle(problem, step, limits, seed, clock)
 
     seconds = inf if limits.seconds is None else limits.seconds
-    net = network(problem, order_of, lambda: clock() - begun > _ROUNDS * seconds)
+    net = network(problem, cyclic_order, lambda: clock() - begun > _ROUNDS_SHARE * seconds)
     if longest(net) >= NEVER // 2:
         raise Invalid(
-            "the times of this route problem are too long to be added up: take a greater unit"
+            "the times of this route problem are too long to be added up: use a larger unit"
         )
     search = Search(net, prune(net), limits, seed, clock, observers, begun)
     if not net.exact:
-        search.say("rounds have too many orders to weigh them all: nothing is proven")
+        search.add_reason("rounds have too many orders to check all of them: nothing is proven")
     bound = assignment_bound(net, search.pruned)
     if bound is None:
-        search.say("some step can't be made at all, or not in an order that is asked for")
-        with search.by("pruning") as turn:
-            turn.impossible()
+        search.add_reason("some visit can't be made at all, or not in the required order")
+        with search.turn_of("pruning") as turn:
+            turn.report_infeasible()
         return search
-    with search.by("assignment") as turn:
-        turn.known(prize_bound=int(net.prize[search.pruned.steps].sum()))
-        turn.known(bound=None if net.objective is Objective.PRIZE else bound)
+    with search.turn_of("assignment") as turn:
+        turn.report_bounds(prize_bound=int(net.prize[search.pruned.steps].sum()))
+        turn.report_bounds(bound=None if net.objective is Objective.PRIZE else bound)
     solve(search, workers, solvers)
     return search
 
 
-def _explained(
+def _explain(
     problem: RouteProblem, search: Search, limits: SearchLimits, begun: float, clock: Clock
 ) -> tuple[str, ...]:
-    """Why there is no route, as far as that is found out in the time that is left."""
+    """Return requirements that cannot all be met, in the mission's words.
+
+    The search for them ends with the remaining time; returns () if that is too short for any
+    result. Adds a reason to the search that states how good the explanation is.
+    """
 
     longest_check = 0.0
 
-    def left() -> float:
+    def remaining() -> float:
         return inf if limits.seconds is None else limits.seconds - (clock() - begun)
 
-    def possible(part: RouteProblem) -> bool | None:
+    def is_feasible(part: RouteProblem) -> bool | None:
         nonlocal longest_check
-        seconds = None if limits.seconds is None else max(left(), 1e-3)
-        before = clock()
+        seconds = None if limits.seconds is None else max(remaining(), 1e-3)
+        check_begun = clock()
         if limits.work is None:
-            short = SearchLimits(min(_CHECK, seconds or _CHECK), None, FirstFeasible())
+            short = SearchLimits(min(_CHECK_TIME, seconds or _CHECK_TIME), None, FirstFeasible())
         else:
-            short = SearchLimits(seconds, _CHECK, FirstFeasible())
-        one = _searched(part, short, search.seed, 1, clock, Observers())
-        longest_check = max(longest_check, clock() - before)
-        return True if one.best is not None else False if one.infeasible else None
+            short = SearchLimits(seconds, _CHECK_TIME, FirstFeasible())
+        check = _run_search(part, short, search.seed, 1, clock, Observers())
+        longest_check = max(longest_check, clock() - check_begun)
+        return True if check.best is not None else False if check.infeasible else None
 
-    found = find_infeasible_subset(problem, possible, lambda: left() <= min(longest_check, _BEGUN))
-    if found is None:
-        search.say("there was no time to find out what can't be met together")
-        return ()
-    search.say(
-        "fewer requirements than these can always be met"
-        if found.smallest
-        else "without any one of these requirements, the others can be met"
-        if found.minimal
-        else "there was no time to find out which of these requirements can be spared"
+    subset = find_infeasible_subset(
+        problem, is_feasible, lambda: remaining() <= min(longest_check, _CHECK_START)
     )
-    return found.words
+    if subset is None:
+        search.add_reason("there was no time to find requirements that can't be met together")
+        return ()
+    search.add_reason(
+        "fewer requirements than these can always be met"
+        if subset.smallest
+        else "without any one of these requirements, the others can be met"
+        if subset.minimal
+        else "there was no time to check whether fewer of these requirements can't be met either"
+    )
+    return subset.words
 
 
-def _cycle(
+def _shortest_cycle(
     problem: RouteProblem, step: Step, limits: SearchLimits, seed: int, clock: Clock
 ) -> tuple[Step, ...]:
-    """The shortest cyclic order of a large round's parts, as a route problem of its own that begins
-    and ends at the first part that may be the first."""
+    """Search for the shortest cyclic order of a large round's parts.
+
+    It is a route problem of its own, which starts and ends at the first visit that may come first.
+    If there is no such visit, or no route is found, the parts keep their order.
+    """
     members = sorted(step.visits)
     inner = [r for r in problem.rounds if set(r.members) < step.visits]
     later = {
@@ -155,21 +164,23 @@ def _cycle(
         return tuple(step.parts)
     rest = [v for v in members if v != first]
     rows = [*rest, first]
-    place = {visit: k for k, visit in enumerate(rest)}
+    new_number = {visit: k for k, visit in enumerate(rest)}
     cycle = RouteProblem(
         tuple(replace(problem.visits[v], mandatory=True) for v in rest),
         np.ascontiguousarray(problem.travel[np.ix_(rows, rows)]),
         tuple(
-            replace(p, sequence=tuple(place[v] for v in p.sequence if v in place))
+            replace(p, sequence=tuple(new_number[v] for v in p.sequence if v in new_number))
             for p in problem.precedences
         ),
-        tuple(replace(r, members=tuple(place[v] for v in r.members)) for r in inner),
+        tuple(replace(r, members=tuple(new_number[v] for v in r.members)) for r in inner),
         unit=problem.unit,
     )
-    share = _ROUNDS / len(problem.rounds)
-    seconds, work = (None if one is None else share * one for one in (limits.seconds, limits.work))
+    share = _ROUNDS_SHARE / len(problem.rounds)
+    seconds, work = (
+        None if limit is None else share * limit for limit in (limits.seconds, limits.work)
+    )
     short = SearchLimits(seconds, work, limits.stop)
-    best = _searched(cycle, short, seed, 1, clock, Observers()).best
+    best = _run_search(cycle, short, seed, 1, clock, Observers()).best
     if best is None:
         return tuple(step.parts)
     visits = [first, *(rest[k] for k in best.tour.order)]

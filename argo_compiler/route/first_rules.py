@@ -1,4 +1,4 @@
-"""A first route, built step by step, always on to the best step by a simple rule."""
+"""Solver that builds a first route greedily: a simple rule chooses each next step."""
 
 from collections.abc import Callable
 
@@ -12,17 +12,19 @@ from argo_compiler.route.search import Search
 
 Vector = NDArray[np.int64]
 Rule = Callable[[int, int], Vector]
-"""from the node and the time that the robot is at, numbers of all nodes: the smaller, the better"""
+"""function of the robot's node and time: a cost for each node, of which the lowest comes next"""
 
-_BEYOND = 0.1
-"""s beyond the limit for a first route, so that there is one"""
-_MOST_STANDS = 8
-"""ways to have charged that are kept"""
+_OVERTIME = 0.1
+"""s beyond the limit, so that there is a first route"""
+_MOST_LABELS = 8
+"""highest number of labels, with different charges, at a node"""
 
 
 class FirstRules:
-    """Makes what must be made, and what that needs, by the first of some rules that gets through.
-    What may be left out is left to those who improve the route."""
+    """Solver that makes the mandatory steps, and those they need, by the first rule that succeeds.
+
+    Optional steps are left to the solvers that improve the route.
+    """
 
     name = "first rules"
 
@@ -40,42 +42,45 @@ class FirstRules:
             lambda at, now: np.maximum(now + onward[at], earliest) + latest // 4,
             lambda _at, _now: latest,
         ]
-        follower = PathTiming(network)
-        until = search.now() + search.left() + _BEYOND
-        if not any(_built(search, follower, rule, until) for rule in rules):
-            search.say("no simple rule leads to a first route")
+        timing = PathTiming(network)
+        until = search.now() + search.remaining() + _OVERTIME
+        if not any(_build(search, timing, rule, until) for rule in rules):
+            search.add_reason("no simple rule leads to a first route")
 
 
-def _built(search: Search, follower: PathTiming, rule: Rule, until: float) -> bool:
-    """Offers the route that goes always on to the best node by the rule from which the end can be
-    reached, and says whether there is one, and time for it."""
+def _build(search: Search, timing: PathTiming, rule: Rule, until: float) -> bool:
+    """Build a route by a rule, offer it, and return whether there is one.
+
+    The next node is always the one that the rule prefers among those from which the end can be
+    reached. The route is given up if there is no such node, or at the time `until`.
+    """
     network, pruned, m = search.network, search.pruned, search.network.size
     path: list[int] = []
-    left = network.mandatory.copy()
+    remaining = network.mandatory.copy()
     missing = pruned.needs.sum(axis=0)
-    closed = np.zeros(len(left), np.int64)
-    stands, at = follower.start(), m
-    home = follower.go(stands, m, m, 0)
-    while left.any():
-        ready = (left & (missing == 0) & (closed == 0))[network.step] & pruned.arcs[at, :m]
+    closed = np.zeros(len(remaining), np.int64)
+    labels, at = timing.start(), m
+    end_labels = timing.extend(labels, m, m, 0)
+    while remaining.any():
+        ready = (remaining & (missing == 0) & (closed == 0))[network.step] & pruned.arcs[at, :m]
         nodes = np.flatnonzero(ready)
-        cost = rule(at, stands[0].time)[nodes]
+        cost = rule(at, labels[0].time)[nodes]
         for node in nodes[np.argsort(cost, kind="stable")].tolist():
             if search.now() >= until:
                 return False
-            following = follower.go(stands, at, node, len(path))
-            home = follower.go(following, node, m, len(path) + 1)
-            if home:
+            following = timing.extend(labels, at, node, len(path))
+            end_labels = timing.extend(following, node, m, len(path) + 1)
+            if end_labels:
                 break
         else:
             return False
-        if len(following) > _MOST_STANDS:  # the soonest, and that with the most left
-            following = [*following[: _MOST_STANDS - 1], following[-1]]
-        stands, at, s = following, node, network.step[node]
+        if len(following) > _MOST_LABELS:  # the earliest ones, and the one with the most energy
+            following = [*following[: _MOST_LABELS - 1], following[-1]]
+        labels, at, s = following, node, network.step[node]
         path.append(node)
-        left[s] = False
+        remaining[s] = False
         missing -= pruned.needs[s]
         closed += pruned.before[:, s]
-    if home:
-        search.offer(path, dict(min(home, key=follower.cost).charges))
-    return bool(home)
+    if end_labels:
+        search.offer(path, dict(min(end_labels, key=timing.cost).charges))
+    return bool(end_labels)

@@ -80,23 +80,23 @@ def small_layers(search: Search) -> list[Layer] | None:
     """The layers of a search's network, if they are few enough to be gone through."""
     network, pruned = search.network, search.pruned
     most = min(_MOST_SETS, _MOST_WORK // max(1, network.size))
-    part = search.part(0.7)
+    part = search.share(0.7)
     if not search.timed:
-        most = min(most, int(part.left() / (_NOMINAL * max(1, network.size))))
-    sets = count_sets(network, pruned, most, lambda: part.left() <= 0.0)
+        most = min(most, int(part.remaining() / (_NOMINAL * max(1, network.size))))
+    sets = count_sets(network, pruned, most, lambda: part.remaining() <= 0.0)
     ordered = network.windowed or pruned.before.any() or network.problem.battery is not None
     # Windows may leave much fewer sets than the order does.
     few = sets <= (most if ordered else _FEW_SETS) or network.windowed
     if not few or longest(network) >= INF or not Bits(network, pruned).fits:
-        search.say(f"{int(pruned.steps.sum())} steps allow too many sets to go through")
+        search.add_reason(f"{int(pruned.steps.sum())} steps allow too many sets to go through")
         return None
-    layers = soonest_layers(network, pruned, most, lambda: part.left() <= 0.0)
+    layers = soonest_layers(network, pruned, most, lambda: part.remaining() <= 0.0)
     if layers is None:
-        search.say("there are too many sets to go through, or there was no time for them")
+        search.add_reason("there are too many sets to go through, or there was no time for them")
         return None
     count = 1 + sum(len(layer.masks) for layer in layers)
     search.spend(count * network.size * _NOMINAL)
-    search.say(f"order and time allow {count} sets of {int(pruned.steps.sum())} steps")
+    search.add_reason(f"order and time allow {count} sets of {int(pruned.steps.sum())} steps")
     return layers
 
 
@@ -115,12 +115,12 @@ class HeldKarp:
             return
         best = best_path(search.network, layers, search.pruned)
         if best is None:
-            search.impossible()
+            search.report_infeasible()
             return
         search.offer(best.path)
         found = search.best
         assert found is not None
-        search.known(best.prize, found.cost, best.prize)
+        search.report_bounds(best.prize, found.cost, best.prize)
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,10 @@
-"""Why there is no route: requirements of the mission that can't all be met.
+"""Explanation of why there is no route: requirements of the mission that cannot all be met.
 
-A smallest set of them is found by hitting sets (A. Ignatiev et al., CP 2015): whatever can't all be
-met has something in common with each set of requirements that it helps to give up. As long as a
-smallest set with that property can be met, it is filled up to a largest one that can be, and what
-is left out of that is one more set to hit.
+A smallest infeasible subset is found by hitting sets (A. Ignatiev et al., CP 2015). The complement
+of a feasible subset is a correction set: each infeasible subset has an element of it. The search
+collects correction sets and computes a smallest set that hits all of them. If that set is
+infeasible, it is a smallest infeasible subset. If it is feasible, it is extended to a maximal
+feasible subset, whose complement is one more correction set to hit.
 """
 
 from collections.abc import Callable
@@ -16,12 +17,13 @@ from ortools.sat.python import cp_model
 from argo_compiler.route.cp_solver import new_solver, run_solver
 from argo_compiler.route.problem import RouteProblem
 
-Kept = frozenset[int]
+Subset = frozenset[int]
+"""numbers of some requirements"""
 
 
 @dataclass(frozen=True)
 class Requirement:
-    """Something that a problem asks for and that could be given up."""
+    """Constraint of a problem that could be given up."""
 
     words: str
     kind: str
@@ -30,24 +32,24 @@ class Requirement:
 
 @dataclass(frozen=True)
 class InfeasibleSubset:
-    """Requirements that can't all be met."""
+    """Requirements that cannot all be met."""
 
     words: tuple[str, ...]
     minimal: bool
-    """whether each part of them can be met"""
+    """true if each proper subset can be met"""
     smallest: bool
-    """whether there is none of fewer"""
+    """true if no infeasible subset has fewer requirements"""
 
 
 def requirements(problem: RouteProblem) -> list[Requirement]:
-    """All that the problem asks for."""
-    found = [
+    """Return all requirements of a problem."""
+    collected = [
         Requirement(precedence.words, "precedence", number)
         for number, precedence in enumerate(problem.precedences)
     ]
     for number, visit in enumerate(problem.visits):
         if visit.mandatory:
-            found.append(Requirement(f"{visit.name} is visited", "visit", number))
+            collected.append(Requirement(f"{visit.name} is visited", "visit", number))
         if visit.latest is not None:
             words = f"{visit.name} by {_clock(visit.latest * problem.unit)}"
             if visit.earliest:
@@ -56,18 +58,18 @@ def requirements(problem: RouteProblem) -> list[Requirement]:
                 )
                 words = f"{visit.name} between {begin} and {end}"
             words = problem.words.get(f"window {number}", words)
-            found.append(Requirement(words, "window", number))
+            collected.append(Requirement(words, "window", number))
     if problem.max_duration is not None:
         words = f"within {_clock(problem.max_duration * problem.unit)}"
-        found.append(Requirement(problem.words.get("max_duration", words), "limit"))
+        collected.append(Requirement(problem.words.get("max_duration", words), "limit"))
     if problem.battery is not None:
-        words = problem.words.get("battery", "with what the battery holds")
-        found.append(Requirement(words, "battery"))
-    found += [
-        Requirement(f"{one.name} is made as one", "round", number)
-        for number, one in enumerate(problem.rounds)
+        words = problem.words.get("battery", "within the battery's capacity")
+        collected.append(Requirement(words, "battery"))
+    collected += [
+        Requirement(f"{round_.name} is complete and without interruption", "round", number)
+        for number, round_ in enumerate(problem.rounds)
     ]
-    return found
+    return collected
 
 
 def _clock(seconds: float) -> str:
@@ -75,11 +77,13 @@ def _clock(seconds: float) -> str:
     return f"{minutes}:{rest:02d}"
 
 
-def reduced(problem: RouteProblem, wanted: list[Requirement]) -> RouteProblem:
-    """The problem that asks for these requirements only. What need not be visited is left away, if
-    nothing needs it."""
+def reduced(problem: RouteProblem, subset: list[Requirement]) -> RouteProblem:
+    """Return the problem with only these requirements.
+
+    It has no visits but those required, and those that they need.
+    """
     kinds: dict[str, set[int]] = {}
-    for requirement in wanted:
+    for requirement in subset:
         kinds.setdefault(requirement.kind, set()).add(requirement.number)
     precedences = [problem.precedences[k] for k in sorted(kinds.get("precedence", set()))]
     rounds = [problem.rounds[k] for k in sorted(kinds.get("round", set()))]
@@ -97,16 +101,16 @@ def reduced(problem: RouteProblem, wanted: list[Requirement]) -> RouteProblem:
         if more <= must:
             break
         must |= more
-    kept = sorted(must)
-    place = {visit: k for k, visit in enumerate(kept)}
+    remaining = sorted(must)
+    new_number = {visit: k for k, visit in enumerate(remaining)}
     visits = []
-    for number in kept:
+    for number in remaining:
         visit = replace(problem.visits[number], mandatory=True, prize=0)
         if number not in kinds.get("window", set()):
             visit = replace(visit, latest=None)
         visits.append(visit)
     n = problem.size
-    rows = [*kept, n]
+    rows = [*remaining, n]
     battery = problem.battery if "battery" in kinds else None
     if battery is not None:
         rows += [problem.charger(k) for k in range(len(problem.chargers))]
@@ -115,11 +119,11 @@ def reduced(problem: RouteProblem, wanted: list[Requirement]) -> RouteProblem:
         tuple(visits),
         problem.travel[np.ix_(rows, rows)],
         tuple(
-            replace(p, sequence=tuple(place[v] for v in p.sequence if v in place))
+            replace(p, sequence=tuple(new_number[v] for v in p.sequence if v in new_number))
             for p in precedences
         ),
         tuple(
-            replace(r, members=tuple(place[v] for v in r.members))
+            replace(r, members=tuple(new_number[v] for v in r.members))
             for r in rounds
             if set(r.members) <= must
         ),
@@ -132,39 +136,50 @@ def reduced(problem: RouteProblem, wanted: list[Requirement]) -> RouteProblem:
 
 def find_infeasible_subset(
     problem: RouteProblem,
-    possible: Callable[[RouteProblem], bool | None],
-    over: Callable[[], bool],
+    is_feasible: Callable[[RouteProblem], bool | None],
+    is_time_up: Callable[[], bool],
     most_checks: int = 200,
 ) -> InfeasibleSubset | None:
-    """Of a problem that has no route, as few requirements as possible that can't all be met with
-    all that must be visited, and as few of those visits as possible. `possible` says whether a
-    problem has a route, None if that is not known; after `most_checks` calls of it, and when the
-    time is `over`, there may be smaller clashes than the one found. None: it is all of them, for
-    all that was found out in time."""
-    asked = requirements(problem)
-    visits = [one for one in asked if one.kind == "visit"]
-    rest = [one for one in asked if one.kind != "visit"]
+    """Find requirements that cannot all be met, of a problem without a route.
 
-    def of_rest(some: list[Requirement]) -> bool | None:
-        return possible(reduced(problem, visits + some))
+    First finds as few requirements as possible that cannot all be met together with all mandatory
+    visits, then as few of these visits as possible. Returns None if the time was too short to rule
+    out any requirement.
 
-    def of_visits(more: list[Requirement]) -> bool | None:
-        return possible(reduced(problem, more + some))
+    Args:
+        problem: A problem without a route.
+        is_feasible: Returns whether a problem has a route, or None if that is not known.
+        is_time_up: Returns True when the search must end.
+        most_checks: Highest number of calls of `is_feasible`, for the visits and for the other
+            requirements each. After that number, or when the time is up, smaller infeasible subsets
+            than the result may exist.
+    """
+    all_requirements = requirements(problem)
+    visits = [r for r in all_requirements if r.kind == "visit"]
+    others = [r for r in all_requirements if r.kind != "visit"]
 
-    some, minimal, smallest = _Finder(rest, of_rest, most_checks, over).infeasible_subset()
-    needed, none_spared, fewest = _Finder(visits, of_visits, most_checks, over).infeasible_subset()
-    minimal &= none_spared
-    if not minimal and len(some) + len(needed) == len(asked):
+    def can_meet_others(subset: list[Requirement]) -> bool | None:
+        return is_feasible(reduced(problem, visits + subset))
+
+    def can_meet_visits(subset: list[Requirement]) -> bool | None:
+        return is_feasible(reduced(problem, subset + clash))
+
+    clash, minimal, smallest = _Finder(
+        others, can_meet_others, most_checks, is_time_up
+    ).infeasible_subset()
+    needed, needed_minimal, fewest = _Finder(
+        visits, can_meet_visits, most_checks, is_time_up
+    ).infeasible_subset()
+    minimal &= needed_minimal
+    if not minimal and len(clash) + len(needed) == len(all_requirements):
         return None
-    named = {visit for one in some for visit in _named(problem, one)}
-    words = [
-        one.words for one in [*needed, *some] if one.kind != "visit" or one.number not in named
-    ]
+    named = {visit for requirement in clash for visit in _named(problem, requirement)}
+    words = [r.words for r in [*needed, *clash] if r.kind != "visit" or r.number not in named]
     return InfeasibleSubset(tuple(words), minimal, smallest and fewest)
 
 
 def _named(problem: RouteProblem, requirement: Requirement) -> tuple[int, ...]:
-    """The visits that a requirement is about."""
+    """Return the visits that a requirement names."""
     match requirement.kind:
         case "precedence":
             return problem.precedences[requirement.number].sequence
@@ -177,91 +192,103 @@ def _named(problem: RouteProblem, requirement: Requirement) -> tuple[int, ...]:
 
 
 class _Finder:
-    """Looks for a smallest part that can't be met of some requirements of which that is known. Has
-    state: what is known of their parts."""
+    """Search for a smallest infeasible subset of requirements that cannot all be met.
+
+    Holds the subsets that are known to be feasible or infeasible.
+    """
 
     def __init__(
         self,
-        asked: list[Requirement],
-        possible: Callable[[list[Requirement]], bool | None],
+        candidates: list[Requirement],
+        is_feasible: Callable[[list[Requirement]], bool | None],
         most_checks: int,
-        over: Callable[[], bool],
+        is_time_up: Callable[[], bool],
     ) -> None:
-        self._asked, self._possible, self._most = asked, possible, most_checks
-        self._over = over
+        self._candidates, self._is_feasible, self._most = candidates, is_feasible, most_checks
+        self._is_time_up = is_time_up
         self._checks = 0
-        self._met: list[Kept] = []
-        self._clashing: list[Kept] = []
+        self._feasible: list[Subset] = []
+        self._infeasible: list[Subset] = []
         self._unknown = False
 
     def infeasible_subset(self) -> tuple[list[Requirement], bool, bool]:
-        """The part, whether nothing in it can be spared, and whether there is no smaller one."""
-        everything = frozenset(range(len(self._asked)))
-        small = self._spared(everything)
+        """Return an infeasible subset, whether it is minimal, and whether none is smaller."""
+        everything = frozenset(range(len(self._candidates)))
+        small = self._shrink(everything)
         minimal = not self._unknown
-        to_hit: list[Kept] = []
+        to_hit: list[Subset] = []
         while self._checks < self._most and not self._unknown:
-            smallest = _hitting_set(to_hit, len(self._asked), self._over)
+            smallest = _hitting_set(to_hit, len(self._candidates), self._is_time_up)
             if smallest is None:
                 break
             if len(smallest) >= len(small):
-                return self._told(small), True, True
-            if self._clashes(smallest):
-                return self._told(smallest), True, True
-            to_hit.append(everything - self._filled(smallest))
-        return self._told(small), minimal, False
+                return self._selected(small), True, True
+            if self._is_infeasible(smallest):
+                return self._selected(smallest), True, True
+            to_hit.append(everything - self._extend(smallest))
+        return self._selected(small), minimal, False
 
-    def _told(self, infeasible_subset: Kept) -> list[Requirement]:
-        return [self._asked[k] for k in sorted(infeasible_subset)]
+    def _selected(self, subset: Subset) -> list[Requirement]:
+        return [self._candidates[k] for k in sorted(subset)]
 
-    def _clashes(self, kept: Kept) -> bool:
-        """Whether it is known that they can't all be met."""
-        if any(kept <= met for met in self._met):
+    def _is_infeasible(self, subset: Subset) -> bool:
+        """Return True if the requirements are known to be infeasible together.
+
+        Checks it if it is not known yet. An unknown answer, and a lack of time, count as feasible
+        and are recorded.
+        """
+        if any(subset <= feasible for feasible in self._feasible):
             return False
-        if any(infeasible_subset <= kept for infeasible_subset in self._clashing):
+        if any(infeasible <= subset for infeasible in self._infeasible):
             return True
-        if self._over():
+        if self._is_time_up():
             self._unknown = True
             return False
         self._checks += 1
-        answer = self._possible(self._told(kept))
+        answer = self._is_feasible(self._selected(subset))
         self._unknown |= answer is None
         if answer is False:
-            self._clashing.append(kept)
+            self._infeasible.append(subset)
         else:
-            self._met.append(kept)
+            self._feasible.append(subset)
         return answer is False
 
-    def _spared(self, infeasible_subset: Kept) -> Kept:
-        """A part of an infeasible subset of which nothing more can be spared, as far as there is
-        time: all of them are tried first, then halves, single ones last."""
-        size = 2 * len(infeasible_subset)
+    def _shrink(self, infeasible: Subset) -> Subset:
+        """Remove requirements from an infeasible subset until it is minimal or the time is up.
+
+        Tries to remove all of them first, then halves, and single ones last.
+        """
+        size = 2 * len(infeasible)
         while size > 1:
             size //= 2
-            parts = sorted(infeasible_subset)
+            parts = sorted(infeasible)
             for first in range(0, len(parts), size):
-                fewer = infeasible_subset - set(parts[first : first + size])
-                if self._clashes(fewer):
-                    infeasible_subset = fewer
-        return infeasible_subset
+                fewer = infeasible - set(parts[first : first + size])
+                if self._is_infeasible(fewer):
+                    infeasible = fewer
+        return infeasible
 
-    def _filled(self, met: Kept) -> Kept:
-        """A largest part around one that can be met."""
-        for part in range(len(self._asked)):
-            if part not in met and self._checks < self._most and not self._clashes(met | {part}):
-                met = met | {part}
-        return met
+    def _extend(self, feasible: Subset) -> Subset:
+        """Add requirements to a feasible subset until it is maximal."""
+        for added in range(len(self._candidates)):
+            if (
+                added not in feasible
+                and self._checks < self._most
+                and not self._is_infeasible(feasible | {added})
+            ):
+                feasible = feasible | {added}
+        return feasible
 
 
-def _hitting_set(sets: list[Kept], count: int, over: Callable[[], bool]) -> Kept | None:
-    """A smallest set that has something in common with each of these; None: no time for it."""
+def _hitting_set(sets: list[Subset], count: int, is_time_up: Callable[[], bool]) -> Subset | None:
+    """Return a smallest set with an element of each of `sets`, or None if the time is too short."""
     model = cp_model.CpModel()
     picked = [model.new_bool_var("") for _ in range(count)]
-    for one in sets:
-        model.add_bool_or([picked[k] for k in sorted(one)])
+    for set_ in sets:
+        model.add_bool_or([picked[k] for k in sorted(set_)])
     model.minimize(sum(picked))
     solver = new_solver()
     solver.parameters.num_workers = 1
-    if run_solver(solver, model, None, over) != cp_model.OPTIMAL:
+    if run_solver(solver, model, None, is_time_up) != cp_model.OPTIMAL:
         return None
     return frozenset(k for k in range(count) if solver.boolean_value(picked[k]))

@@ -86,10 +86,10 @@ def _tell(search: Search, found: LabelSolution) -> None:
     if found.path is not None:
         search.offer(found.path, found.charges)
     elif found.proven:
-        search.impossible()
+        search.report_infeasible()
         return
     least = found.prize_bound if search.network.selective else 0
-    search.known(found.prize_bound, found.bound, least)
+    search.report_bounds(found.prize_bound, found.bound, least)
 
 
 def solve_labels(
@@ -102,13 +102,13 @@ def solve_labels(
     if soon is None:
         return no_solution(network, proven=True)
     # If the battery lasts for the best route without a battery, that is it.
-    follower = PathTiming(network)
-    stand = follower.follow(soon.path)
-    if stand is not None:
-        one = make_solution(network, soon.path, dict(stand.charges), int(network.prize.sum()), 0)
-        search.offer(soon.path, dict(stand.charges))
-        if stand.time == soon.end and network.objective is not Objective.TRAVEL:
-            return make_solution(network, soon.path, dict(stand.charges), soon.prize, one.cost)
+    timing = PathTiming(network)
+    label = timing.follow(soon.path)
+    if label is not None:
+        one = make_solution(network, soon.path, dict(label.charges), int(network.prize.sum()), 0)
+        search.offer(soon.path, dict(label.charges))
+        if label.time == soon.end and network.objective is not Objective.TRAVEL:
+            return make_solution(network, soon.path, dict(label.charges), soon.prize, one.cost)
         start = one
     if network.selective:
         return _by_prize(network, pruned, search, layers, start)
@@ -165,8 +165,8 @@ def _widening(
                 return no_solution(network, proven=True)
             return make_solution(network, best.path, best.charges, prize, best.cost)
         bound = max(bound, beam.bound)
-        search.known(bound=bound)
-        if search.left() <= 0.0:
+        search.report_bounds(bound=bound)
+        if search.remaining() <= 0.0:
             break
     if best is None or best.path is None:
         return no_solution(network, proven=False, bound=bound)
@@ -185,7 +185,7 @@ def _by_prize(
     goals, worth = _goals(network, pruned, layers)
     most, best, first, size = int(worth.max(initial=-1)), start, 0, _FIRST_GOALS
     while first < len(goals):
-        search.known(prize_bound=most)
+        search.report_bounds(prize_bound=most)
         # All of one prize stay together.
         lowest = worth[min(first + size, len(goals)) - 1]
         after = int(np.searchsorted(-worth, -lowest, side="right"))
@@ -200,7 +200,7 @@ def _by_prize(
             space = _with_tables(network, pruned, sets_towards(some, len(network.prize)))
             beam = space.beam(width, None, search)
             best, complete = _better(network, search, beam, best), beam.complete
-            if complete or search.left() <= 0.0:
+            if complete or search.remaining() <= 0.0:
                 break
         if best is not None and best.path is not None and complete and best.prize >= lowest:
             return _cheapest(network, pruned, search, best, goals[worth == best.prize])
@@ -217,7 +217,7 @@ def _cheapest(
     network: StepNetwork, pruned: Pruned, search: Search, best: LabelSolution, goals: Vector
 ) -> LabelSolution:
     """The cheapest path to any of the goals, which are all of those with the best prize."""
-    search.known(prize_bound=best.prize)
+    search.report_bounds(prize_bound=best.prize)
     if network.objective is Objective.PRIZE:
         return make_solution(network, best.path or (), best.charges, best.prize, 0)
     space = _with_tables(network, pruned, sets_towards(goals, len(network.prize)))

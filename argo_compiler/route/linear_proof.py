@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ortools.sat.python import cp_model
 
 from argo_compiler.route.circuit_model import CircuitModel, time_to_build
-from argo_compiler.route.cp_sat import offer_nothing
+from argo_compiler.route.cp_sat import offer_empty_routes
 from argo_compiler.route.cp_solver import run_solver, solver_for, spend
 from argo_compiler.route.linear_relaxation import LinearRelaxation
 from argo_compiler.route.network import StepNetwork
@@ -43,10 +43,10 @@ class LinearProof:
         if not pruned.possible or not 0 < int(pruned.arcs.sum()) <= _MOST_ARCS:
             return
         if not network.mandatory.any():
-            offer_nothing(search)  # its circuits make something
+            offer_empty_routes(search)  # its circuits make something
         best = search.best
         whole = network.plain and not network.before.any()
-        search = search.part(_SHARE if whole else _SHARE_OF_BOUND)
+        search = search.share(_SHARE if whole else _SHARE_OF_BOUND)
         m = network.size
         if network.selective and (best is None or best.prize < search.prize_bound):
             prizes = np.zeros((m + 1, m + 1), np.int64)
@@ -73,12 +73,12 @@ class _Stage:
         """`whole`: until it is proven, else only a bound."""
         search, network = self.search, self.search.network
         relaxation = LinearRelaxation(network, search.pruned, self.costs, self.least_prize or None)
-        relaxation.solve(search.part(0.5 if whole else 1.0), self._known())
+        relaxation.solve(search.share(0.5 if whole else 1.0), self._known())
         low, share, cap = relaxation.bound, _ABOVE, self._cap()
         if low is None:
             return
         self._none_below(min(low, cap + 1))
-        while whole and search.left() > 0.0 and not self._proven(low, cap):
+        while whole and search.remaining() > 0.0 and not self._proven(low, cap):
             most = min(low + max(1, int(share * abs(low))), self._most(cap))
             low = self._best_up_to(relaxation, most)
             self._none_below(low)
@@ -109,11 +109,13 @@ class _Stage:
         """It is proven that no route comes to less."""
         search, known = self.search, self._known()
         if known is None and low > self._cap():
-            search.impossible()
+            search.report_infeasible()
         elif self.least_prize is None:
-            search.known(prize_bound=-low if known is None else max(-low, -known))
+            search.report_bounds(prize_bound=-low if known is None else max(-low, -known))
         else:
-            search.known(bound=low if known is None else min(low, known), prize=self.least_prize)
+            search.report_bounds(
+                bound=low if known is None else min(low, known), prize=self.least_prize
+            )
 
     def _best_up_to(self, relaxation: LinearRelaxation, most: int) -> int:
         """Offers the best route that comes to `most` at most, if there is one; gives what no route
@@ -127,7 +129,7 @@ class _Stage:
             replace(network, mandatory=must),
             replace(pruned, arcs=arcs, steps=pruned.steps & steps),
         )
-        if search.left() < time_to_build(few, pruned):
+        if search.remaining() < time_to_build(few, pruned):
             return min(relaxation.bound or 0, most)
         model = CircuitModel(few, pruned)
         for cut in relaxation.cuts:
@@ -139,7 +141,7 @@ class _Stage:
         else:
             model.minimise_cost(self.least_prize or None, most)
         solver = solver_for(search)
-        status = run_solver(solver, model.model, None, lambda: search.left() <= 0.0)
+        status = run_solver(solver, model.model, None, lambda: search.remaining() <= 0.0)
         spend(search, solver)
         if status == cp_model.INFEASIBLE:
             return most + 1

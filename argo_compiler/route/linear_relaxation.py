@@ -135,13 +135,13 @@ class LinearRelaxation:
     def solve(self, search: Search, enough: int | None) -> None:
         """Raises the bound until it is enough, no cut is found, or the time is over."""
         added = False
-        while search.left() > 0.0:
+        while search.remaining() > 0.0:
             simplex = "true" if added else "false"
             self._glop.SetSolverSpecificParametersAsString(
                 f"use_preprocessing: false use_dual_simplex: {simplex}"
             )
             if search.timed:
-                self._glop.SetTimeLimit(max(1, int(1e3 * search.left())))
+                self._glop.SetTimeLimit(max(1, int(1e3 * search.remaining())))
             status = self._glop.Solve()
             search.spend(_WORK[0] * len(self._rows) * (1 + self._glop.iterations()))
             if status != pywraplp.Solver.OPTIMAL:

@@ -1,4 +1,4 @@
-"""Following a path of nodes: when it is where, and where it is best charged."""
+"""Times along a path of nodes, and the best positions to charge."""
 
 from dataclasses import dataclass
 
@@ -7,19 +7,22 @@ from argo_compiler.route.problem import NEVER, Objective
 
 
 @dataclass(frozen=True)
-class Stand:
-    """Where a robot may be after some nodes of a path: one way to have got there."""
+class PathLabel:
+    """Time, energy and charges of the robot after some nodes of a path."""
 
     time: int
     used: int
     waited: int
     charges: tuple[tuple[int, int], ...] = ()
-    """position in the path and charger"""
+    """position in the path and number of the charger, of each charge"""
 
 
 class PathTiming:
-    """Goes along paths of a network, charging wherever that is best. Its tables are plain lists,
-    which are faster to look single numbers up in than arrays."""
+    """Labels along the paths of a network, with charges at the best positions.
+
+    Counts the legs it has tried. The tables are plain lists, as single numbers are read faster from
+    a list than from an array.
+    """
 
     def __init__(self, network: StepNetwork) -> None:
         self.network = network
@@ -34,81 +37,87 @@ class PathTiming:
             for s in network.chargers
         ]
         self._battery = network.problem.battery
-        self._travels = network.problem.waits
+        self._counts_travel = network.problem.waits
         self.legs = 0
-        """that were looked at, by chargers included: what it has worked"""
+        """number of legs tried, those by chargers included: a measure of the work"""
 
-    def start(self) -> list[Stand]:
-        """Before the first node."""
+    def start(self) -> list[PathLabel]:
+        """Return the label before the first node."""
         used = 0 if self._battery is None else self._battery.used
-        return [Stand(0, used, 0)]
+        return [PathLabel(0, used, 0)]
 
-    def go(self, stands: list[Stand], origin: int, node: int, position: int) -> list[Stand]:
-        """On to a node (m: the end); none are left if that is not possible."""
-        found: list[Stand] = []
-        self.legs += len(stands) * (1 + len(self._stations))
-        for stand in stands:
+    def extend(
+        self, labels: list[PathLabel], origin: int, node: int, position: int
+    ) -> list[PathLabel]:
+        """Return the undominated labels after the leg from `origin` to `node`.
+
+        Node m is the end. `position`: that of `node` in the path. The result is empty if no label
+        can be extended.
+        """
+        extended: list[PathLabel] = []
+        self.legs += len(labels) * (1 + len(self._stations))
+        for label in labels:
             if self._battery is None:
-                arrived = stand.time + self._time[origin][node]
-                self._arrive(found, stand, node, arrived, 0, stand.charges)
+                arrival = label.time + self._time[origin][node]
+                self._arrive(extended, label, node, arrival, 0, label.charges)
                 continue
             assert self._energy is not None
-            used = stand.used + self._energy[origin][node]
+            used = label.used + self._energy[origin][node]
             if used <= self._battery.capacity:
-                arrived = stand.time + self._time[origin][node]
-                self._arrive(found, stand, node, arrived, used, stand.charges)
+                arrival = label.time + self._time[origin][node]
+                self._arrive(extended, label, node, arrival, used, label.charges)
             for number, (to, to_energy, out, out_energy) in enumerate(self._stations):
-                at = stand.used + to_energy[origin]
-                if at <= self._battery.capacity and out_energy[node] <= self._battery.capacity:
-                    arrived = stand.time + to[origin] + self._battery.overhead + at + out[node]
-                    charges = (*stand.charges, (position, number))
-                    self._arrive(found, stand, node, arrived, out_energy[node], charges)
-        return found if len(found) < 2 else self._best(found)
+                charged = label.used + to_energy[origin]
+                if charged <= self._battery.capacity and out_energy[node] <= self._battery.capacity:
+                    arrival = label.time + to[origin] + self._battery.overhead + charged + out[node]
+                    charges = (*label.charges, (position, number))
+                    self._arrive(extended, label, node, arrival, out_energy[node], charges)
+        return extended if len(extended) < 2 else self._undominated(extended)
 
     def _arrive(
         self,
-        found: list[Stand],
-        stand: Stand,
+        extended: list[PathLabel],
+        label: PathLabel,
         node: int,
-        arrived: int,
+        arrival: int,
         used: int,
         charges: tuple[tuple[int, int], ...],
     ) -> None:
-        begin = max(arrived, self._earliest[node])
-        if begin <= self._latest[node] and arrived < NEVER:
-            waited = stand.waited + begin - arrived
-            found.append(Stand(begin + self._service[node], used, waited, charges))
+        begin = max(arrival, self._earliest[node])
+        if begin <= self._latest[node] and arrival < NEVER:
+            waited = label.waited + begin - arrival
+            extended.append(PathLabel(begin + self._service[node], used, waited, charges))
 
-    def follow(self, path: tuple[int, ...]) -> Stand | None:
-        """The best way along a whole path to the end; None: there is none."""
-        stands, origin = self.start(), self.network.size
+    def follow(self, path: tuple[int, ...]) -> PathLabel | None:
+        """Return the best label at the end of a complete path, or None if it is infeasible."""
+        labels, origin = self.start(), self.network.size
         for position, node in enumerate((*path, self.network.size)):
-            stands = self.go(stands, origin, node, position)
-            if not stands:
+            labels = self.extend(labels, origin, node, position)
+            if not labels:
                 return None
             origin = node
-        return min(stands, key=self.cost)
+        return min(labels, key=self.cost)
 
-    def cost(self, stand: Stand) -> int:
-        """What the objective makes small."""
+    def cost(self, label: PathLabel) -> int:
+        """Return the value that the objective minimises."""
         match self.network.objective:
             case Objective.DURATION:
-                return stand.time
+                return label.time
             case Objective.TRAVEL:
-                return stand.time - stand.waited
+                return label.time - label.waited
             case Objective.PRIZE:
                 return 0
 
-    def _best(self, stands: list[Stand]) -> list[Stand]:
-        """Those than which none is as good in time and energy, and waiting where it counts."""
-        kept: list[Stand] = []
-        if not self._travels:
-            for one in sorted(stands, key=lambda s: (s.time, s.used)):
-                if not kept or one.used < kept[-1].used:
-                    kept.append(one)
-            return kept
-        for one in sorted(stands, key=lambda s: (s.time, s.used, -s.waited)):
-            gone = one.time - one.waited
-            if not any(k.used <= one.used and k.time - k.waited <= gone for k in kept):
-                kept.append(one)
-        return kept
+    def _undominated(self, labels: list[PathLabel]) -> list[PathLabel]:
+        """Return the labels that no other dominates in time, energy, and travel if it counts."""
+        undominated: list[PathLabel] = []
+        if not self._counts_travel:
+            for label in sorted(labels, key=lambda s: (s.time, s.used)):
+                if not undominated or label.used < undominated[-1].used:
+                    undominated.append(label)
+            return undominated
+        for label in sorted(labels, key=lambda s: (s.time, s.used, -s.waited)):
+            travel = label.time - label.waited
+            if not any(k.used <= label.used and k.time - k.waited <= travel for k in undominated):
+                undominated.append(label)
+        return undominated

@@ -1,4 +1,4 @@
-"""Which solver takes part when: quick ones first, then those that improve and those that prove."""
+"""Portfolio of solvers: quick ones first, then improving and proving ones in turn or parallel."""
 
 import threading
 from collections.abc import Callable, Sequence
@@ -17,81 +17,87 @@ from argo_compiler.route.solvers import (
     solver_names,
 )
 
-_IMPROVED_FIRST = 0.35
-"""share of the time for better routes before proofs are tried, where there is one worker"""
-_FIRST_MOST, _FIRST_BRIEF = 0.05, 0.003
-"""s for each step that this is at most; and where a proof needs no good route"""
-_PROVED = 0.7
-"""share of the rest for proofs; what is left is for better routes again"""
+_FIRST_IMPROVING_SHARE = 0.35
+"""share of the time for better routes before the proofs start, with one worker"""
+_FIRST_TIME_PER_STEP, _FIRST_TIME_PER_EASY_STEP = 0.05, 0.003
+"""upper limits of that time, in s per step: in general, and where a proof needs no good route"""
+_PROVING_SHARE = 0.7
+"""share of the remaining time for proofs; the rest is again for better routes"""
 
 
 def solve(search: Search, workers: int, chosen: Sequence[str | RouteSolver] | None = None) -> None:
-    """Searches until the best route is proven or the time is over. `chosen`: the only solvers that
-    take part, by name or one's own; None: all.
+    """Search until the best route is proven or the time has passed.
 
-    Raises NotFound for a name that no solver has.
+    `chosen`: the only solvers that take part, as names or objects; None: all. Raises NotFound if no
+    solver has a name.
     """
-    own = [solver for solver in chosen or () if not isinstance(solver, str)]
+    objects = [solver for solver in chosen or () if not isinstance(solver, str)]
     names = [solver for solver in chosen or () if isinstance(solver, str)]
     for name in names:
         if name not in solver_names():
             near = nearest_name(name, solver_names())
-            instead = (
-                f"did you mean {near!r}?" if near else f"there are {', '.join(solver_names())}"
-            )
-            raise NotFound(f"no route solver is named {name!r}; {instead}")
+            remedy = f"did you mean {near!r}?" if near else f"there are {', '.join(solver_names())}"
+            raise NotFound(f"no route solver is named {name!r}; {remedy}")
 
-    def those(group: Sequence[RouteSolver]) -> list[RouteSolver]:
-        wanted = [one for one in group if chosen is None or one.name in names]
-        return [one for one in wanted if one.supports(search.problem)]
+    def usable(group: Sequence[RouteSolver]) -> list[RouteSolver]:
+        wanted = [solver for solver in group if chosen is None or solver.name in names]
+        return [solver for solver in wanted if solver.supports(search.problem)]
 
-    for solver in [*those(FIRST), *those(SMALL)]:
+    for solver in [*usable(FIRST), *usable(SMALL)]:
         _run(solver, search)
-    mine = [one for one in own if one.supports(search.problem)]
-    improving = [*mine, *those(registered_solvers()), *_best_of(search, those(IMPROVING))]
-    proving = those(PROVING)
+    custom = [solver for solver in objects if solver.supports(search.problem)]
+    improving = [*custom, *usable(registered_solvers()), *_ranked(search, usable(IMPROVING))]
+    proving = usable(PROVING)
     if workers > 1 and search.timed and improving and proving:
-        _beside(
+        _run_in_parallel(
             search,
-            lambda: _in_turn(search, improving),
-            lambda: _in_turn(search, proving),
+            lambda: _run_in_turn(search, improving),
+            lambda: _run_in_turn(search, proving),
         )
         return
     network = search.network
-    brief = network.plain and not (network.selective or search.pruned.before.any())
-    most = (_FIRST_BRIEF if brief else _FIRST_MOST) * len(network.prize)
-    _in_turn(search.part(_IMPROVED_FIRST, most) if proving else search, improving)
-    _in_turn(search.part(_PROVED if improving else 1.0), proving)
-    _in_turn(search, improving)
+    is_easy = network.plain and not (network.selective or search.pruned.before.any())
+    most = (_FIRST_TIME_PER_EASY_STEP if is_easy else _FIRST_TIME_PER_STEP) * len(network.prize)
+    _run_in_turn(search.share(_FIRST_IMPROVING_SHARE, most) if proving else search, improving)
+    _run_in_turn(search.share(_PROVING_SHARE if improving else 1.0), proving)
+    _run_in_turn(search, improving)
 
 
-def _best_of(search: Search, solvers: list[RouteSolver]) -> list[RouteSolver]:
-    """Those of the local searches that find the best routes of such a problem, in their order."""
-    kept = [one for one in solvers if not isinstance(one, RuinRecreate)] or solvers
-    waits = search.network.selective or search.network.windowed
-    # Without prizes and windows, PyVRP does not find what exchanges find.
-    return kept if waits else kept[::-1]
+def _ranked(search: Search, solvers: list[RouteSolver]) -> list[RouteSolver]:
+    """Return the local searches that suit the problem, in the order in which they run.
+
+    Ruin and recreate is used only if no other local search supports the problem.
+    """
+    suited = [solver for solver in solvers if not isinstance(solver, RuinRecreate)] or solvers
+    prefers_pyvrp = search.network.selective or search.network.windowed
+    # Without prizes and windows, PyVRP does not find all that the exchange search finds.
+    return suited if prefers_pyvrp else suited[::-1]
 
 
-def _in_turn(search: Search, solvers: Sequence[RouteSolver]) -> None:
-    """Each solver has an equal part of the time that is left."""
+def _run_in_turn(search: Search, solvers: Sequence[RouteSolver]) -> None:
+    """Run the solvers one after the other, each with an equal share of the remaining time."""
     for number, solver in enumerate(solvers):
-        _run(solver, search.part(1.0 / (len(solvers) - number)))
+        _run(solver, search.share(1.0 / (len(solvers) - number)))
 
 
 def _run(solver: RouteSolver, search: Search) -> None:
-    if search.left() > 0.0:
-        with search.by(solver.name) as turn:
+    if search.remaining() > 0.0:
+        with search.turn_of(solver.name) as turn:
             solver.solve(turn)
 
 
-def _beside(search: Search, here: Callable[[], object], there: Callable[[], object]) -> None:
-    """Both at the same time. What goes wrong in either ends both, and is raised."""
+def _run_in_parallel(
+    search: Search, foreground: Callable[[], object], background: Callable[[], object]
+) -> None:
+    """Run two functions at the same time, the second one in a thread.
+
+    An exception of either stops the search for both, and is raised.
+    """
     failure: list[BaseException] = []
 
     def run() -> None:
         try:
-            there()
+            background()
         except BaseException as error:
             failure.append(error)
             search.stop()
@@ -99,7 +105,7 @@ def _beside(search: Search, here: Callable[[], object], there: Callable[[], obje
     thread = threading.Thread(target=run)
     thread.start()
     try:
-        here()
+        foreground()
         thread.join()
     except BaseException:
         search.stop()

@@ -62,7 +62,7 @@ class PyvrpSearch:
             # That no route was found is told by what is offered.
             warnings.simplefilter("ignore", pyvrp.exceptions.PenaltyBoundWarning)
             for neighbours, disturbed in cycle(_TURNS):
-                if search.left() <= 0.0:
+                if search.remaining() <= 0.0:
                     return
                 _Turn(search, nodes, data, random, neighbours, disturbed).run(penalty)
 
@@ -172,4 +172,4 @@ class _Turn:
         return found
 
     def _stop(self, best_cost: int) -> bool:  # noqa: ARG002
-        return self._idle > _PATIENCE or self._search.left() <= 0.0
+        return self._idle > _PATIENCE or self._search.remaining() <= 0.0

@@ -47,9 +47,9 @@ class RuinRecreate:
 
 
 def _charges(network: StepNetwork, path: Path) -> dict[int, int]:
-    stand = PathTiming(network).follow(path)
-    assert stand is not None
-    return dict(stand.charges)
+    label = PathTiming(network).follow(path)
+    assert label is not None
+    return dict(label.charges)
 
 
 class LocalSearch:
@@ -57,7 +57,7 @@ class LocalSearch:
 
     def __init__(self, network: StepNetwork, pruned: Pruned, seed: int) -> None:
         self._network, self._pruned = network, pruned
-        self._follower = PathTiming(network)
+        self._timing = PathTiming(network)
         self._rng = np.random.default_rng(seed)
         self._near = shortest(network)
         self._step = network.step.tolist()
@@ -71,15 +71,15 @@ class LocalSearch:
         """Offers the better routes that are found until the time is over, from the one given."""
         best = at = path
         best_worth = at_worth = self._worth(path) or (0, -NEVER)
-        whole = search.left()
-        self._over = lambda: search.left() <= 0.0
+        whole = search.remaining()
+        self._over = lambda: search.remaining() <= 0.0
         if not path and not self._network.selective:
             return
-        k, legs = 0, self._follower.legs
-        while (left := search.left()) > 0.0:
+        k, legs = 0, self._timing.legs
+        while (left := search.remaining()) > 0.0:
             k += 1
-            search.spend(_CHANGE + _LEG * (self._follower.legs - legs), 1)
-            legs = self._follower.legs
+            search.spend(_CHANGE + _LEG * (self._timing.legs - legs), 1)
+            legs = self._timing.legs
             there = self._recreated(self._ruined(at))
             worth = None if there is None else self._worth(there)
             if there is None or worth is None:
@@ -96,11 +96,11 @@ class LocalSearch:
                 at, at_worth = best, best_worth
 
     def _worth(self, path: Path) -> Worth | None:
-        stand = self._follower.follow(path)
-        if stand is None:
+        label = self._timing.follow(path)
+        if label is None:
             return None
         prize = sum(int(self._network.prize[self._step[node]]) for node in path)
-        return prize, -self._follower.cost(stand)
+        return prize, -self._timing.cost(label)
 
     def _ruined(self, path: Path) -> tuple[list[int], list[int]]:
         """A path without some nodes near each other, and the steps that may be put back."""
@@ -157,6 +157,6 @@ class LocalSearch:
         tries = 1 if self._network.plain and self._network.limit >= NEVER else 6
         for _, position, node in sorted(places)[:tries]:
             longer = [*path[:position], node, *path[position:]]
-            if self._follower.follow(tuple(longer)) is not None:
+            if self._timing.follow(tuple(longer)) is not None:
                 return longer
         return None

@@ -1,4 +1,4 @@
-"""What a search has found and proven, and the time that it has: what all its solvers share."""
+"""State that all solvers of a search share: best route, bounds, proofs, and the remaining time."""
 
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -16,43 +16,43 @@ from argo_compiler.route.stop import SearchProgress, SolverTurn, StopCriterion
 
 @dataclass(frozen=True)
 class Solution:
-    """A route that keeps to everything."""
+    """Feasible route, with its value and the solver that found it."""
 
     tour: Tour
     prize: int
     cost: int
     path: tuple[int, ...] | None
-    """its nodes of the network; None: it has others"""
+    """nodes of the network that the route visits; None: the network has no nodes for it"""
     charges: Mapping[int, int]
-    """the charger by the position in the path before which it is used"""
+    """number of the charger by the position in the path before which the robot charges"""
     method: str
 
     def better_than(self, other: "Solution | None") -> bool:
-        """Whether it wins more, or as much at less cost."""
+        """Return True if this route wins a higher prize, or the same prize at a lower cost."""
         return other is None or (-self.prize, self.cost) < (-other.prize, other.cost)
 
 
 @dataclass(frozen=True)
 class SearchLimits:
-    """When a search ends."""
+    """Limits of a search: time, work, and a criterion; None for each that does not apply."""
 
     seconds: float | None = None
     work: float | None = None
-    """s by the solvers' own count"""
+    """nominal s of work, by the solvers' own count"""
     stop: StopCriterion | None = None
 
 
 @dataclass(frozen=True)
 class Observers:
-    """Who is told while a search runs, from whatever thread."""
+    """Callbacks that a running search calls, from any thread."""
 
     on_best: Callable[[SearchProgress, Tour], None] | None = None
     on_bound: Callable[[SearchProgress], None] | None = None
 
 
 @dataclass
-class _Known:
-    """What all views of a search share. Has state."""
+class _SharedState:
+    """Mutable state that all views of a search share."""
 
     clock: Callable[[], float]
     limits: SearchLimits
@@ -64,7 +64,7 @@ class _Known:
     best: Solution | None = None
     better: tuple[float, int] = (0.0, 0)
     bounds: dict[int, int] = field(default_factory=dict)
-    """what no route costs less than that wins at least so much"""
+    """lower bound on the cost of the routes that win at least a prize, by that prize"""
     impossible: bool = False
     stopped: bool = False
     method: str = ""
@@ -75,8 +75,11 @@ class _Known:
 
 
 class Search:
-    """The search for the best route of one problem, as one solver sees it: with a share of the time
-    that is left. Solvers in several threads may share one."""
+    """View that one solver has of the search for a problem's best route.
+
+    Each view has its own deadline, a share of the remaining time; all views of a search share what
+    is found. Solvers in several threads may share one view.
+    """
 
     def __init__(
         self,
@@ -88,11 +91,11 @@ class Search:
         observers: Observers | None = None,
         begun: float | None = None,
     ) -> None:
-        """`clock` in s, of whatever begin; `begun`: on it, now if it is None."""
+        """Start the search; `clock` returns s since any time, `begun` is on it, now if None."""
         self.network, self.pruned, self.seed = network, pruned, seed
         begun = clock() if begun is None else begun
         most = sum(visit.prize for visit in network.problem.visits)
-        self._known = _Known(clock, limits, observers or Observers(), most, begun)
+        self._shared = _SharedState(clock, limits, observers or Observers(), most, begun)
         limit = limits.seconds if limits.work is None else limits.work
         self._deadline = inf if limit is None else limit
         self._method = ""
@@ -105,191 +108,211 @@ class Search:
 
     @property
     def timed(self) -> bool:
-        """Whether the limit is one of time; else nothing may depend on time."""
-        return self._known.limits.work is None
+        """True if the limit is one of time; under a limit of work nothing may depend on time."""
+        return self._shared.limits.work is None
 
     def now(self) -> float:
-        """s since the search began, of time or of work."""
-        known = self._known
-        return known.clock() - known.begun if self.timed else known.work
+        """Return the time since the search began in s, or its work if that is limited."""
+        shared = self._shared
+        return shared.clock() - shared.begun if self.timed else shared.work
 
-    def left(self) -> float:
-        """s of time or of work that are left; 0 when the search is over."""
-        known, limits = self._known, self._known.limits
-        if not known.stopped:
-            late = limits.seconds is not None and known.clock() - known.begun >= limits.seconds
-            if late or (limits.stop is not None and limits.stop(self.progress())):
-                known.stopped = True
-        return 0.0 if known.stopped or self.done else max(0.0, self._deadline - self.now())
+    def remaining(self) -> float:
+        """Return the remaining time, or work if that is limited, in s; 0 when the search ends."""
+        shared, limits = self._shared, self._shared.limits
+        if not shared.stopped:
+            is_late = limits.seconds is not None and shared.clock() - shared.begun >= limits.seconds
+            if is_late or (limits.stop is not None and limits.stop(self.progress())):
+                shared.stopped = True
+        return 0.0 if shared.stopped or self.proven else max(0.0, self._deadline - self.now())
 
-    def part(self, share: float, most: float = inf) -> "Search":
-        """The same search with a share of the time that is left, and not more than `most` s."""
-        return self.until(self.now() + min(most, share * self.left()))
+    def share(self, share: float, most: float = inf) -> "Search":
+        """Return a view of this search with a share of the remaining time, at most `most` s."""
+        return self.until(self.now() + min(most, share * self.remaining()))
 
     def until(self, deadline: float) -> "Search":
-        """The same search until then on the clock of `now`, or until its own end if that is
-        sooner."""
+        """Return a view of this search with a deadline, on the clock of `now`.
+
+        The deadline of this view applies as well, if it is earlier.
+        """
         view = object.__new__(Search)
         view.__dict__.update(self.__dict__)
         view._deadline = min(self._deadline, deadline)
         return view
 
     @contextmanager
-    def by(self, solver: str) -> Iterator["Search"]:
-        """The same search, whose routes and proofs are by that solver: its turn."""
-        view, known = self.until(inf), self._known
+    def turn_of(self, solver: str) -> Iterator["Search"]:
+        """Yield a view for one solver's turn: its routes and proofs are attributed to `solver`."""
+        view, shared = self.until(inf), self._shared
         view._method = solver
-        begin = known.clock() - known.begun
+        begin = shared.clock() - shared.begun
         yield view
-        known.turns.append(SolverTurn(solver, begin, known.clock() - known.begun))
+        shared.turns.append(SolverTurn(solver, begin, shared.clock() - shared.begun))
 
     def spend(self, work: float, iterations: int = 0) -> None:
-        """A solver has worked so long by its own count (s), and tried so many routes."""
-        with self._known.lock:
-            self._known.work += work
-            self._known.iterations += iterations
+        """Add a solver's work, in nominal s by its own count, and the routes it has tried."""
+        with self._shared.lock:
+            self._shared.work += work
+            self._shared.iterations += iterations
 
     def stop(self) -> None:
-        """Ends the search, for all that share it."""
-        self._known.stopped = True
+        """Stop the search, for all its views."""
+        self._shared.stopped = True
 
-    # What is known
+    # Best route, bounds and proofs
 
     @property
     def best(self) -> Solution | None:
-        return self._known.best
+        return self._shared.best
 
     @property
     def prize_bound(self) -> int:
-        """No route wins more."""
-        return self._known.prize_bound
+        """Upper bound on the prize of any route."""
+        return self._shared.prize_bound
 
     @property
     def bound(self) -> int:
-        """No route that wins `prize_bound` costs less."""
-        known = self._known
-        with known.lock:
-            valid = (b for prize, b in known.bounds.items() if prize <= known.prize_bound)
+        """Lower bound on the cost of the routes that win `prize_bound`."""
+        shared = self._shared
+        with shared.lock:
+            valid = (b for prize, b in shared.bounds.items() if prize <= shared.prize_bound)
             return max(valid, default=0)
 
     @property
     def infeasible(self) -> bool:
-        """Whether it is proven that there is no route."""
-        return self._known.impossible
+        """True if it is proven that there is no route."""
+        return self._shared.impossible
 
     @property
-    def done(self) -> bool:
-        """Whether the best route is proven to be that, or that there is none."""
-        best = self._known.best
+    def proven(self) -> bool:
+        """True if the best route is proven to be optimal, or the problem to be infeasible."""
+        best = self._shared.best
         if best is None or not self.network.exact:
-            return self._known.impossible
-        return best.prize >= self._known.prize_bound and best.cost <= self.bound
+            return self._shared.impossible
+        return best.prize >= self._shared.prize_bound and best.cost <= self.bound
 
     @property
     def method(self) -> str:
-        """The solver whose finding completed the proof; without one, that of the best route."""
-        best = self._known.best
-        return self._known.method if self.done or best is None else best.method
+        """Name of the solver that completed the proof, or, without one, found the best route."""
+        best = self._shared.best
+        return self._shared.method if self.proven or best is None else best.method
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        return tuple(self._known.reasons)
+        return tuple(self._shared.reasons)
 
     @property
     def history(self) -> tuple[SearchProgress, ...]:
-        return tuple(self._known.history)
+        return tuple(self._shared.history)
 
     @property
     def turns(self) -> tuple[SolverTurn, ...]:
-        return tuple(sorted(self._known.turns, key=lambda turn: turn.begin))
+        return tuple(sorted(self._shared.turns, key=lambda turn: turn.begin))
 
     def progress(self) -> SearchProgress:
-        """How far the search is."""
-        known, best = self._known, self._known.best
+        """Return the current progress of the search."""
+        shared, best = self._shared, self._shared.best
         return SearchProgress(
-            known.clock() - known.begun,
-            known.work,
-            known.iterations,
+            shared.clock() - shared.begun,
+            shared.work,
+            shared.iterations,
             None if best is None else best.prize,
             None if best is None else best.cost,
-            known.prize_bound,
+            shared.prize_bound,
             self.bound,
-            known.better,
+            shared.better,
         )
 
-    # What is found
+    # Reports of solvers
 
-    def say(self, reason: str) -> None:
-        """Notes why the route is as it is, for those who asked for it."""
-        self._known.reasons.append(reason)
+    def add_reason(self, reason: str) -> None:
+        """Add a message for the user about how the route was found."""
+        self._shared.reasons.append(reason)
 
     def offer(self, path: Iterable[int], charges: Mapping[int, int] | None = None) -> bool:
-        """A route by its nodes was found, with the charger by the position in the path; whether it
-        is better than the best one. Raises Invalid if it breaks a rule."""
+        """Offer a route as nodes of the network, and return True if it is better than the best one.
+
+        `charges`: number of the charger by the position in the path before which the robot charges.
+        Raises Invalid if the route violates a constraint.
+        """
         path, charges = tuple(path), dict(charges or {})
         return self._offer(self.network.route(path, charges), path, charges)
 
     def offer_tour(self, tour: Tour) -> bool:
-        """The same by visits."""
+        """Offer a route as visits, and return True if it is better than the best one.
+
+        Raises Invalid if the route violates a constraint.
+        """
         path, charges = self.network.path(tour)
         return self._offer(tour, path, charges)
 
     def _offer(self, tour: Tour, path: tuple[int, ...] | None, charges: Mapping[int, int]) -> bool:
-        worth = evaluate(self.problem, tour)
-        if not worth.feasible:
+        evaluation = evaluate(self.problem, tour)
+        if not evaluation.feasible:
             raise Invalid(
-                f"solver {self._method!r} offers a route that breaks a rule: {worth.violations[0]}"
+                f"solver {self._method!r} offers a route that violates a constraint: "
+                f"{evaluation.violations[0]}"
             )
-        cost = worth.cost(self.problem.objective)
-        solution = Solution(tour, worth.prize, cost, path, charges, self._method)
-        known = self._known
-        with known.lock:
-            if not solution.better_than(known.best):
+        cost = evaluation.cost(self.problem.objective)
+        solution = Solution(tour, evaluation.prize, cost, path, charges, self._method)
+        shared = self._shared
+        with shared.lock:
+            if not solution.better_than(shared.best):
                 return False
-            known.best = solution
-            known.better = known.clock() - known.begun, known.iterations
-            self._note()
-        if known.observers.on_best:
-            known.observers.on_best(self.progress(), tour)
+            shared.best = solution
+            shared.better = shared.clock() - shared.begun, shared.iterations
+            self._record()
+        if shared.observers.on_best:
+            shared.observers.on_best(self.progress(), tour)
         return True
 
-    def known(
+    def report_bounds(
         self, prize_bound: int | None = None, bound: int | None = None, prize: int = 0
     ) -> None:
-        """Proven of the network's routes: none wins more than `prize_bound`; none that wins at
-        least `prize` costs less than `bound`."""
-        known = self._known
+        """Report proven bounds on all routes of the network.
+
+        No route wins more than `prize_bound`; no route that wins at least `prize` costs less than
+        `bound`. No-op if the network does not have all routes that may be optimal.
+        """
+        shared = self._shared
         if not self.network.exact:
             return
-        with known.lock:
-            before = known.prize_bound, self.bound
+        with shared.lock:
+            previous = shared.prize_bound, self.bound
             if prize_bound is not None:
-                known.prize_bound = min(known.prize_bound, prize_bound)
-            if bound is not None and bound > known.bounds.get(prize, 0):
-                known.bounds[prize] = bound
-            if before == (known.prize_bound, self.bound):
+                shared.prize_bound = min(shared.prize_bound, prize_bound)
+            if bound is not None and bound > shared.bounds.get(prize, 0):
+                shared.bounds[prize] = bound
+            if previous == (shared.prize_bound, self.bound):
                 return
-            self._note()
-        if known.observers.on_bound:
-            known.observers.on_bound(self.progress())
+            self._record()
+        if shared.observers.on_bound:
+            shared.observers.on_bound(self.progress())
 
-    def impossible(self) -> None:
-        """Proven of the network: there is no route."""
+    def report_infeasible(self) -> None:
+        """Report the proof that the network has no route.
+
+        No-op if the network does not have all routes that may be optimal.
+        """
         if not self.network.exact:
             return
-        with self._known.lock:
-            self._known.impossible = True
-            self._note()
+        with self._shared.lock:
+            self._shared.impossible = True
+            self._record()
 
-    def _note(self) -> None:
-        """Raises Conflict where what is found contradicts what is said to be proven."""
-        known, best = self._known, self._known.best
-        over = best is not None and best.prize > known.prize_bound
-        under = best is not None and best.prize >= known.prize_bound and best.cost < self.bound
-        if (known.impossible and best is not None) or over or under:
+    def _record(self) -> None:
+        """Record the progress in the history, with its solver.
+
+        Raises Conflict if the best route contradicts a reported bound or proof.
+        """
+        shared, best = self._shared, self._shared.best
+        wins_too_much = best is not None and best.prize > shared.prize_bound
+        costs_too_little = (
+            best is not None and best.prize >= shared.prize_bound and best.cost < self.bound
+        )
+        if (shared.impossible and best is not None) or wins_too_much or costs_too_little:
             raise Conflict(
-                f"solver {self._method!r}: what it finds contradicts what is said to be proven of "
-                "this route problem; please report it with the problem"
+                f"solver {self._method!r}: its result contradicts another result for this route "
+                "problem (a route, a bound or a proof); please report it with the problem"
             )
-        known.method = self._method or known.method
-        known.history.append(replace(self.progress(), solver=self._method))
+        shared.method = self._method or shared.method
+        shared.history.append(replace(self.progress(), solver=self._method))

@@ -1,4 +1,4 @@
-"""What beams of labels have found, and what is known by them of all paths."""
+"""Result of the beam searches with labels: a path, and bounds on all paths."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -9,23 +9,23 @@ from argo_compiler.route.network import StepNetwork
 
 @dataclass(frozen=True)
 class LabelSolution:
-    """A path of nodes, and what is known of all paths."""
+    """Path of nodes, and bounds on all paths."""
 
     path: tuple[int, ...] | None
-    """None: none was found"""
+    """best path that was found; None: none was found"""
     prize: int
     cost: int
     prize_bound: int
-    """no path wins more"""
+    """upper bound on the prize of any path"""
     bound: int
-    """no path that wins `prize_bound` costs less"""
+    """lower bound on the cost of the paths that win `prize_bound`"""
     proven: bool
-    """whether the path is a best one, or there is none"""
+    """true if the path is proven to be a best one, or, without a path, that there is none"""
     charges: Mapping[int, int] = field(default_factory=dict)
-    """the charger by the position in the path before which it is used"""
+    """number of the charger by the position in the path before which the robot charges"""
 
     def better_than(self, other: "LabelSolution | None") -> bool:
-        """Whether its path wins more, or as much at less cost."""
+        """Return True if this path wins a higher prize, or the same prize at a lower cost."""
         if self.path is None:
             return False
         return (
@@ -42,12 +42,15 @@ def make_solution(
     prize_bound: int,
     bound: int,
 ) -> LabelSolution:
-    """The path with what it is worth. Raises AssertionError if it breaks a rule: no solver may."""
+    """Return the path with its prize and cost.
+
+    Raises AssertionError if the path is infeasible, which is a defect of the solver.
+    """
     route = network.route(path, dict(charges))
-    worth = evaluate(network.problem, route)
-    assert worth.feasible, (route, worth.violations)
-    cost = worth.cost(network.objective)
-    prize = worth.prize
+    evaluation = evaluate(network.problem, route)
+    assert evaluation.feasible, (route, evaluation.violations)
+    cost = evaluation.cost(network.objective)
+    prize = evaluation.prize
     proven = network.exact and prize >= prize_bound and cost <= bound
     return LabelSolution(
         path, prize, cost, max(prize_bound, prize), min(bound, cost), proven, charges
@@ -55,5 +58,5 @@ def make_solution(
 
 
 def no_solution(network: StepNetwork, *, proven: bool, bound: int = 0) -> LabelSolution:
-    """No path; `proven`: there is none."""
+    """Return a result without a path; `proven`: it is proven that there is none."""
     return LabelSolution(None, 0, 0, int(network.prize.sum()), bound, proven)

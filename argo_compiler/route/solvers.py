@@ -1,6 +1,6 @@
-"""The solvers of route problems: their protocol, Argo's own, and those that are registered.
+"""Solvers of route problems: their protocol, Argo's own solvers, and a register for others.
 
-A new one of Argo's is listed here; when it takes part, `portfolio.py` says.
+A new solver of Argo is listed here; `portfolio.py` decides when it takes part.
 """
 
 from typing import Protocol
@@ -19,27 +19,30 @@ from argo_compiler.route.search import Search
 
 
 class RouteSolver(Protocol):
-    """Looks for routes, or proves things of them."""
+    """Method that offers routes or proves bounds on them."""
 
     @property
     def name(self) -> str:
-        """What users are told that a route comes from."""
+        """Name that users see as the method of a route."""
         ...
 
     def supports(self, problem: RouteProblem, /) -> bool:
-        """Whether it can take part in the search for this problem."""
+        """Return True if the solver can take part in the search for this problem."""
         ...
 
     def solve(self, search: Search, /) -> None:
-        """Offers routes and what it proves to the search, until `search.left()` is 0 or there is
-        nothing more that it can do. Under a limit of work (`not search.timed`) it must report that
-        by `search.spend`, and do the same each time."""
+        """Offer routes and report bounds to the search.
+
+        Ends when `search.remaining()` is 0, or when the solver has nothing more to try. Under a
+        limit of work (`not search.timed`) it must report its work by `search.spend`, and must be
+        deterministic.
+        """
         ...
 
 
 FIRST: tuple[RouteSolver, ...] = (FirstRules(),)
 SMALL: tuple[RouteSolver, ...] = (HeldKarp(), Labels())
-"""prove what is small enough, and give up on all else at once"""
+"""solvers that prove small problems to optimality, and give up on all others at once"""
 IMPROVING: tuple[RouteSolver, ...] = (PyvrpSearch(), ExchangeSearch(), RuinRecreate())
 PROVING: tuple[RouteSolver, ...] = (LinearProof(), LabelBeams(), CpSat())
 
@@ -47,26 +50,26 @@ _registered: dict[str, RouteSolver] = {}
 
 
 def register_solver(solver: RouteSolver) -> None:
-    """From now on, it takes part in the search for each problem that it supports, in this process.
+    """Register a solver: in this process it takes part in each search that it supports.
 
-    Raises Conflict if there is one of that name already.
+    Raises Conflict if a solver of that name is registered already.
     """
     if solver.name in _registered:
-        raise Conflict(f"there is a route solver {solver.name!r} already; name yours otherwise")
+        raise Conflict(f"a route solver {solver.name!r} is registered already; choose another name")
     _registered[solver.name] = solver
 
 
 def unregister_solver(name: str) -> None:
-    """It takes part no more."""
+    """Remove a registered solver; no-op if there is none of that name."""
     _registered.pop(name, None)
 
 
 def registered_solvers() -> tuple[RouteSolver, ...]:
-    """One's own, in the order of their registration."""
+    """Return the registered solvers, in the order of their registration."""
     return tuple(_registered.values())
 
 
 def solver_names() -> tuple[str, ...]:
-    """Return the names of all solvers: Argo's own, then those that are registered."""
+    """Return the names of all solvers: Argo's own, then the registered ones."""
     groups = FIRST, SMALL, IMPROVING, PROVING, registered_solvers()
     return tuple(solver.name for group in groups for solver in group)

@@ -1,7 +1,7 @@
-"""How far a search is, and the criteria by which it ends before its limit.
+"""Progress of a search, and the criteria that end it before its limit.
 
-A criterion is any callable that is given a `SearchProgress` and says whether to stop. It is called
-often, from several threads.
+A criterion is any callable that takes a `SearchProgress` and returns True to stop the search. It is
+called often, from several threads.
 """
 
 from collections.abc import Callable
@@ -12,38 +12,42 @@ from argo_compiler.base.errors import Invalid
 
 @dataclass(frozen=True)
 class SearchProgress:
-    """What was known at one moment of a search."""
+    """Best route and bounds known at one moment of a search."""
 
     time: float
     """s since the search began"""
     work: float
-    """s that solvers have worked by their own count, which a busy machine does not change"""
+    """nominal s of the solvers' work, by their own count, which does not depend on the machine's
+    load"""
     iterations: int
-    """routes that local searches have tried"""
+    """number of routes that local searches have tried"""
     prize: int | None
-    """of the best route so far; None: there was none"""
+    """prize of the best route so far; None: there is none"""
     cost: int | None
-    """of the best route so far, in units"""
+    """cost of the best route so far, in units; None: there is none"""
     prize_bound: int
-    """no route wins more"""
+    """upper bound on the prize of any route"""
     bound: int
-    """no route that wins as much as the best can win costs less, in units"""
+    """lower bound on the cost of the routes with the highest possible prize, in units"""
     better: tuple[float, int] = (0.0, 0)
-    """time and iterations when the best route was found; those of the beginning before"""
+    """time and iterations when the best route was found; zeros without a route"""
     solver: str = ""
-    """in the curve of a search: who found this"""
+    """in the history of a search: the solver that found the route or the bound"""
 
     @property
     def gap(self) -> float | None:
-        """See `gap`; None without a route."""
+        """Optimality gap, as the function `gap` computes it; None without a route."""
         if self.prize is None or self.cost is None:
             return None
         return gap(self.prize, self.cost, self.prize_bound, self.bound)
 
 
 def gap(prize: int, cost: int, prize_bound: int, bound: int) -> float:
-    """By what share a route could be better at most: in the prize, where that is not proven, else
-    in the cost."""
+    """Return the optimality gap of a route, relative to a bound.
+
+    It is the gap of the prize, as a share of `prize_bound`, while the prize is below that bound;
+    else the gap of the cost, as a share of the cost.
+    """
     if prize < prize_bound:
         return (prize_bound - prize) / prize_bound
     return (cost - bound) / cost if cost > bound else 0.0
@@ -51,7 +55,7 @@ def gap(prize: int, cost: int, prize_bound: int, bound: int) -> float:
 
 @dataclass(frozen=True)
 class SolverTurn:
-    """When a solver took part; s since the search began."""
+    """Time in which a solver took part; begin and end in s since the search began."""
 
     solver: str
     begin: float
@@ -63,7 +67,7 @@ StopCriterion = Callable[[SearchProgress], bool]
 
 @dataclass(frozen=True)
 class MaxRuntime:
-    """When so many seconds are over."""
+    """Criterion that stops the search after `seconds`."""
 
     seconds: float
 
@@ -73,7 +77,7 @@ class MaxRuntime:
 
 @dataclass(frozen=True)
 class MaxIterations:
-    """When local searches have tried so many routes."""
+    """Criterion that stops the search when local searches have tried `iterations` routes."""
 
     iterations: int
 
@@ -83,14 +87,18 @@ class MaxIterations:
 
 @dataclass(frozen=True)
 class NoImprovement:
-    """When no better route was found for so many iterations, or seconds; there must be a route."""
+    """Criterion that stops the search when the best route has not improved for some time.
+
+    That time is a number of iterations, of seconds, or whichever passes first. The search does not
+    stop before it has a route.
+    """
 
     iterations: int | None = None
     seconds: float | None = None
 
     def __post_init__(self) -> None:
         if self.iterations is None and self.seconds is None:
-            raise Invalid("without improvement for how long? give iterations or seconds")
+            raise Invalid("NoImprovement needs a limit: give iterations or seconds")
 
     def __call__(self, progress: SearchProgress) -> bool:
         if progress.prize is None:
@@ -102,7 +110,7 @@ class NoImprovement:
 
 @dataclass(frozen=True)
 class MaxGap:
-    """When the best route is within this share of the best that there can be."""
+    """Criterion that stops the search when the best route's optimality gap is at most `gap`."""
 
     gap: float
 
@@ -112,7 +120,7 @@ class MaxGap:
 
 @dataclass(frozen=True)
 class FirstFeasible:
-    """When there is a route."""
+    """Criterion that stops the search when it has a route."""
 
     def __call__(self, progress: SearchProgress) -> bool:
         return progress.prize is not None
@@ -120,7 +128,7 @@ class FirstFeasible:
 
 @dataclass(frozen=True)
 class MultipleCriteria:
-    """When any of some criteria is met."""
+    """Criterion that stops the search when any of several criteria is met."""
 
     criteria: tuple[StopCriterion, ...]
 

@@ -1,4 +1,4 @@
-"""The result of a search for a route: an order, and how good it is known to be."""
+"""Result of a search for a route: an order of visits, its cost and the proven bounds."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,51 +9,54 @@ from argo_compiler.route.stop import SearchProgress, SolverTurn, gap
 
 @dataclass(frozen=True)
 class RouteSuggestion:
-    """A route and its proof, or the requirements that can't all be met.
+    """Route with its proven bounds, or requirements that cannot all be met.
 
-    With something optional, first as much prize as possible is won, and then the cost made small.
+    If visits are optional, the prize is maximised first, and then the cost is minimised.
     """
 
     route: Tour | None
-    """None: none was found"""
+    """best route that was found; None: none was found"""
     prize: int
     prize_bound: int
-    """no route wins more"""
+    """upper bound on the prize of any route"""
     cost: int
-    """what the problem's objective makes small, in units"""
+    """value that the problem's objective minimises, in units"""
     bound: int
-    """no route that wins `prize_bound` costs less, in units"""
+    """lower bound on the cost of the routes that win `prize_bound`, in units"""
     proven: bool
-    """whether the route is known to be the best, or, without one, that there is none"""
+    """true if the route is proven to be the best one, or, without a route, that there is none"""
     dropped: tuple[int, ...] = ()
-    """the visits that are left out"""
+    """visits that the route leaves out"""
     infeasible_subset: tuple[str, ...] = ()
-    """without a route: requirements, in the mission's words, that can't all be met, though each
-    smaller set of them can, unless there was no time to find that out, as `reasons` then says;
-    empty: none are known"""
+    """without a route: requirements, in the mission's words, that cannot all be met although each
+    smaller set of them can. If there was no time to check the smaller sets, `reasons` says so.
+    Empty: none are known"""
     method: str = ""
-    """which solver it comes from"""
+    """name of the solver that completed the proof, or, without one, found the route"""
     reasons: tuple[str, ...] = ()
-    """why the route was made so: what was tried, and what was picked why"""
+    """messages about how the route was found: the methods tried and their results"""
     history: tuple[SearchProgress, ...] = ()
-    """what was known when: the curve of an anytime search"""
+    """progress at each new route or bound: the curve of an anytime search"""
     turns: tuple[SolverTurn, ...] = ()
-    """which solver took part when, by their begin"""
+    """turns of the solvers, by their begin"""
 
     @property
     def order(self) -> tuple[int, ...]:
-        """The visits in their order; empty where there is no route."""
+        """Visits in the route's order; empty without a route."""
         return () if self.route is None else self.route.order
 
     @property
     def charges(self) -> Mapping[int, int]:
-        """See Route."""
+        """Charges of the route, as in `Tour`; empty without a route."""
         return {} if self.route is None else self.route.charges
 
     @property
     def gap(self) -> float | None:
-        """By what share the best order could be better at most: of the prize, where that is not
-        proven, else of the cost. None without a route."""
+        """Optimality gap, as a share; None without a route.
+
+        It is the gap of the prize, until that is proven, and then the gap of the cost, as
+        `argo_compiler.route.stop.gap` computes them.
+        """
         if self.route is None:
             return None
         return gap(self.prize, self.cost, self.prize_bound, self.bound)

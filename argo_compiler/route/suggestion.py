@@ -1,4 +1,4 @@
-"""One call for all route problems."""
+"""Function that searches for the best route of any problem."""
 
 import logging
 import time
@@ -30,30 +30,44 @@ def suggest_route(
     solvers: "Sequence[str | RouteSolver] | None" = None,
     clock: Callable[[], float] = time.perf_counter,
 ) -> RouteSuggestion:
-    """The best route that is found within the limits, and what is known of it. Where there is none,
-    and there is time left, what can't all be met is looked for, unless nothing is to be explained.
+    """Search for the best route within the limits.
 
-    `time_limit`: s. `work_limit`: s that the solvers may work by their own count, on one core
-    however many workers there are; with it, and without a time limit, the result is the same each
-    time, also on a busy machine. `stop`: see `argo_compiler.route.stop`. `on_best` and `on_bound`
-    are called when a better route, or a better bound, is known; from any thread, so quickly.
-    `solvers`: the only ones that take part, by their names or as objects.
+    The result of a proof does not depend on the seed; the route may, if others are as good or the
+    time ends first.
 
-    What is proven does not depend on the seed; the route may, where others are as good or the time
-    is over. Raises Invalid if a limit or the number of workers is not positive, or there is no
-    limit, NotFound for an unknown solver, and whatever the criterion and the observers raise.
+    Args:
+        problem: The visits, travel times and constraints.
+        time_limit: Limit of time in s, or None.
+        seed: Seed of all random choices.
+        workers: Number of threads that search; a limit of work uses one.
+        explain: If there is no route, and time remains, search for requirements that cannot all be
+            met.
+        work_limit: Limit of work in nominal s, by the solvers' own count, on one core for any
+            number of workers; or None. With it, and without a time limit, the result is the same
+            each time, also on a busy machine.
+        stop: Criterion that ends the search early, see `argo_compiler.route.stop`.
+        on_best: Callback for each better route. It is called from any thread and must be quick.
+        on_bound: Callback for each better bound. It is called from any thread and must be quick.
+        solvers: The only solvers that take part, as names or objects; None: all.
+        clock: Clock in s, from any start.
+
+    Raises:
+        Invalid: if a limit or the number of workers is not positive, or there is no limit.
+        NotFound: if there is no solver of a name.
+
+    Exceptions of the criterion and of the callbacks are passed on.
     """
-    given = [limit for limit in (time_limit, work_limit) if limit is not None]
-    if not given or not all(limit > 0.0 for limit in given) or workers < 1:
+    limits = [limit for limit in (time_limit, work_limit) if limit is not None]
+    if not limits or not all(limit > 0.0 for limit in limits) or workers < 1:
         raise Invalid(
-            "a route needs time (or work) and a worker to be looked for, not "
-            f"{time_limit} s ({work_limit}) and {workers}"
+            "the search for a route needs a limit of time or work above 0, and a worker, not "
+            f"{time_limit} s, work {work_limit} and {workers} workers"
         )
-    # OR-Tools takes a second to be imported, and most who import this package don't search.
+    # OR-Tools takes a second to import, and most users of this package do not search.
     from argo_compiler.route.find_route import find_route
     from argo_compiler.route.search import Observers, SearchLimits
 
-    found = find_route(
+    suggestion = find_route(
         problem,
         SearchLimits(time_limit, work_limit, stop),
         seed,
@@ -63,12 +77,12 @@ def suggest_route(
         observers=Observers(on_best, on_bound),
         solvers=solvers,
     )
-    for reason in found.reasons:
+    for reason in suggestion.reasons:
         _log.debug("%s", reason)
     _log.info(
         "%d visits: %s by %s",
         problem.size,
-        "no route" if found.route is None else "proven" if found.proven else "not proven",
-        found.method or "no search",
+        "no route" if suggestion.route is None else "proven" if suggestion.proven else "not proven",
+        suggestion.method or "no search",
     )
-    return found
+    return suggestion

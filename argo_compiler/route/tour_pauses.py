@@ -1,4 +1,4 @@
-"""Where a route waits or charges, and for how long."""
+"""Pauses of a route: the waits and charges between its visits."""
 
 from dataclasses import dataclass, replace
 
@@ -8,45 +8,51 @@ from argo_compiler.route.problem import RouteProblem, Tour
 
 @dataclass(frozen=True)
 class TourPause:
-    """Something that a route does between two visits."""
+    """Wait or charge of a route between two visits."""
 
     duration: int
-    """in the problem's units"""
+    """duration in the problem's units"""
     visit: int | None = None
-    """the one that is waited for"""
+    """visit whose time window the robot waits for; None: it charges"""
     charger: int | None = None
-    """where the robot is charged; None: it waits"""
+    """number of the charger; None: the robot waits"""
 
 
 def pauses(problem: RouteProblem, route: Tour) -> dict[int, tuple[TourPause, ...]]:
-    """By the position in the order before which they are made; that of the end is its length."""
-    found: dict[int, tuple[TourPause, ...]] = {}
+    """Return a route's pauses by the position in its order before which they take place.
+
+    The position of pauses before the end is the length of the order.
+    """
+    pauses_by_position: dict[int, tuple[TourPause, ...]] = {}
     for k in range(len(route.order) + 1):
         here = []
         if k in route.charges:
-            duration = _charging(problem, route, k)
+            duration = _charging_time(problem, route, k)
             here.append(TourPause(duration, charger=route.charges[k]))
         if k < len(route.order) and problem.visits[route.order[k]].earliest:
-            before, after = _part(route, k, k), _part(route, k + 1, k)
+            before, after = _prefix(route, k, k), _prefix(route, k + 1, k)
             waiting = evaluate(problem, after).waiting - evaluate(problem, before).waiting
             if waiting:
                 here.append(TourPause(waiting, visit=route.order[k]))
         if here:
-            found[k] = tuple(here)
-    return found
+            pauses_by_position[k] = tuple(here)
+    return pauses_by_position
 
 
-def _part(route: Tour, visits: int, charges: int) -> Tour:
-    """The first visits, with the charges up to a position."""
-    kept = {k: charger for k, charger in route.charges.items() if k <= charges}
-    return Tour(route.order[:visits], kept)
+def _prefix(route: Tour, visit_count: int, last_charge: int) -> Tour:
+    """Return the first visits of a route, with the charges up to a position."""
+    charges = {k: charger for k, charger in route.charges.items() if k <= last_charge}
+    return Tour(route.order[:visit_count], charges)
 
 
-def _charging(problem: RouteProblem, route: Tour, position: int) -> int:
-    """What a charge takes without the ways there and on: those to chargers and to the end are
-    reckoned as none."""
+def _charging_time(problem: RouteProblem, route: Tour, position: int) -> int:
+    """Return the duration of a charge, without the drives to the charger and onward.
+
+    It is the difference that the charge makes to the duration of the route up to `position`, if
+    drives to chargers and to the end take no time.
+    """
     travel = problem.travel.copy()
     travel[:, problem.end :] = 0
     free = replace(problem, travel=travel)
-    with_it, without = _part(route, position, position), _part(route, position, position - 1)
-    return evaluate(free, with_it).duration - evaluate(free, without).duration
+    charged, uncharged = _prefix(route, position, position), _prefix(route, position, position - 1)
+    return evaluate(free, charged).duration - evaluate(free, uncharged).duration

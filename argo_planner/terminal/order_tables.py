@@ -160,7 +160,7 @@ def _broken(found: Suggested) -> str:
         # Else in the problem's units.
         limit
         if violation.startswith("it takes ")
-        else violation.replace(" is begun at ", "'s time window|").partition("|")[0]
+        else violation.replace(" begins at ", "'s time window|").partition("|")[0]
         for violation in dict.fromkeys(found.written.violations)
     ]
     if not broken:

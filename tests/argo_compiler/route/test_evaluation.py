@@ -43,7 +43,7 @@ def test_a_robot_that_is_early_waits_and_one_that_is_late_is_told() -> None:
     worth = evaluate(line(early, late), Tour((0, 1)))
     assert worth.waiting == 15
     assert worth.arrivals == (25, 37)
-    assert worth.violations == ("B is begun at 37, after 24",)
+    assert worth.violations == ("B begins at 37, after 24",)
     assert worth.cost(Objective.TRAVEL) == worth.cost(Objective.DURATION) - 15
 
 
@@ -97,7 +97,9 @@ def test_what_is_needed_must_be_made_and_what_only_comes_before_need_not() -> No
 
 def test_a_round_is_made_as_one() -> None:
     problem = line(A, B, C, rounds=(Round("round 1", (0, 1)),))
-    assert evaluate(problem, Tour((0, 2, 1))).violations == ("round 1 is not made as one",)
+    assert evaluate(problem, Tour((0, 2, 1))).violations == (
+        "round 1 is incomplete or interrupted",
+    )
 
 
 @pytest.mark.parametrize(
@@ -107,7 +109,7 @@ def test_a_round_is_made_as_one() -> None:
         ({"travel": np.zeros((3, 3))}, "float64, not int64"),
         ({"travel": np.full((3, 3), -1)}, "not from 0"),
         ({"visits": (A, Visit("B", -1))}, "B has a negative"),
-        ({"visits": (A, Visit("B", 1 << 31))}, "take a greater unit"),
+        ({"visits": (A, Visit("B", 1 << 31))}, "use a larger unit"),
         ({"visits": (A, Visit("B", prize=1 << 50))}, "prizes add up"),
         ({"rounds": (Round("r", (0,), repeat=1 << 40),)}, "repeated too often"),
         ({"max_duration": -1}, "maximum duration is negative"),
@@ -115,7 +117,7 @@ def test_a_round_is_made_as_one() -> None:
         ({"precedences": (Precedence((0, 7), "A before H"),)}, "A before H: there are only"),
         ({"rounds": (Round("r", (0, 0)),)}, "round r has no members, one twice"),
         ({"rounds": (Round("r", (0,), repeat=0),)}, "number of rounds or a duration"),
-        ({"rounds": (Round("r", (0,)),), "visits": (Visit("A", latest=9), B)}, "which round"),
+        ({"rounds": (Round("r", (0,)),), "visits": (Visit("A", latest=9), B)}, "which repetition"),
         ({"chargers": ("dock",), "travel": np.zeros((4, 4), np.int64)}, "no battery"),
     ],
 )
@@ -142,7 +144,7 @@ def test_a_charge_within_a_round_breaks_a_rule() -> None:
 
 @pytest.mark.parametrize("route", [Tour((2,)), Tour((-1, 0)), Tour((0, 1), {0: 1})])
 def test_a_route_of_another_problem_is_refused(route: Tour) -> None:
-    with pytest.raises(Invalid, match="that there isn't"):
+    with pytest.raises(Invalid, match=r"unknown (visit|charger)"):
         evaluate(RouteProblem((Visit("a"), Visit("b")), np.ones((3, 3), np.int64)), route)
 
 

@@ -80,7 +80,7 @@ def test_a_round_that_something_must_come_into() -> None:
     )
     assert suggest_route(problem).infeasible_subset == (
         "precise order 1, 3, 2",
-        "round of floor 2 is made as one",
+        "round of floor 2 is complete and without interruption",
     )
 
 

@@ -1,6 +1,6 @@
-"""Exporters: a machine in the formats of other tools.
+"""Exporters, which write a state machine in the formats of other tools.
 
-`docs/export.md` says what each one can say.
+`docs/export.md` lists what each format can express.
 """
 
 from argo_compiler.export.btcpp import to_btcpp

@@ -1,8 +1,8 @@
-"""BehaviorTree.CPP 4: the mission as a behaviour tree.
+"""Export of the mission as a behaviour tree for BehaviorTree.CPP 4.
 
-Every task has its position in the mission's list. The blackboard entry `to` is the position that a
-transition has chosen, 0 for the next task; tasks and groups that lie before it are skipped. So a
-tree can leave tasks out, but can't go back other than by a group's rounds.
+Every task has its position in the mission's list. The blackboard entry `to` is the position of the
+transition's target, 0 for the next task; tasks and groups before that position are skipped. So a
+tree can skip tasks, but it can go back only by starting another round of a group.
 """
 
 from collections.abc import Iterable, Iterator
@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from argo_compiler.base.model import Pose
 from argo_compiler.base.number_text import number
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.export.exporter import level_refusals, refusal, refuse
+from argo_compiler.export.exporter import battery_level_refusals, raise_refusals, refusal
 from argo_compiler.export.xml import Attributes, XmlWriter
 from argo_compiler.il import (
     Action,
@@ -29,56 +29,58 @@ from argo_compiler.il.ways import default_target, start_task
 
 MAX_MSEC = 2**32 - 1
 
-_WAY = (
+_TRAVEL_PORTS = (
     ("input_port", "x", "double", "m"),
     ("input_port", "y", "double", "m"),
     ("input_port", "z", "double", "m"),
     ("input_port", "yaw", "double", "rad"),
-    ("input_port", "velocity", "double", "m/s on the way to it; 0: the robot's own"),
+    ("input_port", "velocity", "double", "m/s on the path to it; 0: the robot's own speed"),
     ("input_port", "not_before", "double", "s on the clock of `Clock`; if it is given, the robot "
-     "waits at the place, and does not begin there before"),
+     "waits at the pose, and does not start its action before that time"),
     ("input_port", "joint_names", "std::string", "separated by ;"),
     ("input_port", "joint_positions", "std::string", "rad or m, separated by ;"),
     ("input_port", "joint_velocities", "std::string", "rad/s or m/s, separated by ;"),
     ("input_port", "joint_efforts", "std::string", "Nm or N, separated by ;"),
 )  # fmt: skip
 
-_READ = ("value", "known", "abnormal", "unreadable", "time")
-"""what a Measure tells, and the entries that keep it"""
+_READING_PORTS = ("value", "known", "abnormal", "unreadable", "time")
+"""Output ports of a Measure node, and names of the blackboard entries that store them."""
 
 _PORTS = {
     "Measure": (
         ("input_port", "object_id", "std::string", "the checkpoint"),
-        *_WAY,
-        ("input_port", "reading_limit", "double", "s that it tries to read; 0: the robot's own"),
-        ("output_port", "value", "double", "what was read, if that is a number"),
+        *_TRAVEL_PORTS,
+        ("input_port", "reading_limit", "double", "s for trying to read; 0: the robot's own"),
+        ("output_port", "value", "double", "the reading, if it is a number"),
         ("output_port", "known", "double", "1 if `value` was set, else 0"),
         ("output_port", "abnormal", "double", "1 if it is outside the nominal range, else 0"),
-        ("output_port", "unreadable", "double", "1 if it was looked at and not read, else 0"),
+        ("output_port", "unreadable", "double", "1 if the robot could not read it, else 0"),
         ("output_port", "time", "double", "s on the clock of `Clock`"),
     ),
-    "DriveTo": _WAY,
+    "DriveTo": _TRAVEL_PORTS,
     "Clock": (("output_port", "now", "double", "s on a clock that never runs backwards"),),
 }
-"""The nodes that the robot's side provides: direction, name, type and meaning of their ports."""
+"""Nodes that the robot's side provides: direction, name, type and meaning of their ports."""
 
 
 def to_btcpp(mission: Mission) -> str:
-    """The mission, in which `check` finds no errors, as XML for BehaviorTree.CPP 4.
+    """Return a mission in which `check` finds no errors as XML for BehaviorTree.CPP 4.
 
     Raises:
-        DiagnosticError: the mission has what a tree can't say.
+        DiagnosticError: The mission has parts that a tree can't express.
     """
     return _Tree(mission).text()
 
 
 class _Tree:
+    """Writer of the tree's XML; holds the positions of tasks and the numbers of checkpoints."""
+
     def __init__(self, mission: Mission) -> None:
         self.mission = mission
         self.layout = GroupNesting.of(mission)
         start = start_task(mission)
         self.start = start
-        self.position = {task.name: i for i, task in enumerate(mission.tasks, 1)}
+        self.positions = {task.name: i for i, task in enumerate(mission.tasks, 1)}
         self.end = len(mission.tasks) + 1
         self.objects: dict[str, int] = {}
         for task in mission.tasks:
@@ -96,7 +98,8 @@ class _Tree:
         self.objects.setdefault(object_id, len(self.objects) + 1)
 
     def text(self) -> str:
-        refuse(self._refusals())
+        """Return the XML. Raises DiagnosticError if the tree can't express the mission."""
+        raise_refusals(self._refusals())
         with self.xml.element("root", {"BTCPP_format": "4", "main_tree_to_execute": "Mission"}):
             with self.xml.element("BehaviorTree", {"ID": "Mission"}):
                 self._mission()
@@ -104,21 +107,21 @@ class _Tree:
         return self.xml.text()
 
     def _refusals(self) -> Iterator[Diagnostic]:
-        yield from level_refusals(self.mission.reactions)
+        yield from battery_level_refusals(self.mission.reactions)
         for reaction in self.mission.reactions:
             if reaction.response is not Response.REPORT:
                 yield refusal(
                     "reaction",
-                    f"the reaction to '{reaction.event}' can't be said in a behaviour tree: no "
-                    "node of BehaviorTree.CPP goes on with what it interrupted",
-                    "let the robot's own tree react, with this one as a subtree",
+                    f"the reaction to '{reaction.event}' can't be exported to a behaviour tree: no "
+                    "node of BehaviorTree.CPP resumes what it interrupted",
+                    "let the robot's own tree react, with this tree as a subtree",
                     reaction.source,
                 )
         if self.mission.mode is Mode.SUPERVISORY:
             yield refusal(
                 "supervisory",
-                "the mission begins paused, and a behaviour tree begins when it is ticked",
-                "plan it as autonomous, and tick the tree when a person lets it begin",
+                "the mission starts paused, but a behaviour tree runs as soon as it is ticked",
+                "set its mode to autonomous, and tick the tree when a person allows it",
             )
         for task in self.mission.tasks:
             yield from self._task_refusals(task)
@@ -127,16 +130,17 @@ class _Tree:
             if group.every:
                 yield refusal(
                     "every",
-                    f"group '{group.name}' begins its rounds at set times: no node of "
-                    "BehaviorTree.CPP waits until a time, and a wait between rounds would drift",
-                    "let the rounds follow each other, or export SCXML",
+                    f"group '{group.name}' starts its rounds at fixed times: no node of "
+                    "BehaviorTree.CPP waits until a given time, and a wait between rounds would "
+                    "drift",
+                    "let each round follow the previous one, or export SCXML",
                     group.source,
                 )
             if group.max_repeat_duration * 1000 > MAX_MSEC:
                 yield refusal(
                     "too-long",
-                    f"the duration of group '{group.name}' is longer than a Timeout node takes, "
-                    f"{MAX_MSEC / 1000:g} s",
+                    f"the duration of group '{group.name}' is longer than a Timeout node allows: "
+                    f"at most {MAX_MSEC / 1000:g} s",
                     span=group.source,
                 )
 
@@ -146,29 +150,30 @@ class _Tree:
             if task.on_failure is OnFailure.BRANCH and task.failure_target is not None:
                 targets.append(task.failure_target)
             for target in targets:
-                if self.position[target] <= self.position[task.name]:
+                if self.positions[target] <= self.positions[task.name]:
                     yield refusal(
                         "backward",
-                        f"the way of task '{task.name}' back to '{target}' is "
-                        "none of a group's rounds: a behaviour tree has no such edges",
-                        "put the tasks in between into a group",
+                        f"the transition from task '{task.name}' back to '{target}' is not a "
+                        "group's next round: a behaviour tree can't go back in any other way",
+                        "put these tasks and those in between into a group",
                         task.source,
                     )
         texts = [task.object_id or "", *(task.joint_states.names if task.joint_states else ())]
         for text in texts:
-            if _means_something(text):
+            if _is_interpreted(text):
                 yield refusal(
                     "name",
                     f"task '{task.name}' uses the name '{text}', which BehaviorTree.CPP would not "
-                    "take as text",
-                    "choose a name without braces, semicolons and 'json:'",
+                    "read as plain text",
+                    "choose a name without braces and semicolons that does not begin with 'json:'",
                     task.source,
                 )
 
     def _mission(self) -> None:
+        """Write the nodes of the mission."""
         xml = self.xml
         with xml.element("Sequence", {"name": self.mission.designation or None}):
-            self._script(self._initially())
+            self._script(self._initial_script())
             if any(task.window and task.window.earliest for task in self.mission.tasks):
                 xml.add("Clock", {"now": "{began}"})
             # Not recursive, as groups may be nested to any depth.
@@ -184,31 +189,31 @@ class _Tree:
                     closing = opened.pop()
                     outermost = not opened or opened[-1].last != index
                     self._close_group(closing, task if outermost else None)
-            self._return()
+            self._return_to_dock()
 
-    def _initially(self) -> str:
+    def _initial_script(self) -> str:
         first = 0
         if self.start is not None:
             target = default_target(self.start)
-            first = 0 if target is None else self.position[target]
-        # An entry keeps the type that it begins with: 0 would never hold 0.5.
+            first = 0 if target is None else self.positions[target]
+        # An entry keeps the type of its first value: one that starts as 0 could never become 0.5.
         entries = [f"to := {first}", "returning := 0", "outcome := 1", "now := 0.0"]
-        entries += (f"{name} := 0.0" for name in _READ)
+        entries += (f"{name} := 0.0" for name in _READING_PORTS)
         for k in self.objects.values():
-            entries += (f"{name}_{k} := 0.0" for name in (*_READ, "failed"))
+            entries += (f"{name}_{k} := 0.0" for name in (*_READING_PORTS, "failed"))
         return "; ".join(entries)
 
     def _task(self, task: Task, ends_group: bool) -> None:
-        xml, at = self.xml, self.position[task.name]
-        with xml.element("Sequence", {"name": task.name, "_skipIf": f"to > {at}"}):
+        xml, position = self.xml, self.positions[task.name]
+        with xml.element("Sequence", {"name": task.name, "_skipIf": f"to > {position}"}):
             if task.action is Action.WAIT:
                 self._wait(task)
                 self._decide(task, ends_group)
             elif task.on_failure is OnFailure.CONTINUE:
-                if failed := self._failed(task):
+                if statements := self._failure_statements(task):
                     with xml.element("Fallback"):
                         self._attempts(task)
-                        self._script("; ".join(failed))
+                        self._script("; ".join(statements))
                 else:
                     with xml.element("ForceSuccess"):
                         self._attempts(task)
@@ -218,14 +223,18 @@ class _Tree:
                     with xml.element("Sequence"):
                         self._attempts(task)
                         self._decide(task, ends_group)
-                    self._script("; ".join([*self._failed(task), *self._failure_way(task)]))
+                    self._script(
+                        "; ".join(
+                            [*self._failure_statements(task), *self._failure_transition(task)]
+                        )
+                    )
 
     def _wait(self, task: Task) -> None:
         if task.wait is not None and task.wait.duration:
             self.xml.add("Sleep", {"name": task.name, "msec": _msec(task.wait.duration)})
 
-    def _failed(self, task: Task) -> list[str]:
-        """What becomes of the blackboard when the task has failed for good."""
+    def _failure_statements(self, task: Task) -> list[str]:
+        """Return the changes of the blackboard when the task has failed with all retries."""
         statements = [] if task.optional else ["outcome := 7"]
         if task.action is Action.MEASURE:
             k = self.objects[task.object_id or ""]
@@ -233,15 +242,15 @@ class _Tree:
             statements.append(f"unreadable_{k} := unreadable")
         return statements
 
-    def _failure_way(self, task: Task) -> list[str]:
+    def _failure_transition(self, task: Task) -> list[str]:
         if task.on_failure is OnFailure.BRANCH:
-            return [f"to := {self.position[task.failure_target or '']}"]
+            return [f"to := {self.positions[task.failure_target or '']}"]
         if task.on_failure is OnFailure.RETURN:
             return [f"to := {self.end}", "returning := 1"]
         return [f"to := {self.end}", "outcome := 5"]
 
     def _attempts(self, task: Task) -> None:
-        """Until one succeeds, and takes note of its reading."""
+        """Write attempts until one succeeds; after a MEASURE, its reading is stored."""
         with self.xml.element("Sequence"):
             if task.window is not None and task.window.earliest:
                 earliest = number(task.window.earliest)
@@ -254,7 +263,7 @@ class _Tree:
                 self._attempt(task)
             if task.action is Action.MEASURE:
                 k = self.objects[task.object_id or ""]
-                read = [f"{name}_{k} := {name}" for name in _READ if name != "unreadable"]
+                read = [f"{name}_{k} := {name}" for name in _READING_PORTS if name != "unreadable"]
                 self._script(
                     "; ".join(
                         [*read, f"failed_{k} := 1.0 - known", f"unreadable_{k} := 1.0 - known"]
@@ -265,7 +274,7 @@ class _Tree:
         measures = task.action is Action.MEASURE
         if measures:
             self.xml.open("Sequence")
-            self._script("unreadable := 0.0")  # also of an attempt that takes too long
+            self._script("unreadable := 0.0")  # it stays so if the attempt times out
         if task.time_limit is None:
             self._action(task)
         else:
@@ -275,37 +284,41 @@ class _Tree:
             self.xml.close()
 
     def _action(self, task: Task) -> None:
-        where: Attributes = _pose_ports(task.pose)
+        ports: Attributes = _pose_ports(task.pose)
         if task.action is Action.MEASURE:
-            outputs = {name: f"{{{name}}}" for name in _READ}
+            outputs = {name: f"{{{name}}}" for name in _READING_PORTS}
             limit = task.reading_limit or 0.0
-            where = {"object_id": task.object_id, **where, "reading_limit": limit, **outputs}
+            ports = {"object_id": task.object_id, **ports, "reading_limit": limit, **outputs}
         if task.window is not None and task.window.earliest:
-            where = {**where, "not_before": "{not_before}"}
+            ports = {**ports, "not_before": "{not_before}"}
         name = "Measure" if task.action is Action.MEASURE else "DriveTo"
         velocity = {"velocity": task.velocity or 0.0}
-        self.xml.add(name, {"name": task.name, **where, **velocity, **_joints(task.joint_states)})
+        self.xml.add(name, {"name": task.name, **ports, **velocity, **_joints(task.joint_states)})
 
     def _decide(self, task: Task, ends_group: bool) -> None:
-        """Sets `to`. The last condition is looked at first, so that the first one prevails."""
-        if _asks_for_ages(_conditions(task)):
+        """Write the script that sets `to`.
+
+        It evaluates the transitions from the last to the first, so that the first one whose
+        conditions are satisfied prevails.
+        """
+        if _use_ages(_conditions(task)):
             self.xml.add("Clock", {"now": "{now}"})
-        # The unconditional transition of a group's end is for the time after its last round.
+        # At a group's end, `_close_group` takes the unconditional transition after the last round.
         statements = [f"to := {0 if ends_group else self._default(task)}"]
         for transition in reversed([t for t in task.transitions if t.conditions]):
-            holds = self._all_hold(transition.conditions)
-            statements.append(f"to := ({holds}) ? {self.position[transition.target]} : to")
+            guard = self._conjunction(transition.conditions)
+            statements.append(f"to := ({guard}) ? {self.positions[transition.target]} : to")
         self._script("; ".join(statements))
 
     def _default(self, task: Task) -> int:
         target = default_target(task)
-        to = self.end if target is None else self.position[target]
-        return 0 if to == self.position[task.name] + 1 else to
+        to = self.end if target is None else self.positions[target]
+        return 0 if to == self.positions[task.name] + 1 else to
 
-    def _all_hold(self, conditions: Iterable[Condition]) -> str:
-        return " && ".join(f"({self._holds(c)})" for c in conditions)
+    def _conjunction(self, conditions: Iterable[Condition]) -> str:
+        return " && ".join(f"({self._guard(c)})" for c in conditions)
 
-    def _holds(self, condition: Condition) -> str:
+    def _guard(self, condition: Condition) -> str:
         k = self.objects[condition.object_id]
         age = f"(now - time_{k})"
         if condition.type is ConditionType.UNREADABLE:
@@ -348,16 +361,20 @@ class _Tree:
         self.group_numbers[group.name] = n
 
     def _close_group(self, r: GroupRange, end: Task | None) -> None:
-        """The end of a round. `end`: the end task, of the outermost group that ends with it."""
+        """Write the end of a group's round.
+
+        `end` is the task that ends the group if this is the outermost group that ends with that
+        task, else None.
+        """
         xml, group = self.xml, r.group
         n = self.group_numbers[group.name]
         tests = [f"to <= {r.last + 1}"]
         if group.max_repeat_count:
             tests.append(f"round_{n} < {group.max_repeat_count}")
-        if group.max_repeat_duration or _asks_for_ages(group.until):
+        if group.max_repeat_duration or _use_ages(group.until):
             xml.add("Clock", {"now": "{now}"})
         if group.until:
-            self._script(f"over_{n} := ({self._all_hold(group.until)}) ? 1 : 0")
+            self._script(f"over_{n} := ({self._conjunction(group.until)}) ? 1 : 0")
             tests.append(f"over_{n} == 0")
         if group.max_repeat_duration:
             tests.append(f"(now - entered_{n}) < {number(group.max_repeat_duration)}")
@@ -373,7 +390,7 @@ class _Tree:
             self._script(f"to := (to > {r.last + 1}) ? to : {self._default(end)}")
         xml.close()
 
-    def _return(self) -> None:
+    def _return_to_dock(self) -> None:
         if all(task.on_failure is not OnFailure.RETURN for task in self.mission.tasks):
             return
         dock = _pose_ports(self.mission.dock)
@@ -400,21 +417,21 @@ def _conditions(task: Task) -> Iterator[Condition]:
 
 
 def _time_refusals(task: Task) -> Iterator[Diagnostic]:
-    """What a task asks for that has to do with time, and a tree can't say."""
+    """Yield refusals for the times of a task that a tree can't express."""
     window, wait = task.window, task.wait
     if wait is not None and wait.duration is None:
         yield refusal(
             "wait",
             f"task '{task.name}' waits for an event or for conditions: no node of "
             "BehaviorTree.CPP does that",
-            "wait for a time, or export SCXML",
+            "wait for a duration, or export SCXML",
             task.source,
         )
     if window is not None and window.hard and window.latest is not None:
         yield refusal(
             "window",
-            f"task '{task.name}' has a hard window: no node of BehaviorTree.CPP ends at a time "
-            "since the mission's start",
+            f"task '{task.name}' has a hard time window: no node of BehaviorTree.CPP ends at a "
+            "given time after the mission's start",
             "make the window soft, or export SCXML",
             task.source,
         )
@@ -422,8 +439,8 @@ def _time_refusals(task: Task) -> Iterator[Diagnostic]:
         what = "waits" if wait is not None else "has a time limit"
         yield refusal(
             "window",
-            f"task '{task.name}' {what}, and its window begins later: a behaviour tree can't tell "
-            "when that is",
+            f"task '{task.name}' {what} and has a window with an earliest time: a behaviour tree "
+            "can't express both together",
             "remove one of the two, or export SCXML",
             task.source,
         )
@@ -434,13 +451,14 @@ def _time_refusals(task: Task) -> Iterator[Diagnostic]:
         if seconds is not None and seconds * 1000 > MAX_MSEC:
             yield refusal(
                 "too-long",
-                f"{what} of task '{task.name}' is longer than a node takes, {MAX_MSEC / 1000:g} s",
+                f"{what} of task '{task.name}' is longer than a node allows: at most "
+                f"{MAX_MSEC / 1000:g} s",
                 span=task.source,
             )
 
 
 def _msec(seconds: float) -> int:
-    """Whole milliseconds, rounded up."""
+    """Return the duration in whole milliseconds, rounded up."""
     return -int(-seconds * 1000 // 1)
 
 
@@ -452,11 +470,11 @@ def _joints(joints: JointState | None) -> Attributes:
         "joint_velocities": joints.velocities,
         "joint_efforts": joints.efforts,
     }
-    listed = {port: ";".join(map(number, given)) for port, given in values.items() if given}
+    listed = {port: ";".join(map(number, numbers)) for port, numbers in values.items() if numbers}
     return {"joint_names": ";".join(joints.names), **listed}
 
 
-def _asks_for_ages(conditions: Iterable[Condition]) -> bool:
+def _use_ages(conditions: Iterable[Condition]) -> bool:
     return any(condition.max_age is not None for condition in conditions)
 
 
@@ -468,6 +486,6 @@ def _is_timed(r: GroupRange) -> bool:
     return r.group.ends_at_once
 
 
-def _means_something(text: str) -> bool:
-    """Whether a port would not take the text as it is."""
+def _is_interpreted(text: str) -> bool:
+    """Return True if a port would interpret the text instead of reading it as plain text."""
     return text.startswith("json:") or any(character in text for character in "{};")

@@ -1,4 +1,4 @@
-"""What drawings of a machine have in common: ids, nesting, and what stands on boxes and arrows."""
+"""Parts that all diagrams of a machine share: ids, nesting, and the labels of boxes and arrows."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -17,7 +17,7 @@ _RESPONSES = {
 }
 
 _AFTERWARDS = {
-    Afterwards.RESUME: "go on",
+    Afterwards.RESUME: "resume",
     Afterwards.WAIT: "wait for a person",
     Afterwards.END: "end",
 }
@@ -25,19 +25,19 @@ _AFTERWARDS = {
 
 @dataclass(frozen=True)
 class Arrow:
-    """A transition as it is drawn."""
+    """Transition as an arrow of a diagram."""
 
     source: str
-    """id of a leaf, a choice, or a group that is left when its time is out"""
+    """id of a leaf, a choice, or a group (for its time-out)"""
     target: str | None
-    """id; None: the mission's end"""
+    """id of a leaf, a choice or a group; None for the mission's end"""
     label: str
-    leaves: Composite | None = None
-    """the group that is the source, if one is"""
+    source_group: Composite | None = None
+    """group at which the arrow starts; None if the source is a leaf or a choice"""
 
 
-class Drawing:
-    """A machine with ids by position: `t0` is the first leaf, `g1` the first group."""
+class Diagram:
+    """Machine whose states have ids by position: `t0` the first leaf, `g1` the first group."""
 
     def __init__(self, hfsm: Hfsm) -> None:
         self.hfsm = hfsm
@@ -46,18 +46,19 @@ class Drawing:
         self.ids = {leaf.id: f"t{i}" for i, leaf in enumerate(hfsm.leaves)}
         self.ids |= {c.id: f"g{i}" for i, c in enumerate(hfsm.composites)}
 
-    def choice(self, id: str) -> str:
-        """The id of what is decided when a round of the group ends: `r1` for `g1`."""
+    def choice_id(self, id: str) -> str:
+        """Return the id of the choice at the end of a group's round: `r1` for `g1`."""
         return self.ids[id].replace("g", "r")
 
-    def end(self, id: str) -> str | None:
-        """The id of what a transition leads to; None for the mission's end."""
+    def target_id(self, id: str) -> str | None:
+        """Return the id of a transition's target state, or None for the mission's end."""
         return None if id == DONE else self.ids[id]
 
     def nested(self) -> Iterator[tuple[int, Leaf | Composite | None]]:
-        """All leaves and groups in order, and how many groups they lie in; None closes a group.
+        """Yield all leaves and groups in order, each with the number of groups that contain it.
 
-        Not recursive, as groups may be nested to any depth.
+        None instead of a leaf or group closes a group. Not recursive, as groups may be nested to
+        any depth.
         """
         depth = 0
         pending: list[str | None] = list(reversed(self.hfsm.mission.children))
@@ -75,34 +76,36 @@ class Drawing:
                 pending += [None, *reversed(group.children)]
 
     def arrows(self) -> Iterator[Arrow]:
-        """All transitions: those of the leaves, then those of the groups."""
+        """Yield all transitions: first those of the leaves, then those of the groups."""
         for leaf in self.hfsm.leaves:
-            ways = (*leaf.transitions, leaf.failure, leaf.missed)
-            yield from (self._arrow(self.ids[leaf.id], way) for way in ways if way)
+            transitions = (*leaf.transitions, leaf.failure, leaf.missed)
+            yield from (self._arrow(self.ids[leaf.id], t) for t in transitions if t)
         for group in self.hfsm.composites[1:]:
-            for way in group.transitions:
-                yield self._arrow(self.choice(group.id), way, group)
+            for transition in group.transitions:
+                yield self._arrow(self.choice_id(group.id), transition, group)
             if group.timeout:
                 arrow = self._arrow(self.ids[group.id], group.timeout, group)
-                yield replace(arrow, leaves=group)
+                yield replace(arrow, source_group=group)
 
-    def _arrow(self, source: str, way: StateTransition, group: Composite | None = None) -> Arrow:
-        if way.completes is not None:
-            target: str | None = self.choice(way.completes)
+    def _arrow(
+        self, source: str, transition: StateTransition, group: Composite | None = None
+    ) -> Arrow:
+        if transition.completes is not None:
+            target: str | None = self.choice_id(transition.completes)
         else:
-            target = self.end(way.target or DONE)
-        return Arrow(source, target, transition_words(way, group))
+            target = self.target_id(transition.target or DONE)
+        return Arrow(source, target, transition_label(transition, group))
 
-    def first_leaf(self, group: Composite) -> str:
-        """The id of a leaf that lies in the group."""
+    def first_leaf_id(self, group: Composite) -> str:
+        """Return the machine's id of the group's first leaf, which may be in a nested group."""
         id = group.children[0]
         while id not in self.leaves:
             id = self.composites[id].children[0]
         return id
 
 
-def transition_words(transition: StateTransition, group: Composite | None = None) -> str:
-    """Why it is taken, as text; empty where nothing has to be said."""
+def transition_label(transition: StateTransition, group: Composite | None = None) -> str:
+    """Return the reason for a transition as text; empty if it needs no reason."""
     if transition.kind is TransitionKind.CONDITIONAL:
         return all_words(transition.conditions)
     if transition.kind is TransitionKind.FAILURE:
@@ -127,9 +130,9 @@ def transition_words(transition: StateTransition, group: Composite | None = None
     return ", ".join(["repeat", *limits])
 
 
-def task_words(task: Task) -> str:
-    """The task's name, and in brackets how long, when and how fast it is done."""
-    parts = [] if task.wait is None else [_wait_words(task.wait)]
+def task_label(task: Task) -> str:
+    """Return the task's name, followed in brackets by its durations, times, speed and limits."""
+    parts = [] if task.wait is None else [_wait_label(task.wait)]
     if task.velocity is not None:
         parts.append(f"at {task.velocity:g} m/s")
     if task.time_limit is not None:
@@ -151,15 +154,15 @@ def task_words(task: Task) -> str:
     return f"{task.name} ({', '.join(parts)})" if parts else task.name
 
 
-def _wait_words(wait: WaitRule) -> str:
+def _wait_label(wait: WaitRule) -> str:
     if wait.duration is not None:
-        return f"wait {wait.duration:g} s" if wait.duration else "where ways meet"
+        return f"wait {wait.duration:g} s" if wait.duration else "junction"
     limit = "" if wait.limit is None else f", at most {wait.limit:g} s"
     return f"wait until {awaited(wait)}{limit}"
 
 
-def reaction_words(reaction: Reaction) -> str:
-    """The reaction in a few words, such as `gas leak: pause, until all clear`."""
+def reaction_label(reaction: Reaction) -> str:
+    """Return a short text for the reaction, such as `gas leak: pause, until all clear`."""
     parts = [_RESPONSES[reaction.response]]
     if reaction.until is not None:
         parts.append(f"until {reaction.until.replace('_', ' ')}")

@@ -1,4 +1,4 @@
-"""What an exporter is, and how it refuses what its target can't say."""
+"""Description of an exporter, and the errors for what its format can't express."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from argo_compiler.hfsm import Hfsm
 from argo_compiler.il import Mission, Reaction, Response
 
 Exported = str | bytes | Mapping[str, bytes]
-"""The text or the bytes of one file, or the files of a folder by their path in it."""
+"""Text or bytes of one file, or contents of a folder's files by their paths in the folder."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,36 +16,42 @@ class Exporter:
     """A format that a machine can be written in."""
 
     description: str
-    """a few words for people"""
+    """short description for people"""
     suffixes: tuple[str, ...]
-    """what the file's name ends with, the usual one first; none where a folder is written"""
+    """endings of the file's name, the usual one first; empty if the exporter writes a folder"""
     export: Callable[[Mission, Hfsm], Exported]
-    """raises DiagnosticError with a diagnostic for each thing that the format can't say"""
+    """exports a mission and its machine; raises DiagnosticError with a diagnostic for each part of
+    the mission that the format can't express"""
 
 
 def refusal(
     code: str, message: str, hint: str | None = None, span: Span | None = None
 ) -> Diagnostic:
-    """Says that the target can't say something of the mission; `code` without `export.`."""
+    """Return the diagnostic for a part of the mission that the format can't express.
+
+    `code` is given without its prefix `export.`.
+    """
     return diagnostic_of(f"export.{code}", message, hint, span=span)
 
 
-def level_refusals(reactions: Iterable[Reaction]) -> Iterator[Diagnostic]:
-    """Refuses reactions that only report a level of the battery: nothing else tells the robot which
-    level that is."""
+def battery_level_refusals(reactions: Iterable[Reaction]) -> Iterator[Diagnostic]:
+    """Yield a refusal for each reaction that only reports a battery level.
+
+    For formats that have no place for the level: the robot would not know which one to report.
+    """
     for reaction in reactions:
         if reaction.response is Response.REPORT and reaction.battery_below is not None:
             yield refusal(
                 "reaction",
-                f"the reaction to '{reaction.event}' reports a level of the battery, which can't "
-                "be said here",
-                "leave the reaction out, and let the robot report its battery",
+                f"the reaction to '{reaction.event}' only reports a battery level, which this "
+                "format can't express",
+                "remove the reaction, and let the robot report its battery level",
                 reaction.source,
             )
 
 
-def refuse(diagnostics: Iterable[Diagnostic]) -> None:
-    """Raises DiagnosticError if there are diagnostics."""
-    found = tuple(diagnostics)
-    if found:
-        raise DiagnosticError("mission", found)
+def raise_refusals(refusals: Iterable[Diagnostic]) -> None:
+    """Raise DiagnosticError if there are any refusals."""
+    diagnostics = tuple(refusals)
+    if diagnostics:
+        raise DiagnosticError("mission", diagnostics)

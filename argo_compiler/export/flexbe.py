@@ -1,8 +1,9 @@
-"""FlexBE: a behaviour with nested state machines, its manifest, and the states that it is made of.
+"""Export to FlexBE: a behaviour of nested state machines, its manifest, and its states' classes.
 
-Outcomes lead to states of the same machine only. So the target of a transition is written to the
-memory that all states share, and where the way crosses groups, each machine on it has a state that
-routes: `enter` at the beginning of a group, `route` where something inside has been left.
+An outcome can only lead to a state of the same machine. So a transition writes its target to the
+memory that all states share. If the transition crosses groups, each machine between has a state
+that leads on to the target: `enter` at the start of a group, `route` after a part of the machine
+has ended without reaching the target.
 """
 
 import re
@@ -11,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from importlib.resources import files
 
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.export.exporter import level_refusals, refusal, refuse
+from argo_compiler.export.exporter import battery_level_refusals, raise_refusals, refusal
 from argo_compiler.export.xml import XmlWriter
 from argo_compiler.hfsm import Composite, Hfsm, Leaf, StateTransition, TransitionKind
 from argo_compiler.hfsm.model import DONE, MISSION, RETURN
@@ -24,33 +25,33 @@ OUTCOMES = ("completed", "completed_with_failures", "returned", "failed", "abort
 
 
 def to_flexbe(mission: Mission, hfsm: Hfsm) -> Mapping[str, bytes]:
-    """The files of two Python packages, and the behaviour's manifest, by path.
+    """Return the files of two Python packages and of the behaviour's manifest, by path.
 
     Raises:
-        DiagnosticError: the mission has what a behaviour can't say.
+        DiagnosticError: The mission has parts that a behaviour can't express.
     """
-    refuse((*_refusals(hfsm), *_time_refusals(mission)))
+    raise_refusals((*_refusals(hfsm), *_time_refusals(mission)))
     name = _identifier(hfsm.mission.name) or "mission"
     sources = files("argo_compiler.export").joinpath("flexbe_states")
-    made = {
+    contents = {
         f"{STATES}/{source.name}": source.read_bytes()
         for source in sorted(sources.iterdir(), key=lambda source: source.name)
         if source.name.endswith(".py")
     }
-    made[f"{BEHAVIORS}/__init__.py"] = b'"""Missions exported by Argo."""\n'
-    made[f"{BEHAVIORS}/{name}_sm.py"] = _Behavior(hfsm, name).source().encode()
-    made[f"manifest/{name}.xml"] = _manifest(hfsm, name).encode()
-    return made
+    contents[f"{BEHAVIORS}/__init__.py"] = b'"""Missions exported by Argo."""\n'
+    contents[f"{BEHAVIORS}/{name}_sm.py"] = _Behavior(hfsm, name).source().encode()
+    contents[f"manifest/{name}.xml"] = _manifest(hfsm, name).encode()
+    return contents
 
 
 def _refusals(hfsm: Hfsm) -> Iterator[Diagnostic]:
-    yield from level_refusals(state.reaction for state in hfsm.reactions)
+    yield from battery_level_refusals(state.reaction for state in hfsm.reactions)
     for state in hfsm.reactions:
         if state.reaction.response is not Response.REPORT:
             yield refusal(
                 "reaction",
-                f"the reaction to '{state.reaction.event}' can't be said in a FlexBE behaviour: "
-                "no container of FlexBE goes on with what it interrupted",
+                f"the reaction to '{state.reaction.event}' can't be exported to FlexBE: no "
+                "container of FlexBE resumes what it interrupted",
                 "let the operator pause the behaviour, or export SCXML",
                 state.reaction.source,
             )
@@ -60,34 +61,34 @@ def _time_refusals(mission: Mission) -> Iterator[Diagnostic]:
     if mission.mode is Mode.SUPERVISORY:
         yield refusal(
             "supervisory",
-            "the mission begins paused, and a behaviour begins when it is started",
-            "plan it as autonomous, and start the behaviour when a person lets it begin",
+            "the mission starts paused, but a behaviour runs as soon as it is started",
+            "set its mode to autonomous, and start the behaviour when a person allows it",
         )
     for task in mission.tasks:
         window, wait = task.window, task.wait
         if wait is not None and wait.duration is None:
             yield refusal(
                 "wait",
-                f"task '{task.name}' waits for an event or for conditions, which the states of the "
-                "behaviour do not hear of",
-                "wait for a time, or export SCXML",
+                f"task '{task.name}' waits for an event or for conditions, which the states of a "
+                "FlexBE behaviour can't do",
+                "wait for a duration, or export SCXML",
                 task.source,
             )
         if window is not None and (window.earliest or (window.hard and window.latest is not None)):
             yield refusal(
                 "window",
-                f"task '{task.name}' has a window, and the states of the behaviour do not know "
-                "when the mission began",
-                "leave out `earliest`, and make it soft, or export SCXML",
+                f"task '{task.name}' has a time window, but the states of a FlexBE behaviour do "
+                "not know when the mission started",
+                "remove `earliest` and make the window soft, or export SCXML",
                 task.source,
             )
     for group in mission.groups:
         if group.every:
             yield refusal(
                 "every",
-                f"group '{group.name}' begins its rounds at set times, which the states of the "
-                "behaviour do not do",
-                "let the rounds follow each other, or export SCXML",
+                f"group '{group.name}' starts its rounds at fixed times, which the states of a "
+                "FlexBE behaviour can't do",
+                "let each round follow the previous one, or export SCXML",
                 group.source,
             )
 
@@ -104,6 +105,8 @@ def _manifest(hfsm: Hfsm, name: str) -> str:
 
 
 class _Behavior:
+    """Writer of the behaviour's source; holds its lines, and labels and numbers of the states."""
+
     def __init__(self, hfsm: Hfsm, name: str) -> None:
         self.hfsm = hfsm
         self.name = name
@@ -123,11 +126,11 @@ class _Behavior:
         self.lines: list[str] = []
 
     def _label(self, id: str, name: str) -> str:
-        """Unique, and plain enough for FlexBE's editor, which has no use for all characters."""
+        """Return a unique label without the characters that FlexBE's editor does not accept."""
         return f"{id} {_identifier(name)}".strip()
 
     def _ranges(self) -> dict[str, tuple[int, int]]:
-        """The first and the last task of each state, by number."""
+        """Return the numbers of the first and the last task of each state."""
         ranges = {id: (number, number) for id, number in self.numbers.items()}
         for composite in reversed(self.hfsm.composites):
             inside = [ranges[child] for child in composite.children if child != DONE]
@@ -135,12 +138,12 @@ class _Behavior:
         return ranges
 
     def _parts(self, composite: Composite) -> list[tuple[int, str]]:
-        """The first task and the label of each state of a machine, in order."""
+        """Return the first task's number and the label of each state of a machine, in order."""
         children = (child for child in composite.children if child != DONE)
         return [(self.ranges[child][0], self.labels[child]) for child in children]
 
     def _outcome(self, machine: str, target: int | str) -> str:
-        """The outcome with which a state of the machine leads to the target."""
+        """Return the outcome with which a state of the machine leads to the target."""
         if isinstance(target, str):
             return "left"
         if target < 0:
@@ -152,6 +155,7 @@ class _Behavior:
         return parts[bisect(parts, target, key=lambda part: part[0]) - 1][1]
 
     def source(self) -> str:
+        """Return the behaviour's Python source."""
         hfsm = self.hfsm
         states = ("count", "decide", "measure", "route", "wait", "waypoint")
         initial = hfsm.mission.initial
@@ -164,7 +168,7 @@ class _Behavior:
             "",
             "",
             f"class {self.name}SM(Behavior):",
-            '    """Made by Argo; change the mission and export it again."""',
+            '    """Written by Argo; to change it, change the mission and export it again."""',
             "",
             "    def __init__(self):",
             "        super().__init__()",
@@ -174,10 +178,10 @@ class _Behavior:
             "        keys = {'input_keys': ['memory'], 'output_keys': ['memory']}",
             "        remapping = {'memory': 'memory'}",
         ]
-        # A machine is made before the one that it is added to.
+        # Inner machines come first, as a machine must exist before it is added to another one.
         for composite in reversed(hfsm.composites[1:]):
-            self._machine(composite, self.variables[composite.id], ["left"])
-        self._machine(hfsm.mission, "_state_machine", list(OUTCOMES))
+            self._add_machine(composite, self.variables[composite.id], ["left"])
+        self._add_machine(hfsm.mission, "_state_machine", list(OUTCOMES))
         to = "end" if initial == DONE else self.numbers[initial]
         self.lines += [
             f"        memory = new_memory({to!r})",
@@ -186,31 +190,31 @@ class _Behavior:
         ]
         return "\n".join(self.lines) + "\n"
 
-    def _machine(self, composite: Composite, variable: str, outcomes: list[str]) -> None:
+    def _add_machine(self, composite: Composite, variable: str, outcomes: list[str]) -> None:
         self.lines += [
             f"        {variable} = OperatableStateMachine(outcomes={outcomes!r}, **keys)",
             f"        with {variable}:",
         ]
-        # The state that is added first is the one that a machine begins with.
+        # A machine starts with the state that is added first.
         outcomes = [label for _, label in self.parts[composite.id]]
         if composite.repeat is None:
             ends = {"left": "completed", "end": "completed", "aborted": "aborted"}
             ends["failures"] = "completed_with_failures"
-            self._route("route", composite, [*outcomes, *ends], ends)
+            self._add_route_state("route", composite, [*outcomes, *ends], ends)
         else:
             limit = composite.repeat.duration if composite.timeout else 0.0
             leave = [*outcomes, "round", "left"]
-            self._route("enter", composite, leave, {}, limit)
-            self._route("route", composite, leave, {})
+            self._add_route_state("enter", composite, leave, {}, limit)
+            self._add_route_state("route", composite, leave, {})
         for child in composite.children:
             if leaf := self.leaves.get(child):
-                self._leaf(leaf)
+                self._add_task(leaf)
             elif child != DONE:
-                self._add(self.labels[child], self.variables[child], {"left": "route"})
+                self._add_state(self.labels[child], self.variables[child], {"left": "route"})
         if composite.repeat is not None:
-            self._round(composite)
+            self._add_count_state(composite)
 
-    def _route(
+    def _add_route_state(
         self,
         label: str,
         composite: Composite,
@@ -224,16 +228,16 @@ class _Behavior:
         )
         if limit is not None:
             arguments += f", limit={limit!r}"
-        ways = {outcome: ends.get(outcome, outcome) for outcome in outcomes}
-        self._add(label, f"RouteState({arguments})", ways)
+        transitions = {outcome: ends.get(outcome, outcome) for outcome in outcomes}
+        self._add_state(label, f"RouteState({arguments})", transitions)
 
-    def _leaf(self, leaf: Leaf) -> None:
+    def _add_task(self, leaf: Leaf) -> None:
         label, task = self.labels[leaf.id], leaf.task
         decide = f"{label} decide"
         if leaf.id == RETURN:
-            self._add(
+            self._add_state(
                 label,
-                self._action(leaf),
+                self._action_state(leaf),
                 {"done": "returned", "failed": "failed", "time_up": "route"},
             )
             return
@@ -241,18 +245,22 @@ class _Behavior:
         if task.action is Action.WAIT:
             assert task.wait is not None
             arguments = f"duration={task.wait.duration or 0.0!r}, depth={self.depths[leaf.parent]}"
-            self._add(label, f"WaitState({arguments})", outcomes)
+            self._add_state(label, f"WaitState({arguments})", outcomes)
         else:
             outcomes["failed"] = f"{label} failed"
-            self._add(label, self._action(leaf), outcomes)
+            self._add_state(label, self._action_state(leaf), outcomes)
             if leaf.failure is None:
-                self._decide(outcomes["failed"], leaf, leaf.transitions, "end", not task.optional)
+                self._add_decide_state(
+                    outcomes["failed"], leaf, leaf.transitions, "end", not task.optional
+                )
             else:
-                ways = (leaf.failure,)
-                self._decide(outcomes["failed"], leaf, ways, "aborted", not task.optional)
-        self._decide(decide, leaf, leaf.transitions, "end")
+                transitions = (leaf.failure,)
+                self._add_decide_state(
+                    outcomes["failed"], leaf, transitions, "aborted", not task.optional
+                )
+        self._add_decide_state(decide, leaf, leaf.transitions, "end")
 
-    def _decide(
+    def _add_decide_state(
         self,
         label: str,
         leaf: Leaf,
@@ -267,16 +275,17 @@ class _Behavior:
             ways.append((self._outcome(leaf.parent, to), to, conditions))
         outcomes = sorted({outcome for outcome, _, _ in ways})
         leave = "route" if leaf.parent == MISSION else "left"
-        self._add(
+        self._add_state(
             label,
             f"DecideState(outcomes={outcomes!r}, ways={ways!a}, fails={fails!r})",
             {outcome: leave if outcome == "left" else outcome for outcome in outcomes},
         )
 
-    def _action(self, leaf: Leaf) -> str:
+    def _action_state(self, leaf: Leaf) -> str:
+        """Return the call that makes the state for the action of a task."""
         task = leaf.task
         arguments = (
-            f"task={task.name!a}, pose={_pose(task)!r}, way={_way(task)!a}, "
+            f"task={task.name!a}, pose={_pose(task)!r}, way={_travel_arguments(task)!a}, "
             f"retries={task.retries}, time_limit={task.time_limit or 0.0!r}, "
             f"depth={self.depths[leaf.parent]}"
         )
@@ -285,12 +294,12 @@ class _Behavior:
             return f"MeasureState(object_id={task.object_id!a}, {limit}, {arguments})"
         return f"WaypointState({arguments})"
 
-    def _round(self, composite: Composite) -> None:
+    def _add_count_state(self, composite: Composite) -> None:
         repeat = composite.repeat
         assert repeat is not None
         onward = next(t for t in composite.transitions if t.kind is not TransitionKind.REPEAT)
         until = [_condition(c) for c in repeat.until]
-        self._add(
+        self._add_state(
             "round",
             f"CountState(depth={self.depths[composite.id]}, count={repeat.count}, "
             f"duration={repeat.duration!r}, until={until!a}, "
@@ -304,7 +313,7 @@ class _Behavior:
         id = transition.target or DONE
         return end if id == DONE else self.numbers[id]
 
-    def _add(self, label: str, state: str, transitions: Mapping[str, str]) -> None:
+    def _add_state(self, label: str, state: str, transitions: Mapping[str, str]) -> None:
         autonomy = ", ".join(f"{outcome!r}: Autonomy.Off" for outcome in transitions)
         self.lines += [
             f"            OperatableStateMachine.add({label!r}, {state},",
@@ -330,9 +339,9 @@ def _condition(c: Condition) -> tuple[str, str, float | None, float | None, bool
     return "value", c.object_id, low, high, c.inclusive, c.max_age
 
 
-def _way(task: Task) -> dict[str, object]:
+def _travel_arguments(task: Task) -> dict[str, object]:
     joints = None if task.joint_states is None else task.joint_states.model_dump()
-    named = {} if joints is None else {name: list(given) for name, given in joints.items()}
+    named = {} if joints is None else {name: list(values) for name, values in joints.items()}
     return {"velocity": task.velocity or 0.0, "joints": named}
 
 
@@ -342,6 +351,6 @@ def _pose(task: Task) -> list[float]:
 
 
 def _identifier(name: str) -> str:
-    """The name in ASCII letters, digits and underscores, not too long, and not a digit first."""
+    """Return the name as an identifier of at most 42 ASCII characters; it may be empty."""
     plain = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")[:40]
     return f"m_{plain}" if plain[:1].isdigit() else plain

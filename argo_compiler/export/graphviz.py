@@ -1,21 +1,21 @@
-"""Graphviz: the machine as a DOT graph, with a cluster for each group."""
+"""Export of the machine as a DOT graph for Graphviz, with a cluster for each group."""
 
-from argo_compiler.export.diagram import Arrow, Drawing, reaction_words, task_words
+from argo_compiler.export.diagram import Arrow, Diagram, reaction_label, task_label
 from argo_compiler.export.xml import printable
 from argo_compiler.hfsm import Hfsm, Leaf
 
 
 def to_dot(hfsm: Hfsm) -> str:
-    """The machine as text for `dot`.
+    """Return the machine as a DOT graph.
 
-    Ids are made from positions, labels are the names. A diamond beside a group is what is decided
-    when a round of it ends.
+    Ids are made from positions, labels are the names. A diamond beside a group stands for the
+    decision at the end of the group's round.
     """
     return "\n".join(_lines(hfsm)) + "\n"
 
 
 def _lines(hfsm: Hfsm) -> list[str]:
-    drawing = Drawing(hfsm)
+    diagram = Diagram(hfsm)
     lines = [
         "digraph mission {",
         "  compound=true;",
@@ -25,42 +25,42 @@ def _lines(hfsm: Hfsm) -> list[str]:
         '  start [shape=point, width=0.15, label=""];',
         '  done [shape=doublecircle, width=0.15, label=""];',
     ]
-    for depth, item in drawing.nested():
+    for depth, item in diagram.nested():
         indent = "  " * min(1 + depth, 20)
         if item is None:
             lines.append(f"{indent}}}")
         elif isinstance(item, Leaf):
             lines.append(
-                f"{indent}{drawing.ids[item.id]} [label={_quoted(task_words(item.task))}];"
+                f"{indent}{diagram.ids[item.id]} [label={_quoted(task_label(item.task))}];"
             )
         else:
-            # Beside the group: an arrow from a cluster's border can't end inside of it.
-            lines.append(f'{indent}{drawing.choice(item.id)} [shape=diamond, label=""];')
-            lines.append(f"{indent}subgraph cluster_{drawing.ids[item.id]} {{")
+            # Outside of the cluster, as an edge from a cluster's border can't end inside it.
+            lines.append(f'{indent}{diagram.choice_id(item.id)} [shape=diamond, label=""];')
+            lines.append(f"{indent}subgraph cluster_{diagram.ids[item.id]} {{")
             lines.append(f"{indent}  label={_quoted(item.name)};")
     if hfsm.reactions:
         lines += ["  subgraph cluster_reactions {", '    label="Reactions"; style=dashed;']
         for i, state in enumerate(hfsm.reactions, 1):
-            lines.append(f"    e{i} [shape=note, label={_quoted(reaction_words(state.reaction))}];")
+            lines.append(f"    e{i} [shape=note, label={_quoted(reaction_label(state.reaction))}];")
         lines.append("  }")
-    lines.append(f"  start -> {drawing.end(hfsm.mission.initial) or 'done'};")
-    lines += (f"  {_edge(drawing, arrow)}" for arrow in drawing.arrows())
+    lines.append(f"  start -> {diagram.target_id(hfsm.mission.initial) or 'done'};")
+    lines += (f"  {_edge(diagram, arrow)}" for arrow in diagram.arrows())
     return [*lines, "}"]
 
 
-def _edge(drawing: Drawing, arrow: Arrow) -> str:
+def _edge(diagram: Diagram, arrow: Arrow) -> str:
     source, attributes = arrow.source, [f"label={_quoted(arrow.label)}"] if arrow.label else []
-    if arrow.leaves:
-        # From the group's border, which only clusters have, so from some task inside.
-        source = drawing.ids[drawing.first_leaf(arrow.leaves)]
+    if arrow.source_group:
+        # Only nodes have edges: start at a task inside and clip the edge at the cluster's border.
+        source = diagram.ids[diagram.first_leaf_id(arrow.source_group)]
         attributes.append(f"ltail=cluster_{arrow.source}")
-    told = f" [{', '.join(attributes)}]" if attributes else ""
-    return f"{source} -> {arrow.target or 'done'}{told};"
+    attribute_list = f" [{', '.join(attributes)}]" if attributes else ""
+    return f"{source} -> {arrow.target or 'done'}{attribute_list};"
 
 
 def _quoted(text: str) -> str:
-    """The text as a quoted string, in which DOT's escapes mean nothing."""
+    """Return the text as a quoted string in which DOT interprets no escape sequences."""
     plain = printable(text).replace("\\", "\\\\").replace('"', '\\"')
-    # Entities would be taken for the characters that they stand for.
+    # Graphviz would replace XML entities by the characters that they stand for.
     plain = plain.replace("&", "&amp;")
     return '"' + plain.replace("\r", " ").replace("\t", " ").replace("\n", "\\n") + '"'

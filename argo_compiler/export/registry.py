@@ -1,4 +1,4 @@
-"""The formats that a machine can be exported to: a new one is listed here."""
+"""Table of the export formats; a new format is added here."""
 
 from argo_compiler.export.btcpp import to_btcpp
 from argo_compiler.export.exporter import Exporter
@@ -9,9 +9,9 @@ from argo_compiler.export.ros import ROS_EXPORTERS
 from argo_compiler.export.scxml import to_scxml
 
 EXPORTERS: dict[str, Exporter] = {
-    "scxml": Exporter("SCXML state chart, time-outs from outside", (".scxml",), to_scxml),
+    "scxml": Exporter("SCXML state chart, time-outs sent from outside", (".scxml",), to_scxml),
     "scxml-timers": Exporter(
-        "SCXML state chart, time-outs by the engine's clock",
+        "SCXML state chart, time-outs sent by the engine's clock",
         (".scxml",),
         lambda mission, hfsm: to_scxml(mission, hfsm, timers=True),
     ),
@@ -23,4 +23,4 @@ EXPORTERS: dict[str, Exporter] = {
     "dot": Exporter("Graphviz graph", (".dot", ".gv"), lambda _, hfsm: to_dot(hfsm)),
     **ROS_EXPORTERS,
 }
-"""By the names of the formats."""
+"""Exporters by the names of their formats."""

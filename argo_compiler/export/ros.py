@@ -1,4 +1,7 @@
-"""ROS bags and the package of their messages; `argo_compiler.ros` makes them."""
+"""Exporters for ROS bags and for the ROS package of their messages.
+
+The content is made in `argo_compiler.ros`.
+"""
 
 from argo_compiler.export.exporter import Exporter
 from argo_compiler.ros import Storage, message_package, to_ros1_bag, to_ros2_bag

@@ -1,26 +1,32 @@
-"""SCXML: the whole machine as a W3C state chart, for any engine with the ECMAScript data model.
+"""Export of the machine as a W3C state chart (SCXML), for engines with the ECMAScript data model.
 
-Three regions run in parallel. `plan` holds the mission, its groups and tasks; `control` says
-whether the mission goes on, is paused, or a reaction has the robot; `actuator` starts and cancels
-actions, one at a time. The expressions are plain enough to be Python as well. `docs/export.md` has
-the events that come in and the data that a driver looks at.
+Three regions run in parallel. `plan` contains the mission's groups and tasks; `control` records
+whether the mission runs, is paused, or a reaction has the robot; `actuator` starts and cancels
+actions, one at a time. The expressions are simple enough to be valid Python as well.
+`docs/export.md` describes the events that the chart receives and the data that a driver of the
+chart reads.
 """
 
 from collections.abc import Sequence
 
 from argo_compiler.base.number_text import number
-from argo_compiler.export.scxml_control import ControlRegion, code, due_round, outcome_states
+from argo_compiler.export.scxml_control import (
+    ControlRegion,
+    outcome_code,
+    round_deadline,
+    write_outcome_states,
+)
 from argo_compiler.export.scxml_data import (
     ARGO,
-    DUES,
+    DEADLINES,
     NEVER,
-    ActionIds,
+    ChartIds,
     assign,
-    cancel_due,
-    data_model,
-    send_due,
-    send_time_out,
+    cancel_timer,
+    start_group_timer,
+    start_timer,
     task_attributes,
+    write_data_model,
 )
 from argo_compiler.export.xml import Attributes, XmlWriter
 from argo_compiler.hfsm import Composite, Hfsm, Leaf, Outcome, StateTransition, TransitionKind
@@ -31,11 +37,11 @@ from argo_compiler.il.ways import start_task
 NAMESPACE = "http://www.w3.org/2005/07/scxml"
 
 _NONE, _VALUE, _UNREADABLE, _FAILED = range(4)
-"""What `known` says of a checkpoint's reading."""
+"""Values of `known_…` in the data: the kind of a checkpoint's last reading."""
 
 
 def to_scxml(mission: Mission, hfsm: Hfsm, timers: bool = False) -> str:
-    """The machine as an SCXML document.
+    """Return the machine as an SCXML document.
 
     With `timers`, the engine's own clock sends the time-outs (`<send delay>`). Without, they come
     from outside like all other events, so that any clock can drive the machine.
@@ -49,7 +55,7 @@ class _Document:
         self.hfsm = hfsm
         self.start = start
         self.timers = timers
-        self.ids = ActionIds(hfsm)
+        self.ids = ChartIds(hfsm)
         self.composites = {c.id: c for c in hfsm.composites}
         self.leaves = {leaf.id: leaf for leaf in hfsm.leaves}
         self.xml = XmlWriter()
@@ -65,7 +71,7 @@ class _Document:
             "argo:max_duration": self.hfsm.max_duration,
         }
         with xml.element("scxml", root):
-            data_model(xml, self.hfsm, self.ids)
+            write_data_model(xml, self.hfsm, self.ids)
             with xml.element("parallel", {"id": "run"}):
                 if self.timers and self.hfsm.max_duration is not None:
                     limit = number(self.hfsm.max_duration)
@@ -73,42 +79,42 @@ class _Document:
                         time_up = {"event": "event.time_up", "delay": f"{limit}s"}
                         with xml.element("send", time_up):
                             xml.add("param", {"name": "time", "expr": limit})
-                self._plan()
+                self._mission_region()
                 ControlRegion(xml, self.hfsm, self.ids, self.timers).write()
-                self._actuator()
-            outcome_states(xml)
+                self._actuator_region()
+            write_outcome_states(xml)
         return xml.text()
 
-    def _plan(self) -> None:
-        """The mission's states. Not recursive, as groups may be nested to any depth."""
+    def _mission_region(self) -> None:
+        """Write the mission's states. Not recursive, as groups may be nested to any depth."""
         xml = self.xml
         xml.open("state", {"id": "plan", "initial": "start", "argo:name": self.hfsm.mission.name})
-        where = {} if self.start is None else task_attributes(self.start)
-        with xml.element("state", {"id": "start", **where}):
+        attributes = {} if self.start is None else task_attributes(self.start)
+        with xml.element("state", {"id": "start", **attributes}):
             xml.add("transition", {"target": self._target(self.hfsm.mission.initial)})
-        # None closes a group.
+        # None in the stack closes a group.
         pending: list[str | None] = [None, *reversed(self.hfsm.mission.children)]
         while pending:
             id = pending.pop()
             if id is None:
                 xml.close()
             elif id == DONE:
-                self._ended()
+                self._end_state()
             elif leaf := self.leaves.get(id):
-                self._leaf(leaf)
+                self._task_state(leaf)
             else:
                 group = self.composites[id]
                 self._open_group(group)
                 pending += [None, *reversed(group.children)]
 
-    def _ended(self) -> None:
+    def _end_state(self) -> None:
         xml = self.xml
         with xml.element("state", {"id": "ended"}), xml.element("onentry"):
-            self._assign([("visit", "0"), *((f"due_{due}", "0") for due in _OWN_DUES)])
+            self._assign([("visit", "0"), *((f"due_{due}", "0") for due in _VISIT_DEADLINES)])
             with xml.element("if", {"cond": "ends == 0 && failures == 0"}):
-                assign(xml, "ends", str(code(Outcome.COMPLETED)))
+                assign(xml, "ends", str(outcome_code(Outcome.COMPLETED)))
             with xml.element("if", {"cond": "ends == 0"}):
-                assign(xml, "ends", str(code(Outcome.COMPLETED_WITH_FAILURES)))
+                assign(xml, "ends", str(outcome_code(Outcome.COMPLETED_WITH_FAILURES)))
 
     # Groups
 
@@ -127,35 +133,38 @@ class _Document:
         )
         with xml.element("onentry"):
             assign(xml, f"round_{n}", "1")
-            self._begin_clock(group)
+            self._set_group_clock(group)
             if repeat.duration:
-                # Inside a round that is not due yet; its beginning sets the clock.
+                # In a round that is not due yet: the round's start enters the group again.
                 with xml.element("if", {"cond": "awaits != 0"}):
                     assign(xml, f"until_{n}", NEVER)
             if self.timers and group.timeout:
                 with xml.element("if", {"cond": "mode == 0 && awaits == 0"}):
-                    send_time_out(xml, n, repeat.count_interruptions)
+                    start_group_timer(xml, n, repeat.count_interruptions)
         if group.timeout:
             with xml.element("transition", {"event": f"timeout.g{n}"}):
                 self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
                 self._assign([("visit", "0"), ("completed", str(n))])
         if repeat.every:
-            self._begin_round(group)
+            self._round_start(group)
         for transition in group.transitions:
             self._group_transition(group, transition)
         if self.timers and group.timeout:
             with xml.element("onexit"):
                 xml.add("cancel", {"sendid": f"timer_{n}"})
 
-    def _begin_clock(self, group: Composite) -> None:
+    def _set_group_clock(self, group: Composite) -> None:
         n, repeat = self.ids.groups[group.id], _repeat(group)
         if repeat.duration:
             assign(self.xml, f"until_{n}", f"{_clock(repeat)} + {number(repeat.duration)}")
         if repeat.every:
             assign(self.xml, f"entered_{n}", _clock(repeat))
 
-    def _begin_round(self, group: Composite) -> None:
-        """The round that was waited for begins: all inside is entered anew, with its clocks."""
+    def _round_start(self, group: Composite) -> None:
+        """Write the transition that starts a planned round.
+
+        It enters all states inside the group anew, which sets their clocks.
+        """
         attributes = {
             "event": "timeout.round",
             "cond": f"mode == 0 && awaits == {self.ids.groups[group.id]}",
@@ -170,11 +179,11 @@ class _Document:
         n, repeat = self.ids.groups[group.id], _repeat(group)
         ended = f"completed == {n}"
         if transition.kind is not TransitionKind.REPEAT:
-            self._onward(transition, ended)
+            self._onward_transition(transition, ended)
             return
         if repeat.until:
             onward = next(t for t in group.transitions if t.kind is not TransitionKind.REPEAT)
-            self._onward(onward, " && ".join([ended, *map(self._holds, repeat.until)]))
+            self._onward_transition(onward, " && ".join([ended, *map(self._guard, repeat.until)]))
         cond = ended
         clock = _clock(repeat)
         if repeat.count:
@@ -191,12 +200,14 @@ class _Document:
             if repeat.every:
                 due = f"entered_{n} + (round_{n} - 1) * {number(repeat.every)}"
                 with self.xml.element("if", {"cond": f"{due} > {clock}"}):
-                    self._assign([("awaits", str(n)), ("due_round", due_round(n, repeat))])
+                    self._assign([("awaits", str(n)), ("due_round", round_deadline(n, repeat))])
 
     # Tasks
 
-    def _leaf(self, leaf: Leaf) -> None:
-        """A task: `..._act` while its action is wanted, then `..._end` to decide how to go on.
+    def _task_state(self, leaf: Leaf) -> None:
+        """Write the state of a task: `…_act` while its action is wanted, then `…_end` to decide.
+
+        `…_end` is active only for the moment in which the next transition is chosen.
 
         Guards are evaluated before a transition's assignments, so a value has to be stored in one
         transition for the next one to see it.
@@ -205,23 +216,23 @@ class _Document:
         task = leaf.task
         with xml.element("state", {"id": id, "initial": f"{id}_act", **task_attributes(task)}):
             with xml.element("onentry"):
-                self._enter(leaf, id)
+                self._task_entry(leaf, id)
             with xml.element("state", {"id": f"{id}_act"}):
-                self._miss(leaf)
+                self._missed_window(leaf)
                 if task.wait is not None:
-                    self._wait(leaf, f"{id}_end")
+                    self._wait_transitions(leaf, f"{id}_end")
                 else:
-                    self._act(leaf, f"{id}_end")
+                    self._action_transitions(leaf, f"{id}_end")
             with xml.element("state", {"id": f"{id}_end"}):
                 for transition in leaf.transitions:
-                    held = (self._holds(c) for c in transition.conditions)
-                    self._onward(transition, " && ".join(["completed == 0", *held]))
+                    guards = (self._guard(c) for c in transition.conditions)
+                    self._onward_transition(transition, " && ".join(["completed == 0", *guards]))
             if self.timers:
                 with xml.element("onexit"):
-                    for due in self.ids.dues:
-                        cancel_due(xml, due)
+                    for kind in self.ids.deadlines:
+                        cancel_timer(xml, kind)
 
-    def _enter(self, leaf: Leaf, id: str) -> None:
+    def _task_entry(self, leaf: Leaf, id: str) -> None:
         xml, task = self.xml, leaf.task
         window = task.window
         waits = task.wait is not None
@@ -232,45 +243,45 @@ class _Document:
                 ("visit", "0" if waits else "count"),
                 ("first", "count"),
                 ("place", f"'{id}'"),
-                ("object", str(self.ids.object_of(task))),
+                ("object", str(self.ids.object_number(task))),
                 ("limit", number(0 if waits else task.time_limit or 0)),
                 ("earliest", number(0 if window is None else window.earliest)),
                 ("occurred", "0"),
                 ("look", "1"),
                 ("due_action", "0"),
-                ("due_window", number(_latest(task) or 0)),
+                ("due_window", number(_hard_deadline(task) or 0)),
             ]
         )
-        self._begin_wait(leaf)
-        # What the task's own time brings about begins with its round.
+        self._set_wait_deadlines(leaf)
+        # In a round that is not due yet, the task's own deadlines are set when the round starts.
         own = ["due_wait", "due_limit"] if waits else []
-        if _latest(task) is not None:
+        if _hard_deadline(task) is not None:
             own.append("due_window")
         if own:
             with xml.element("if", {"cond": "awaits != 0"}):
                 self._assign([(due, "0") for due in own])
         if self.timers:
             with xml.element("if", {"cond": "mode == 0"}):
-                for due in self.ids.dues:
-                    send_due(xml, due)
+                for kind in self.ids.deadlines:
+                    start_timer(xml, kind)
 
-    def _begin_wait(self, leaf: Leaf) -> None:
-        """The times of a WAIT count from now."""
+    def _set_wait_deadlines(self, leaf: Leaf) -> None:
+        """Write the assignments of a WAIT's deadlines, which count from the entry of its state."""
         xml, wait = self.xml, leaf.task.wait
         if wait is None:
             self._assign([("due_wait", "0"), ("due_limit", "0")])
             return
         limit = "0" if wait.limit is None else f"now + {number(wait.limit)}"
-        over = "now" if wait.duration is None else f"now + {number(wait.duration)}"
-        self._assign([("due_limit", limit), ("due_wait", over)])
+        end = "now" if wait.duration is None else f"now + {number(wait.duration)}"
+        self._assign([("due_limit", limit), ("due_wait", end)])
         with xml.element("if", {"cond": "due_wait < earliest"}):
             assign(xml, "due_wait", "earliest")
         if wait.duration is None:
-            # Nothing but the window is a matter of time.
+            # Without a duration, only the start of the window is a deadline.
             with xml.element("if", {"cond": "due_wait <= now"}):
                 assign(xml, "due_wait", "0")
 
-    def _wait(self, leaf: Leaf, end: str) -> None:
+    def _wait_transitions(self, leaf: Leaf, end: str) -> None:
         xml, wait = self.xml, leaf.task.wait
         assert wait is not None
         going = "mode == 0 && awaits == 0 && completed == 0"
@@ -284,8 +295,8 @@ class _Document:
             xml.add("transition", {"cond": cond, "target": end})
         if wait.conditions:
             cond = f"{going} && look == 1 && now >= earliest"
-            held = " && ".join([cond, *map(self._holds, wait.conditions)])
-            xml.add("transition", {"cond": held, "target": end})
+            all_satisfied = " && ".join([cond, *map(self._guard, wait.conditions)])
+            xml.add("transition", {"cond": all_satisfied, "target": end})
             with xml.element("transition", {"cond": cond}):
                 assign(xml, "look", "0")
         with xml.element("transition", {"event": "timeout.wait", "cond": going}):
@@ -293,11 +304,11 @@ class _Document:
             if wait.duration is None:
                 assign(xml, "due_wait", "0")
         if wait.limit is not None:
-            self._fail("timeout.limit", going, leaf, leaf.failure)
+            self._failure_transition("timeout.limit", going, leaf, leaf.failure)
 
-    def _act(self, leaf: Leaf, end: str) -> None:
+    def _action_transitions(self, leaf: Leaf, end: str) -> None:
         xml = self.xml
-        # The failure of an action that is being cancelled may be the work of the cancellation.
+        # In `stopping`, the cancellation may be the cause of the failure.
         failed = "running == visit && In('busy')"
         limited = "mode == 0 && running == visit && In('busy')"
         if leaf.task.retries:
@@ -312,28 +323,35 @@ class _Document:
                     self._assign([("fails", "fails + 1"), ("count", "count + 1")])
                     self._assign([("visit", "count"), ("due_action", "0")])
         if leaf.task.time_limit is not None:
-            self._fail("timeout.action", limited, leaf, leaf.failure)
+            self._failure_transition("timeout.action", limited, leaf, leaf.failure)
         served = "running >= first && running_place == place"
         if leaf.id == RETURN:
-            self._leave("action.failed", failed, "ended", Outcome.FAILED)
-            self._leave("action.succeeded", served, "ended", Outcome.RETURNED)
+            self._end_of_visit("action.failed", failed, "ended", Outcome.FAILED)
+            self._end_of_visit("action.succeeded", served, "ended", Outcome.RETURNED)
         else:
-            self._fail("action.failed", failed, leaf, leaf.failure)
-            self._leave("action.succeeded", served, end, None)
+            self._failure_transition("action.failed", failed, leaf, leaf.failure)
+            self._end_of_visit("action.succeeded", served, end, None)
 
-    def _miss(self, leaf: Leaf) -> None:
-        if _latest(leaf.task) is None:
+    def _missed_window(self, leaf: Leaf) -> None:
+        if _hard_deadline(leaf.task) is None:
             return
-        way = leaf.missed or leaf.failure
-        self._fail("timeout.window", "mode == 0 && awaits == 0", leaf, way)
+        transition = leaf.missed or leaf.failure
+        self._failure_transition("timeout.window", "mode == 0 && awaits == 0", leaf, transition)
 
-    def _fail(self, event: str, cond: str, leaf: Leaf, way: StateTransition | None) -> None:
-        """The task has failed for good, and goes on by `way` or as after any other end."""
+    def _failure_transition(
+        self, event: str, cond: str, leaf: Leaf, transition: StateTransition | None
+    ) -> None:
+        """Write what happens when a task has failed with all retries.
+
+        The machine takes `transition`, or if that is None the transitions after a success.
+        """
         xml, task = self.xml, leaf.task
-        target = f"{self._state(leaf.id)}_end" if way is None else self._target(way.target)
+        target = (
+            f"{self._state(leaf.id)}_end" if transition is None else self._target(transition.target)
+        )
         with xml.element("transition", {"event": event, "cond": cond, "target": target}):
             self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
-            if k := self.ids.object_of(task):
+            if k := self.ids.object_number(task):
                 self._assign(
                     [
                         (f"known_{k}", str(_FAILED)),
@@ -347,18 +365,18 @@ class _Document:
                         assign(xml, f"known_{k}", str(_UNREADABLE))
             if not task.optional:
                 assign(xml, "failures", "failures + 1")
-            if way is not None and way.target == DONE:
-                assign(xml, "ends", str(code(Outcome.ABORTED)))
+            if transition is not None and transition.target == DONE:
+                assign(xml, "ends", str(outcome_code(Outcome.ABORTED)))
             assign(xml, "visit", "0")
 
-    def _leave(self, event: str, cond: str, target: str, outcome: Outcome | None) -> None:
+    def _end_of_visit(self, event: str, cond: str, target: str, outcome: Outcome | None) -> None:
         attributes = {"event": event, "cond": cond, "target": target}
         with self.xml.element("transition", attributes):
             assign(self.xml, "visit", "0")
             if outcome is not None:
-                assign(self.xml, "ends", str(code(outcome)))
+                assign(self.xml, "ends", str(outcome_code(outcome)))
 
-    def _onward(self, transition: StateTransition, cond: str) -> None:
+    def _onward_transition(self, transition: StateTransition, cond: str) -> None:
         if transition.completes is not None:
             n = self.ids.groups[transition.completes]
             with self.xml.element("transition", {"cond": cond}):
@@ -369,24 +387,24 @@ class _Document:
         ):
             self._assign([("completed", "0"), ("awaits", "0"), ("due_round", "0")])
 
-    def _holds(self, condition: Condition) -> str:
+    def _guard(self, condition: Condition) -> str:
         k = self.ids.objects[condition.object_id]
         less = "<=" if condition.inclusive else "<"
         low = number(condition.param1 or 0.0)
         value = f"value_{k}"
         age = f"now - time_{k}"
         known = f"known_{k} == {_VALUE}"
-        young = []
+        fresh = []
         if condition.max_age is not None:
-            young = [f"{age} <= {number(condition.max_age)}"]
+            fresh = [f"{age} <= {number(condition.max_age)}"]
         match condition.type:
             case ConditionType.LESS:
-                tests = [known, *young, f"{value} {less} {low}"]
+                tests = [known, *fresh, f"{value} {less} {low}"]
             case ConditionType.GREATER:
-                tests = [known, *young, f"{low} {less} {value}"]
+                tests = [known, *fresh, f"{low} {less} {value}"]
             case ConditionType.WITHIN:
                 upper = number(condition.param2 or 0.0)
-                tests = [known, *young, f"{low} {less} {value}", f"{value} {less} {upper}"]
+                tests = [known, *fresh, f"{low} {less} {value}", f"{value} {less} {upper}"]
             case ConditionType.UNREADABLE:
                 tests = [f"known_{k} == {_UNREADABLE}"]
             case ConditionType.FAILED:
@@ -394,29 +412,29 @@ class _Document:
             case ConditionType.STALE:
                 tests = [known, f"{age} > {number(condition.max_age or 0.0)}"]
             case ConditionType.ABNORMAL:
-                tests = [known, f"abnormal_{k} == 1", *young]
+                tests = [known, f"abnormal_{k} == 1", *fresh]
         return " && ".join(tests)
 
     # Actions
 
-    def _actuator(self) -> None:
+    def _actuator_region(self) -> None:
         xml = self.xml
         with xml.element("state", {"id": "actuator", "initial": "free"}):
             for k in sorted(self.ids.objects.values()):
                 with xml.element("transition", {"event": f"reading.{k}"}):
-                    self._read(k)
+                    self._store_reading(k)
             with xml.element("state", {"id": "free"}):
                 going = "mode == 0 && visit > 0 && awaits == 0"
                 with xml.element("transition", {"cond": going, "target": "busy"}):
-                    self._begin_action("visit", "place", "object")
+                    self._start_action("visit", "place", "object")
                     with xml.element("if", {"cond": "limit > 0 && earliest <= now"}):
                         assign(xml, "due_action", "now + limit")
                     with xml.element("if", {"cond": "limit > 0 && earliest > now"}):
                         assign(xml, "due_action", "earliest + limit")
-                    if self.timers and "action" in self.ids.dues:
-                        send_due(xml, "action")
+                    if self.timers and "action" in self.ids.deadlines:
+                        start_timer(xml, "action")
                 with xml.element("transition", {"cond": "mode == 1", "target": "busy"}):
-                    self._begin_action("drive", "drive_place", "0")
+                    self._start_action("drive", "drive_place", "0")
             for id in ("busy", "stopping"):
                 with xml.element("state", {"id": id}):
                     if id == "busy":
@@ -425,12 +443,12 @@ class _Document:
                         cond = f"running_object == {k}"
                         attributes = {"event": "action.succeeded", "cond": cond, "target": "free"}
                         with xml.element("transition", attributes):
-                            self._read(k)
+                            self._store_reading(k)
                             self._end_action()
                     with xml.element("transition", {"event": "action", "target": "free"}):
                         self._end_action()
 
-    def _begin_action(self, number: str, place: str, measured: str) -> None:
+    def _start_action(self, number: str, place: str, measured: str) -> None:
         self._assign(
             [
                 ("running", number),
@@ -442,11 +460,11 @@ class _Document:
 
     def _end_action(self) -> None:
         self._assign([("running", "0"), ("due_action", "0")])
-        if self.timers and "action" in self.ids.dues:
-            cancel_due(self.xml, "action")
+        if self.timers and "action" in self.ids.deadlines:
+            cancel_timer(self.xml, "action")
 
-    def _read(self, k: int) -> None:
-        """A checkpoint's reading, from the data of the event."""
+    def _store_reading(self, k: int) -> None:
+        """Write the assignments that store a checkpoint's reading from the event's data."""
         self._assign([(f"known_{k}", str(_UNREADABLE)), (f"time_{k}", "_event.data.time")])
         self._assign([(f"abnormal_{k}", "0"), ("look", "1")])
         with self.xml.element("if", {"cond": "_event.data.value != null"}):
@@ -470,8 +488,8 @@ class _Document:
 
 _NOT_WANTED = "(mode != 0 || running != visit) && (mode != 1 || running != drive)"
 
-_OWN_DUES = tuple(due for due in DUES if due != "hold")
-"""Those of a visit."""
+_VISIT_DEADLINES = tuple(kind for kind in DEADLINES if kind != "hold")
+"""Deadlines of a visit; `hold` belongs to a reaction."""
 
 
 def _repeat(group: Composite) -> RepeatRule:
@@ -479,12 +497,12 @@ def _repeat(group: Composite) -> RepeatRule:
     return group.repeat
 
 
-def _latest(task: Task) -> float | None:
-    """When the task's hard window is over (s since the mission's start), if it has one."""
+def _hard_deadline(task: Task) -> float | None:
+    """Return the end of the task's hard window in s since the mission's start, or None."""
     window = task.window
     return window.latest if window is not None and window.hard else None
 
 
 def _clock(repeat: RepeatRule) -> str:
-    """The clock that a group goes by."""
+    """Return the variable with the clock of a group: with or without the time of interruptions."""
     return "now" if repeat.count_interruptions else "clock"

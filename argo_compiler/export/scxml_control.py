@@ -1,10 +1,10 @@
-"""The region `control` of an SCXML document: pauses, reactions, and the end of the mission.
+"""Region `control` of an SCXML document: pauses, reactions, and the end of the mission.
 
-It is written from the table of interruptions that the executor goes by. What of a row is known
-beforehand, such as which reaction ranks above which, is decided here; the rest is a guard.
+The region is written from the executor's own table of interruptions. The parts of a row that the
+mission determines, such as the ranks of reactions, are evaluated here; the others become guards.
 
-A reaction is *pending* while its `since` is above 0: it is the active one, whose state is entered,
-or it waits. `over` says that the event which it would hold for has occurred meanwhile.
+A reaction is *pending* while its `since` is above 0: it is active, so its state is entered, or it
+waits. `over` is 1 if the event that ends its hold has occurred in the meantime.
 """
 
 from collections.abc import Iterator, Sequence
@@ -13,11 +13,11 @@ from contextlib import AbstractContextManager
 from argo_compiler.base.number_text import number
 from argo_compiler.export.scxml_data import (
     NEVER,
-    ActionIds,
+    ChartIds,
     assign,
-    cancel_due,
-    send_due,
-    send_time_out,
+    cancel_timer,
+    start_group_timer,
+    start_timer,
     task_attributes,
 )
 from argo_compiler.export.xml import Attributes, XmlWriter
@@ -28,23 +28,23 @@ from argo_compiler.hfsm.standing import fixed, there
 from argo_compiler.il import EventKind, Reaction, Response
 
 OUTCOMES = tuple(Outcome)
-"""The final states. `outcome` in the data is the position of one, from 1."""
+"""Final states; `outcome` in the data is the position of one of them, from 1."""
 
 Assignments = Sequence[tuple[str, str | int]]
 
 
-def code(outcome: Outcome) -> int:
-    """What stands for an outcome in the data."""
+def outcome_code(outcome: Outcome) -> int:
+    """Return the number of an outcome in the data."""
     return OUTCOMES.index(outcome) + 1
 
 
 def final_id(outcome: Outcome) -> str:
-    """The id of the state in which a mission has ended."""
+    """Return the id of the final state for an outcome."""
     return outcome.replace(" ", "_")
 
 
-def outcome_states(xml: XmlWriter) -> None:
-    """Writes the final states, one for each outcome."""
+def write_outcome_states(xml: XmlWriter) -> None:
+    """Write the final states, one for each outcome."""
     for outcome in OUTCOMES:
         xml.add("final", {"id": final_id(outcome)})
 
@@ -55,7 +55,7 @@ _STATES = {
     Stage.STOPPED: "stopped",
     Stage.ENDING: "ending",
 }
-_OF_REACTION = {
+_REACTION_STATES = {
     Stage.BEGINNING: "begin",
     Stage.DRIVING: "drive",
     Stage.ARRIVED: "arrive",
@@ -70,20 +70,20 @@ _EVENTS = {
     Trigger.STUCK: "action.failed",
     Trigger.LIMIT: "timeout.hold",
 }
-_ARISING = {
+_SPONTANEOUS = {
     Trigger.ALWAYS: "",
-    Trigger.DONE: f"(ends == {code(Outcome.COMPLETED)} || "
-    f"ends == {code(Outcome.COMPLETED_WITH_FAILURES)})",
-    Trigger.ENDED: f"ends > {code(Outcome.COMPLETED_WITH_FAILURES)}",
+    Trigger.DONE: f"(ends == {outcome_code(Outcome.COMPLETED)} || "
+    f"ends == {outcome_code(Outcome.COMPLETED_WITH_FAILURES)})",
+    Trigger.ENDED: f"ends > {outcome_code(Outcome.COMPLETED_WITH_FAILURES)}",
 }
-"""What needs no event, and what is so then."""
+"""Guards of the triggers that are no events of the chart."""
 
-_CONDITIONS = {
+_TRIGGER_GUARDS = {
     Trigger.DRIVEN: ["running == drive"],
-    # The failure of a drive that is being cancelled may be the work of the cancellation.
+    # In `stopping`, the cancellation may be the cause of the failure.
     Trigger.STUCK: ["running == drive", "In('busy')"],
 }
-_ENDS = {
+_END_OUTCOMES = {
     Effect.END_ABORTED: Outcome.ABORTED,
     Effect.END_CANCELLED: Outcome.CANCELLED,
     Effect.END_FAILED: Outcome.FAILED,
@@ -91,9 +91,9 @@ _ENDS = {
 
 
 class ControlRegion:
-    """The region, which is written once."""
+    """Writer of the region `control`, which a document contains once."""
 
-    def __init__(self, xml: XmlWriter, hfsm: Hfsm, ids: ActionIds, timers: bool) -> None:
+    def __init__(self, xml: XmlWriter, hfsm: Hfsm, ids: ChartIds, timers: bool) -> None:
         self.xml = xml
         self.timers = timers
         self.timed = {
@@ -101,73 +101,74 @@ class ControlRegion:
             for c in hfsm.composites
             if timers and c.timeout and c.repeat
         }
-        self.dues = [due for due in ids.dues if due != "action"]
-        """what is due only while the mission goes on; an action's limit is known when it starts"""
+        self.deadlines = [kind for kind in ids.deadlines if kind != "action"]
+        """kinds whose timers stop during interruptions; an action's timer starts with the action"""
         self.rounds = [
             (ids.groups[c.id], c.repeat)
             for c in hfsm.composites
             if c.repeat is not None and c.repeat.every
         ]
         self.supervised = hfsm.supervised and hfsm.mission.initial != DONE
-        # By rank, the greatest first.
+        # In the order of `hfsm.reactions`: the highest rank comes first.
         self.states = [s for s in hfsm.reactions if s.reaction.response is not Response.REPORT]
-        self.own = {state.reaction.event: state.reaction for state in self.states}
-        untils = [s.reaction.until for s in self.states if s.reaction.until is not None]
-        self.kinds = sorted({*self.own, *untils})
+        self.reactions = {state.reaction.event: state.reaction for state in self.states}
+        hold_ends = [s.reaction.until for s in self.states if s.reaction.until is not None]
+        self.kinds = sorted({*self.reactions, *hold_ends})
 
     def write(self) -> None:
+        """Write the region."""
         xml = self.xml
         initial = "stopped" if self.supervised else "going"
         with xml.element("state", {"id": "control", "initial": initial}):
-            self._going()
+            self._going_state()
             with self._state("choose"):
                 self._enter([("mode", 2)])
-                self._rows(Stage.CHOOSING)
+                self._row_transitions(Stage.CHOOSING)
             with self._state("stopped"):
-                # Paused when a supervised mission begins, and already so in any other case.
+                # `paused` is set for a supervised mission's start; otherwise it is 1 already.
                 self._enter([("mode", 2), ("paused", 1)])
-                self._rows(Stage.STOPPED)
+                self._row_transitions(Stage.STOPPED)
             for state in self.states:
                 if state.reaction.response is not Response.ABORT:
-                    self._reaction(state)
+                    self._reaction_state(state)
             with self._state("ending"):
                 self._enter([("mode", 3)])
                 for outcome in OUTCOMES:
-                    cond = f"running == 0 && outcome == {code(outcome)}"
-                    self._then(cond, final_id(outcome))
-            self._go("action timeout event reading tick pause resume cancel")
+                    cond = f"running == 0 && outcome == {outcome_code(outcome)}"
+                    self._eventless_transition(cond, final_id(outcome))
+            self._event_transition("action timeout event reading tick pause resume cancel")
 
-    def _going(self) -> None:
+    def _going_state(self) -> None:
         with self._state("going"):
             with self.xml.element("onentry"):
                 self._assign([("mode", 0), ("lost", "now - clock"), ("look", 1)])
                 for n, repeat in self.rounds:
                     with self.xml.element("if", {"cond": f"awaits == {n}"}):
-                        self._assign([("due_round", due_round(n, repeat))])
+                        self._assign([("due_round", round_deadline(n, repeat))])
                 for n, counted in self.timed.items():
                     with self.xml.element("if", {"cond": f"In('g{n}') && until_{n} < {NEVER}"}):
-                        send_time_out(self.xml, n, counted)
+                        start_group_timer(self.xml, n, counted)
                 if self.timers:
-                    for due in self.dues:
-                        send_due(self.xml, due)
+                    for kind in self.deadlines:
+                        start_timer(self.xml, kind)
             with self.xml.element("onexit"):
-                # An action that is interrupted is started anew, with its whole limit.
+                # An interrupted action is started again later, with its full time limit.
                 self._assign([("due_action", 0)])
                 for n in self.timed:
                     self.xml.add("cancel", {"sendid": f"timer_{n}"})
                 if self.timers:
-                    for due in self.dues:
-                        cancel_due(self.xml, due)
-            self._rows(Stage.GOING)
+                    for kind in self.deadlines:
+                        cancel_timer(self.xml, kind)
+            self._row_transitions(Stage.GOING)
             clock = [("clock", "now - lost")]
-            self._go("action timeout event reading tick pause resume", None, clock)
+            self._event_transition("action timeout event reading tick pause resume", None, clock)
 
-    def _reaction(self, state: ReactionState) -> None:
+    def _reaction_state(self, state: ReactionState) -> None:
         reaction = state.reaction
         id = f"react_{reaction.event}"
         with self._state(id, {"initial": f"{id}_begin"}):
             with self._state(f"{id}_begin"):
-                self._rows(Stage.BEGINNING, reaction)
+                self._row_transitions(Stage.BEGINNING, reaction)
             if state.task is not None:
                 with self._state(f"{id}_drive", task_attributes(state.task)):
                     self._enter(
@@ -178,64 +179,68 @@ class ControlRegion:
                             ("mode", 1),
                         ]
                     )
-                    self._rows(Stage.DRIVING, reaction)
+                    self._row_transitions(Stage.DRIVING, reaction)
             with self._state(f"{id}_arrive"):
                 self._enter([("mode", 2)])
-                self._rows(Stage.ARRIVED, reaction)
+                self._row_transitions(Stage.ARRIVED, reaction)
             if fixed(Given.HOLDS, None, reaction, None):
-                self._hold(f"{id}_hold", reaction)
+                self._hold_state(f"{id}_hold", reaction)
             with self._state(f"{id}_over"):
-                self._rows(Stage.LETTING_GO, reaction)
+                self._row_transitions(Stage.LETTING_GO, reaction)
 
-    def _hold(self, id: str, reaction: Reaction) -> None:
+    def _hold_state(self, id: str, reaction: Reaction) -> None:
         with self._state(id):
             if reaction.hold_limit is not None:
                 with self.xml.element("onentry"):
                     self._assign([("due_hold", f"now + {number(reaction.hold_limit)}")])
                     if self.timers:
-                        send_due(self.xml, "hold")
+                        start_timer(self.xml, "hold")
                 with self.xml.element("onexit"):
                     self._assign([("due_hold", 0)])
                     if self.timers:
-                        cancel_due(self.xml, "hold")
-            self._rows(Stage.HOLDING, reaction)
+                        cancel_timer(self.xml, "hold")
+            self._row_transitions(Stage.HOLDING, reaction)
 
     # Rows
 
-    def _rows(self, stage: Stage, active: Reaction | None = None) -> None:
-        """The transitions of a state, from the rows of its stage."""
-        for trigger, arises in _ARISING.items():
-            for row, conds, _ in self._chosen(stage, trigger, active, None):
-                self._write(row, stage, None, _all([arises, *conds]), active, None)
+    def _row_transitions(self, stage: Stage, active: Reaction | None = None) -> None:
+        """Write the transitions of a state, from the rows of its stage."""
+        for trigger, guard in _SPONTANEOUS.items():
+            for row, conds, _ in self._possible_rows(stage, trigger, active, None):
+                self._write_row(row, stage, None, _conjunction([guard, *conds]), active, None)
         for kind in self.kinds:
-            for row, conds, own in self._chosen(stage, Trigger.EVENT, active, kind):
-                self._write(row, stage, f"event.{kind}", _all(conds), active, own, kind)
+            for row, conds, own in self._possible_rows(stage, Trigger.EVENT, active, kind):
+                self._write_row(row, stage, f"event.{kind}", _conjunction(conds), active, own, kind)
         for trigger, event in _EVENTS.items():
-            for row, conds, _ in self._chosen(stage, trigger, active, None):
-                cond = _all([*_CONDITIONS.get(trigger, []), *conds])
-                self._write(row, stage, event, cond, active, None)
+            for row, conds, _ in self._possible_rows(stage, trigger, active, None):
+                cond = _conjunction([*_TRIGGER_GUARDS.get(trigger, []), *conds])
+                self._write_row(row, stage, event, cond, active, None)
 
-    def _chosen(
+    def _possible_rows(
         self, stage: Stage, trigger: Trigger, active: Reaction | None, kind: EventKind | None
     ) -> Iterator[tuple[InterruptRow, list[str], Reaction | None]]:
-        """The rows that may be taken, each with what has to be so then."""
-        own = None if kind is None else self.own.get(kind)
+        """Yield the rows that may be taken, each with its guards and the event's own reaction."""
+        own = None if kind is None else self.reactions.get(kind)
         for row in ROWS.get((stage, trigger), ()):
-            known = [g for g in (*row.when, *row.unless) if g not in _OPEN]
-            said = {g: fixed(g, own, active, kind) for g in known}
-            if not all(said.get(g, True) for g in row.when):
+            static = [g for g in (*row.when, *row.unless) if g not in _DYNAMIC]
+            values = {g: fixed(g, own, active, kind) for g in static}
+            if not all(values.get(g, True) for g in row.when):
                 continue
-            if any(said.get(g, False) for g in row.unless):
+            if any(values.get(g, False) for g in row.unless):
                 continue
-            conds = [_OPEN[g][0].format(**_names(own, active)) for g in row.when if g in _OPEN]
-            conds += [_OPEN[g][1].format(**_names(own, active)) for g in row.unless if g in _OPEN]
-            # Where nothing changes, the region's last transition notes the time.
+            conds = [
+                _DYNAMIC[g][0].format(**_events(own, active)) for g in row.when if g in _DYNAMIC
+            ]
+            conds += [
+                _DYNAMIC[g][1].format(**_events(own, active)) for g in row.unless if g in _DYNAMIC
+            ]
+            # A row that changes nothing needs no transition: the region's last one stores the time.
             if conds or row.target is not None or row.effects:
                 yield row, conds, own
             if not conds:
                 return
 
-    def _write(
+    def _write_row(
         self,
         row: InterruptRow,
         stage: Stage,
@@ -247,30 +252,33 @@ class ControlRegion:
     ) -> None:
         if Given.HIGHER_WAITS in row.when:
             assert active is not None
-            for higher in self.own.values():
+            for higher in self.reactions.values():
                 if higher.rank > active.rank:
-                    waits = _all([cond or "", f"since_{higher.event} != 0"])
+                    waits = _conjunction([cond or "", f"since_{higher.event} != 0"])
                     target = self._target(row.target, None)
                     self._transition(row, stage, event, waits, target, active, own, kind)
         elif Effect.ACTIVATE in row.effects:
             for state in self.states:
                 if state.reaction.response is not Response.ABORT:
-                    turn = self._turn(state.reaction)
+                    turn = self._turn_guard(state.reaction)
                     target = f"react_{state.reaction.event}"
                     self._transition(row, stage, event, turn, target, active, own, kind)
         else:
             target = self._target(row.target, active)
             self._transition(row, stage, event, cond, target, active, own, kind)
 
-    def _turn(self, mine: Reaction) -> str:
-        """Whether it waits, and none of equal rank has waited longer. Higher ones come first."""
-        first = [f"since_{mine.event} != 0"]
-        first += (
-            f"(since_{r.event} == 0 || since_{mine.event} < since_{r.event})"
-            for r in self.own.values()
-            if r.rank == mine.rank and r is not mine
+    def _turn_guard(self, reaction: Reaction) -> str:
+        """Return the guard that a reaction waits, and that none of equal rank has waited longer.
+
+        It does not name higher ranks, as their transitions come first.
+        """
+        guards = [f"since_{reaction.event} != 0"]
+        guards += (
+            f"(since_{r.event} == 0 || since_{reaction.event} < since_{r.event})"
+            for r in self.reactions.values()
+            if r.rank == reaction.rank and r is not reaction
         )
-        return " && ".join(first)
+        return " && ".join(guards)
 
     def _target(self, stage: Stage | None, active: Reaction | None) -> str | None:
         if stage is None:
@@ -278,7 +286,7 @@ class ControlRegion:
         if stage in _STATES:
             return _STATES[stage]
         assert active is not None
-        return f"react_{active.event}_{_OF_REACTION[stage]}"
+        return f"react_{active.event}_{_REACTION_STATES[stage]}"
 
     def _transition(
         self,
@@ -330,20 +338,20 @@ class ControlRegion:
                 self._assign([("outcome", "ends")])
             case Effect.END_THERE:
                 assert active is not None
-                self._assign([("outcome", code(there(active)))])
+                self._assign([("outcome", outcome_code(there(active)))])
             case Effect.END_ABORTED | Effect.END_CANCELLED | Effect.END_FAILED:
-                self._assign([("outcome", code(_ENDS[effect]))])
+                self._assign([("outcome", outcome_code(_END_OUTCOMES[effect]))])
             case Effect.SET_ASIDE | Effect.ACTIVATE:
-                pass  # what is active is the state that is entered, and what waits has its `since`
+                pass  # the entered state shows the active reaction; a waiting one has its `since`
 
     def _mark(self, kind: EventKind) -> None:
-        for reaction in self.own.values():
-            over = reaction.until is kind
-            if over or reaction.event is kind:
+        for reaction in self.reactions.values():
+            ends_hold = reaction.until is kind
+            if ends_hold or reaction.event is kind:
                 with self.xml.element("if", {"cond": f"since_{reaction.event} != 0"}):
-                    self._assign([(f"over_{reaction.event}", int(over))])
+                    self._assign([(f"over_{reaction.event}", int(ends_hold))])
 
-    # The parts of which the states are made
+    # Elements of the states
 
     def _state(self, id: str, attributes: Attributes | None = None) -> AbstractContextManager[None]:
         return self.xml.element("state", {"id": id, **(attributes or {})})
@@ -352,11 +360,12 @@ class ControlRegion:
         with self.xml.element("onentry"):
             self._assign(assignments)
 
-    def _then(self, cond: str, target: str) -> None:
-        """A transition that needs no event."""
+    def _eventless_transition(self, cond: str, target: str) -> None:
         self.xml.add("transition", {"cond": cond, "target": target})
 
-    def _go(self, event: str, target: str | None = None, more: Assignments = ()) -> None:
+    def _event_transition(
+        self, event: str, target: str | None = None, more: Assignments = ()
+    ) -> None:
         with self.xml.element("transition", {"event": event, "target": target}):
             self._assign([("now", "_event.data.time"), *more])
 
@@ -365,30 +374,30 @@ class ControlRegion:
             assign(self.xml, location, str(expr))
 
 
-_OPEN = {
+_DYNAMIC = {
     Given.PAUSED: ("paused == 1", "paused == 0"),
     Given.NEW: ("since_{own} == 0", "since_{own} != 0"),
     Given.OVER: ("over_{active} == 1", "over_{active} == 0"),
-    # These are written once for each reaction that may be meant.
+    # `_write_row` writes a row with one of these once for each reaction that may wait.
     Given.SOME_WAITS: ("", ""),
     Given.HIGHER_WAITS: ("", ""),
 }
-"""What is not known beforehand: how a guard asks for it, and for the opposite."""
+"""Guards for what is known only during the run: that it is so, and that it is not."""
 
 
-def _all(conds: Sequence[str]) -> str | None:
-    """All of them, as one guard."""
+def _conjunction(conds: Sequence[str]) -> str | None:
+    """Return one guard that requires all of the conditions, or None if there are none."""
     return " && ".join(filter(None, conds)) or None
 
 
-def _names(own: Reaction | None, active: Reaction | None) -> dict[str, str]:
+def _events(own: Reaction | None, active: Reaction | None) -> dict[str, str]:
     return {
         "own": "" if own is None else own.event,
         "active": "" if active is None else active.event,
     }
 
 
-def due_round(n: int, repeat: RepeatRule) -> str:
-    """When the present round of a group is due (s since the mission's start)."""
+def round_deadline(n: int, repeat: RepeatRule) -> str:
+    """Return the expression for the due time of a group's round, in s since the mission's start."""
     due = f"entered_{n} + (round_{n} - 1) * {number(repeat.every)}"
     return due if repeat.count_interruptions else f"{due} + lost"

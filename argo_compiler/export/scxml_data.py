@@ -1,4 +1,4 @@
-"""The ids and the data of an SCXML document."""
+"""Ids and data model of an SCXML document."""
 
 from collections.abc import Iterable
 
@@ -8,51 +8,54 @@ from argo_compiler.hfsm import Hfsm
 from argo_compiler.il import Action, Condition, Task
 
 ARGO = "urn:argo:mission"
-"""The namespace of attributes that say what a state is, for people and for drivers."""
+"""Namespace of the attributes that describe a state to people and to drivers of the chart."""
 
-DUES = ("wait", "window", "action", "limit", "hold", "round")
-"""What may be due beside groups and the mission: `timeout.wait` at `due_wait`, and so on."""
+DEADLINES = ("wait", "window", "action", "limit", "hold", "round")
+"""Kinds of deadlines other than those of groups and the mission.
+
+Event `timeout.wait` is due at the time in `due_wait`, and so on.
+"""
 
 NEVER = "1000000000000000"
-"""s; when the time of a group is up that lies in a round which has not begun"""
+"""deadline in s of a group inside a round that has not started: later than any real time"""
 
-_COUNTERS = (
-    "now",  # s since the mission's start, of the last event
-    "clock",  # the same without interruptions
-    "lost",  # s of interruptions, those that are over
-    "mode",  # 0 the mission goes on, 1 a reaction drives, 2 all stands still, 3 it ends
-    "outcome",  # 0 none yet, else a number of `OUTCOMES`
-    "ends",  # 0, else the outcome that the plan has come to
-    "failures",  # tasks that are not optional and failed for good
-    "count",  # actions wanted so far
-    "visit",  # the number of the action that the mission wants, or 0
-    "first",  # that of the first one in this visit
-    "drive",  # that of the active reaction's drive
-    "paused",  # 1 while a person's resume is waited for
+_NUMBERS = (
+    "now",  # time of the last event, in s since the mission's start
+    "clock",  # the same without the time of interruptions
+    "lost",  # s spent in interruptions that have ended
+    "mode",  # 0 the mission runs, 1 a reaction drives, 2 no action is wanted, 3 the mission ends
+    "outcome",  # 0 none yet, else the position in `OUTCOMES` from 1
+    "ends",  # 0 while tasks remain, else the outcome to which the tasks have led
+    "failures",  # tasks that are not optional and have failed with all retries
+    "count",  # actions requested so far
+    "visit",  # number of the action that the mission requests, or 0
+    "first",  # number of the first action of this visit
+    "drive",  # number of the active reaction's drive
+    "paused",  # 1 while the mission waits for a person to resume it
     "fails",  # failures of this visit's action
-    "completed",  # the group whose round has ended and that has not decided yet, or 0
-    "awaits",  # the group whose next round is not due yet, or 0
-    "occurred",  # 1 when the event that this visit waits for has occurred
-    "look",  # 1 when the conditions that this visit waits for have to be looked at
-    "object",  # the object that the mission's task measures, or 0
-    "limit",  # s that the action of the mission's task may take, or 0
-    "earliest",  # s since the mission's start when it may begin at its place
-    "running",  # the number of the running action, or 0
-    "running_object",
+    "completed",  # group whose round has ended, until its next transition; or 0
+    "awaits",  # group whose next round is not due yet, or 0
+    "occurred",  # 1 if the event that this visit waits for has occurred
+    "look",  # 1 if the conditions that this visit waits for have to be evaluated
+    "object",  # number of the object that the mission's task measures, or 0
+    "limit",  # time limit in s of the mission's task, or 0
+    "earliest",  # earliest start at the task's pose, in s since the mission's start
+    "running",  # number of the running action, or 0
+    "running_object",  # number of the object that it measures, or 0
     "starts",  # actions started so far
     "events",  # events with a reaction so far
-    *(f"due_{due}" for due in DUES),  # s since the mission's start, or 0
+    *(f"due_{due}" for due in DEADLINES),  # s since the mission's start, or 0
 )
 
 
-class ActionIds:
-    """Short ids by position, as names may hold anything."""
+class ChartIds:
+    """Short ids of tasks, groups and objects by position, as names may contain any characters."""
 
     def __init__(self, hfsm: Hfsm) -> None:
         self.leaves = {leaf.id: f"t{i}" for i, leaf in enumerate(hfsm.leaves, 1)}
         self.groups = {group.id: i for i, group in enumerate(hfsm.composites[1:], 1)}
-        self.dues = _dues(hfsm)
-        """those of `DUES` that the mission's tasks may have"""
+        self.deadlines = _deadlines(hfsm)
+        """kinds of `DEADLINES` that the mission's tasks and groups can have"""
         self.objects: dict[str, int] = {}
         for leaf in hfsm.leaves:
             if leaf.task.object_id is not None:
@@ -72,36 +75,37 @@ class ActionIds:
     def _number(self, object_id: str) -> None:
         self.objects.setdefault(object_id, len(self.objects) + 1)
 
-    def object_of(self, task: Task) -> int:
+    def object_number(self, task: Task) -> int:
+        """Return the number of the object that the task measures, or 0 if it measures none."""
         if task.action is not Action.MEASURE or task.object_id is None:
             return 0
         return self.objects[task.object_id]
 
 
-def _dues(hfsm: Hfsm) -> tuple[str, ...]:
+def _deadlines(hfsm: Hfsm) -> tuple[str, ...]:
     tasks = [leaf.task for leaf in hfsm.leaves]
     waits = [task.wait for task in tasks if task.wait is not None]
     windows = [task.window for task in tasks if task.window is not None]
     repeats = [group.repeat for group in hfsm.composites if group.repeat is not None]
-    found = {
+    is_possible = {
         "wait": bool(waits),
         "window": any(window.hard and window.latest is not None for window in windows),
         "action": any(task.time_limit is not None for task in tasks),
         "limit": any(wait.limit is not None for wait in waits),
         "round": any(repeat.every for repeat in repeats),
     }
-    return tuple(due for due in DUES if found.get(due))
+    return tuple(kind for kind in DEADLINES if is_possible.get(kind))
 
 
 def assign(xml: XmlWriter, location: str, expr: str) -> None:
-    """Writes an assignment to the data."""
+    """Write an assignment to a variable of the data model."""
     xml.add("assign", {"location": location, "expr": expr})
 
 
-def data_model(xml: XmlWriter, hfsm: Hfsm, ids: ActionIds) -> None:
-    """Writes the data with what it holds at the beginning."""
+def write_data_model(xml: XmlWriter, hfsm: Hfsm, ids: ChartIds) -> None:
+    """Write the data model with its initial values."""
     with xml.element("datamodel"):
-        for name in _COUNTERS:
+        for name in _NUMBERS:
             xml.add("data", {"id": name, "expr": "0"})
         for name in ("place", "drive_place", "running_place"):
             xml.add("data", {"id": name, "expr": "''"})
@@ -129,7 +133,7 @@ def data_model(xml: XmlWriter, hfsm: Hfsm, ids: ActionIds) -> None:
 
 
 def task_attributes(task: Task) -> Attributes:
-    """What a driver has to know of a task, in Argo's namespace."""
+    """Return the attributes in Argo's namespace that a driver of the chart needs of a task."""
     joints, window = task.joint_states, task.window
     joint_states: Attributes = {}
     if joints is not None:
@@ -160,24 +164,27 @@ def _pose_attributes(pose: Pose | None) -> Attributes:
     return {f"argo:{axis}": value for axis, value in pose.model_dump().items()}
 
 
-def send_time_out(xml: XmlWriter, n: int, counts_interruptions: bool) -> None:
-    """The engine's own timer for a group that is active while the mission goes on."""
-    up = f"until_{n}" if counts_interruptions else f"until_{n} + lost"
-    _send(xml, f"timeout.g{n}", f"timer_{n}", up)
+def start_group_timer(xml: XmlWriter, n: int, counts_interruptions: bool) -> None:
+    """Write the start of the engine's own timer for the time-out of group `n`.
+
+    It runs while the group is active and the mission is not interrupted.
+    """
+    deadline = f"until_{n}" if counts_interruptions else f"until_{n} + lost"
+    _send(xml, f"timeout.g{n}", f"timer_{n}", deadline)
 
 
-def send_due(xml: XmlWriter, due: str) -> None:
-    """The engine's own timer for one of `DUES`, if it is due at all."""
-    with xml.element("if", {"cond": f"due_{due} != 0"}):
-        _send(xml, f"timeout.{due}", f"timer_{due}", f"due_{due}")
+def start_timer(xml: XmlWriter, kind: str) -> None:
+    """Write the start of the engine's own timer for one of `DEADLINES`, if that one is set."""
+    with xml.element("if", {"cond": f"due_{kind} != 0"}):
+        _send(xml, f"timeout.{kind}", f"timer_{kind}", f"due_{kind}")
 
 
-def cancel_due(xml: XmlWriter, due: str) -> None:
-    """Stops that timer."""
-    xml.add("cancel", {"sendid": f"timer_{due}"})
+def cancel_timer(xml: XmlWriter, kind: str) -> None:
+    """Write the cancellation of the timer that `start_timer` starts."""
+    xml.add("cancel", {"sendid": f"timer_{kind}"})
 
 
-def _send(xml: XmlWriter, event: str, id: str, up: str) -> None:
-    left = f"Math.max(0, {up} - now) + 's'"
-    with xml.element("send", {"event": event, "id": id, "delayexpr": left}):
-        xml.add("param", {"name": "time", "expr": f"Math.max(now, {up})"})
+def _send(xml: XmlWriter, event: str, id: str, deadline: str) -> None:
+    remaining = f"Math.max(0, {deadline} - now) + 's'"
+    with xml.element("send", {"event": event, "id": id, "delayexpr": remaining}):
+        xml.add("param", {"name": "time", "expr": f"Math.max(now, {deadline})"})

@@ -1,4 +1,4 @@
-"""Writing XML line by line: nested to any depth, and safe against any text."""
+"""XML writer that works line by line, with any depth of nesting and any text."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -16,60 +16,62 @@ _SPECIAL = {
     "\n": "&#10;",
     "\r": "&#13;",
 }
-_MEANS_SOMETHING = re.compile("[" + "".join(_SPECIAL) + "]")
+_SPECIAL_CHARACTER = re.compile("[" + "".join(_SPECIAL) + "]")
 
 Attributes = Mapping[str, str | int | float | None]
-"""Those that are None are left out."""
+"""Attributes of an element by name; an attribute whose value is None is left out."""
 
 
 class XmlWriter:
-    """A document under way."""
+    """XML document that grows line by line; holds the lines and the open elements."""
 
     def __init__(self) -> None:
         self._lines = ['<?xml version="1.0" encoding="UTF-8"?>']
         self._open: list[str] = []
 
     def open(self, tag: str, attributes: Attributes | None = None) -> None:
+        """Open an element, which `close` closes."""
         self._lines.append(f"{self._indent}<{tag}{_attributes(attributes)}>")
         self._open.append(tag)
 
     def close(self) -> None:
+        """Close the element that was opened last."""
         tag = self._open.pop()
         self._lines.append(f"{self._indent}</{tag}>")
 
     def add(self, tag: str, attributes: Attributes | None = None) -> None:
-        """An element without content."""
+        """Add an element without content."""
         self._lines.append(f"{self._indent}<{tag}{_attributes(attributes)}/>")
 
     def add_text(self, tag: str, text: str, attributes: Attributes | None = None) -> None:
-        """An element that holds text only."""
+        """Add an element that holds only text."""
         self._lines.append(f"{self._indent}<{tag}{_attributes(attributes)}>{escape(text)}</{tag}>")
 
     @contextmanager
     def element(self, tag: str, attributes: Attributes | None = None) -> Iterator[None]:
-        """An element with what is written inside the block."""
+        """Open an element for the duration of the `with` block, and close it afterwards."""
         self.open(tag, attributes)
         yield
         self.close()
 
     def text(self) -> str:
-        """The document; all elements must have been closed."""
+        """Return the document; all elements must have been closed."""
         assert not self._open
         return "\n".join(self._lines) + "\n"
 
     @property
     def _indent(self) -> str:
-        # Deeper than this, white space would make up most of the file.
+        # With deeper indentation, white space would make up most of the file.
         return "  " * min(len(self._open), 20)
 
 
 def escape(text: str) -> str:
-    """The text for the inside of an attribute or an element; `printable` where XML asks for it."""
-    return _MEANS_SOMETHING.sub(lambda match: _SPECIAL[match[0]], printable(text))
+    """Return the text escaped for an attribute or an element; see also `printable`."""
+    return _SPECIAL_CHARACTER.sub(lambda match: _SPECIAL[match[0]], printable(text))
 
 
 def printable(text: str) -> str:
-    """The text with what XML has no way to say (such as the null character) as `\\x00`."""
+    r"""Return the text with characters that XML forbids written as `\x00` (the null character)."""
     return _NOT_IN_XML.sub(lambda match: f"\\x{ord(match[0]):02x}", text)
 
 

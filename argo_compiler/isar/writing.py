@@ -8,7 +8,7 @@ from uuid import NAMESPACE_URL, uuid5
 from argo_compiler.base.model import Model, Pose
 from argo_compiler.base.quaternions import to_quaternion
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.export.exporter import refusal, refuse
+from argo_compiler.export.exporter import raise_refusals, refusal
 from argo_compiler.hfsm import ActionSucceeded, Executor, Hfsm, StartAction
 from argo_compiler.il import Action, Mission, Mode, OnFailure, Task
 from argo_compiler.isar.definition import FRAME, IMAGE
@@ -35,9 +35,9 @@ def to_isar(mission: Mission, hfsm: Hfsm, views: Mapping[str, InspectionView]) -
 
     Raises DiagnosticError with a diagnostic for all that isar can't say.
     """
-    refuse(_unsaid(mission))
+    raise_refusals(_unsaid(mission))
     tasks = _in_order(hfsm)
-    refuse(_unplaced(mission, tasks, views))
+    raise_refusals(_unplaced(mission, tasks, views))
     names: set[str] = set()
     definition: dict[str, Any] = {
         # Made from the mission, so that equal missions are equal files.
@@ -107,7 +107,7 @@ def _in_order(hfsm: Hfsm) -> tuple[Task, ...]:
         assert isinstance(command, StartAction)
         done.append(command.task)
         if len(done) > MAX_TASKS:
-            refuse(
+            raise_refusals(
                 [
                     refusal(
                         "isar-endless",

@@ -1,4 +1,4 @@
-"""The FlexBE states that missions exported by Argo are made of.
+"""FlexBE states of the missions that Argo exports.
 
-The robot's side calls `connect` (in `robot.py`) before a behaviour is run.
+The robot's side must call `connect` (in `robot.py`) before a behaviour runs.
 """

@@ -1,4 +1,4 @@
-"""What measuring and driving have in common."""
+"""Base class of the states that measure and drive."""
 
 from flexbe_core import EventState
 
@@ -7,7 +7,10 @@ from .robot import robot
 
 
 class ActionState(EventState):
-    """One action of the robot, begun at the first execution and cancelled on leaving."""
+    """State of one action, which starts at the first execution and is cancelled on exit.
+
+    Derived classes start the action in `_start`.
+    """
 
     def __init__(self, task, way, retries, time_limit, depth):
         super().__init__(
@@ -21,39 +24,39 @@ class ActionState(EventState):
         self._way = way
         self._time_limit = time_limit
         self._failures = 0
-        self._runs = False
-        self._begun = 0.0
+        self._is_running = False
+        self._started_at = 0.0
 
     def on_enter(self, _userdata):
         self._failures = 0
-        self._runs = False
+        self._is_running = False
 
     def execute(self, userdata):
         memory = userdata.memory
-        result = robot().result() if self._runs else None
+        result = robot().result() if self._is_running else None
         if result is None:
             now = robot().now()
             target = time_up(self._depth, memory, now)
             if target is not None:
                 memory["to"] = target
                 return "time_up"
-            if not self._runs:
-                self._begin()
-                self._runs, self._begun = True, now
+            if not self._is_running:
+                self._start()
+                self._is_running, self._started_at = True, now
                 return None
-            if not self._time_limit or now < self._begun + self._time_limit:
+            if not self._time_limit or now < self._started_at + self._time_limit:
                 return None
             self._cancel()
             result = "failed", None
-        self._runs = False
+        self._is_running = False
         outcome, value = result
         if outcome == "done":
-            self._done(memory, value)
+            self._record_result(memory, value)
             return "done"
         self._failures += 1
         if self._failures <= self._retries:
             return None
-        self._failed(memory, outcome)
+        self._record_failure(memory, outcome)
         return "failed"
 
     def on_exit(self, _userdata):
@@ -66,12 +69,12 @@ class ActionState(EventState):
         self._cancel()
 
     def _cancel(self):
-        if self._runs:
+        if self._is_running:
             robot().cancel()
-            self._runs = False
+            self._is_running = False
 
-    def _done(self, memory, value):
-        """Takes note of what was read."""
+    def _record_result(self, memory, value):
+        """Store the action's value. No-op unless a derived class measures."""
 
-    def _failed(self, memory, outcome):
-        """Takes note that nothing was read."""
+    def _record_failure(self, memory, outcome):
+        """Store the failure. No-op unless a derived class measures."""

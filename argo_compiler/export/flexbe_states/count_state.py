@@ -1,24 +1,24 @@
-"""The end of a group's round."""
+"""State at the end of a group's round."""
 
 from flexbe_core import EventState
 
-from .memory import holds
+from .memory import is_satisfied
 from .robot import robot
 
 
 class CountState(EventState):
-    """Counts the rounds of a group, and decides whether it wants another one.
+    """State that counts the rounds of a group and decides whether another round starts.
 
-    -- depth            int       How many groups are around, this one included.
-    -- count            int       Rounds in all; 0: no limit.
-    -- duration         float     s since the group was entered; 0.0: no limit.
-    -- until            list      Conditions; no other round begins once all hold. [] : none.
-    -- start            int       The task that a round begins with.
-    -- onward           int       The target after the last round, or `end`.
+    -- depth            int       Number of groups that contain the state, this group included.
+    -- count            int       Number of rounds; 0: no limit.
+    -- duration         float     Limit in s since the group was entered; 0.0: no limit.
+    -- until            list      Conditions; no round starts once all are satisfied. []: none.
+    -- start            int       First task of a round.
+    -- onward           int       Target after the last round, or `end`.
 
-    #> memory           dict      What the mission knows.
+    #> memory           dict      State of the mission, shared by its states.
 
-    <= again                      Another round begins.
+    <= again                      Another round starts.
     <= over                       The group has ended.
     """
 
@@ -39,7 +39,7 @@ class CountState(EventState):
             more = robot().now() - group["entered"] < self._duration
         if more and self._until:
             now = robot().now()
-            more = not all(holds(condition, memory, now) for condition in self._until)
+            more = not all(is_satisfied(condition, memory, now) for condition in self._until)
         if more:
             group["round"] += 1
         memory["to"] = self._start if more else self._onward

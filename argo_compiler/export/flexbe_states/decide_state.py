@@ -1,19 +1,19 @@
-"""Where to go on when a task has ended."""
+"""State that chooses the next transition when a task has ended."""
 
 from flexbe_core import EventState
 
-from .memory import holds
+from .memory import is_satisfied
 from .robot import robot
 
 
 class DecideState(EventState):
-    """Takes the first way whose conditions all hold.
+    """State that takes the first transition whose conditions are all satisfied.
 
-    -- outcomes         string[]  The states of this machine that a way begins with, or `left`.
-    -- ways             list      Outcome, target, and conditions; the last one has none.
-    -- fails            bool      Whether the mission has failures from here on.
+    -- outcomes         string[]  States of this machine to which a transition leads, or `left`.
+    -- ways             list      Transitions: outcome, target, conditions; the last one has none.
+    -- fails            bool      True if the mission has a failure from here on.
 
-    #> memory           dict      What the mission knows.
+    #> memory           dict      State of the mission, shared by its states.
     """
 
     def __init__(self, outcomes, ways, fails=False):
@@ -25,7 +25,7 @@ class DecideState(EventState):
         memory, now = userdata.memory, robot().now()
         memory["failures"] = memory["failures"] or self._fails
         for outcome, target, conditions in self._ways:
-            if all(holds(condition, memory, now) for condition in conditions):
+            if all(is_satisfied(condition, memory, now) for condition in conditions):
                 memory["to"] = target
                 return outcome
-        raise AssertionError("the last way has no conditions")
+        raise AssertionError("the last transition must have no conditions")

@@ -1,35 +1,36 @@
-"""What the states of a mission know in common, as a dictionary in the userdata `memory`."""
+"""State of a mission that its FlexBE states share: a dictionary in the userdata `memory`."""
 
 
 def new_memory(to):
-    """At the beginning: `to` is where the mission goes on.
+    """Return the memory at the start of a mission whose first target is `to`.
 
-    A target is the number of a task; or -1 for the end of a round of the outermost group around,
-    -2 of the next one inward and so on; or `end` or `aborted`. `groups` has those that have been
-    entered, from the outermost inward. `readings` has for each checkpoint what came of its last
-    measurement (value, unreadable or failed), when, the value, and whether it is abnormal.
-    `failures` tells whether a task that is not optional has failed for good.
+    `to` holds the target of the last transition: the number of a task; or -1 for the end of a round
+    of the outermost group, -2 for the next group inside, and so on; or `end` or `aborted`. `groups`
+    lists the groups that have been entered, from the outermost to the innermost. `readings` maps
+    each checkpoint to its last measurement: the result (value, unreadable or failed), the time, the
+    value, and whether it is abnormal. `failures` is True if a task that is not optional has failed
+    with all retries.
     """
     return {"to": to, "readings": {}, "groups": [], "failures": False}
 
 
-def holds(condition, memory, now):
-    """Whether (kind, object_id, low, high, inclusive, max_age) holds.
+def is_satisfied(condition, memory, now):
+    """Return True if the condition (kind, object_id, low, high, inclusive, max_age) is satisfied.
 
-    The kind is `value`, whose bounds that are None are none, or what else a reading may be:
-    `unreadable`, `failed`, `stale`, `abnormal`.
+    The kind is `value`, which compares the reading with its bounds (None: no bound), or one of
+    `unreadable`, `failed`, `stale` and `abnormal`.
     """
     kind, object_id, low, high, inclusive, max_age = condition
     if object_id not in memory["readings"]:
         return False
-    read, time, value, abnormal = memory["readings"][object_id]
+    result, time, value, abnormal = memory["readings"][object_id]
     if kind == "unreadable":
-        return read == "unreadable"
+        return result == "unreadable"
     if kind == "failed":
-        return read != "value"
+        return result != "value"
     old = max_age is not None and now - time > max_age
-    if kind == "stale" or read != "value" or old:
-        return kind == "stale" and read == "value" and old
+    if kind == "stale" or result != "value" or old:
+        return kind == "stale" and result == "value" and old
     if kind == "abnormal":
         return abnormal
     if inclusive:
@@ -38,7 +39,11 @@ def holds(condition, memory, now):
 
 
 def time_up(depth, memory, now):
-    """The target where the time of one of the `depth` groups around is up, or None."""
+    """Return the target after the time-out of a containing group, or None if no time is up.
+
+    `depth` is the number of groups to look at, from the outermost. If the time of several groups is
+    up, the group whose time ended first determines the target.
+    """
     ends = [
         (group["entered"] + group["limit"], -number)
         for number, group in enumerate(memory["groups"][:depth], 1)

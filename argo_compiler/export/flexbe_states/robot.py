@@ -1,39 +1,44 @@
-"""What the robot's side has to provide: a clock, and one action at a time."""
+"""Interface that the robot's side must implement: a clock, and one action at a time."""
 
 
 class Robot:
-    """Derive from it and hand an object to `connect`. Times are seconds."""
+    """Base class of the robot's side; pass an object of a derived class to `connect`.
+
+    All times are in seconds.
+    """
 
     def now(self):
-        """The time on a clock that never runs backwards."""
+        """Return the time of a clock that never runs backwards."""
         raise NotImplementedError
 
     def measure(self, task, object_id, pose, reading_limit, velocity, joints):
-        """Begins to drive to a checkpoint and to measure it.
+        """Start to drive to a checkpoint and to measure it.
 
-        `pose`: where it stands then, as in `drive`; [] : where it sees the checkpoint from.
-        `reading_limit` is s that it tries to read, 0.0: the robot's own.
+        `pose` is the robot's pose for the measurement, as in `drive`; []: the robot chooses a pose
+        from which it sees the checkpoint. `reading_limit` is the time in s for trying to read;
+        0.0: the robot's own limit. `velocity` and `joints` are as in `drive`.
         """
         raise NotImplementedError
 
     def drive(self, task, pose, velocity, joints):
-        """Begins to drive to a pose: x, y, z (m) and yaw (rad).
+        """Start to drive to a pose: x, y, z (m) and yaw (rad).
 
-        `velocity` is m/s, 0.0: the robot's own. `joints` is where joints are to be: a dictionary
-        with `names`, `positions`, `velocities` and `efforts`, or {}.
+        `velocity` is in m/s; 0.0: the robot's own speed. `joints` is the target state of joints: a
+        dictionary with `names`, `positions`, `velocities` and `efforts`, or {}.
         """
         raise NotImplementedError
 
     def result(self):
-        """None while the action runs; then how it ended, and the value or None.
+        """Return None while the action runs, then its outcome, and its value or None.
 
-        How: 'done', 'failed', or 'unreadable' if a measurement failed as it could not read. The
-        value is a number, or a number and whether it is abnormal.
+        The outcome is 'done', 'failed', or 'unreadable' if a measurement failed because the robot
+        could not read the checkpoint. The value is a number, or a tuple of a number and a bool that
+        is True if the number is abnormal.
         """
         raise NotImplementedError
 
     def cancel(self):
-        """Stops the action that runs; returns when its clean-up is done."""
+        """Stop the running action, and return when its clean-up is complete."""
         raise NotImplementedError
 
 
@@ -41,12 +46,12 @@ _connected = []
 
 
 def connect(robot):
-    """Says which robot all behaviours of this process drive."""
+    """Set the robot that all behaviours of this process drive."""
     _connected[:] = [robot]
 
 
 def robot():
-    """The robot that is connected."""
+    """Return the connected robot. Raises RuntimeError if there is none."""
     if not _connected:
         raise RuntimeError("no robot is connected: call argo_flexbe_states.robot.connect first")
     return _connected[0]

@@ -1,4 +1,4 @@
-"""The way through nested machines to the task that was chosen."""
+"""State that leads through nested machines to the target of a transition."""
 
 from bisect import bisect
 
@@ -8,16 +8,16 @@ from .robot import robot
 
 
 class RouteState(EventState):
-    """Goes on towards the target that the memory has.
+    """State that leads on to the target that is stored in the memory.
 
-    -- outcomes         string[]  The states of this machine, or `left`.
-    -- depth            int       How many groups the machine lies in, itself included.
-    -- inside           list      First task and outcome of each part of the machine, in order.
-    -- last             int       The last task of the machine.
-    -- limit            float     For the beginning of a group with a hard stop: its duration (s);
-                                  0.0 for that of another group; None elsewhere.
+    -- outcomes         string[]  States of this machine, or `left`.
+    -- depth            int       Number of groups that contain the state, this group included.
+    -- inside           list      First task and outcome of each state of the machine, in order.
+    -- last             int       Last task of the machine.
+    -- limit            float     At the start of a group: its duration in s if it has a hard stop,
+                                  else 0.0. None if the state is not the start of a group.
 
-    #> memory           dict      What the mission knows.
+    #> memory           dict      State of the mission, shared by its states.
     """
 
     def __init__(self, outcomes, depth, inside, last, limit=None):

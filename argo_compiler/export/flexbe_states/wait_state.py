@@ -1,4 +1,4 @@
-"""Standing still."""
+"""State that waits."""
 
 from flexbe_core import EventState
 
@@ -7,15 +7,15 @@ from .robot import robot
 
 
 class WaitState(EventState):
-    """Stands still for a time.
+    """State in which the robot waits for a duration.
 
-    -- duration         float     s; 0.0: ways only meet here.
-    -- depth            int       How many groups are around.
+    -- duration         float     Duration in s; 0.0: no wait, only a junction of transitions.
+    -- depth            int       Number of groups that contain the state.
 
-    #> memory           dict      What the mission knows.
+    #> memory           dict      State of the mission, shared by its states.
 
-    <= done                       The time is over.
-    <= time_up                    The time of a group around is up.
+    <= done                       The duration is over.
+    <= time_up                    The time of a containing group is up.
     """
 
     def __init__(self, duration, depth):
@@ -24,14 +24,14 @@ class WaitState(EventState):
         )
         self._duration = duration
         self._depth = depth
-        self._ends = 0.0
+        self._end = 0.0
 
     def on_enter(self, _userdata):
-        self._ends = robot().now() + self._duration
+        self._end = robot().now() + self._duration
 
     def execute(self, userdata):
         memory, now = userdata.memory, robot().now()
-        if now >= self._ends:
+        if now >= self._end:
             return "done"
         memory["to"] = time_up(self._depth, memory, now)
         return None if memory["to"] is None else "time_up"

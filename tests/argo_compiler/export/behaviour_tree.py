@@ -1,7 +1,7 @@
-"""An interpreter of the node types of BehaviorTree.CPP 4 that exported trees consist of.
+"""Interpreter of the node types of BehaviorTree.CPP 4 that exported trees use.
 
 Written from the library's documentation, on a virtual clock. Composite nodes with memory are
-generators: they yield while something runs, and return True or False, or None where skipped.
+generators: they yield while something runs, and return True or False, or None if skipped.
 """
 
 import xml.etree.ElementTree as ET
@@ -22,7 +22,7 @@ LEAVES = {"Script", "ScriptCondition", "Sleep"}
 
 
 def validate(text):
-    """The tree's root node; asserts that the document has the form that the library reads."""
+    """Return the tree's root node, and assert that the document has the library's format."""
     root = ET.fromstring(text)
     assert root.tag == "root"
     assert root.attrib["BTCPP_format"] == "4"
@@ -51,9 +51,10 @@ def validate(text):
 
 
 class Interpreter:
-    """Runs a tree; `outcomes` gives duration, value and failure of each action in turn.
+    """Interpreter of one tree; holds its blackboard, its clock and its log of actions.
 
-    A value of 5 or more is abnormal; a failure that has a value is one of reading.
+    `outcomes` yields the duration, value and failure of each action in turn. A value of 5 or more
+    is abnormal; a failure with a value is unreadable.
     """
 
     def __init__(self, text, outcomes):
@@ -68,19 +69,19 @@ class Interpreter:
         self.deadlines = []
 
     def run(self, steps):
-        """The actions with the times of their starts, and how the mission ended."""
+        """Return the actions with their start times, and the outcome's number or None."""
         tree = self.node(self.root)
         try:
             next(tree)
             while len(self.log) < steps:
-                # What was started in the moment of a time-out never ran, so it has no outcome yet.
+                # An action that started at a time-out's moment never ran, so it uses no outcome.
                 if self.sleeps is None:
                     duration, *self.result = next(self.outcomes)
                     ends = max(self.now, self.not_before[-1]) + duration
                 else:
                     ends = self.sleeps
                 self.now = min([ends, *(deadline for deadline, _ in self.deadlines)])
-                if ends == self.now:  # an action that ends exactly at a time-out has ended
+                if ends == self.now:  # an action that ends exactly at a time-out counts as ended
                     next(tree)
                 while due := [fired for deadline, fired in self.deadlines if deadline <= self.now]:
                     due[0].append(True)
@@ -105,7 +106,7 @@ class Interpreter:
         return self.in_turn(node, until=True)
 
     def in_turn(self, node, until):
-        """The children one after the other, up to the first with that result."""
+        """Run the children one after the other, up to the first with the result `until`."""
         skipped = 0
         for child in node:
             result = yield from self.node(child)
@@ -175,15 +176,15 @@ class Interpreter:
     def Measure(self, node):  # noqa: N802
         value, failed = yield from self.act(node)
         known = value is not None and not failed
-        told = {
+        outputs = {
             "value": value if known else 0.0,
             "known": float(known),
             "abnormal": float(known and value >= 5),
             "unreadable": float(failed == (value is not None)),
             "time": self.now,
         }
-        for port, read in told.items():
-            self.board[node.attrib[port][1:-1]] = read
+        for port, output in outputs.items():
+            self.board[node.attrib[port][1:-1]] = output
         return not failed
 
     def DriveTo(self, node):  # noqa: N802
@@ -191,7 +192,7 @@ class Interpreter:
         return not failed
 
     def act(self, node):
-        """What was read, and whether the action failed."""
+        """Run an action, and return its value and whether it failed."""
         self.log.append((self.now, node.attrib["name"]))
         earliest = node.get("not_before")
         self.not_before.append(0 if earliest is None else self.board[earliest[1:-1]])

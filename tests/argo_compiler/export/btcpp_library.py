@@ -1,9 +1,9 @@
-"""Exported behaviour trees in BehaviorTree.CPP itself.
+"""Tests of exported behaviour trees in BehaviorTree.CPP itself.
 
     ARGO_BTCPP_RUNNER=./runner python -m pytest tests/argo_compiler/export/btcpp_library.py
 
-The suite does not collect this file, for the library has no wheel; `docs/export.md` says how the
-runner is built.
+The suite does not collect this file, as the library has no wheel; `docs/export.md` describes how to
+build the runner.
 """
 
 import math
@@ -25,16 +25,16 @@ from argo_compiler.il import (
     WaitRule,
 )
 from tests.argo_compiler.export import missions as m
-from tests.argo_compiler.export.carried import OUTCOMES, carried_missions, executed
 from tests.argo_compiler.export.test_btcpp import STEPS, codes, task
+from tests.argo_compiler.export.tree_missions import OUTCOMES, executed, tree_missions
 from tests.conftest import examples
 from tests.mission_parts import assume_sound
 
 RUNNER = os.environ["ARGO_BTCPP_RUNNER"]
 
 
-def printed(folder, mission, outcomes, steps=9):
-    """Return the lines that the runner prints of a mission's tree, run with these outcomes."""
+def runner_output(folder, mission, outcomes, steps=9):
+    """Return the runner's lines of output for a mission's tree, run with these outcomes."""
     path = folder / "tree.xml"
     path.write_text(to_btcpp(mission), encoding="utf-8")
     command = [RUNNER, str(path), str(steps)]
@@ -43,14 +43,14 @@ def printed(folder, mission, outcomes, steps=9):
 
 
 @settings(max_examples=examples(40))
-@given(carried_missions(timed=False), m.outcome_lists)
+@given(tree_missions(timed=False), m.outcome_lists)
 def test_the_library_itself_does_the_same(tmp_path_factory, mission, outcomes):
     assume_sound(mission)
     script = "".join(
         f"{duration} {int(value is not None)} {value or 0} {int((value or 0) >= 5)} {int(failed)}\n"
         for duration, value, failed in outcomes
     )
-    *lines, last = printed(tmp_path_factory.mktemp("tree"), mission, script, STEPS)
+    *lines, last = runner_output(tmp_path_factory.mktemp("tree"), mission, script, STEPS)
     log = [(float(t), name) for t, _, name in (line.partition(" ") for line in lines)]
     expected = executed(mission, outcomes, STEPS)
     assert log == expected[0]
@@ -64,7 +64,7 @@ def test_the_library_waits_and_limits(tmp_path):
     early = task("C", window=TimeWindow(earliest=7.0), optional=True)
     ways = (Transition(target="C"),)
     mission = Mission(tasks=(late, wait.model_copy(update={"transitions": ways}), early))
-    lines = printed(tmp_path, mission, "1 0 0 0 1\n2 0 0 0 0\n1 0 0 0 1\n")
+    lines = runner_output(tmp_path, mission, "1 0 0 0 1\n2 0 0 0 0\n1 0 0 0 1\n")
     assert lines == ["0 A", "1 A", "3 C", "1"]
 
 
@@ -76,7 +76,7 @@ def test_the_library_reads_any_name(tmp_path_factory, name, object_id):
     if any(character in object_id for character in "{};") or object_id.startswith("json:"):
         assert codes(mission) == ["export.name"]
         return
-    assert printed(tmp_path_factory.mktemp("tree"), mission, "1 1 2 0 0\n")[-1] == "1"
+    assert runner_output(tmp_path_factory.mktemp("tree"), mission, "1 1 2 0 0\n")[-1] == "1"
 
 
 @pytest.mark.parametrize("bound", [-5.0, -1e-7, 1e-12, 0.1, 123456789.125, 1e22, -1e300])
@@ -89,6 +89,6 @@ def test_the_library_compares_numbers_as_they_are(tmp_path, bound, inclusive):
     measure = Task(name="A", action="MEASURE", object_id="1", velocity=0.3, transitions=ways)
     mission = Mission(tasks=(measure, task("B", "C"), task("C")))
     for value in (math.nextafter(bound, -math.inf), bound, math.nextafter(bound, math.inf)):
-        lines = printed(tmp_path, mission, f"0.5 1 {value!r} 0 0\n")
+        lines = runner_output(tmp_path, mission, f"0.5 1 {value!r} 0 0\n")
         taken = value <= bound if inclusive else value < bound
         assert ("B" not in "".join(lines)) == taken

@@ -1,4 +1,4 @@
-"""The exported state chart in python-statemachine, driven as `docs/export.md` says."""
+"""Exported state chart in python-statemachine, driven by the rules of `docs/export.md`."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -13,10 +13,10 @@ GOING, ENDING = 0, 3
 
 
 class Chart:
-    """The document in the engine. What it is doing is read from its own data."""
+    """State chart in its engine; the test reads its state from its own data."""
 
     def __init__(self, text):
-        # Each class that python-statemachine loads can be started once only.
+        # A class that python-statemachine loads can be started only once.
         self.load = lambda: load(text, format="scxml")()
         root = ET.fromstring(text)
         self.states = {e.get("id"): e for e in root.iter() if e.get("id")}
@@ -48,7 +48,7 @@ class Chart:
             if (due := self.due()) is not None and due[0] <= now:
                 self.send(due[2], due[0])
             elif not self.finished and self.stopping and self.data.starts > starts:
-                # What was begun and cancelled within this moment has never been seen.
+                # The driver never saw an action that started and was cancelled at this moment.
                 self.send("action.stopped", now)
             else:
                 return
@@ -65,7 +65,7 @@ class Chart:
         return [s.id for s in self.chart.configuration]
 
     def due(self):
-        """The next time-out: when it is due, its place among those due then, and its event."""
+        """Return the next time-out: its due time, its rank among those due then, and its event."""
         data = self.data
         if self.finished or data.mode == ENDING:
             return None
@@ -117,8 +117,8 @@ class Chart:
             if getattr(self.data, f"known_{k}")
         }
 
-    def seen(self):
-        """The task, the action, whether it is stopping, rounds, and how it has ended."""
+    def observation(self):
+        """Return the task, the action, whether that is stopping, the rounds, and the outcome."""
         active = self.active
         if self.finished:
             return None, None, False, {}, active[0].replace("_", " ")

@@ -1,4 +1,4 @@
-"""Random missions for formats that say less than the whole language."""
+"""Random missions for formats that express less than the whole language."""
 
 from hypothesis import strategies as st
 
@@ -7,7 +7,7 @@ from tests.mission_parts import HERE, assume_sound, groups_over, starts, task_na
 
 
 def repeated(task):
-    """Return a mission of one task that is done twice, in which all is named like the task."""
+    """Return a mission with one task in two rounds, whose names are all the task's name."""
     own = task.name.replace("/", "")
     group = Group(name=f"G{own}", start=task.name, end=task.name, max_repeat_count=2)
     return assume_sound(Mission(tasks=(task,), groups=(group,), designation=task.name))
@@ -15,9 +15,9 @@ def repeated(task):
 
 @st.composite
 def missions(draw, failures=True):
-    """Up to nine tasks with ways in all directions and groups in groups.
+    """Draw up to nine tasks with transitions in all directions, and nested groups.
 
-    With `failures`, tasks have retries and policies.
+    With `failures`, tasks have retries and failure policies.
     """
     names = draw(task_names())
     tasks = [draw(tasks_named(name, names, i, failures)) for i, name in enumerate(names)]
@@ -25,7 +25,7 @@ def missions(draw, failures=True):
     return Mission(tasks=(*draw(starts(names)), *tasks), groups=groups, dock=HERE)
 
 
-# How long an action takes (s), what it reads, and whether it fails.
+# Outcomes of actions: duration in s, value, and whether the action fails.
 outcome_lists = st.lists(
     st.tuples(st.integers(0, 4), st.one_of(st.none(), st.integers(0, 6)), st.booleans()),
     min_size=1,
@@ -35,16 +35,16 @@ outcome_lists = st.lists(
 
 @st.composite
 def structured_missions(draw, timeouts=True):
-    """Missions that go forward: conditional ways ahead, rounds by groups only.
+    """Draw a mission that goes back only by a group's rounds; its other transitions go forward.
 
-    Without `timeouts`, no group is left by the clock in the middle of an action.
+    Without `timeouts`, no group's time-out interrupts an action.
     """
     names = draw(task_names())
     tasks = []
     for i, name in enumerate(names):
-        made = draw(tasks_named(name, names, i))
-        ahead = tuple(t for t in made.transitions if names.index(t.target) > i)
-        tasks.append(made.model_copy(update={"transitions": ahead}))
+        task = draw(tasks_named(name, names, i))
+        ahead = tuple(t for t in task.transitions if names.index(t.target) > i)
+        tasks.append(task.model_copy(update={"transitions": ahead}))
     groups = [
         group if timeouts else group.model_copy(update={"stop": Stop.SOFT})
         for group in draw(groups_over(names))

@@ -1,4 +1,4 @@
-"""Exported behaviour trees, run by an interpreter; `btcpp_library.py` has the library itself."""
+"""Tests of exported behaviour trees in an interpreter; `btcpp_library.py` uses the library."""
 
 from itertools import cycle
 
@@ -20,7 +20,7 @@ from argo_compiler.il import (
 )
 from tests.argo_compiler.export import missions as m
 from tests.argo_compiler.export.behaviour_tree import Interpreter, validate
-from tests.argo_compiler.export.carried import OUTCOMES, carried_missions, executed
+from tests.argo_compiler.export.tree_missions import OUTCOMES, executed, tree_missions
 from tests.conftest import examples
 from tests.mission_parts import assume_sound
 from tests.mission_writing import drive as task
@@ -29,7 +29,7 @@ STEPS = 40
 
 
 @settings(max_examples=examples(80))
-@given(st.one_of(m.structured_missions(), carried_missions(), carried_missions()), m.outcome_lists)
+@given(st.one_of(m.structured_missions(), tree_missions(), tree_missions()), m.outcome_lists)
 def test_tree_does_what_the_executor_does(mission, outcomes):
     assume_sound(mission)
     expected = executed(mission, outcomes, STEPS)
@@ -41,15 +41,15 @@ def test_tree_does_what_the_executor_does(mission, outcomes):
 
 @settings(max_examples=examples(40))
 @given(m.missions(), m.outcome_lists)
-def test_any_mission_is_refused_or_said_right(mission, outcomes):
+def test_any_mission_is_refused_or_exported_correctly(mission, outcomes):
     assume_sound(mission)
     try:
         text = to_btcpp(mission)
     except DiagnosticError as error:
-        back = {"'" + t.name + "'" for t in mission.tasks}
+        quoted_names = {"'" + t.name + "'" for t in mission.tasks}
         for diagnostic in error.diagnostics:
             assert diagnostic.code == "export.backward"
-            assert any(name in diagnostic.message for name in back)
+            assert any(name in diagnostic.message for name in quoted_names)
         return
     assert Interpreter(text, cycle(outcomes)).run(STEPS)[0] == executed(mission, outcomes, STEPS)[0]
 
@@ -60,7 +60,7 @@ def codes(mission):
     return [d.code for d in caught.value.diagnostics]
 
 
-def test_refusals_come_all_at_once_with_the_task_and_the_reason():
+def test_one_error_lists_all_refusals_with_task_and_reason():
     reactions = (
         Reaction(event=EventKind.GAS_LEAK, response=Response.ABORT),
         Reaction(event=EventKind.HOT_SPOT, response=Response.REPORT),
@@ -74,18 +74,18 @@ def test_refusals_come_all_at_once_with_the_task_and_the_reason():
 
 
 @pytest.mark.parametrize("name", ["{a}", "a;b", "json:1", " {x} "])
-def test_joint_names_that_are_no_text_there(name):
+def test_joint_names_that_the_library_interprets_are_refused(name):
     joints = JointState(names=(name,), positions=(0.5,))
     assert codes(Mission(tasks=(task("A", joint_states=joints),))) == ["export.name"]
 
 
-def test_durations_that_a_timeout_node_does_not_take():
+def test_durations_beyond_the_limit_of_a_timeout_node_are_refused():
     group = Group(name="G", start="A", end="A", max_repeat_duration=5e6)
     assert codes(Mission(tasks=(task("A"),), groups=(group,))) == ["export.too-long"]
 
 
 @given(st.text(min_size=1))
-def test_any_name_is_text(name):
+def test_any_name_is_exported_as_text(name):
     root = validate(to_btcpp(m.repeated(task(name))))
     shown = root.find(".//DriveTo").attrib["name"]
     printable = all(c in "\t\n\r" or " " <= c < "\x7f" for c in name)
@@ -101,7 +101,7 @@ def test_deep_nesting():
     assert text.count("<Repeat") == 399
 
 
-def test_way_back_to_the_dock_is_a_task_of_the_tree():
+def test_return_to_the_dock_is_a_task_of_the_tree():
     failing = task("A", on_failure=OnFailure.RETURN, retries=1)
     mission = Mission(tasks=(failing,), dock=m.HERE)
     log, outcome = Interpreter(

@@ -1,4 +1,4 @@
-"""Each field of the language is carried by a format, refused by name, or known to be left out."""
+"""Tests that a format exports each field, refuses it by name, or is known to leave it out."""
 
 import pytest
 
@@ -43,7 +43,10 @@ RETURN = Reaction(event=EventKind.GAS_LEAK, response=Response.RETURN)
 
 
 def mission(a=(), b=(), w=(), group=(), reactions=(), condition=HIGH, last="C", **fields):
-    """A measurement, a drive and a wait in a group, another measurement, and what is given."""
+    """Return a mission: a measurement, a group of a drive and a wait, another measurement.
+
+    The arguments change fields of its parts.
+    """
     tasks = (
         Task(name="S", action=Action.START, transitions=(way("A"),)),
         measure("A", way(last, condition), "B", **{"object_id": "1", **dict(a)}),
@@ -51,9 +54,9 @@ def mission(a=(), b=(), w=(), group=(), reactions=(), condition=HIGH, last="C", 
         wait("W", last, **{"duration": 5, **dict(w)}),
         measure(last, object_id="2"),
     )
-    around = {"name": "G", "start": "B", "end": "W", "max_repeat_count": 2, **dict(group)}
-    given = {"dock": HERE, "reactions": reactions, **fields}
-    return Mission(**{"tasks": tasks, "groups": (Group(**around),), **given})
+    group_fields = {"name": "G", "start": "B", "end": "W", "max_repeat_count": 2, **dict(group)}
+    mission_fields = {"dock": HERE, "reactions": reactions, **fields}
+    return Mission(**{"tasks": tasks, "groups": (Group(**group_fields),), **mission_fields})
 
 
 def task(base=(), **fields):
@@ -85,14 +88,14 @@ def joints(**fields):
     return mission(b={"joint_states": JOINTS}), mission(b={"joint_states": moved})
 
 
-def whole(**fields):
+def mission_change(**fields):
     return mission(), mission(**fields)
 
 
 SPAN = Span(line=1, column=1, length=1)
 EVENT = WaitRule(event=EventKind.ALL_CLEAR, limit=60)
 CHANGES = {
-    "Task.name": whole(last="D"),
+    "Task.name": mission_change(last="D"),
     "Task.action": (mission(), mission(b={"action": Action.MEASURE, "object_id": "3"})),
     "Task.group": task(group="shown"),
     "Task.object_id": task(object_id="3"),
@@ -156,28 +159,28 @@ CHANGES = {
     "Reaction.priority": reacting(priority=7),
     "Reaction.battery_below": reacting(LOW, battery_below=0.4),
     "Reaction.source": reacting(source=SPAN),
-    "Mission.designation": whole(designation="named"),
-    "Mission.site": whole(site="umad"),
-    "Mission.mode": whole(mode=Mode.SUPERVISORY),
-    "Mission.max_duration": whole(max_duration=600),
-    "Mission.start_area": whole(start_area=1),
-    "Mission.end_area": whole(end_area=1),
+    "Mission.designation": mission_change(designation="named"),
+    "Mission.site": mission_change(site="umad"),
+    "Mission.mode": mission_change(mode=Mode.SUPERVISORY),
+    "Mission.max_duration": mission_change(max_duration=600),
+    "Mission.start_area": mission_change(start_area=1),
+    "Mission.end_area": mission_change(end_area=1),
     "Mission.dock": (
         mission(a={"on_failure": OnFailure.RETURN}),
         mission(a={"on_failure": OnFailure.RETURN}, dock=THERE),
     ),
-    "Mission.order": whole(order=Order.ANY),
-    "Mission.anomaly_specification": whole(anomaly_specification="text"),
-    "Mission.real_time_reporting": whole(real_time_reporting="text"),
-    "Mission.after_mission_report": whole(after_mission_report="text"),
+    "Mission.order": mission_change(order=Order.ANY),
+    "Mission.anomaly_specification": mission_change(anomaly_specification="text"),
+    "Mission.real_time_reporting": mission_change(real_time_reporting="text"),
+    "Mission.after_mission_report": mission_change(after_mission_report="text"),
     "Mission.tasks": (mission(), mission(b={"retries": 3})),
-    "Mission.groups": whole(groups=()),
-    "Mission.reactions": whole(reactions=(PAUSE,)),
-    "Mission.current": whole(current="A"),
-    "Mission.left_out": whole(left_out=("Z",)),
-    "Mission.before": whole(before=(("A", "C"),)),
+    "Mission.groups": mission_change(groups=()),
+    "Mission.reactions": mission_change(reactions=(PAUSE,)),
+    "Mission.current": mission_change(current="A"),
+    "Mission.left_out": mission_change(left_out=("Z",)),
+    "Mission.before": mission_change(before=(("A", "C"),)),
 }
-"""A mission, and the same with another value in a field."""
+"""For each field a mission, and the same mission with another value in that field."""
 
 CHANGES_NOTHING = {
     "Task.group",
@@ -191,7 +194,7 @@ CHANGES_NOTHING = {
     *(f"Mission.{name}" for name in ("anomaly_specification", "real_time_reporting")),
     *(f"Mission.{name}" for name in ("after_mission_report", "current", "left_out", "before")),
 }
-"""What a machine does the same with and without: `docs/export.md` says so."""
+"""Fields that do not change what a machine does, by `docs/export.md`."""
 
 NOT_DRAWN = {
     "Task.action",
@@ -213,38 +216,38 @@ LEFT_OUT = {
 }
 
 
-def test_all_fields_are_there():
+def test_all_fields_of_the_models_are_covered():
     parts = (WaitRule, TimeWindow, Condition, Transition, JointState)
     models = (Mission, Task, Group, Reaction, *parts)
     fields = {f"{m.__name__}.{name}" for m in models for name in m.model_fields}
     assert CHANGES.keys() == fields - {"Mission.version"}
 
 
-def test_changes_make_sense():
+def test_changed_missions_differ_and_are_valid():
     for before, after in CHANGES.values():
         assert before != after
-        for one in (before, after):
-            assert not has_errors(check(one))
+        for changed in (before, after):
+            assert not has_errors(check(changed))
 
 
-def written(form, one):
-    """What is written; None where it is refused. And what the refusals say."""
+def exported(form, mission):
+    """Return the export, or None if it is refused, and the refusals' codes and messages."""
     if form == "ros":
         types = ros2_types()
-        return types.encode(to_message(one, types)), ()
-    machine = lower(one)
+        return types.encode(to_message(mission, types)), ()
+    machine = lower(mission)
     try:
-        return EXPORTERS[form].export(one, machine), ()
+        return EXPORTERS[form].export(mission, machine), ()
     except DiagnosticError as error:
         return None, tuple((d.code, d.message) for d in error.diagnostics)
 
 
 @pytest.mark.parametrize("form", LEFT_OUT)
-def test_a_field_is_carried_or_refused_or_known_to_be_left_out(form):
+def test_a_field_is_exported_or_refused_or_known_to_be_left_out(form):
     wrong = []
     for field, both in CHANGES.items():
-        before, after = (written(form, one) for one in both)
-        # What can't be said before and after is refused with what it belongs to.
+        before, after = (exported(form, version) for version in both)
+        # If both missions are refused, the field belongs to a part that the format refuses.
         refused = before[0] is None and after[0] is None
         if not refused and (before == after) != (field in LEFT_OUT[form]):
             wrong.append(field)
@@ -252,20 +255,20 @@ def test_a_field_is_carried_or_refused_or_known_to_be_left_out(form):
 
 
 @pytest.mark.parametrize("form", ["btcpp", "flexbe"])
-def test_refusals_name_what_they_are_about(form):
+def test_refusals_name_their_subject(form):
     names = ("'A'", "'B'", "'W'", "'G'", "'H'", "'gas_leak'", "'hot_spot'", "'low_battery'")
-    names = (*names, "begins paused")
+    names = (*names, "starts paused")
     for field, (_, after) in CHANGES.items():
-        for code, message in written(form, after)[1]:
+        for code, message in exported(form, after)[1]:
             assert code.startswith("export."), field
             assert any(name in message for name in names), field
 
 
 @pytest.mark.parametrize("form", ["btcpp", "flexbe", "mermaid", "dot", "ros"])
-def test_a_level_that_is_only_reported_is_carried_or_refused(form):
+def test_a_battery_level_that_is_only_reported_is_exported_or_refused(form):
     levels = [
         LOW.model_copy(update={"response": Response.REPORT, "battery_below": n}) for n in (0.3, 0.4)
     ]
-    one, other = (written(form, mission().model_copy(update={"reactions": (r,)})) for r in levels)
+    one, other = (exported(form, mission().model_copy(update={"reactions": (r,)})) for r in levels)
     assert one[0] is None or one[0] != other[0]
     assert one[0] is not None or "'low_battery'" in one[1][0][1]

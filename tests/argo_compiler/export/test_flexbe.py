@@ -1,4 +1,4 @@
-"""Exported FlexBE behaviours, run on a stand-in for FlexBE's core."""
+"""Tests of exported FlexBE behaviours, run on a replacement for FlexBE's core."""
 
 import ast
 import importlib
@@ -16,7 +16,7 @@ from argo_compiler.export.flexbe import to_flexbe
 from argo_compiler.hfsm import lower
 from argo_compiler.il import EventKind, Mission, Reaction, Response, Task
 from tests.argo_compiler.export import missions as m
-from tests.argo_compiler.export.carried import carried_missions, executed
+from tests.argo_compiler.export.tree_missions import executed, tree_missions
 from tests.conftest import examples
 from tests.mission_parts import assume_sound
 from tests.mission_writing import measure
@@ -36,7 +36,7 @@ class EventState:
         pass
 
     def run(self, userdata, wait):
-        """The outcome, after as many executions as it takes."""
+        """Execute the state until it has an outcome, and return that."""
         self.on_enter(userdata)
         while (outcome := self.execute(userdata)) is None:
             wait(self)
@@ -93,7 +93,7 @@ class Stop(Exception):
 
 
 class Robot:
-    """A robot of known outcomes on a virtual clock, which writes down what it begins."""
+    """Robot with given outcomes on a virtual clock; it logs the actions that it starts."""
 
     def __init__(self, outcomes):
         self.outcomes = cycle(outcomes)
@@ -105,12 +105,12 @@ class Robot:
         return self.time
 
     def measure(self, task, *_, **_way):
-        self.begin(task, measures=True)
+        self.start(task, measures=True)
 
     def drive(self, task, *_, **_way):
-        self.begin(task, measures=False)
+        self.start(task, measures=False)
 
-    def begin(self, task, measures):
+    def start(self, task, measures):
         assert self.action is None
         if len(self.log) == STEPS:
             raise Stop
@@ -131,14 +131,14 @@ class Robot:
         self.action = None
 
     def wait(self, state):
-        """Lets a second pass, as all times are whole ones, if there is something to wait for."""
-        runs = self.action is not None and self.action[0] > self.time
-        self.time += runs or type(state).__name__ == "WaitState"
+        """Let one second pass if there is something to wait for; all times are whole seconds."""
+        is_acting = self.action is not None and self.action[0] > self.time
+        self.time += is_acting or type(state).__name__ == "WaitState"
 
 
 @pytest.fixture(scope="module")
 def package(tmp_path_factory):
-    """The exported states, imported with a stand-in for `flexbe_core`."""
+    """Module `robot` of the exported states, imported with a replacement for `flexbe_core`."""
     folder = tmp_path_factory.mktemp("flexbe")
     mission = Mission(tasks=(Task(name="A", action="WAYPOINT", pose=m.HERE),))
     for path, content in to_flexbe(mission, lower(mission)).items():
@@ -149,24 +149,24 @@ def package(tmp_path_factory):
     core.OperatableStateMachine = OperatableStateMachine
     core.Behavior = Behavior
     core.Autonomy = types.SimpleNamespace(Off=-1)
-    before = dict(sys.modules)
+    modules_before = dict(sys.modules)
     sys.modules["flexbe_core"] = core
     sys.path.insert(0, str(folder))
     yield importlib.import_module("argo_flexbe_states.robot")
     sys.path.remove(str(folder))
-    for name in sys.modules.keys() - before.keys():
+    for name in sys.modules.keys() - modules_before.keys():
         if name.startswith(("flexbe_core", "argo_flexbe")):
             del sys.modules[name]
 
 
 def exported(mission):
-    """The behaviour's class, as its manifest names it."""
-    made = to_flexbe(mission, lower(mission))
-    manifest = ET.fromstring(next(v for k, v in made.items() if k.startswith("manifest/")))
+    """Return an instance of the behaviour's class, found by its manifest."""
+    contents = to_flexbe(mission, lower(mission))
+    manifest = ET.fromstring(next(v for k, v in contents.items() if k.startswith("manifest/")))
     executable = manifest.find("executable").attrib
     path = executable["package_path"].replace(".", "/") + ".py"
     namespace = {}
-    exec(compile(made[path], path, "exec"), namespace)
+    exec(compile(contents[path], path, "exec"), namespace)
     behavior = namespace[executable["class"]]()
     assert behavior.name == manifest.attrib["name"]
     return behavior
@@ -185,7 +185,7 @@ def run(package, mission, outcomes):
 
 
 @settings(max_examples=examples(60))
-@given(mission=st.one_of(m.missions(), carried_missions(windows=False)), outcomes=m.outcome_lists)
+@given(mission=st.one_of(m.missions(), tree_missions(windows=False)), outcomes=m.outcome_lists)
 def test_behaviour_does_what_the_executor_does(package, mission, outcomes):
     assume_sound(mission)
     log, outcome = run(package, mission, outcomes)
@@ -195,21 +195,21 @@ def test_behaviour_does_what_the_executor_does(package, mission, outcomes):
 
 
 @given(st.text(min_size=1))
-def test_names_are_data(package, name):
-    done = run(package, m.repeated(measure(name)), [(1, 2, False)])
-    assert done == ([(0, name), (1, name)], "completed")
+def test_any_name_is_exported_as_data(package, name):
+    result = run(package, m.repeated(measure(name)), [(1, 2, False)])
+    assert result == ([(0, name), (1, name)], "completed")
 
 
 def test_files_are_two_packages_and_a_manifest():
     mission = Mission(tasks=(measure("A"),), designation="9 o'clock round")
-    made = to_flexbe(mission, lower(mission))
-    assert {path.partition("/")[0] for path in made} == {
+    contents = to_flexbe(mission, lower(mission))
+    assert {path.partition("/")[0] for path in contents} == {
         "argo_flexbe_states",
         "argo_flexbe_behaviors",
         "manifest",
     }
-    assert "argo_flexbe_behaviors/m_9_o_clock_round_sm.py" in made
-    for path, content in made.items():
+    assert "argo_flexbe_behaviors/m_9_o_clock_round_sm.py" in contents
+    for path, content in contents.items():
         if path.endswith(".py"):
             ast.parse(content)
 
@@ -220,11 +220,11 @@ def test_reactions_are_refused():
         Reaction(event=EventKind.HOT_SPOT, response=Response.REPORT),
     )
     mission = Mission(tasks=(measure("A"),), reactions=reactions)
-    with pytest.raises(DiagnosticError, match="reaction to 'gas_leak' can't be said") as caught:
+    with pytest.raises(DiagnosticError, match="reaction to 'gas_leak' can't be exported") as caught:
         to_flexbe(mission, lower(mission))
     assert [d.code for d in caught.value.diagnostics] == ["export.reaction"]
 
 
-def test_mission_without_tasks_has_ended(package):
+def test_mission_without_tasks_ends_at_once(package):
     mission = Mission(tasks=(Task(name="S", action="START"),))
     assert run(package, mission, [(1, None, False)]) == ([], "completed")

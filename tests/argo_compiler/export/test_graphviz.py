@@ -19,7 +19,7 @@ from tests.argo_compiler.export import missions as m
 from tests.mission_parts import HERE
 from tests.mission_writing import drive, measure, way
 
-# From the grammar in Graphviz' documentation, for the part of the language that is used.
+# Part of the grammar in Graphviz' documentation that the exporter uses.
 GRAMMAR = r"""
     start: "digraph" ID "{" statement* "}"
     statement: ID "=" value ";"                          -> setting
@@ -36,7 +36,7 @@ GRAMMAR = r"""
 
 
 class Reader(Transformer):
-    """The graph as nested lists: settings, clusters, nodes and edges."""
+    """Reader of a graph into nested lists: settings, clusters, nodes and edges."""
 
     def value(self, parts):
         text = str(parts[0])
@@ -64,8 +64,8 @@ class Reader(Transformer):
 PARSER = Lark(GRAMMAR, parser="lalr", transformer=Reader())
 
 
-def shown(label):
-    """What Graphviz shows for a label without escapes other than those of `to_dot`."""
+def displayed_label(label):
+    """Return the text that Graphviz shows for a label with no escapes but those of `to_dot`."""
     out, escaped = "", False
     for c in label:
         if escaped:
@@ -90,14 +90,14 @@ def mission():
     )
 
 
-def test_groups_are_clusters_and_reactions_stand_beside(mission):
+def test_groups_and_all_reactions_together_are_clusters(mission):
     graph = PARSER.parse(to_dot(lower(mission)))
     clusters = {item[1]: item[2] for item in graph if item[0] == "cluster"}
     assert {item[1] for item in clusters["cluster_g1"] if item[0] == "node"} == {"t0", "t1"}
     assert clusters["cluster_reactions"][-1][2]["label"] == "gas leak: abort"
 
 
-def test_edges_say_why(mission):
+def test_edge_labels_give_the_reason(mission):
     graph = PARSER.parse(to_dot(lower(mission)))
     edges = [(a, b, attributes.get("label", "")) for kind, a, b, attributes in
              (item for item in graph if item[0] == "edge")]  # fmt: skip
@@ -121,4 +121,4 @@ def test_any_name_is_a_label(name):
     assert len([item for item in graph if item[0] in ("node", "cluster")]) == 6
     label = next(item[2]["label"] for item in cluster[2] if item[0] == "node")
     if name.isprintable():
-        assert shown(label) == name
+        assert displayed_label(label) == name

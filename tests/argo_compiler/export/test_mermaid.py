@@ -24,27 +24,27 @@ CHOICE = re.compile(r"state (\w+) <<choice>>")
 ARROW = re.compile(r"(\[\*\]|\w+) --> (\[\*\]|\w+)(?: : ((?:[\w ,().-]|#\d+;)+))?")
 
 
-def read(text):
-    """The states with the state that each lies in, the labels and the arrows; strict."""
+def parse(text):
+    """Return each state's parent, the labels and the arrows; fail if a line has another form."""
     first, *lines = text.splitlines()
     assert first == "stateDiagram-v2"
-    parents, labels, arrows, around = {}, {}, [], []
+    parents, labels, arrows, enclosing = {}, {}, [], []
     for line in map(str.strip, lines):
         if line == "}":
-            around.pop()
+            enclosing.pop()
         elif match := STATE.fullmatch(line) or CHOICE.fullmatch(line):
             id = match[match.re.groups - 1] if match.re is STATE else match[1]
             assert id not in parents
-            parents[id] = around[-1] if around else None
+            parents[id] = enclosing[-1] if enclosing else None
             if match.re is STATE:
                 labels[id] = match[1]
                 if match[3]:
-                    around.append(id)
+                    enclosing.append(id)
         else:
             match = ARROW.fullmatch(line)
             assert match, line
             arrows.append((match[1], match[2], match[3] or ""))
-    assert not around
+    assert not enclosing
     assert {id for arrow in arrows for id in arrow[:2]} <= parents.keys() | {"[*]"}
     return parents, labels, arrows
 
@@ -67,7 +67,7 @@ def mission():
 
 
 def test_states_are_nested_like_the_machine(mission):
-    parents, labels, _ = read(to_mermaid(lower(mission)))
+    parents, labels, _ = parse(to_mermaid(lower(mission)))
     assert parents == {
         "r1": None,
         "g1": None,
@@ -81,8 +81,8 @@ def test_states_are_nested_like_the_machine(mission):
     assert labels == {"t0": "A", "t1": "B", "t2": "C", "t3": "D", "g1": "G", "g2": "G#47;H"}
 
 
-def test_transitions_say_why(mission):
-    _, _, arrows = read(to_mermaid(lower(mission)))
+def test_transition_labels_give_the_reason(mission):
+    _, _, arrows = parse(to_mermaid(lower(mission)))
     assert arrows == [
         ("[*]", "t0", ""),
         ("t0", "t1", ""),
@@ -113,15 +113,15 @@ def test_transitions_say_why(mission):
         "Ölstand Überlauf №4",
     ],
 )
-def test_names_that_mean_something_to_mermaid(name):
+def test_names_with_a_meaning_in_mermaid_are_escaped(name):
     task = Task(name=name, action="MEASURE", object_id="1")
     text = to_mermaid(lower(Mission(tasks=(task,))))
-    _, labels, _ = read(text)
+    _, labels, _ = parse(text)
     assert re.sub(r"#(\d+);", lambda m: chr(int(m[1])), labels["t0"]) == name
     assert not re.search(r"direction\s|%%|<<|\[\*\] --> A", text.replace("[*] --> t0", ""))
 
 
-def test_mission_of_start_only():
+def test_mission_with_only_a_start_task():
     mission = Mission(tasks=(Task(name="S", action="START"),))
     assert to_mermaid(lower(mission)) == "stateDiagram-v2\n    [*] --> [*]\n"
 
@@ -138,7 +138,7 @@ def test_failures_and_reactions():
         priority=2,
     )
     mission = Mission(tasks=tasks, reactions=(reaction,), dock={"x": 0, "y": 0, "z": 0})
-    parents, labels, arrows = read(to_mermaid(lower(mission)))
+    parents, labels, arrows = parse(to_mermaid(lower(mission)))
     assert labels["t2"] == "return to dock"
     assert ("t0", "t2", "failed") in arrows
     assert ("t1", "[*]", "failed, abort") in arrows
@@ -146,7 +146,7 @@ def test_failures_and_reactions():
     assert parents["e1"] == "reactions"
 
 
-def test_version_3_is_on_the_boxes_and_arrows():
+def test_boxes_and_arrows_show_the_fields_of_version_3():
     hot = above("B", 7.5)
     unreadable = Condition(type=ConditionType.UNREADABLE, object_id="B")
     window = TimeWindow(earliest=60, latest=90, missed_target="D")
@@ -166,7 +166,7 @@ def test_version_3_is_on_the_boxes_and_arrows():
         ),
         groups=(Group(name="G", start="A", end="C", max_repeat_count=4, every=600, until=(hot,)),),
     )
-    _, labels, arrows = read(to_mermaid(lower(mission)))
+    _, labels, arrows = parse(to_mermaid(lower(mission)))
     assert {id: label for id, label in labels.items() if id[0] == "t"} == {
         "t0": "A (at 0.3 m#47;s, within 50 s, optional)",
         "t1": "B (not before 60 s, by 90 s, priority 3)",

@@ -1,4 +1,4 @@
-"""The formats of ROS among the exporters."""
+"""Tests of the exporters for ROS formats."""
 
 import pytest
 
@@ -11,7 +11,7 @@ PLAN = Mission(tasks=(Task(name="A", action=Action.MEASURE, object_id="4"),))
 
 
 @pytest.mark.parametrize("name", ["ros1-bag", "ros2-bag", "ros2-mcap"])
-def test_bags_are_written_as_the_exporter_says(tmp_path, name):
+def test_bags_have_the_form_that_the_exporter_declares(tmp_path, name):
     exporter = EXPORTERS[name]
     exported = exporter.export(PLAN, lower(PLAN))
     path = tmp_path / ("plan" + "".join(exporter.suffixes))
@@ -24,7 +24,7 @@ def test_bags_are_written_as_the_exporter_says(tmp_path, name):
     assert read_bag(path).mission == PLAN
 
 
-def test_the_package_is_written_whatever_the_mission():
+def test_the_package_does_not_depend_on_the_mission():
     exported = EXPORTERS["ros-package"].export(PLAN, lower(PLAN))
     assert exported == message_package()
     assert "msg/MissionSpecification.msg" in exported

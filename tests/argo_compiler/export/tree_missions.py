@@ -1,4 +1,4 @@
-"""Random missions of version 3 that go forward, and what the executor does with one."""
+"""Random missions of version 3 that a behaviour tree can express, and their expected runs."""
 
 from itertools import cycle
 
@@ -12,36 +12,40 @@ from tests.mission_parts import conditions_of_readings
 
 OUTCOMES = [*(o for o in Outcome if o is not Outcome.COMPLETED_WITH_FAILURES)]
 OUTCOMES += [Outcome.COMPLETED_WITH_FAILURES]
-"""in the order of their numbers in a tree, from 1"""
+"""Outcomes in the order of their numbers in a tree, from 1."""
 
 
 def executed(mission, outcomes, steps):
-    """The actions with the times of their starts, and how the mission ended; None: not yet.
+    """Return the executor's actions with their start times, and the mission's outcome or None.
 
-    As in the stand-ins for other tools, a value of 5 or more is abnormal, and a failure that has a
-    value is one of reading.
+    The outcome is None if the mission starts more than `steps` actions, of which the first `steps`
+    are returned. As in the replacements for other tools, a value of 5 or more is abnormal, and a
+    failure with a value is unreadable.
     """
     drawn = cycle(outcomes)
 
-    def doing(command, now):
+    def execute(command, now):
         duration, value, failed = next(drawn)
         task, id = command.task, command.id
         measured = value if task.action is Action.MEASURE else None
-        known = measured is not None
+        has_value = measured is not None
         if failed:
-            end = ActionFailed(task.name, "failed", unreadable=known, id=id)
+            end = ActionFailed(task.name, "failed", unreadable=has_value, id=id)
         else:
-            end = ActionSucceeded(task.name, measured, abnormal=known and measured >= 5, id=id)
+            end = ActionSucceeded(task.name, measured, abnormal=has_value and measured >= 5, id=id)
         return max(now, command.not_before or now) + duration, lambda: end
 
-    executor, log, _ = carry_out(mission, doing, steps)
+    executor, log, _ = carry_out(mission, execute, steps)
     return log, executor.outcome
 
 
 @st.composite
-def carried_missions(draw, timed=True, windows=True):
-    """Missions of which a behaviour tree can carry all; those that are not `timed` have no node
-    that goes by the clock; without `windows`, no task has one."""
+def tree_missions(draw, timed=True, windows=True):
+    """Draw a mission that a behaviour tree can express completely.
+
+    Without `timed`, its tree has no node that depends on the clock. Without `windows`, no task has
+    a time window.
+    """
     mission = draw(structured_missions(timed))
     names = [task.name for task in mission.tasks if task.action is not Action.START]
     tasks = [
@@ -55,11 +59,11 @@ def carried_missions(draw, timed=True, windows=True):
 
 @st.composite
 def _tasks(draw, task, names, timed, windows):
-    """A task of version 3 made of one that has only what version 2 had."""
-    held = st.lists(conditions_of_readings(), min_size=1, max_size=2).map(tuple)
-    ways = tuple(
-        Transition(target=way.target, conditions=draw(held)) if way.conditions else way
-        for way in task.transitions
+    """Draw a task of version 3 from a task that has only the fields of version 2."""
+    condition_lists = st.lists(conditions_of_readings(), min_size=1, max_size=2).map(tuple)
+    transitions = tuple(
+        Transition(target=t.target, conditions=draw(condition_lists)) if t.conditions else t
+        for t in task.transitions
     )
     if task.action is Action.WAYPOINT and draw(st.booleans()):
         wait = WaitRule(duration=draw(st.sampled_from([0, 1, 2, 5] if timed else [0])))
@@ -70,7 +74,7 @@ def _tasks(draw, task, names, timed, windows):
                 "wait": wait,
                 "retries": 0,
                 "on_failure": OnFailure.CONTINUE,
-                "transitions": ways,
+                "transitions": transitions,
             }
         )
     ahead = names[names.index(task.name) + 1 :]
@@ -91,6 +95,6 @@ def _tasks(draw, task, names, timed, windows):
             "time_limit": limit,
             "optional": draw(st.booleans()),
             "window": draw(window) if windows and limit is None and draw(st.booleans()) else None,
-            "transitions": ways,
+            "transitions": transitions,
         }
     )

@@ -1,4 +1,4 @@
-"""Argo's executor and an exported state chart, side by side on one virtual clock."""
+"""Argo's executor and an exported state chart, run in lockstep on one virtual clock."""
 
 from argo_compiler.export.scxml import to_scxml
 from argo_compiler.hfsm import (
@@ -29,8 +29,8 @@ PLAIN = {
 }
 
 
-class Both:
-    """The two machines of a mission. After each event they have to agree."""
+class Lockstep:
+    """Executor and state chart of one mission, which must agree after each event."""
 
     def __init__(self, mission):
         hfsm = lower(mission)
@@ -38,42 +38,42 @@ class Both:
         self.chart = Chart(to_scxml(mission, hfsm))
         self.stopping = False
         self.now = 0
-        self.begun = self.executor.start(0)
-        self.note(self.begun)
+        self.first_commands = self.executor.start(0)
+        self.record(self.first_commands)
         self.chart.start()
-        self.agree("start")
+        self.assert_agreement("start")
 
     def start(self, now):
-        """Return the actions that both began with when they were made."""
+        """Return the commands with which both started in the constructor."""
         assert now == 0
-        return self.begun
+        return self.first_commands
 
-    def note(self, commands):
+    def record(self, commands):
         for command in commands:
             self.stopping = isinstance(command, CancelAction)
 
     def handle(self, event, now):
-        over = self.executor.finished
+        was_finished = self.executor.finished
         commands = self.executor.handle(event, now)
-        if over:  # a chart that has ended hears nothing any more
+        if was_finished:  # a chart that has ended receives no events
             return commands
         self.now = now
         if isinstance(event, (ActionFailed, ActionStopped, ActionSucceeded)):
             self.stopping = False
-        self.note(commands)
-        name, data = told(event, self.chart)
+        self.record(commands)
+        name, data = chart_event(event, self.chart)
         self.chart.handle(name, now, **data)
-        self.agree(event)
+        self.assert_agreement(event)
         return commands
 
-    def at(self, now, event):
+    def handle_at(self, now, event):
         self.handle(event, now)
 
-    def agree(self, event):
-        assert self.chart.seen() == self.seen(), (self.now, event)
+    def assert_agreement(self, event):
+        assert self.chart.observation() == self.observation(), (self.now, event)
         assert self.chart.readings() == self.readings(), (self.now, event)
 
-    def seen(self):
+    def observation(self):
         executor = self.executor
         if executor.finished:
             return None, None, False, {}, str(executor.outcome)
@@ -83,10 +83,10 @@ class Both:
         return executor.active, name, self.stopping, dict(executor.rounds), None
 
     def readings(self):
-        known = self.executor.readings.items()
+        readings = self.executor.readings.items()
         return {
             object_id: (str(r.kind), r.value, r.time, r.abnormal)
-            for object_id, r in known
+            for object_id, r in readings
             if object_id in self.chart.objects
         }
 
@@ -100,16 +100,16 @@ class Both:
         return min((at for at in due if at is not None), default=None)
 
 
-def told(event, chart):
-    """The event as the chart is told it."""
+def chart_event(event, chart):
+    """Return the name and the data of the chart's event for an event of the executor."""
     match event:
         case Occurred(kind):
             return f"event.{kind}", {}
         case ReadingGiven(object_id, value, abnormal):
             if object_id not in chart.objects:
                 return "tick", {}
-            known = {"value": value, "abnormal": int(abnormal)}
-            return f"reading.{chart.objects[object_id]}", known
+            data = {"value": value, "abnormal": int(abnormal)}
+            return f"reading.{chart.objects[object_id]}", data
         case ActionSucceeded(_, value, abnormal):
             return "action.succeeded", {"value": value, "abnormal": int(abnormal)}
         case ActionFailed(_, _, unreadable):

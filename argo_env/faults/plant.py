@@ -117,11 +117,11 @@ class AbnormalPump(ProcessFault):
 
     def is_at(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
         # It is heard at the pump that is nearest.
-        from argo_env.sensing.signals.microphone import pump_places  # loads all watches
+        from argo_env.sensing.signals.microphone import pump_positions  # loads all watches
 
         if place is None:
             return False
-        places = pump_places(site)
+        places = pump_positions(site)
         return min(places, key=lambda name: math.dist(places[name], place)) == self.pump
 
     def source(self) -> Source:

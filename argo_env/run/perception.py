@@ -8,8 +8,14 @@ from argo_compiler.il import EventKind
 from argo_env.navigation import Blockage
 from argo_env.robot.pose import BodyPose
 from argo_env.run.record import DIGITS, Anomaly, Reading, anomaly_from_reading
-from argo_env.sensing.signals.terrain_watch import KNOWN, ObstacleDetection
-from argo_env.sensing.watch import Detection, PatientWatch, RememberingWatch, Told, Watch
+from argo_env.sensing.signals.terrain_watch import SAME_OBSTACLE, ObstacleDetection
+from argo_env.sensing.watch import (
+    Detection,
+    ReportedDetection,
+    RestorableWatch,
+    SkippableWatch,
+    Watch,
+)
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
 
@@ -30,7 +36,7 @@ class Perception:
             (watch, steps, k % steps)
             for k, (watch, steps) in enumerate(zip(watches, every, strict=True))
         ]
-        self._patient = [w if isinstance(w, PatientWatch) else None for w in watches]
+        self._patient = [w if isinstance(w, SkippableWatch) else None for w in watches]
         self._known: list[Anomaly] = []
 
     def remember(self, told: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
@@ -38,16 +44,18 @@ class Perception:
         poses; the watches are new."""
         self._known = [anomaly for anomaly, _ in told]
         for watch, _, _ in self._turns:
-            if isinstance(watch, RememberingWatch):
-                own = [Told(a.kind, pose) for a, pose in told if a.source == watch.name]
-                watch.remember(own, now)
+            if isinstance(watch, RestorableWatch):
+                own = [
+                    ReportedDetection(a.kind, pose) for a, pose in told if a.source == watch.name
+                ]
+                watch.restore(own, now)
 
     def look(self, step: int, now: float, pose: BodyPose) -> tuple[Anomaly, ...]:
         """What is found in the step of that number, at time `now` (s) with the robot at `pose`."""
         found = []
         for watch, every, turn in self._turns:
             if step % every == turn:
-                for detection in watch.look(now, pose):
+                for detection in watch.update(now, pose):
                     if not self._was_told(watch, detection):
                         found.append(self._anomaly(watch, detection, now))
         return tuple(found)
@@ -57,12 +65,12 @@ class Perception:
         begins or ends meanwhile and the charge of the battery is between these two (0 to 1)."""
         found: set[int] = set()
         for (_, every, turn), patient in zip(self._turns, self._patient, strict=True):
-            if patient is None or not patient.sees_nothing_new(*charges):
+            if patient is None or not patient.can_skip(*charges):
                 found.update(range(first + (turn - first) % every, last + 1, every))
         return found
 
     def _was_told(self, watch: Watch, detection: Detection) -> bool:
-        if detection.place is None or isinstance(watch, RememberingWatch):
+        if detection.place is None or isinstance(watch, RestorableWatch):
             return False
         for known in self._known:
             same = (known.kind, known.source) == (detection.kind, watch.name)
@@ -97,7 +105,7 @@ def blockage(anomaly: Anomaly) -> Blockage | None:
         return None
     x, y, z = anomaly.place
     x0, y0, x1, y1 = anomaly.extent or (x, y, x, y)
-    more = KNOWN if anomaly.extent else _AROUND
+    more = SAME_OBSTACLE if anomaly.extent else _AROUND
     return Blockage((x0 - more, y0 - more, x1 + more, y1 + more), z, anomaly.detail)
 
 

@@ -50,7 +50,7 @@ class Instruments:
 
     def look_at(self, checkpoint_id: int, now: float) -> None:
         """Somebody is about to look at the checkpoint, at time `now` (s)."""
-        self._targets.sensor.moment = now
+        self._targets.sensor.time = now
         profile = self._profiles.get(checkpoint_id)
         if profile is None:
             return

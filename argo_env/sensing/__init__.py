@@ -1,1 +1,1 @@
-"""Sensing: how values are read from checkpoints."""
+"""Sensors that read checkpoints, and watches that detect what happens to the robot and the site."""

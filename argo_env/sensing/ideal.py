@@ -1,4 +1,4 @@
-"""The ideal sensor: it knows the true value, but only tells what a camera there could see."""
+"""Ideal sensor: it knows the true values, but returns only those that a camera could see."""
 
 from collections.abc import Mapping
 
@@ -14,7 +14,7 @@ from argo_env.world.paper_world import AnyWorld
 
 
 class IdealSensor:
-    """Reads true values where the face is in range, turned to the camera and in sight."""
+    """Sensor that returns true values of faces that the camera could see and read."""
 
     name = "ideal"
 
@@ -24,7 +24,10 @@ class IdealSensor:
         self._truth = truth
 
     def measure(self, checkpoint_id: int, pose: BodyPose) -> Measurement:
-        """The true value; MeasurementError if the camera can't see the face from there."""
+        """Return the true value of the checkpoint.
+
+        Raises MeasurementError if the camera can't see the face from this pose.
+        """
         checkpoint = self._world.in_place(checkpoint_id)
         sensor = self._robot.sensor
         camera = camera_positions(np.array([[pose.x, pose.y, pose.z, pose.yaw]]), self._robot)[0]
@@ -50,8 +53,10 @@ class IdealSensor:
 
 
 def draw_values(site: Site, rng: np.random.Generator) -> dict[int, float]:
-    """A true value on the scale of every checkpoint, somewhere in its nominal range, as a rule with
-    two decimals."""
+    """Return a true value for every checkpoint, drawn from the nominal part of its scale.
+
+    Values have two decimals, except where the range is too narrow for that.
+    """
     values = {}
     for c in site.checkpoints:
         scale, nominal = c.range, c.nominal

@@ -1,7 +1,8 @@
-"""The watches over the robot itself: battery, connection, emergency stop, drive and camera.
+"""Watches for the robot itself: battery, connection, emergency stop, drive and camera.
 
-Each looks at signals that such a robot has: volts and amperes, whether a packet comes back, the
-circuit of the emergency stop, the way made against the way planned, pictures of a test pattern.
+Each reads a signal that such a robot has: voltage and current, replies of the base station, the
+circuit of the emergency stop, the distance driven compared with the planned one, pictures of a test
+pattern.
 """
 
 import math
@@ -22,7 +23,7 @@ from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
 from argo_env.seeding import generator
 from argo_env.sensing.sensor import Measurement, MeasurementError, Sensor
-from argo_env.sensing.watch import Detection, Told, Watch
+from argo_env.sensing.watch import Detection, ReportedDetection, Watch
 from argo_env.site import Site
 from argo_env.surroundings.surroundings import RadioNetwork
 
@@ -31,41 +32,45 @@ _SHOTS = 8  # pictures of the test pattern in one self-test
 
 
 class OnboardSensor:
-    """A sensor that may fail. Holds how it stands; faults change that."""
+    """Sensor that may fail or become noisy. It holds its present condition, which faults change."""
 
     def __init__(self, sensor: Sensor, site: Site, seed: int, usual_noise: float = 0.0) -> None:
-        """`usual_noise`: that of a sensor in order, as a share of the scale."""
+        """`usual_noise`: noise of the sensor without a fault, as a share of the scale."""
         self._sensor = sensor
         self._site = site
         self._seed = seed
         self._tests = generator(seed, "instrument")
         self.name = sensor.name
-        self.moment = 0.0
-        """s, when it reads next"""
+        self.time = 0.0
+        """s, time of the next measurement"""
         self.failed = False
-        """whether the camera gives no picture"""
+        """True while the camera gives no picture"""
         self.usual_noise = usual_noise
-        """standard deviation of what it adds to values while nothing is wrong with it, as a share
-        of their scale"""
+        """standard deviation of the noise without a fault, as a share of the checkpoint's scale"""
         self.noise = usual_noise
-        """the same as it is now"""
+        """standard deviation of the present noise, as a share of the checkpoint's scale"""
 
     def measure(self, checkpoint_id: int, pose: BodyPose) -> Measurement:
-        """Reads the checkpoint as the sensor does, as far as it works."""
+        """Read the checkpoint with the wrapped sensor, and add the present noise.
+
+        Raises MeasurementError also while the camera gives no picture.
+        """
         if self.failed:
             raise MeasurementError("the camera gives no picture")
-        found = self._sensor.measure(checkpoint_id, pose)
+        measurement = self._sensor.measure(checkpoint_id, pose)
         if not self.noise:
-            return found
+            return measurement
         scale = self._site.checkpoint(checkpoint_id).range
-        # Of checkpoint and moment alone: what else was read before changes nothing.
-        rng = generator(self._seed, "reading", checkpoint_id, round(1000 * self.moment))
-        value = found.value + self.noise * (scale.high - scale.low) * rng.standard_normal()
-        return replace(found, value=round(min(max(value, scale.low), scale.high), 2))
+        # The noise depends on checkpoint and time only, so earlier measurements don't change it.
+        rng = generator(self._seed, "reading", checkpoint_id, round(1000 * self.time))
+        value = measurement.value + self.noise * (scale.high - scale.low) * rng.standard_normal()
+        return replace(measurement, value=round(min(max(value, scale.low), scale.high), 2))
 
-    def test(self) -> tuple[float, ...] | None:
-        """What the camera makes of the test pattern inside its housing, which stands at 0 of 1, in
-        several pictures; None if there is no picture."""
+    def test_picture(self) -> tuple[float, ...] | None:
+        """Return readings of the test pattern inside the camera's housing, from several pictures.
+
+        The pattern shows 0 on a scale of 0 to 1. Returns None if the camera gives no picture.
+        """
         if self.failed:
             return None
         spread = max(self.noise, _HEALTHY_NOISE)
@@ -73,38 +78,39 @@ class OnboardSensor:
 
 
 LOW, FULL = 0.2, 0.99
-"""shares of the charge: below the one the battery is low, from the other on it is charged again"""
-WINDOW = 10.0  # s over which the way made is compared with the way planned
+"""shares of the charge: the battery is low below `LOW`, and charged again from `FULL` on"""
+WINDOW = 10.0  # s over which the distance driven is compared with the planned one
 SLOW = 0.6  # share of the planned speed below which something is wrong
-_SAMPLE = 0.2  # s between the places on the planned way that the robot's are compared with
-_RADIAN = 0.3  # m that a radian counts as in this
+_SAMPLE = 0.2  # s between the poses of the planned path that the robot's pose is compared with
+_RADIAN = 0.3  # m that a radian counts as in this comparison
 NOISY = 0.01  # standard deviation in the test pattern above which the camera is too noisy
 
 
 class BatteryWatch:
-    """Estimates the charge from voltage and current. Holds whether it has been low: it is low again
-    only after it was charged."""
+    """Watch for the charge of the battery, estimated from voltage and current.
+
+    It holds whether the battery was low: it reports a low battery again only after it was charged.
+    """
 
     name = "battery"
     period = 1.0
 
     def __init__(self, battery: Battery, low: float = LOW) -> None:
-        """`low`: the share of the charge below which it is."""
+        """`low`: the share of the charge below which the battery is low."""
         self._battery = battery
         self._level = low
         self._low = False
 
-    def remember(self, told: Sequence[Told], now: float) -> None:  # noqa: ARG002
-        self._low = bool(told) and told[-1].kind is EventKind.LOW_BATTERY
+    def restore(self, reported: Sequence[ReportedDetection], now: float) -> None:  # noqa: ARG002
+        self._low = bool(reported) and reported[-1].kind is EventKind.LOW_BATTERY
 
-    def sees_nothing_new(self, least: float, most: float) -> bool:
-        """Whether the charge stays so far from the level at which it would be told that no
-        estimate reaches it."""
+    def can_skip(self, lowest: float, highest: float) -> bool:
+        """Return True if no estimate of the charge can reach the level of the next detection."""
         if self._low:
-            return most + ESTIMATE_ERROR < FULL
-        return least - ESTIMATE_ERROR > self._level
+            return highest + ESTIMATE_ERROR < FULL
+        return lowest - ESTIMATE_ERROR > self._level
 
-    def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
+    def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
         voltage = self._battery.voltage
         charge = estimated_charge(voltage, self._battery.current)
         if not self._low and charge < self._level:
@@ -117,26 +123,26 @@ class BatteryWatch:
 
 
 class ConnectionWatch:
-    """Asks the base station for a sign of life. Holds how many it has missed."""
+    """Watch for the connection to the base station. It counts the replies that were missed."""
 
     name = "connection"
     period = 0.5
 
     def __init__(self, network: RadioNetwork, missed: int = 4) -> None:
-        """The connection is lost when `missed` answers in a row have not come."""
+        """`missed`: the number of missing replies in a row from which the connection is lost."""
         self._network = network
         self._limit = missed
         self._missed = 0
 
-    def remember(self, told: Sequence[Told], now: float) -> None:  # noqa: ARG002
-        lost = bool(told) and told[-1].kind is EventKind.CONNECTION_LOST
+    def restore(self, reported: Sequence[ReportedDetection], now: float) -> None:  # noqa: ARG002
+        lost = bool(reported) and reported[-1].kind is EventKind.CONNECTION_LOST
         self._missed = self._limit if lost else 0
 
-    def sees_nothing_new(self, least: float, most: float) -> bool:  # noqa: ARG002
-        """Whether the network has no shadows, and the last answer has come."""
+    def can_skip(self, lowest: float, highest: float) -> bool:  # noqa: ARG002
+        """Return True if the network has no shadows and the last reply has arrived."""
         return not self._network.shadows and not self._missed
 
-    def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
+    def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
         here = (pose.x, pose.y, pose.z)
         if not self._network.connected(pose):
             self._missed += 1
@@ -153,7 +159,7 @@ class ConnectionWatch:
 
 
 class EmergencyStopWatch:
-    """Looks at the circuit of the emergency stop. Holds how it was."""
+    """Watch for the circuit of the emergency stop. It holds the last state of the circuit."""
 
     name = "emergency stop"
     period = 0.1
@@ -162,22 +168,25 @@ class EmergencyStopWatch:
         self._drive = drive
         self._pressed = False
 
-    def remember(self, told: Sequence[Told], now: float) -> None:  # noqa: ARG002
-        self._pressed = bool(told) and self._drive.pressed
+    def restore(self, reported: Sequence[ReportedDetection], now: float) -> None:  # noqa: ARG002
+        self._pressed = bool(reported) and self._drive.pressed
 
-    def sees_nothing_new(self, least: float, most: float) -> bool:  # noqa: ARG002
-        """Whether the circuit is as it was."""
+    def can_skip(self, lowest: float, highest: float) -> bool:  # noqa: ARG002
+        """Return True if the circuit has not changed since the last update."""
         return self._pressed == self._drive.pressed
 
-    def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
-        before, self._pressed = self._pressed, self._drive.pressed
-        if self._pressed and not before:
+    def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
+        was_pressed, self._pressed = self._pressed, self._drive.pressed
+        if self._pressed and not was_pressed:
             return (Detection(EventKind.EMERGENCY_STOP, "someone has pressed the emergency stop"),)
         return ()
 
 
 class DriveWatch:
-    """Compares the way that the robot makes with the one that was planned. Holds both."""
+    """Watch for the speed of the drive, compared with the planned one.
+
+    It holds the planned path and the robot's progress along it over the last `WINDOW` seconds.
+    """
 
     name = "drive"
     period = 1.0
@@ -185,78 +194,81 @@ class DriveWatch:
     def __init__(self, drive: Powertrain, robot: RobotSpec) -> None:
         self._drive = drive
         self._robot = robot
-        self._way: tuple[Path, float | None] | None = None
-        self._plan = np.empty((0, 4))  # as `_places` says
-        self._at = 0
+        self._planned: tuple[Path, float | None] | None = None
+        self._planned_poses = np.empty((0, 4))  # see `_sample_poses`
+        self._index = 0
         self._held = 0
         self._progress: deque[tuple[float, float]] = deque()
-        self._told = False
+        self._reported = False
 
-    def remember(self, told: Sequence[Told], now: float) -> None:  # noqa: ARG002
-        self._told = bool(told)  # until the robot is seen to be fast enough again
+    def restore(self, reported: Sequence[ReportedDetection], now: float) -> None:  # noqa: ARG002
+        self._reported = bool(reported)  # until the robot is seen to be fast enough again
 
-    def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
-        way = self._drive.way
-        if way is None:
+    def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
+        planned = self._drive.way
+        if planned is None:
             return ()
-        if way is not self._way:
-            self._way, self._at = way, 0
-            self._plan = _places(*way, self._robot)
+        if planned is not self._planned:
+            self._planned, self._index = planned, 0
+            self._planned_poses = _sample_poses(*planned, self._robot)
             self._progress.clear()
-        self._at = self._nearest(pose)
+        self._index = self._nearest(pose)
         if self._drive.held != self._held:
-            # Brakes say nothing of the drive; where the robot is on its way it must not forget.
+            # Brakes say nothing about the drive: measure the speed anew, but keep the position.
             self._held = self._drive.held
             self._progress.clear()
-        self._progress.append((now, self._at * _SAMPLE))
+        self._progress.append((now, self._index * _SAMPLE))
         while now - self._progress[0][0] > WINDOW + 1e-6:
             self._progress.popleft()
-        since, before = self._progress[0]
-        if now - since < WINDOW - 1e-6 or self._at >= len(self._plan) - 1:
+        since, start = self._progress[0]
+        if now - since < WINDOW - 1e-6 or self._index >= len(self._planned_poses) - 1:
             return ()
-        share = (self._progress[-1][1] - before) / (now - since)
+        share = (self._progress[-1][1] - start) / (now - since)
         if share >= SLOW:
-            self._told = False
+            self._reported = False
             return ()
-        if self._told:
+        if self._reported:
             return ()
-        self._told = True
+        self._reported = True
         detail = f"the drive makes {share:.0%} of the planned speed"
         here = (pose.x, pose.y, pose.z)
         return (Detection(EventKind.DYSFUNCTION, detail, noticed_from=here),)
 
     def _nearest(self, pose: BodyPose) -> int:
-        """Where on the plan the robot is: at most twice as far on as time would have it."""
-        nearest, least = self._at, math.inf
-        last = self._at + round(2 * self.period / _SAMPLE)
-        rows = self._plan[self._at : last + 1].tolist()
-        for number, (x, y, z, yaw) in enumerate(rows, start=self._at):
+        """Return the index of the planned pose nearest to `pose`.
+
+        The search begins at the last index and ends where twice the planned speed would lead.
+        """
+        nearest, least = self._index, math.inf
+        last = self._index + round(2 * self.period / _SAMPLE)
+        rows = self._planned_poses[self._index : last + 1].tolist()
+        for number, (x, y, z, yaw) in enumerate(rows, start=self._index):
             dx, dy, dz = x - pose.x, y - pose.y, z - pose.z
-            turned = _RADIAN * ((yaw - pose.yaw + math.pi) % math.tau) - _RADIAN * math.pi
-            apart = dx * dx + dy * dy + dz * dz + turned * turned
-            if apart < least:
-                nearest, least = number, apart
+            turn_distance = _RADIAN * ((yaw - pose.yaw + math.pi) % math.tau) - _RADIAN * math.pi
+            distance = dx * dx + dy * dy + dz * dz + turn_distance * turn_distance
+            if distance < least:
+                nearest, least = number, distance
         return nearest
 
 
 class CameraWatch:
-    """Takes pictures of the test pattern. Holds whether the camera was found out of order."""
+    """Watch for the camera, by pictures of a test pattern. It holds if the last test failed."""
 
     name = "camera"
     period = 5.0
 
     def __init__(self, sensor: OnboardSensor) -> None:
         self._sensor = sensor
-        self._told = False
+        self._reported = False
 
-    def remember(self, told: Sequence[Told], now: float) -> None:  # noqa: ARG002
-        self._told = bool(told)  # if the camera is well again, the first picture shows it
+    def restore(self, reported: Sequence[ReportedDetection], now: float) -> None:  # noqa: ARG002
+        self._reported = bool(reported)  # if the camera works again, the first picture shows it
 
-    def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
-        pattern = self._sensor.test()
+    def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
+        pattern = self._sensor.test_picture()
         spread = 0.0 if pattern is None else math.hypot(*pattern) / math.sqrt(len(pattern))
-        before, self._told = self._told, pattern is None or spread > NOISY
-        if not self._told or before:
+        was_reported, self._reported = self._reported, pattern is None or spread > NOISY
+        if not self._reported or was_reported:
             return ()
         detail = (
             "the camera gives no picture"
@@ -274,8 +286,10 @@ def onboard_watches(
     sensor: OnboardSensor,
     low_battery: float | None = None,
 ) -> tuple[Watch, ...]:
-    """All watches over the robot itself, for one run. `low_battery`: the share of the charge below
-    which the battery is low; None: the robot's own level."""
+    """Return all watches for the robot itself, for one run.
+
+    `low_battery` is the share of the charge below which the battery is low; None means `LOW`.
+    """
     return (
         EmergencyStopWatch(drive),
         BatteryWatch(battery, LOW if low_battery is None else low_battery),
@@ -285,17 +299,17 @@ def onboard_watches(
     )
 
 
-def _places(path: Path, velocity: float | None, robot: RobotSpec) -> NDArray[np.float64]:
-    """x, y, z (m) and yaw (rad) every _SAMPLE s along the plan, shape (n, 4)."""
+def _sample_poses(path: Path, velocity: float | None, robot: RobotSpec) -> NDArray[np.float64]:
+    """Return x, y, z (m) and yaw (rad) every _SAMPLE s along the path, shape (n, 4)."""
     rows: list[NDArray[np.float64]] = []
     first = 0.0
     for motion in path.motions:
         duration = motion.duration(robot, velocity)
-        most = 1 + math.ceil(max(0.0, duration - first) / _SAMPLE)
-        times = [*accumulate(repeat(_SAMPLE, most), initial=first)]
-        under_way = bisect_left(times, duration)
-        x, y, z, yaw = motion.along(np.array(times[:under_way]) / duration)
+        max_samples = 1 + math.ceil(max(0.0, duration - first) / _SAMPLE)
+        times = [*accumulate(repeat(_SAMPLE, max_samples), initial=first)]
+        samples_within = bisect_left(times, duration)
+        x, y, z, yaw = motion.along(np.array(times[:samples_within]) / duration)
         rows.append(np.column_stack([x, y, z, wrap(yaw)]))
-        first = times[under_way] - duration
+        first = times[samples_within] - duration
     end = path.end
     return np.concatenate([*rows, [(end.x, end.y, end.z, end.yaw)]])

@@ -1,4 +1,4 @@
-"""What every sensor can do: read a checkpoint from where the robot stands."""
+"""Interface of the sensors that read checkpoints, with their measurements and errors."""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -8,30 +8,34 @@ from argo_env.robot.pose import BodyPose
 
 @dataclass(frozen=True)
 class Measurement:
-    """A value in the checkpoint's unit, the distance (m) that it was read from, and how sure the
-    sensor is of it (0 to 1)."""
+    """Result of a successful measurement at a checkpoint."""
 
     value: float
+    """in the checkpoint's unit"""
     distance: float
+    """m, from which the value was read"""
     confidence: float = 1.0
+    """0 to 1: how sure the sensor is of the value"""
 
 
 class MeasurementError(Exception):
-    """The checkpoint could not be read; the message says why."""
+    """Raised when a checkpoint can't be read; the message states the reason."""
 
 
 class PoorViewError(MeasurementError):
-    """It could not be read from there, but perhaps from elsewhere."""
+    """Raised when a checkpoint can't be read from this pose, but perhaps from another one."""
 
 
 class Sensor(Protocol):
-    """Reads checkpoints."""
+    """Interface of a sensor that reads checkpoints."""
 
     name: str
 
     def measure(self, checkpoint_id: int, pose: BodyPose) -> Measurement:
-        """Reads the checkpoint with the robot at `pose`, its arm raised.
+        """Read the checkpoint with the robot at `pose` and its arm raised.
 
-        Raises MeasurementError if that is not possible from there, NotFound for an unknown id.
+        Raises:
+            MeasurementError: the checkpoint can't be read from this pose.
+            NotFound: the site has no checkpoint of this id.
         """
         ...

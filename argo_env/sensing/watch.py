@@ -1,4 +1,4 @@
-"""What the robot notices by itself while it goes: detections, and what makes them."""
+"""Detections that the robot makes by itself during a run, and the interfaces of its watches."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,54 +11,58 @@ from argo_env.site.shapes import Vector
 
 @dataclass(frozen=True)
 class Detection:
-    """Something found by sensing."""
+    """Something that a watch has detected in its signals."""
 
     kind: EventKind
     detail: str
     """one phrase for the report, such as `gas, 840 ppm, near pump P-301`"""
     place: Vector | None = None
-    """m, where the robot believes it is; None where the signal tells no place"""
+    """m, estimated position of the cause; None if the signal has no direction or distance"""
     confidence: float = 1.0
     """0 to 1"""
     noticed_from: Vector | None = None
-    """m, where the robot was, if that says anything about what it knows no place of"""
+    """m, position of the robot, if it helps to locate a cause whose `place` is unknown"""
 
 
 class Watch(Protocol):
-    """Looks at one kind of signal again and again, and says what is new in it."""
+    """Part of perception that looks for one kind of detection in signals, at a fixed period."""
 
     name: str
     period: float
-    """s between two looks"""
+    """s between two updates"""
 
-    def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
-        """What has been found at time `now` (s) with the robot at `pose`; each thing is told once,
-        and again only after it was gone."""
+    def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
+        """Read the signals at time `now` (s) with the robot at `pose`; return new detections.
+
+        The watch reports each thing once, and again only after it has been gone.
+        """
         ...
 
 
 @dataclass(frozen=True)
-class Told:
-    """What a watch has told before the run was resumed, and where the robot was then."""
+class ReportedDetection:
+    """A detection that a watch reported before the run was resumed, and the robot's pose then."""
 
     kind: EventKind
     pose: BodyPose
 
 
 @runtime_checkable
-class PatientWatch(Watch, Protocol):
-    """A watch that can say when it will see nothing new for as long as no fault begins or ends."""
+class SkippableWatch(Watch, Protocol):
+    """A watch that can tell that its updates have no effect while no fault begins or ends."""
 
-    def sees_nothing_new(self, least: float, most: float) -> bool:
-        """Whether no look tells or changes anything until then, the charge of the battery being
-        between these two (0 to 1)."""
+    def can_skip(self, lowest: float, highest: float) -> bool:
+        """Return True if no update detects or changes anything until a fault begins or ends.
+
+        The charge of the battery stays between `lowest` and `highest` (0 to 1) in the meantime.
+        """
         ...
 
 
 @runtime_checkable
-class RememberingWatch(Watch, Protocol):
-    """A watch whose detections have no place by which they are known again."""
+class RestorableWatch(Watch, Protocol):
+    """A watch whose detections can't be recognized by their position after a run is resumed."""
 
-    def remember(self, told: Sequence[Told], now: float) -> None:
-        """Goes on at time `now` (s) as the one that has told all these, in this order."""
+    def restore(self, reported: Sequence[ReportedDetection], now: float) -> None:
+        """Continue at time `now` (s) as the watch that made these reports, in this order."""
         ...

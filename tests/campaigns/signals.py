@@ -25,8 +25,8 @@ from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import load_robot
 from argo_env.seeding import generator
 from argo_env.sensing.signals import standard_watches
-from argo_env.sensing.signals.frames import NOSE, on_site
-from argo_env.sensing.signals.microphone import pump_places
+from argo_env.sensing.signals.frames import NOSE, to_site
+from argo_env.sensing.signals.microphone import pump_positions
 from argo_env.sensing.watch import Detection
 from argo_env.site import Site
 from argo_env.site.shapes import Box, Cylinder, Role, Solid, Vector
@@ -81,7 +81,7 @@ def detections(
         for watch in watches:
             if now >= due[watch.name] - 1e-6:
                 due[watch.name] += watch.period
-                for detection in watch.look(now, pose):
+                for detection in watch.update(now, pose):
                     yield now, pose, detection
 
 
@@ -235,7 +235,7 @@ def on_surface(site: Site, track: Track, rng: np.random.Generator, reach: float)
 
 def nearest(track: Track, place: Vector) -> float:
     """m from the microphone to the place, where it comes nearest."""
-    return min(math.dist(on_site(p, NOSE).tolist(), place) for _, p in track[::5])
+    return min(math.dist(to_site(p, NOSE).tolist(), place) for _, p in track[::5])
 
 
 def source(
@@ -260,10 +260,10 @@ def source(
                 return Found(True)
             figures = {"s after": now - since} if isinstance(made, Alarm) else {}
             if isinstance(made, GasLeak | HotSpot):
-                figures["m away"] = math.dist(on_site(pose, NOSE).tolist(), made.place)
+                figures["m away"] = math.dist(to_site(pose, NOSE).tolist(), made.place)
             if isinstance(made, PumpSound):
-                place = pump_places(world.site)[made.pump]
-                figures["m away"] = math.dist(on_site(pose, NOSE).tolist(), place)
+                place = pump_positions(world.site)[made.pump]
+                figures["m away"] = math.dist(to_site(pose, NOSE).tolist(), place)
                 figures["right pump"] = float(made.pump in detection.detail)
             if isinstance(made, HotSpot) and detection.place:
                 figures["m off"] = math.dist(detection.place, made.place)
@@ -322,7 +322,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             return place and HotSpot(place, radius, temperature)
 
         def pump(fault: PumpFault, track: Track, rng: np.random.Generator) -> PumpSound | None:
-            near = [n for n, p in pump_places(site).items() if nearest(track, p) < 2.5]
+            near = [n for n, p in pump_positions(site).items() if nearest(track, p) < 2.5]
             return PumpSound(near[int(rng.integers(len(near)))], fault) if near else None
 
         for name, kind, watch, make in (

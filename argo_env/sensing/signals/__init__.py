@@ -1,4 +1,4 @@
-"""The watches that the robot carries."""
+"""Watches for gas, heat, sound and terrain, with the instruments that they read."""
 
 from argo_env.seeding import generator
 from argo_env.sensing.signals.alarm_watch import AlarmWatch
@@ -14,11 +14,11 @@ from argo_env.world.world import World
 
 
 def standard_watches(world: World, surroundings: Surroundings, seed: int) -> tuple[Watch, ...]:
-    """All watches of the robot, for one run: gas, heat, pumps, the alarm and the way ahead.
+    """Return the watches for one run: gas, heat, pumps, the alarm and the terrain ahead.
 
-    They sense what is in `surroundings` and in `world`, and their map is the site of the
-    `surroundings`, as it was built. The seed draws their noise. They hold what they have sensed, so
-    a new run needs new ones.
+    They sense what is in `surroundings` and in `world`; their map is the site of the
+    `surroundings`, as it was built. The seed draws their noise. Watches hold what they have sensed,
+    so each run needs new ones.
     """
     site_map = SiteMap(surroundings.site)
     return (

@@ -1,4 +1,4 @@
-"""The watch for the general platform alarm: its tone, and the beat of it."""
+"""Watch for the general platform alarm, recognized by its tone and by the beat of the tone."""
 
 from collections import deque
 from collections.abc import Sequence
@@ -9,77 +9,84 @@ from numpy.typing import NDArray
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.signals.microphone import Microphone
-from argo_env.sensing.watch import Detection, Told
+from argo_env.sensing.watch import Detection, ReportedDetection
 from argo_env.surroundings.sound import ALARM_ON, ALARM_PERIOD, ALARM_TONE, RATE
 
 RECORDING = 0.05  # s
 TONE_BAND = 20.0  # Hz to both sides of the tone
-AROUND = (600.0, 1600.0)  # Hz, where the noise beside the tone is taken from
+NOISE_BAND = (600.0, 1600.0)  # Hz, in which the noise beside the tone is measured
 PROMINENCE = 20.0
-"""dB over the mean of the noise; white noise gets there in one of three lines with 3 e^-100"""
-LOOKS, MISMATCHES = 10, 1
-"""recordings that must fit the beat, and how many of them may not"""
-SHORTEST = 0.01  # s of tone in a recording from which it shows
-IDLE = 2  # looks of which it takes one while there is nothing to hear
+"""dB over the mean of the noise; one of three lines of white noise exceeds it with a probability of
+3 e^-100"""
+BEAT_RECORDINGS, MAX_MISMATCHES = 10, 1
+"""recordings that are compared with the beat, and how many of them may differ from it"""
+MIN_TONE = 0.01  # s of tone in a recording from which it is detected
+IDLE_UPDATES = 2  # updates per recording while there is no tone
 CLEAR_TIME = 6.0  # s without the tone until the alarm is over
 _PHASES = np.arange(0.0, ALARM_PERIOD, 0.02)
 
 
-def hears_tone(samples: NDArray[np.float32]) -> bool:
-    """Whether the alarm's tone stands out of a recording."""
-    line = len(samples) / RATE  # bins a hertz
-    first, last = round(AROUND[0] * line), round(AROUND[1] * line)
+def has_alarm_tone(samples: NDArray[np.float32]) -> bool:
+    """Return True if the alarm's tone stands out of a recording (Pa, `RATE` samples a second)."""
+    bins_per_hertz = len(samples) / RATE
+    first, last = round(NOISE_BAND[0] * bins_per_hertz), round(NOISE_BAND[1] * bins_per_hertz)
     spectrum = np.fft.rfft(samples)[first:last]
     power = spectrum.real**2 + spectrum.imag**2
-    low, high = round((ALARM_TONE - TONE_BAND) * line), round((ALARM_TONE + TONE_BAND) * line) + 1
+    low, high = (
+        round((ALARM_TONE - TONE_BAND) * bins_per_hertz),
+        round((ALARM_TONE + TONE_BAND) * bins_per_hertz) + 1,
+    )
     tone = power[low - first : high - first]
     noise = (power.sum() - tone.sum()) / (len(power) - len(tone))
     return bool(tone.max() > 10 ** (PROMINENCE / 10) * noise)
 
 
-def fits_beat(heard: Sequence[tuple[float, bool]]) -> bool:
-    """Whether times (s) with and without the tone are those of the alarm, whenever it began."""
-    if len(heard) < LOOKS:
+def matches_alarm_beat(recordings: Sequence[tuple[float, bool]]) -> bool:
+    """Return True if recordings match the alarm's beat, whenever the alarm began.
+
+    Each recording is its time (s) and whether it has the tone.
+    """
+    if len(recordings) < BEAT_RECORDINGS:
         return False
-    into = (np.array([t for t, _ in heard])[:, None] - _PHASES) % ALARM_PERIOD
-    until_off = np.clip(ALARM_ON - into, 0.0, RECORDING)
-    from_on = np.clip(into + RECORDING - ALARM_PERIOD, 0.0, RECORDING)
-    expected = until_off + from_on > SHORTEST
-    wrong = (expected != np.array([on for _, on in heard])[:, None]).sum(axis=0)
-    return bool(wrong.min() <= MISMATCHES)
+    into_period = (np.array([t for t, _ in recordings])[:, None] - _PHASES) % ALARM_PERIOD
+    until_off = np.clip(ALARM_ON - into_period, 0.0, RECORDING)
+    from_on = np.clip(into_period + RECORDING - ALARM_PERIOD, 0.0, RECORDING)
+    expected = until_off + from_on > MIN_TONE
+    wrong = (expected != np.array([has_tone for _, has_tone in recordings])[:, None]).sum(axis=0)
+    return bool(wrong.min() <= MAX_MISMATCHES)
 
 
 class AlarmWatch:
-    """Tells that the alarm sounds, and that it is over. Holds what it has heard last."""
+    """Watch for the start and the end of the alarm. It holds the last recordings' results."""
 
     name = "alarm"
     period = 0.4
 
     def __init__(self, microphone: Microphone) -> None:
         self._microphone = microphone
-        self._heard: deque[tuple[float, bool]] = deque(maxlen=LOOKS)
+        self._recordings: deque[tuple[float, bool]] = deque(maxlen=BEAT_RECORDINGS)
         self._last_tone: float | None = None
-        self._told = False
-        self._idle = 0
+        self._reported = False
+        self._idle_updates = 0
 
-    def remember(self, told: Sequence[Told], now: float) -> None:
-        self._told = bool(told) and told[-1].kind is EventKind.PLATFORM_ALARM
-        self._last_tone = now if self._told else None
+    def restore(self, reported: Sequence[ReportedDetection], now: float) -> None:
+        self._reported = bool(reported) and reported[-1].kind is EventKind.PLATFORM_ALARM
+        self._last_tone = now if self._reported else None
 
-    def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
-        # It listens less often while there is nothing to hear.
-        self._idle = (self._idle + 1) % IDLE
-        if self._idle != 1 and not any(on for _, on in self._heard):
+    def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
+        # Record less often while there is no tone, to save time.
+        self._idle_updates = (self._idle_updates + 1) % IDLE_UPDATES
+        if self._idle_updates != 1 and not any(has_tone for _, has_tone in self._recordings):
             return ()
-        tone = hears_tone(self._microphone.record(now, pose, RECORDING))
-        self._heard.append((now, tone))
+        tone = has_alarm_tone(self._microphone.record(now, pose, RECORDING))
+        self._recordings.append((now, tone))
         if tone:
             self._last_tone = now
-        if not self._told and tone and fits_beat(self._heard):
-            self._told = True
+        if not self._reported and tone and matches_alarm_beat(self._recordings):
+            self._reported = True
             return (Detection(EventKind.PLATFORM_ALARM, "the general platform alarm sounds"),)
-        if self._told and self._last_tone is not None and now - self._last_tone >= CLEAR_TIME:
-            self._told = False
-            self._heard.clear()
+        if self._reported and self._last_tone is not None and now - self._last_tone >= CLEAR_TIME:
+            self._reported = False
+            self._recordings.clear()
             return (Detection(EventKind.ALL_CLEAR, "the general platform alarm is over"),)
         return ()

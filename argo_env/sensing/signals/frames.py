@@ -1,4 +1,4 @@
-"""Where the sensors are on the robot, and where that is on the site."""
+"""Positions of the sensors on the robot, and transforms from the robot's frame to the site's."""
 
 import math
 
@@ -13,15 +13,18 @@ NOSE: Vector = (0.4, 0.0, 0.5)
 
 
 def rotation(pose: BodyPose) -> NDArray[np.float64]:
-    """Columns are the axes of the robot's frame (ahead, left, up) on the site, shape (3, 3)."""
+    """Return the rotation from the robot's frame to the site's, shape (3, 3).
+
+    Its columns are the axes of the robot's frame (ahead, left, up).
+    """
     c, s = math.cos(pose.yaw), math.sin(pose.yaw)
     down, level = math.sin(pose.pitch), math.cos(pose.pitch)
     return np.array([[c * level, -s, c * down], [s * level, c, s * down], [-down, 0.0, level]])
 
 
-def on_site(pose: BodyPose, place: Vector) -> NDArray[np.float64]:
-    """A place of the robot's frame on the site, in m, shape (3,)."""
-    ahead, left, up = place
+def to_site(pose: BodyPose, position: Vector) -> NDArray[np.float64]:
+    """Return the site's coordinates of a point in the robot's frame, in m, shape (3,)."""
+    ahead, left, up = position
     c, s = math.cos(pose.yaw), math.sin(pose.yaw)
     down, level = math.sin(pose.pitch), math.cos(pose.pitch)
     flat = level * ahead + down * up
@@ -29,7 +32,7 @@ def on_site(pose: BodyPose, place: Vector) -> NDArray[np.float64]:
     return np.array([pose.x + x, pose.y + y, pose.z + z])
 
 
-def point(values: NDArray[np.float64]) -> Vector:
-    """The array, shape (3,), as a vector, to the millimetre."""
+def to_vector(values: NDArray[np.float64]) -> Vector:
+    """Return the array, in m, shape (3,), as a vector that is rounded to the millimetre."""
     x, y, z = (round(v, 3) for v in values.tolist())
     return x, y, z

@@ -1,5 +1,7 @@
-"""Hot spots: a thermal camera, whose small image in °C shows what lies ahead or to one side, and
-the watch that finds in it what is warmer than it may be."""
+"""Watch for hot spots in the small images (°C) of a thermal camera.
+
+The camera looks ahead or to one side. A hot spot is warmer than the map's surfaces there can be.
+"""
 
 import math
 from dataclasses import dataclass
@@ -11,7 +13,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
-from argo_env.sensing.signals.frames import on_site, point, rotation
+from argo_env.sensing.signals.frames import rotation, to_site, to_vector
 from argo_env.sensing.signals.site_map import SiteMap
 from argo_env.sensing.watch import Detection
 from argo_env.site.shapes import Role, Vector
@@ -22,12 +24,12 @@ from argo_env.world.world import World
 WIDTH, HEIGHT = 80, 60
 """pixels"""
 FIELD_OF_VIEW = math.radians(90.0)
-"""across; the focal length in pixels follows from it"""
+"""rad, horizontal; the focal length in pixels follows from it"""
 FOCAL = WIDTH / 2 / math.tan(FIELD_OF_VIEW / 2)
 PLACE: Vector = (0.3, 0.0, 0.7)
-"""m in the robot's frame"""
-FAR = 10.0  # m up to where a surface is told from the sky
-COARSE = 10  # pixels to a ray that finds what is in the background
+"""m in the robot's frame: position of the camera"""
+FAR = 10.0  # m up to which surfaces are seen; beyond there is sky
+COARSE = 10  # pixels, edge of the cells of the background, each of which is found by one ray
 NOISE = 0.1  # K, standard deviation of a pixel
 OFFSET = 1.0  # K, standard deviation of the whole camera's error, fixed for a run
 EMISSIVITY = 1.0  # K, standard deviation of patches of paint, rust and dirt
@@ -35,19 +37,21 @@ EMISSIVITY = 1.0  # K, standard deviation of patches of paint, rust and dirt
 
 @dataclass(frozen=True)
 class ThermalImage:
-    """Temperatures (°C), shape (HEIGHT, WIDTH), taken at `origin` (m) along `axes`: the columns of
-    this (3, 3) array are ahead, left and up on the site."""
+    """Image of a thermal camera, with the camera's pose on the site."""
 
     pixels: NDArray[np.float64]
+    """°C, shape (HEIGHT, WIDTH)"""
     origin: NDArray[np.float64]
+    """m, position of the camera in the site's frame"""
     axes: NDArray[np.float64]
+    """columns are the camera's axes ahead, left and up in the site's frame, shape (3, 3)"""
 
     def rays(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Unit vectors on the site through the middles of pixels, shape (n, 3)."""
+        """Return unit vectors in the site's frame through the middles of pixels, shape (n, 3)."""
         return pixel_rays(rows + 0.5, columns + 0.5) @ self.axes.T
 
     def project(self, place: Vector) -> tuple[float, float, float]:
-        """Row, column (pixels) and depth (m) of a place; behind the camera it is negative."""
+        """Return row, column (pixels) and depth (m) of a point; the depth is negative behind it."""
         ahead, left, up = ((np.array(place) - self.origin) @ self.axes).tolist()
         scale = FOCAL / max(ahead, 1e-6)
         return HEIGHT / 2 - up * scale, WIDTH / 2 - left * scale, ahead
@@ -56,7 +60,7 @@ class ThermalImage:
 def pixel_rays(
     rows: NDArray[np.floating[Any]], columns: NDArray[np.floating[Any]]
 ) -> NDArray[np.float64]:
-    """Unit vectors (ahead, left, up) through places of the image in pixels, shape (n, 3)."""
+    """Return unit vectors (ahead, left, up) through points of the image in pixels, shape (n, 3)."""
     rays = np.column_stack(
         [np.full(len(rows), FOCAL), WIDTH / 2 - columns, HEIGHT / 2 - np.asarray(rows)]
     )
@@ -71,7 +75,7 @@ _COARSE_RAYS = pixel_rays(_ROWS, _COLUMNS)
 
 
 class ThermalCamera:
-    """Takes images. Holds its own offset, which is drawn once."""
+    """Thermal camera, which holds its constant offset: the seed draws it once."""
 
     def __init__(self, surroundings: Surroundings, world: World, rng: np.random.Generator) -> None:
         self._surroundings = surroundings
@@ -80,13 +84,13 @@ class ThermalCamera:
         self._offset = OFFSET * float(rng.standard_normal())
         self._roles = {e.material: e.role for e in world.site.elements}
 
-    def take(self, pose: BodyPose, pan: float) -> ThermalImage:
-        """An image with the camera turned by `pan` (rad, to the left)."""
+    def take_image(self, pose: BodyPose, pan: float) -> ThermalImage:
+        """Take an image with the camera turned by `pan` (rad, to the left)."""
         c, s = math.cos(pan), math.sin(pan)
         axes = rotation(pose) @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-        image = ThermalImage(np.empty((HEIGHT, WIDTH)), on_site(pose, PLACE), axes)
+        image = ThermalImage(np.empty((HEIGHT, WIDTH)), to_site(pose, PLACE), axes)
         materials, normals = self._world.surfaces(
-            point(image.origin), image.origin + FAR * _COARSE_RAYS @ axes.T
+            to_vector(image.origin), image.origin + FAR * _COARSE_RAYS @ axes.T
         )
         roles = [None if m is None else self._roles.get(m, Role.STRUCTURE) for m in materials]
         background = temperatures(roles, normals, self._surroundings.weather)
@@ -101,107 +105,118 @@ class ThermalCamera:
         return image
 
     def _draw(self, image: ThermalImage, spot: HotSpot) -> None:
-        """Mixes the spot into the pixels that it covers, by the share that it covers."""
+        """Blend the spot into the pixels that it covers, by the share of each pixel."""
         row, column, depth = image.project(spot.place)
         if depth < 0.1:
             return
         radius = FOCAL * spot.radius / depth
         rows, columns = np.arange(HEIGHT) + 0.5, np.arange(WIDTH) + 0.5
         aside = np.hypot(rows[:, None] - row, columns[None, :] - column)
-        # A spot smaller than a pixel fills only its share of that.
+        # A spot smaller than a pixel covers only a share of it.
         share = np.clip(radius - aside + 0.5, 0.0, min(1.0, math.pi * radius**2))
-        if not share.any() or not self._visible(image.origin, spot):
+        if not share.any() or not self._is_visible(image.origin, spot):
             return
         image.pixels[:] += share * (spot.temperature - image.pixels)
 
-    def _visible(self, origin: NDArray[np.float64], spot: HotSpot) -> bool:
+    def _is_visible(self, origin: NDArray[np.float64], spot: HotSpot) -> bool:
         distance = float(np.linalg.norm(np.array(spot.place) - origin))
-        free = self._world.ranges(point(origin), np.array([spot.place]))[0]
-        return bool(free >= distance - spot.radius - 0.05)
+        range_to_solid = self._world.ranges(to_vector(origin), np.array([spot.place]))[0]
+        return bool(range_to_solid >= distance - spot.radius - 0.05)
 
 
 PANS = (math.radians(40.0), math.radians(-40.0))
-"""rad, the ways in which the camera looks by turns"""
+"""rad, directions in which the camera looks in turn"""
 MARGIN = 8.0
-"""K over what a sound surface can have; camera and dirt have a standard deviation of 1.4 K"""
+"""K over the highest temperature of a normal surface from which a spot is hot; the errors of camera
+and dirt have a standard deviation of 1.4 K"""
 SUSPICIOUS = 33.0
-"""K over the air from which a pixel is looked at: no surface but a pump's gets so warm"""
+"""K over the air from which a pixel is examined: no normal surface but a pump's gets as warm"""
 PIXELS = 3  # of a spot, at least
 PROBES = 7  # pixels of a spot that are looked up on the map, at most
-REACH = 10.0  # m
-LOOKS = 2  # in a row, in which a spot must show
-SAME = 1.5  # m between two places of the same spot
-SURE = 6.0  # m within which a told spot that is in view must show, or is gone
-GONE = 3  # looks that have to miss it
+REACH = 10.0  # m, of the rays on the map
+CONFIRMING = 2  # images in a row in which a spot must appear
+SAME_SPOT = 1.5  # m between two estimates of the same spot's position, at most
+SURE_RANGE = 6.0  # m within which a reported spot must appear if it is in view and still hot
+GONE_IMAGES = 3  # images in which a reported spot is missing from the view, until it is gone
 
 
 @dataclass(frozen=True)
 class Spot:
-    """A spot in an image: its place (m) by the map, what is there, and its temperature (°C)."""
+    """A hot spot in an image."""
 
     place: Vector
+    """m, position according to the map"""
     element: str
+    """name of the site's element at this position"""
     temperature: float
+    """°C"""
 
 
 @dataclass
-class _Told:
+class _ReportedSpot:
     place: Vector
     missed: int = 0
+    """number of images that should have shown the spot since it was seen last"""
 
 
 class HeatWatch:
-    """Looks ahead to the left and to the right by turns, and stays on what looks like a hot spot
-    until a second image has confirmed it. Tells of each spot once; holds what it has told."""
+    """Watch for hot spots. It holds the spots that it has reported, and unconfirmed ones.
+
+    It looks ahead to the left and to the right in turn, and keeps looking at a suspected spot until
+    a second image confirms it. It reports each spot once.
+    """
 
     name = "heat"
     period = 3.0
 
     def __init__(self, camera: ThermalCamera, site_map: SiteMap, air: float) -> None:
-        """`air` is the temperature (°C) that the robot's own thermometer shows."""
+        """`air`: the temperature (°C) that the robot's own thermometer shows."""
         self._camera = camera
         self._map = site_map
         self._air = air
         self._turn = 0
         self._candidates: tuple[Spot, ...] = ()
-        self._told: list[_Told] = []
+        self._reported: list[_ReportedSpot] = []
 
-    def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
-        image = self._camera.take(pose, PANS[self._turn])
+    def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
+        image = self._camera.take_image(pose, PANS[self._turn])
         spots = find_spots(image, self._map, self._air)
-        self._forget(image, spots)
-        new = tuple(s for s in spots if not any(_same(s.place, t.place) for t in self._told))
-        confirmed = [s for s in new if any(_same(s.place, c.place) for c in self._candidates)]
+        self._update_reported(image, spots)
+        new = tuple(s for s in spots if not any(_is_same(s.place, t.place) for t in self._reported))
+        confirmed = [s for s in new if any(_is_same(s.place, c.place) for c in self._candidates)]
         self._candidates = tuple(s for s in new if s not in confirmed)
         if not self._candidates:
             self._turn = (self._turn + 1) % len(PANS)
         detections = []
         for spot in confirmed:
-            self._told.append(_Told(spot.place))
+            self._reported.append(_ReportedSpot(spot.place))
             detail = f"a hot spot of {spot.temperature:.0f} °C on {spot.element}"
             detections.append(Detection(EventKind.HOT_SPOT, detail, spot.place))
         return tuple(detections)
 
-    def _forget(self, image: ThermalImage, spots: tuple[Spot, ...]) -> None:
-        for told in self._told:
-            if any(_same(s.place, told.place) for s in spots):
-                told.missed = 0
-            elif self._in_view(image, told.place):
-                told.missed += 1
-        self._told = [told for told in self._told if told.missed < GONE]
+    def _update_reported(self, image: ThermalImage, spots: tuple[Spot, ...]) -> None:
+        for reported in self._reported:
+            if any(_is_same(s.place, reported.place) for s in spots):
+                reported.missed = 0
+            elif self._is_in_view(image, reported.place):
+                reported.missed += 1
+        self._reported = [reported for reported in self._reported if reported.missed < GONE_IMAGES]
 
-    def _in_view(self, image: ThermalImage, place: Vector) -> bool:
+    def _is_in_view(self, image: ThermalImage, place: Vector) -> bool:
         row, column, depth = image.project(place)
-        if not (5 <= row <= HEIGHT - 5 and 5 <= column <= WIDTH - 5 and 0.5 < depth < SURE):
+        if not (5 <= row <= HEIGHT - 5 and 5 <= column <= WIDTH - 5 and 0.5 < depth < SURE_RANGE):
             return False
-        way = np.array(place) - image.origin
-        distance = float(np.linalg.norm(way))
-        free, _ = self._map.distances(image.origin, way[None, :] / distance, REACH)
-        return bool(free[0] >= distance - 0.3)
+        sight = np.array(place) - image.origin
+        distance = float(np.linalg.norm(sight))
+        range_to_solid, _ = self._map.distances(image.origin, sight[None, :] / distance, REACH)
+        return bool(range_to_solid[0] >= distance - 0.3)
 
 
 def find_spots(image: ThermalImage, site_map: SiteMap, air: float) -> tuple[Spot, ...]:
-    """The spots that are warmer than what the map shows there can be; the air has `air` °C."""
+    """Return the spots that are warmer than the map's surfaces there can be.
+
+    `air` is the temperature of the air in °C.
+    """
     warm = image.pixels > air + SUSPICIOUS
     if not warm.any():
         return ()
@@ -212,26 +227,26 @@ def find_spots(image: ThermalImage, site_map: SiteMap, air: float) -> tuple[Spot
         if len(rows) < PIXELS:
             continue
         warmth = image.pixels[rows, columns]
-        # What is mixed from hot and cold at the rim says little, so the warmest go first.
+        # Pixels at the rim mix hot and cold and say little, so the warmest pixels go first.
         probed = np.argsort(-warmth, kind="stable")[: 4 * PROBES : 4]
-        # The image is coarse: what is in the middle of a cell stands for all of it.
+        # The background is coarse: the surface in the middle of a cell stands for all of the cell.
         cells = np.unique(rows // COARSE * WIDTH + columns // COARSE)
         middles = (np.column_stack(np.divmod(cells, WIDTH)) + 0.5) * COARSE
         beside = pixel_rays(middles[:, 0], middles[:, 1]) @ image.axes.T
         rays = np.concatenate([image.rays(rows[probed], columns[probed]), beside])
         depths, solids = site_map.distances(image.origin, rays, REACH)
-        there = [int(k) for k in solids if k >= 0]
+        solids_hit = [int(k) for k in solids if k >= 0]
         depths, solids = depths[: len(probed)], solids[: len(probed)]
         if not np.isfinite(depths).any():
             continue
-        allowed = max(warmest(site_map.element(k).role, air) for k in there)
+        allowed = max(warmest(site_map.element(k).role, air) for k in solids_hit)
         if float(np.median(warmth[probed])) <= allowed + MARGIN:
             continue
         nearest = int(np.argmin(depths))
         ray = image.rays(rows[probed[[nearest]]], columns[probed[[nearest]]])[0]
         spots.append(
             Spot(
-                point(image.origin + depths[nearest] * ray),
+                to_vector(image.origin + depths[nearest] * ray),
                 site_map.element(int(solids[nearest])).name,
                 float(warmth.max()),
             )
@@ -239,5 +254,5 @@ def find_spots(image: ThermalImage, site_map: SiteMap, air: float) -> tuple[Spot
     return tuple(spots)
 
 
-def _same(a: Vector, b: Vector) -> bool:
-    return math.dist(a, b) <= SAME
+def _is_same(a: Vector, b: Vector) -> bool:
+    return math.dist(a, b) <= SAME_SPOT

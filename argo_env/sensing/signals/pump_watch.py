@@ -1,4 +1,4 @@
-"""The watch for pumps that sound unlike themselves."""
+"""Watch for pumps that sound different from their baseline."""
 
 import math
 from collections import deque
@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
 from argo_env.seeding import generator
-from argo_env.sensing.signals.frames import NOSE, on_site, point
-from argo_env.sensing.signals.microphone import NEAREST, Microphone, hear, pump_places
+from argo_env.sensing.signals.frames import NOSE, to_site, to_vector
+from argo_env.sensing.signals.microphone import NEAREST, Microphone, pump_positions, sound_at
 from argo_env.sensing.watch import Detection
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
@@ -21,106 +21,123 @@ from argo_env.surroundings.sound import BEARING_ORDER, RATE, shaft_rate
 
 RECORDING = 0.25  # s
 NEAR = 5.0
-"""m from the nearest pump within which it listens"""
-BLOCKS = 5  # of a recording, the power of which is looked at one by one
+"""m from the nearest pump within which the watch records"""
+BLOCKS = 5  # of a recording, whose powers are compared
 BAND = (2000.0, 7000.0)
-"""Hz: over the lines of a sound pump"""
+"""Hz, above the spectral lines of a normal pump"""
 BANG = 2.0
-"""times the middle block that no block may have; metal on metal is over within one"""
+"""times the median power of the blocks; a block with more power has a bang of metal on metal, which
+is over within one block"""
 LOUD = 10**0.2
-"""times what sound pumps make together from which a recording is abnormal: 2 dB, 12 times the
-standard deviation"""
+"""times the power of all normal pumps together from which a recording is abnormal: 2 dB, which is
+12 times the standard deviation"""
 WORST = 100.0
-"""times its own power (20 dB) that a fault may add to a pump; what would need more is elsewhere"""
+"""times its own power (20 dB) that a fault adds to a pump at most; a louder sound comes from
+elsewhere"""
 LEAST = 1.5
-"""times its own power that a fault adds at least (4 dB in all)"""
-LOOKS, ENOUGH = 8, 3
-"""abnormal recordings in a row that are kept, and that are needed"""
-QUIET, BESIDE = 4, 2.0
-"""normal recordings within so many m from a pump until what was told of it is over"""
+"""times its own power that a fault adds to a pump at least (4 dB in all)"""
+MAX_RECORDINGS, MIN_RECORDINGS = 8, 3
+"""number of abnormal recordings in a row that are stored, and that a detection needs"""
+QUIET_RECORDINGS, QUIET_RANGE = 4, 2.0
+"""number of normal recordings within this distance (m) from a pump until its fault is over"""
 SPREAD, FLOOR = 0.1, 0.06
-"""standard deviation of what a recording has too much: share of that, and share of what is normal;
-about twice what was measured"""
-MISFIT = 3.0  # mean square of the deviations up to which the pumps explain what is heard
+"""standard deviation of a recording's excess power, as a share of the excess and as a share of the
+normal power; about twice the measured values"""
+MISFIT = 3.0  # mean square of the deviations up to which faults of pumps explain the recordings
 PROOF = 16.0  # sum of squared deviations that only this pump's fault explains: 4 deviations
-HEARD = 12.0  # m from where it was recorded within which a pump may be what is heard
+AUDIBLE_RANGE = 12.0  # m from a recording within which a pump may be its cause
 BEARING_SHARE = 0.3
-"""of what there is too much: the part that swells with a bearing's rate; impacts alone have 0.6 or
-more, and steady noise 0.1"""
+"""share of the excess that varies at a bearing's impact rate, from which there are impacts; impacts
+alone have 0.6 or more, steady noise has 0.1"""
 RINGING_BAND = (2500.0, 5000.0)
-"""Hz: where housings ring"""
+"""Hz, in which housings ring"""
 SLIP = 0.03
 """share by which the balls may slip"""
-RINGS, TAKES = (0.8, 1.6, 3.2), 3
-"""m from each pump where its sound was recorded when all were well, and how often at each"""
+RINGS, RECORDINGS_PER_RING = (0.8, 1.6, 3.2), 3
+"""m from each pump at which the baseline was recorded, and the number of recordings at each"""
 
 
 @dataclass(frozen=True)
 class Baseline:
-    """The power over the lines when all is well: of the site, and of each pump at 1 m."""
+    """Power above the lines when all pumps run well."""
 
     site: float
+    """power of the site itself"""
     pumps: dict[str, float]
+    """power of each pump at 1 m, by its name"""
 
 
 @dataclass(frozen=True)
 class AbnormalRecording:
-    """One abnormal recording."""
+    """A recording whose power is higher than the baseline explains."""
 
-    ear: Vector
-    """m, where it was taken"""
+    listener: Vector
+    """m, position of the microphone"""
     normal: float
-    """the power over the lines there would be if all pumps were well"""
+    """expected power above the lines if all pumps run well"""
     excess: float
-    """what is heard beyond that"""
+    """measured power beyond the normal one"""
     envelope: NDArray[np.float64]
-    """how much of the sound swells at which rate, a line each 1 / RECORDING Hz; 1 for all of it"""
+    """share of the sound that varies at each rate, one value each 1 / RECORDING Hz; 0 to 1"""
 
 
-def power(samples: NDArray[np.float32]) -> float | None:
-    """The mean power over the lines; None if metal has struck metal meanwhile."""
+def power_above_lines(samples: NDArray[np.float32]) -> float | None:
+    """Return the mean power above the lines, or None if the recording has a bang of metal."""
     blocks = samples.reshape(BLOCKS, -1)
-    line = blocks.shape[1] / RATE  # bins a hertz
-    spectra = np.fft.rfft(blocks)[:, round(BAND[0] * line) : round(BAND[1] * line)]
+    bins_per_hertz = blocks.shape[1] / RATE
+    spectra = np.fft.rfft(blocks)[
+        :, round(BAND[0] * bins_per_hertz) : round(BAND[1] * bins_per_hertz)
+    ]
     powers = (spectra.real**2 + spectra.imag**2).sum(axis=1) / blocks.shape[1] ** 2
     return None if powers.max() > BANG * np.median(powers) else float(powers.mean())
 
 
 def envelope(samples: NDArray[np.float32]) -> NDArray[np.float64]:
-    """The spectrum of the squared envelope in the ringing band, beside its mean (Randall and
-    Antoni, 2011)."""
-    line = len(samples) / RATE
-    part = np.fft.rfft(samples)[round(RINGING_BAND[0] * line) : round(RINGING_BAND[1] * line)]
-    # A part of the spectrum alone is that of the band's analytic signal, moved to 0 Hz.
+    """Return the spectrum of the squared envelope in the ringing band, relative to its mean.
+
+    See Randall and Antoni, Rolling element bearing diagnostics, 2011.
+    """
+    bins_per_hertz = len(samples) / RATE
+    part = np.fft.rfft(samples)[
+        round(RINGING_BAND[0] * bins_per_hertz) : round(RINGING_BAND[1] * bins_per_hertz)
+    ]
+    # The part of the spectrum is that of the band's analytic signal, shifted to 0 Hz.
     result = np.abs(np.fft.rfft(np.abs(np.fft.ifft(part)) ** 2))
     return np.asarray(result / result[0])
 
 
 @lru_cache(maxsize=16)
-def learn(places: tuple[tuple[str, Vector], ...]) -> Baseline:
-    """What was recorded once around the pumps, when all of them ran well."""
+def learn_baseline(positions: tuple[tuple[str, Vector], ...]) -> Baseline:
+    """Return the baseline of the pumps at these positions, fitted to recordings around them.
+
+    The recordings are simulated with all pumps running well, as if made at commissioning.
+    """
     rng = generator(0, "commissioning")
-    ears, powers = [], []
-    for _, (x, y, z) in places:
+    listeners, powers = [], []
+    for _, (x, y, z) in positions:
         for distance in RINGS:
-            for angle in rng.uniform(0.0, 2 * math.pi, TAKES).tolist():
-                ear = (x + distance * math.cos(angle), y + distance * math.sin(angle), z)
-                heard = power(hear(ear, places, {}, round(RECORDING * RATE), rng))
-                if heard is not None:
-                    ears.append(ear)
-                    powers.append(heard)
-    reach = np.column_stack([np.ones(len(ears)), _reach(ears, [place for _, place in places])])
-    parts, _ = scipy.optimize.nnls(reach / np.array(powers)[:, None], np.ones(len(powers)))
+            for angle in rng.uniform(0.0, 2 * math.pi, RECORDINGS_PER_RING).tolist():
+                listener = (x + distance * math.cos(angle), y + distance * math.sin(angle), z)
+                band_power = power_above_lines(
+                    sound_at(listener, positions, {}, round(RECORDING * RATE), rng)
+                )
+                if band_power is not None:
+                    listeners.append(listener)
+                    powers.append(band_power)
+    shares = np.column_stack(
+        [np.ones(len(listeners)), _attenuation(listeners, [position for _, position in positions])]
+    )
+    parts, _ = scipy.optimize.nnls(shares / np.array(powers)[:, None], np.ones(len(powers)))
     site, *pumps = parts.tolist()
-    return Baseline(site, dict(zip((name for name, _ in places), pumps, strict=True)))
+    return Baseline(site, dict(zip((name for name, _ in positions), pumps, strict=True)))
 
 
 class PumpWatch:
-    """Listens while a pump is near, and finds the pumps whose faults explain what there is more to
-    hear than when all were well.
+    """Watch for pumps whose faults explain why recordings near them are louder than normal.
 
-    A fault's share falls with the square of the distance, so places tell pumps apart: a pump is
-    told only if no faults of the others explain the same. Holds the last abnormal recordings.
+    The power of a fault falls with the square of the distance, so recordings at several positions
+    tell pumps apart: a pump is reported only if faults of the other pumps don't explain the same.
+    The watch holds the last abnormal recordings and the pumps that it has reported.
     """
 
     name = "pumps"
@@ -128,98 +145,117 @@ class PumpWatch:
 
     def __init__(self, microphone: Microphone, site: Site) -> None:
         self._microphone = microphone
-        self._places = pump_places(site)
-        self._looks: deque[AbnormalRecording] = deque(maxlen=LOOKS)
-        self._told: dict[str, int] = {}
-        """how many recordings beside it have been normal since"""
+        self._positions = pump_positions(site)
+        self._recordings: deque[AbnormalRecording] = deque(maxlen=MAX_RECORDINGS)
+        self._reported: dict[str, int] = {}
+        """number of normal recordings beside each reported pump since the last abnormal one"""
 
-    def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
-        ear = point(on_site(pose, NOSE))
-        if all(math.dist(ear, place) > NEAR for place in self._places.values()):
-            self._looks.clear()
+    def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
+        listener = to_vector(to_site(pose, NOSE))
+        if all(math.dist(listener, position) > NEAR for position in self._positions.values()):
+            self._recordings.clear()
             return ()
         samples = self._microphone.record(now, pose, RECORDING)
-        heard = power(samples)
-        if heard is None:
+        band_power = power_above_lines(samples)
+        if band_power is None:
             return ()
-        baseline = learn(tuple(self._places.items()))
-        own = np.array(list(baseline.pumps.values()))
-        normal = baseline.site + float(_reach([ear], list(self._places.values()))[0] @ own)
-        if heard <= LOUD * normal:
-            # What began or ended meanwhile must not be mixed with what was before.
-            self._looks.clear()
-            self._forget(ear)
+        baseline = learn_baseline(tuple(self._positions.items()))
+        pump_powers = np.array(list(baseline.pumps.values()))
+        normal = baseline.site + float(
+            _attenuation([listener], list(self._positions.values()))[0] @ pump_powers
+        )
+        if band_power <= LOUD * normal:
+            # A fault that begins or ends must not be mixed with the recordings made earlier.
+            self._recordings.clear()
+            self._count_quiet(listener)
             return ()
-        self._looks.append(AbnormalRecording(ear, normal, heard - normal, envelope(samples)))
-        self._told = dict.fromkeys(self._told, 0)
-        if len(self._looks) < ENOUGH:
+        self._recordings.append(
+            AbnormalRecording(listener, normal, band_power - normal, envelope(samples))
+        )
+        self._reported = dict.fromkeys(self._reported, 0)
+        if len(self._recordings) < MIN_RECORDINGS:
             return ()
         return tuple(
             self._detection(name)
-            for name in culprits(tuple(self._looks), self._places, baseline)
-            if name not in self._told
+            for name in faulty_pumps(tuple(self._recordings), self._positions, baseline)
+            if name not in self._reported
         )
 
     def _detection(self, pump: str) -> Detection:
-        alone = not self._told
-        self._told[pump] = 0
+        is_only_pump = not self._reported
+        self._reported[pump] = 0
         rate = BEARING_ORDER * shaft_rate(pump) * RECORDING
         low, high = math.floor(rate * (1 - SLIP)), math.ceil(rate * (1 + SLIP))
-        best = max(self._looks, key=lambda look: look.excess / look.normal)
+        best = max(self._recordings, key=lambda recording: recording.excess / recording.normal)
         total = best.excess + best.normal
         swell = float(best.envelope[low : high + 1].max()) * total / best.excess
-        # Beside another faulty pump the impacts may be that one's.
-        impacts = alone and swell > BEARING_SHARE
-        how = "with impacts as of a bearing" if impacts else "louder over 2 kHz"
-        detail = f"{pump} sounds {how}"
-        return Detection(EventKind.ABNORMAL_SOUND, detail, self._places[pump])
+        # With another faulty pump near, the impacts may come from that one.
+        impacts = is_only_pump and swell > BEARING_SHARE
+        description = "with impacts as of a bearing" if impacts else "louder over 2 kHz"
+        detail = f"{pump} sounds {description}"
+        return Detection(EventKind.ABNORMAL_SOUND, detail, self._positions[pump])
 
-    def _forget(self, ear: Vector) -> None:
-        """A normal recording was taken here: counts for the pumps that stand beside."""
-        for name in self._told:
-            self._told[name] += math.dist(ear, self._places[name]) <= BESIDE
-        self._told = {name: count for name, count in self._told.items() if count < QUIET}
+    def _count_quiet(self, listener: Vector) -> None:
+        """Count a normal recording for the reported pumps beside it; drop pumps that are quiet."""
+        for name in self._reported:
+            self._reported[name] += math.dist(listener, self._positions[name]) <= QUIET_RANGE
+        self._reported = {
+            name: count for name, count in self._reported.items() if count < QUIET_RECORDINGS
+        }
 
 
-def culprits(
-    looks: tuple[AbnormalRecording, ...], places: dict[str, Vector], baseline: Baseline
+def faulty_pumps(
+    recordings: tuple[AbnormalRecording, ...], positions: dict[str, Vector], baseline: Baseline
 ) -> list[str]:
-    """The pumps near enough to be told without whose fault the looks can't be explained."""
-    ears = [look.ear for look in looks]
-    away = {name: min(math.dist(ear, place) for ear in ears) for name, place in places.items()}
-    names = [name for name in places if away[name] <= HEARD and baseline.pumps[name] > 0.0]
-    excess = np.array([look.excess for look in looks])
-    deviation = np.hypot(SPREAD * excess, FLOOR * np.array([look.normal for look in looks]))
-    own = np.array([baseline.pumps[name] for name in names])
-    # Unknown is how many times its own power each pump has more.
-    made = _reach(ears, [places[name] for name in names]) * own / deviation[:, None]
-    wanted = excess / deviation
+    """Return the near pumps without whose fault the recordings can't be explained."""
+    listeners = [recording.listener for recording in recordings]
+    distance = {
+        name: min(math.dist(listener, position) for listener in listeners)
+        for name, position in positions.items()
+    }
+    names = [
+        name for name in positions if distance[name] <= AUDIBLE_RANGE and baseline.pumps[name] > 0.0
+    ]
+    excess = np.array([recording.excess for recording in recordings])
+    deviation = np.hypot(
+        SPREAD * excess, FLOOR * np.array([recording.normal for recording in recordings])
+    )
+    pump_powers = np.array([baseline.pumps[name] for name in names])
+    # Solve for the power that each pump's fault adds, as a multiple of the pump's own power.
+    per_pump = (
+        _attenuation(listeners, [positions[name] for name in names])
+        * pump_powers
+        / deviation[:, None]
+    )
+    measured = excess / deviation
     if not names:
         return []
-    more, rest = _explained(made, wanted)
-    if rest > MISFIT * len(looks):
+    added, residual = _fit_faults(per_pump, measured)
+    if residual > MISFIT * len(recordings):
         return []
     return [
         name
         for k, name in enumerate(names)
-        if away[name] <= NEAR
-        and more[k] >= LEAST
-        and _explained(np.delete(made, k, axis=1), wanted)[1] - rest >= PROOF
+        if distance[name] <= NEAR
+        and added[k] >= LEAST
+        and _fit_faults(np.delete(per_pump, k, axis=1), measured)[1] - residual >= PROOF
     ]
 
 
-def _explained(
-    made: NDArray[np.float64], wanted: NDArray[np.float64]
+def _fit_faults(
+    per_pump: NDArray[np.float64], measured: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], float]:
-    """The least squares that faults leave, none of them beyond WORST: how much each adds, and the
-    sum of squares that is left."""
-    if not made.shape[1]:
-        return np.empty(0), float(wanted @ wanted)
-    fit = scipy.optimize.lsq_linear(made, wanted, (0.0, WORST), method="bvls")
+    """Fit faults from 0 to WORST by least squares.
+
+    Returns how much each fault adds, and the sum of squares that remains.
+    """
+    if not per_pump.shape[1]:
+        return np.empty(0), float(measured @ measured)
+    fit = scipy.optimize.lsq_linear(per_pump, measured, (0.0, WORST), method="bvls")
     return fit.x, 2 * float(fit.cost)
 
 
-def _reach(ears: list[Vector], places: list[Vector]) -> NDArray[np.float64]:
-    """The share of a pump's power at 1 m that arrives, shape (ears, places)."""
-    apart = np.array(ears)[:, None, :] - np.array(places)
-    return np.asarray(1 / np.maximum((apart**2).sum(axis=2), NEAREST**2))
+def _attenuation(listeners: list[Vector], positions: list[Vector]) -> NDArray[np.float64]:
+    """Return the share of a pump's power at 1 m that arrives, shape (listeners, positions)."""
+    offset = np.array(listeners)[:, None, :] - np.array(positions)
+    return np.asarray(1 / np.maximum((offset**2).sum(axis=2), NEAREST**2))

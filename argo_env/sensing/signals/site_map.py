@@ -1,4 +1,4 @@
-"""The site as the robot knows it: the map that it compares its signals with."""
+"""Map of the site as it was built, which the robot compares its signals with."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ EQUIPMENT = frozenset({Role.VESSEL, Role.PIPE, Role.PUMP})
 
 
 class SiteMap:
-    """The solids of a site, for many rays from one point at once, and what they are there for."""
+    """Solids of a site with their roles, for intersecting many rays at once."""
 
     def __init__(self, site: Site) -> None:
         self.site = site
@@ -22,28 +22,37 @@ class SiteMap:
     def distances(
         self, origin: NDArray[np.float64], directions: NDArray[np.float64], reach: float
     ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-        """The distance (m) to the first solid from `origin`, shape (3,) or (n, 3), in each of
-        `directions`, unit vectors of the shape (n, 3), and which solid it is; inf and -1 where
-        there is none within `reach`."""
+        """Return the distance (m) to the first solid on each ray, and the number of that solid.
+
+        Where there is no solid within `reach`, the distance is inf and the number -1.
+
+        Args:
+            origin: start of the rays in m, shape (3,), or one for each ray, shape (n, 3).
+            directions: unit vectors, shape (n, 3).
+            reach: length of the rays in m.
+        """
         return self._rays.first(origin, directions, reach)
 
     def element(self, solid: int) -> Element:
-        """The element that a solid belongs to."""
+        """Return the element that a solid belongs to."""
         return self._rays.elements[solid]
 
     def walkable(self, solids: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Which of the solids are there to walk on; -1 is none."""
+        """Return which of the solids are there to walk on; False for the number -1."""
         return np.asarray(self._walkable[solids] & (solids >= 0))
 
     def near_checkpoint(self, points: NDArray[np.float64], radius: float) -> NDArray[np.bool_]:
-        """Which of `points`, shape (n, 3), lie within `radius` (m) of where a checkpoint is."""
+        """Return which of `points`, shape (n, 3), lie within `radius` (m) of any checkpoint."""
         if not len(self._checkpoints) or not len(points):
             return np.zeros(len(points), dtype=bool)
         apart = points[:, None, :] - self._checkpoints
         return np.asarray((np.einsum("nck,nck->nc", apart, apart) <= radius**2).any(axis=1))
 
     def nearest_equipment(self, point: Vector) -> str:
-        """The name of the vessel, pipe or pump that is nearest to `point` (m)."""
+        """Return the name of the vessel, pipe or pump nearest to `point` (m).
+
+        Without any equipment it is the floor, such as `floor 1`.
+        """
         if not self._equipment.any():
             return f"floor {self.site.floor_at(point[2])}"
         at = np.array(point)

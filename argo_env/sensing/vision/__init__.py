@@ -1,1 +1,1 @@
-"""Reading checkpoints from the images of the camera on the arm."""
+"""Camera sensor: it reads checkpoints from the pictures of the camera on the arm."""

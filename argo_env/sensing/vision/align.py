@@ -1,9 +1,9 @@
-"""Fitting the pose of a face to a picture: the drawn face is laid over it until it matches.
+"""Alignment of a drawn face with a picture, which gives the pose of the face.
 
-Levenberg-Marquardt on the differences in brightness between the picture and the drawn face, over
-the middle of the face and its turn and roll, with Tukey's weights, so that needles, levers and what
-stands in the way count little. Direct alignment in the manner of Baker and Matthews, "Lucas-Kanade
-20 years on" (2004), with a model of 5 parameters instead of a free homography.
+Levenberg-Marquardt minimizes the differences in brightness between the picture and the drawn face.
+The parameters are the middle of the face, its turn and its roll. Tukey's weights make needles,
+levers and obstacles count little. It is direct alignment as in Baker and Matthews, "Lucas-Kanade 20
+years on" (2004), with a model of 5 parameters instead of a free homography.
 """
 
 import math
@@ -17,20 +17,21 @@ from argo_env.sensing.vision.photo import Photo
 
 _STEPS = np.array([0.0005, 0.0005, 0.0005, 0.005, 0.005])  # m and rad, of the derivatives
 _TOLERANCE = 0.30  # of the contrast of the face: a point that differs by less matches
-_HAZE = 0.35  # of white: black that is brighter than drawn by more is not of a face
-_MIN_CONTRAST = 0.02  # of full scale between black and white of a face, to be one
+_HAZE = 0.35  # of white: black that is brighter than drawn by more does not belong to a face
+_MIN_CONTRAST = 0.02  # of full scale, between black and white of a face
 
 
 @dataclass(frozen=True)
 class FacePose:
-    """Where a face is: its middle (m, in the site's frame), where it looks (`yaw`, rad), and its
-    roll about its normal (rad, counter-clockwise seen along the normal)."""
+    """Pose of a face: its middle `x`, `y`, `z` (m, in the site's frame) and its orientation."""
 
     x: float
     y: float
     z: float
     yaw: float
+    """rad, direction of the face's normal"""
     roll: float
+    """rad about the normal, counter-clockwise seen along the normal"""
 
     @property
     def center(self) -> NDArray[np.float64]:
@@ -41,7 +42,7 @@ class FacePose:
         return np.array([math.cos(self.yaw), math.sin(self.yaw), 0.0])
 
     def to_site(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Points of the instrument's frame in the site's, shape (..., 3)."""
+        """Return the site's coordinates of points in the instrument's frame, shape (..., 3)."""
         cos, sin = math.cos(self.yaw), math.sin(self.yaw)
         c, s = math.cos(self.roll), math.sin(self.roll)
         rotation = np.array([[cos, -sin * c, sin * s], [sin, cos * c, -cos * s], [0.0, s, c]])
@@ -50,24 +51,24 @@ class FacePose:
 
 @dataclass(frozen=True)
 class Fit:
-    """How well a face at `pose` matches the picture."""
+    """Result of comparing a face at `pose` with a picture."""
 
     pose: FacePose
     match: float
-    """0 to 1, the share of the face that looks as drawn, its dark and bright parts alike"""
+    """0 to 1, the share of the face that looks as drawn; dark and bright parts count equally"""
 
 
-def sample(image: NDArray[np.float32], spots: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The image at spots (column and row, px), shape (..., 2); NaN outside of it."""
+def sample(image: NDArray[np.float32], pixels: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the image's values at `pixels` (column and row), shape (..., 2); NaN outside of it."""
     import cv2
 
-    spots = spots.astype(np.float32)
-    flat = spots.reshape(-1, 2)
-    found = np.empty(len(flat))
+    pixels = pixels.astype(np.float32)
+    flat = pixels.reshape(-1, 2)
+    values = np.empty(len(flat))
     # OpenCV takes maps of up to 32,767 columns.
     for first in range(0, len(flat), 30_000):
         part = flat[first : first + 30_000]
-        found[first : first + 30_000] = cv2.remap(
+        values[first : first + 30_000] = cv2.remap(
             image,
             np.ascontiguousarray(part[None, :, 0]),
             np.ascontiguousarray(part[None, :, 1]),
@@ -75,13 +76,13 @@ def sample(image: NDArray[np.float32], spots: NDArray[np.float64]) -> NDArray[np
             borderMode=cv2.BORDER_CONSTANT,
             borderValue=math.nan,
         )[0]
-    return found.reshape(spots.shape[:-1])
+    return values.reshape(pixels.shape[:-1])
 
 
 def compare(photo: Photo, template: Template, pose: FacePose) -> Fit:
-    """How well the face at `pose` matches the picture."""
-    values, weights = _look(photo, template, pose)
-    face, gain, offset = _levels(values, template, weights)
+    """Compare the face at `pose` with the picture."""
+    values, weights = _sample_template(photo, template, pose)
+    face, gain, offset = _brightness_levels(values, template, weights)
     match = _match(values, template, weights, gain, offset) if face else 0.0
     return Fit(pose, match)
 
@@ -89,12 +90,12 @@ def compare(photo: Photo, template: Template, pose: FacePose) -> Fit:
 def refine(
     photo: Photo, template: Template, pose: FacePose, rolled: bool, iterations: int = 12
 ) -> Fit:
-    """The pose near `pose` that matches best; the roll stays where it is unless `rolled`."""
+    """Return the best match near `pose`; the roll is changed only if `rolled` is True."""
     free = 5 if rolled else 4
     parameters = np.array([pose.x, pose.y, pose.z, pose.yaw, pose.roll])
     damping = 1e-3
-    values, weights = _look(photo, template, pose)
-    good, gain, offset = _levels(values, template, weights)
+    values, weights = _sample_template(photo, template, pose)
+    good, gain, offset = _brightness_levels(values, template, weights)
     for _ in range(iterations):
         if not good:
             break
@@ -108,7 +109,7 @@ def refine(
             there = _brightness(photo, template, FacePose(*shifted.tolist()))
             jacobian[:, k] = (there - values) / _STEPS[k]
         jacobian[~np.isfinite(jacobian)] = 0.0
-        # The brightness of the whole face is no matter of its pose.
+        # Gain and offset of the brightness are unknowns too, since they don't depend on the pose.
         full = np.column_stack([jacobian, -template.brightness, -np.ones(len(values))])
         normal = full.T @ (robust[:, None] * full) + 1e-12 * np.eye(free + 2)
         gradient = full.T @ (robust * np.where(np.isfinite(difference), difference, 0.0))
@@ -119,8 +120,10 @@ def refine(
             )
             trial = parameters.copy()
             trial[:free] += step
-            trial_values, trial_weights = _look(photo, template, FacePose(*trial.tolist()))
-            levels = _levels(trial_values, template, trial_weights, (gain, offset))
+            trial_values, trial_weights = _sample_template(
+                photo, template, FacePose(*trial.tolist())
+            )
+            levels = _brightness_levels(trial_values, template, trial_weights, (gain, offset))
             if levels[0] and _match(trial_values, template, trial_weights, *levels[1:]) > match:
                 parameters, values, weights = trial, trial_values, trial_weights
                 good, gain, offset = levels
@@ -135,47 +138,53 @@ def refine(
 
 
 def _brightness(photo: Photo, template: Template, pose: FacePose) -> NDArray[np.float64]:
-    """The picture's brightness at the template's points; NaN outside of it."""
+    """Return the picture's brightness at the template's points; NaN outside of it."""
     return sample(photo.brightness, photo.lens.project(pose.to_site(template.points), photo.pose))
 
 
-def _look(
+def _sample_template(
     photo: Photo, template: Template, pose: FacePose
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The picture at the template's points, and the weights of those that are seen."""
-    spots = photo.lens.project(pose.to_site(template.points), photo.pose)
-    values = sample(photo.brightness, spots)
-    red = sample(photo.redness, spots)
+    """Return the picture's brightness at the template's points, and the weights of the points."""
+    pixels = photo.lens.project(pose.to_site(template.points), photo.pose)
+    values = sample(photo.brightness, pixels)
+    red = sample(photo.redness, pixels)
     seen = np.isfinite(values) & ~(red > 0.35)
-    # What lies outside of the picture counts as a mismatch, what is red does not count at all.
+    # Points outside of the picture count as a mismatch; red points don't count at all.
     outside = ~np.isfinite(values)
     weights = np.where(seen | outside, template.weights, 0.0)
     return values, weights
 
 
-def _levels(
+def _brightness_levels(
     values: NDArray[np.float64],
     template: Template,
     weights: NDArray[np.float64],
     start: tuple[float, float] | None = None,
 ) -> tuple[bool, float, float]:
-    """Gain and offset of the picture's brightness against the drawn one, and whether there is a
-    face's contrast at all; from a `start` that is near, or from the medians."""
+    """Return whether the picture has the contrast of a face, and gain and offset of its brightness.
+
+    Gain and offset map the drawn brightness to that of the picture. The fit begins at `start`, or
+    without it at estimates from the medians and percentiles.
+    """
     seen = np.isfinite(values) & (weights > 0)
     if seen.sum() < 20:
         return False, 1.0, 0.0
     v, t, w = values[seen], template.brightness[seen], weights[seen]
-    starts = _first_levels(v, t) if start is None else [start]
-    found = [_fit_levels(v, t, w, first, 4 if start is None else 1) for first in starts]
-    _, gain, offset = max(found)
+    starts = _initial_levels(v, t) if start is None else [start]
+    fits = [_fit_levels(v, t, w, first, 4 if start is None else 1) for first in starts]
+    _, gain, offset = max(fits)
     white, black = gain * t.max() + offset, gain * t.min() + offset
     drawn = float(template.brightness.min() / template.brightness.max())
     return gain > _MIN_CONTRAST and black < (drawn + _HAZE) * white, gain, offset
 
 
-def _first_levels(v: NDArray[np.float64], t: NDArray[np.float64]) -> list[tuple[float, float]]:
-    """Guesses of gain and offset: from most of what should be white and of what should be black,
-    and, where much of that is covered, from the brightest of it with black as no light."""
+def _initial_levels(v: NDArray[np.float64], t: NDArray[np.float64]) -> list[tuple[float, float]]:
+    """Return estimates of gain and offset.
+
+    One is from the brightest points, with black as no light: it is right where much of the face is
+    covered. The other is from the medians of the points that are drawn white and black.
+    """
     bright = float(np.percentile(v, 85)) / float(t.max())
     guesses = [(max(bright, _MIN_CONTRAST), 0.0)]
     white = t > (t.min() + t.max()) / 2
@@ -194,7 +203,7 @@ def _fit_levels(
     start: tuple[float, float],
     rounds: int,
 ) -> tuple[float, float, float]:
-    """The weight of the points that fit, and the gain and offset at which they do, from a start."""
+    """Return the weight of the points that fit, with the fitted gain and offset, from a start."""
     gain, offset = start
     total = 0.0
     for _ in range(rounds):
@@ -225,6 +234,6 @@ def _match(
 
 
 def _tukey(difference: NDArray[np.float64], scale: float) -> NDArray[np.float64]:
-    """Tukey's biweight; 0 beyond `scale` and where there is no difference to speak of (NaN)."""
+    """Return Tukey's biweight; 0 beyond `scale` and where the difference is NaN."""
     share = np.where(np.isfinite(difference), difference / scale, 2.0)
     return np.where(np.abs(share) < 1.0, (1.0 - share**2) ** 2, 0.0)

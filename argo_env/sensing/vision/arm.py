@@ -1,9 +1,9 @@
-"""The kinematics of the camera's arm: joints for a place and a line of sight, and back.
+"""Kinematics of the camera's arm, forward and inverse.
 
-The arm turns about the vertical, its shoulder, elbow and wrist about the horizontal across it, and
-the camera about the upright axis of the head, so that it can look past the plane of the arm: with
-the first four joints alone the camera would always look away from the arm's foot, and a face that
-is turned sideways could not be seen.
+The arm turns about the vertical. Shoulder, elbow and wrist turn about the horizontal axis across
+the arm, and the camera about the upright axis of the head, so that it can look past the plane of
+the arm. With the first four joints alone the camera would always look away from the arm's foot, and
+a face that is turned sideways could not be seen.
 """
 
 import math
@@ -17,28 +17,29 @@ from argo_env.robot.pose import BodyPose
 
 JOINTS = ("arm_yaw", "arm_shoulder", "arm_elbow", "arm_wrist", "camera_pan")
 
-_FOOT = np.array([-0.10, 0.0, 0.66])  # m, the shoulder in the robot's frame
+_SHOULDER = np.array([-0.10, 0.0, 0.66])  # m, the shoulder in the robot's frame
 _UPPER_ARM, _FOREARM = 0.55, 0.43  # m
 _LENS = 0.07  # m from the head's axis to the optical centre
 _LIMITS = np.array([3.1415, 1.8, 3.0, 3.0, 2.6])  # rad either way
-_NONE = 1e-9  # m
+_EPSILON = 1e-9  # m
 
 
 @dataclass(frozen=True)
 class CameraPose:
-    """Where the camera is (m, in the site's frame) and how it is turned: the columns of `rotation`
-    are its axes, to the right, down, and along the line of sight, as OpenCV has them."""
+    """Pose of the camera in the site's frame."""
 
     position: NDArray[np.float64]
+    """m, shape (3,)"""
     rotation: NDArray[np.float64]
+    """columns are the camera's axes as in OpenCV: right, down, and along the line of sight"""
 
 
 def forward(joints: NDArray[np.float64], pose: BodyPose) -> CameraPose:
-    """The camera's pose for joints (rad, in the order of `JOINTS`) of the robot at `pose`."""
+    """Return the camera's pose for joints (rad, ordered as `JOINTS`) of the robot at `pose`."""
     yaw, shoulder, elbow, wrist, pan = joints.tolist()
     reach = _UPPER_ARM * math.sin(shoulder) + _FOREARM * math.sin(shoulder + elbow)
     rise = _UPPER_ARM * math.cos(shoulder) + _FOREARM * math.cos(shoulder + elbow)
-    head = _FOOT + np.array([reach * math.cos(yaw), reach * math.sin(yaw), rise])
+    head = _SHOULDER + np.array([reach * math.cos(yaw), reach * math.sin(yaw), rise])
     turned = _about_z(yaw) @ _about_y(shoulder + elbow + wrist) @ _about_z(pan)
     eye = head + _LENS * turned[:, 0]
     body = _about_z(pose.yaw) @ _about_y(pose.pitch) @ _about_x(pose.roll)
@@ -50,18 +51,19 @@ def forward(joints: NDArray[np.float64], pose: BodyPose) -> CameraPose:
 def inverse(
     eye: NDArray[np.float64], target: NDArray[np.float64], pose: BodyPose
 ) -> Iterator[NDArray[np.float64]]:
-    """All ways to bring the lens to `eye` and look at `target` (m), in the order of `JOINTS` (rad).
+    """Yield all joint positions that bring the lens to `eye` and point it at `target` (m).
 
-    Up to eight: the arm's yaw or that plus a half turn, the camera's picture upright or upside
-    down, the elbow bent either way. None if that is out of reach.
+    Positions are in rad, in the order of `JOINTS`. There are up to eight: the arm's yaw or that
+    plus a half turn, the camera's picture upright or upside down, the elbow bent either way. There
+    are none if `eye` is out of reach.
     """
     body = _about_z(pose.yaw) @ _about_y(pose.pitch) @ _about_x(pose.roll)
     sight = body.T @ (target - eye)
     sight /= np.linalg.norm(sight)
-    head = body.T @ (eye - np.array([pose.x, pose.y, pose.z])) - _LENS * sight - _FOOT
+    head = body.T @ (eye - np.array([pose.x, pose.y, pose.z])) - _LENS * sight - _SHOULDER
     away = math.hypot(head[0], head[1])
-    # Right above or below its foot the arm may have any yaw: that of the line of sight.
-    toward = math.atan2(head[1], head[0]) if away > _NONE else math.atan2(sight[1], sight[0])
+    # Right above or below its shoulder the arm may have any yaw: take that of the line of sight.
+    toward = math.atan2(head[1], head[0]) if away > _EPSILON else math.atan2(sight[1], sight[0])
     for yaw, reach in ((toward, away), (_wrapped(toward + math.pi), -away)):
         span = math.hypot(reach, head[2])
         cosine = (span**2 - _UPPER_ARM**2 - _FOREARM**2) / (2 * _UPPER_ARM * _FOREARM)

@@ -1,7 +1,7 @@
-"""The drawn faces of the checkpoints: textures and the flat meshes that carry them.
+"""Drawn faces of the checkpoints: textures, and the flat meshes that carry them.
 
 `python -m argo_env.sensing.vision.faces` draws them anew into `urdf/checkpoints/`. A face lies in
-the plane of its instrument; its picture has z up and y to the right, as one sees it from the front.
+the plane of its instrument; seen from the front, z is up in its picture and y to the right.
 """
 
 import math
@@ -23,7 +23,7 @@ _GREY = (208, 216, 220)
 
 @dataclass(frozen=True)
 class FaceShape:
-    """How large a face is: a disc, or a rectangle, about its middle; and what is drawn on it."""
+    """Shape of a face: a disc or a rectangle about its middle."""
 
     half_width: float
     """m, the radius of a disc"""
@@ -31,7 +31,7 @@ class FaceShape:
     """m, the radius of a disc"""
     round: bool
     depth: float
-    """m, how far the face lies behind the plane x = 0 of its instrument"""
+    """m from the plane x = 0 of the instrument back to the face"""
 
 
 FACES: dict[CheckpointKind, FaceShape] = {
@@ -42,7 +42,7 @@ FACES: dict[CheckpointKind, FaceShape] = {
 
 
 class _Sheet:
-    """A picture to draw on in metres about its middle, y to the right and z up."""
+    """Picture to draw on, in metres from its middle, with y to the right and z up."""
 
     def __init__(self, shape: FaceShape) -> None:
         self._scale = PIXELS_PER_METRE * _OVERSAMPLING
@@ -55,7 +55,7 @@ class _Sheet:
         return (self._half[0] + y) * self._scale, (self._half[1] - z) * self._scale
 
     def polar(self, radius: float, degrees: float) -> tuple[float, float]:
-        """A point by its radius (m) and its angle from the top, clockwise (deg)."""
+        """Return y and z (m) of a point; its angle (deg) is clockwise from the top."""
         angle = math.radians(degrees)
         return radius * math.sin(angle), radius * math.cos(angle)
 
@@ -66,7 +66,7 @@ class _Sheet:
         self._draw.rectangle([self.spot(y0, z1), self.spot(y1, z0)], colour)
 
     def ring(self, inner: float, outer: float, first: float, last: float) -> None:
-        """A part of a ring between radii (m) and angles from the top, clockwise (deg)."""
+        """Draw a part of a ring between radii (m) and clockwise angles from the top (deg)."""
         steps = max(2, round(abs(last - first)))
         angles = [first + (last - first) * k / steps for k in range(steps + 1)]
         corners = [self.polar(outer, a) for a in angles]
@@ -83,7 +83,7 @@ class _Sheet:
 
 
 def _dial(sheet: _Sheet) -> None:
-    """0 to 10 bar over 270 degrees."""
+    """Draw a dial of 0 to 10 bar over 270 degrees."""
     sheet.ring(0.0650, 0.0690, 0, 360)
     sheet.ring(0.0575, 0.0615, -135, 135)
     for k in range(51):
@@ -100,7 +100,7 @@ def _dial(sheet: _Sheet) -> None:
 
 
 def _level(sheet: _Sheet) -> None:
-    """0 to 100 % over 240 mm beside a glass of 34 mm."""
+    """Draw a scale of 0 to 100 % over 240 mm, beside a glass that is 34 mm wide."""
     shape = FACES[CheckpointKind.LIQUID_LEVEL_GAUGE]
     sheet.box(-shape.half_width, -shape.half_height, shape.half_width, shape.half_height, _BLACK)
     edge = 0.006
@@ -123,7 +123,7 @@ def _level(sheet: _Sheet) -> None:
 
 
 def _valve(sheet: _Sheet) -> None:
-    """Shut with the lever up, open with it to the right."""
+    """Draw the plate of a valve: shut with the lever up, open with the lever to the right."""
     sheet.ring(0.0800, 0.0860, 0, 360)
     sheet.ring(0.068, 0.076, 0, 90)
     for k in range(7):
@@ -141,19 +141,19 @@ _DRAWINGS: dict[CheckpointKind, Callable[[_Sheet], None]] = {
 
 
 def draw_face(kind: CheckpointKind) -> Image.Image:
-    """The face as one sees it from the front, `PIXELS_PER_METRE`, to the edges of its shape."""
+    """Draw the face as seen from the front, to the edges of its shape, with `PIXELS_PER_METRE`."""
     sheet = _Sheet(FACES[kind])
     _DRAWINGS[kind](sheet)
     return sheet.finished()
 
 
 def face_file(kind: CheckpointKind) -> Path:
-    """Where the drawn face lies that the models show."""
+    """Return the path of the drawn face that the models show."""
     return resources.urdf() / "checkpoints" / f"{kind.value.replace(' ', '_')}_face.png"
 
 
 def face_mesh(kind: CheckpointKind) -> str:
-    """The flat mesh that carries the face, as Wavefront OBJ; it looks along x."""
+    """Return the flat mesh that carries the face, as Wavefront OBJ; its normal is along x."""
     shape = FACES[kind]
     if shape.round:
         angles = [2 * math.pi * k / 64 for k in range(64)]
@@ -172,7 +172,7 @@ def face_mesh(kind: CheckpointKind) -> str:
 
 
 def write_faces() -> None:
-    """Draws all faces into the folder of the models."""
+    """Draw all faces, and write them with their meshes into the folder of the models."""
     for kind in CheckpointKind:
         path = face_file(kind)
         draw_face(kind).quantize(32).save(path, optimize=True)

@@ -1,5 +1,7 @@
-"""Position of an instrument's indicator in a picture in which the pose of its face is known; and
-confidence of such readings, one or several."""
+"""Position of an instrument's indicator in a picture, and confidence of readings from pictures.
+
+The pose of the instrument's face in the picture must be known.
+"""
 
 import math
 from collections.abc import Sequence
@@ -11,26 +13,28 @@ from argo_env.sensing.vision.align import FacePose, Fit, sample
 from argo_env.sensing.vision.instrument import Instrument
 from argo_env.sensing.vision.photo import Photo
 
-_MARGIN = 0.04  # of the scale beyond either end that is looked at too
-_STEPS = 541  # positions that are tried: 0.2 % of the scale each
+_MARGIN = 0.04  # of the scale beyond either end that is searched too
+_STEPS = 541  # positions that are tried, 0.2 % of the scale apart
 
 
 @dataclass(frozen=True)
-class Pointing:
-    """Where an indicator stands."""
+class IndicatorPosition:
+    """Position of an indicator on its scale, and how clearly it is seen there."""
 
     share: float
     """of the scale, 0 at its low end to 1 at its high end, and a little beyond"""
     strength: float
-    """0 to 1, how much redder the indicator is than what is beside it"""
+    """0 to 1, by how much the indicator is redder than the points beside it"""
     lead: float
-    """by how much (0 to 1) that is more than at any other place on the scale"""
+    """0 to 1, by how much the strength is greater than anywhere else on the scale, as a share"""
     seen: float
     """0 to 1, the share of the indicator that is red"""
 
 
-def find_indicator(photo: Photo, instrument: Instrument, pose: FacePose) -> Pointing | None:
-    """Where the indicator stands; None if nothing red is there."""
+def find_indicator(
+    photo: Photo, instrument: Instrument, pose: FacePose
+) -> IndicatorPosition | None:
+    """Return the position of the indicator, or None if nothing red is on the scale."""
     indicator = instrument.indicator
     shares = np.linspace(-_MARGIN, 1 + _MARGIN, _STEPS)
     positions = indicator.low + shares * (indicator.high - indicator.low)
@@ -46,7 +50,7 @@ def find_indicator(photo: Photo, instrument: Instrument, pose: FacePose) -> Poin
     peak = float(strength[best])
     if peak <= 0.02:
         return None
-    # The middle of the peak at half its height: it may be flat on top.
+    # Take the weighted middle of the peak, since it may be flat on top.
     above = strength > 0.7 * peak
     first = last = best
     while first > 0 and above[first - 1]:
@@ -61,45 +65,49 @@ def find_indicator(photo: Photo, instrument: Instrument, pose: FacePose) -> Poin
     far[max(0, first - spread) : last + 1 + spread] = False
     second = float(max(strength[far].max(initial=0.0), 0.0))
     seen = float((body[best] > 0.4).mean())
-    return Pointing(share, peak, 1.0 - second / peak, seen)
+    return IndicatorPosition(share, peak, 1.0 - second / peak, seen)
 
 
-TOLERANCE = 0.015  # of the scale: readings that differ by less say the same
+TOLERANCE = 0.015  # of the scale: readings that differ by less agree
 _CHANCE = 0.5
-"""that two wrong readings say the same: often, since what was found is looked at again"""
-_CEILING = 0.995  # no number of pictures makes surer than this
+"""probability that two wrong readings agree: high, since later pictures are of the face that the
+first one found"""
+_CEILING = 0.995  # highest probability, however many pictures there are
 
 
 @dataclass(frozen=True)
 class PictureReading:
-    """What one picture says."""
+    """Reading from one picture, or from several ones together."""
 
     share: float
     """of the scale"""
     probability: float
-    """that this is right"""
+    """that the reading is right"""
 
 
-def probability(fit: Fit, pointing: Pointing, cosine: float) -> float:
-    """That a reading from one picture is right; `cosine` is of the obliqueness."""
+def reading_probability(fit: Fit, indicator: IndicatorPosition, cosine: float) -> float:
+    """Return the probability that a reading from one picture is right.
+
+    `cosine` is that of the angle between the face's normal and the line of sight.
+    """
     score = (
         50.0 * (fit.match - 0.91)
-        + 3.0 * (pointing.strength - 0.6)
-        + 2.0 * (pointing.lead - 0.6)
-        + 2.0 * (pointing.seen - 0.6)
+        + 3.0 * (indicator.strength - 0.6)
+        + 2.0 * (indicator.lead - 0.6)
+        + 2.0 * (indicator.seen - 0.6)
         + cosine
         - 0.6
     )
-    if not -0.03 <= pointing.share <= 1.03:
+    if not -0.03 <= indicator.share <= 1.03:
         return 0.02
     return 1.0 / (1.0 + math.exp(-score))
 
 
 def combine_readings(readings: Sequence[PictureReading]) -> PictureReading | None:
-    """The share that the readings speak for, and how probable it is; None if there are none.
+    """Return the most probable reading and its probability, or None if there are no readings.
 
-    Bayes' rule over "this group of like readings is right and the others are wrong" and "all are
-    wrong", with a chance that wrong readings agree.
+    Bayes' rule is applied to the hypotheses "this group of readings that agree is right, and the
+    others are wrong" and "all are wrong", with a probability that wrong readings agree.
     """
     if not readings:
         return None

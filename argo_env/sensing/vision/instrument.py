@@ -1,5 +1,7 @@
-"""Models of the kinds of checkpoints, with drawn face and indicator: dial gauges, liquid level
-gauges and quarter-turn valves."""
+"""Models of instruments, each with its face and its indicator.
+
+There are dial gauges, liquid level gauges and quarter-turn valves.
+"""
 
 import math
 from collections.abc import Callable
@@ -20,63 +22,66 @@ Points = NDArray[np.float64]
 class Indicator:
     """The part of an instrument that shows the value: a red needle, lever or float.
 
-    `body` and `beside` are points on it and next to it, in its own frame with the position 0, in m,
-    shape (n, 3). Points lie in the middle of its thickness, so that its silhouette is even about
-    them from wherever one looks.
+    Points are in m, shape (n, 3), in the indicator's own frame at position 0. They lie in the
+    middle of its thickness, so that they are in the middle of its silhouette from any viewpoint.
     """
 
     body: Points
+    """points on the indicator"""
     beside: Points
+    """points next to the indicator"""
     low: float
     """position at the low end of the scale, rad or m"""
     high: float
     """position at the high end of the scale, rad or m"""
     move: Callable[[Points, Points], Points]
-    """points, shape (n, 3), at positions, shape (m,), in the instrument's frame, (m, n, 3)"""
+    """function that moves points, shape (n, 3), to positions, shape (m,); its result is in the
+    instrument's frame, shape (m, n, 3)"""
 
 
 @dataclass(frozen=True, eq=False)
 class Instrument:
-    """A kind of checkpoint as the reader knows it. In its frame the face looks along x, z is up."""
+    """Model of one kind of checkpoint. In its frame the face's normal is along x, and z is up."""
 
     kind: CheckpointKind
     shape: FaceShape
     rolled: bool
-    """whether it may be turned about the normal of its face"""
+    """True if it may be rolled about the normal of its face"""
     hidden_radius: float
-    """m, of the disc about the middle in which the drawn face is covered"""
+    """m, radius of the disc in the middle of the face that the instrument's parts cover"""
     extent: float
-    """m, the radius about the middle of the face in which all of it lies"""
+    """m, radius about the middle of the face within which the whole instrument lies"""
     outlines: tuple[tuple[float, float], ...]
-    """half the width and height (m) of the patches that the face may be seen as: to its border, or
-    only to the ring of its scale where the gap between is too narrow for the picture"""
+    """half the width and height (m) of the bright patches as which the face may appear: to its
+    border, or only to the ring of its scale if the picture can't resolve the gap between them"""
     body: tuple[tuple[float, float], ...]
-    """the dark body behind the face, as slices: place along x and half the width (m) of each, with
-    the height in proportion"""
+    """slices of the dark body behind the face: position along x and half the width (m) of each; its
+    height is in proportion"""
     indicator: Indicator
 
 
 @dataclass(frozen=True)
 class Template:
-    """The drawn face as points to compare pictures with: places in the instrument's frame (m),
-    shape (n, 3), brightness from 0 to 1, shape (n,), and weights that sum up to 1, with which dark
-    and bright points count alike however few there are of one of them."""
+    """The drawn face as points that are compared with pictures."""
 
     points: Points
+    """m, in the instrument's frame, shape (n, 3)"""
     brightness: NDArray[np.float64]
+    """0 to 1, shape (n,)"""
     weights: NDArray[np.float64]
+    """shape (n,), with the sum 1: dark and bright points have half of it each"""
 
 
 @cache
 def texture(kind: CheckpointKind) -> NDArray[np.float32]:
-    """The drawn face, brightness from 0 to 1, shape (height, width)."""
+    """Return the drawn face as brightness from 0 to 1, shape (height, width)."""
     with Image.open(face_file(kind)) as image:
         return np.asarray(image.convert("L")).astype(np.float32) / np.float32(255)
 
 
 @cache
 def blurred_texture(kind: CheckpointKind, blur: float) -> NDArray[np.float32]:
-    """The drawn face, blurred by `blur` (m)."""
+    """Return the drawn face, blurred by `blur` (m)."""
     import cv2
 
     return np.asarray(cv2.GaussianBlur(texture(kind), (0, 0), blur * PIXELS_PER_METRE))
@@ -84,7 +89,7 @@ def blurred_texture(kind: CheckpointKind, blur: float) -> NDArray[np.float32]:
 
 @cache
 def make_template(instrument: Instrument, spacing: float, blur: float) -> Template:
-    """The face on a grid of `spacing` (m), blurred by `blur` (m)."""
+    """Return the face as points on a grid of `spacing` (m), blurred by `blur` (m)."""
     shape = instrument.shape
     y, z = np.meshgrid(
         np.arange(-shape.half_width + spacing / 2, shape.half_width, spacing),
@@ -101,7 +106,7 @@ def make_template(instrument: Instrument, spacing: float, blur: float) -> Templa
     brightness = picture[
         np.clip(row, 0, picture.shape[0] - 1), np.clip(column, 0, picture.shape[1] - 1)
     ].astype(np.float64)
-    # Spread over the range of brightness, each half of it gets half of the weight.
+    # The dark and the bright points get half of the weight each.
     bright = brightness > (brightness.min() + brightness.max()) / 2
     weights = np.where(bright, 0.5 / bright.sum(), 0.5 / (~bright).sum())
     points = np.column_stack([np.full(y.shape, -shape.depth), y, z])
@@ -109,13 +114,13 @@ def make_template(instrument: Instrument, spacing: float, blur: float) -> Templa
 
 
 def grid(x: float, y: NDArray[np.float64], z: NDArray[np.float64]) -> Points:
-    """All points with these coordinates (m), shape (n, 3)."""
+    """Return all points with these coordinates (m), shape (n, 3)."""
     ys, zs = np.meshgrid(y, z)
     return np.column_stack([np.full(ys.size, x), ys.ravel(), zs.ravel()])
 
 
-def turned(points: Points, angles: Points) -> Points:
-    """Points turned clockwise about the instrument's x axis by angles (rad), shape (m, n, 3)."""
+def turn_points(points: Points, angles: Points) -> Points:
+    """Turn points clockwise about the instrument's x axis by angles (rad), shape (m, n, 3)."""
     cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
     x, y, z = points.T
     return np.stack(
@@ -123,7 +128,7 @@ def turned(points: Points, angles: Points) -> Points:
     )
 
 
-_NEEDLE = np.linspace(0.010, 0.050, 21)  # m, of the needle that is looked at
+_NEEDLE = np.linspace(0.010, 0.050, 21)  # m from the axis, points of the needle that are searched
 
 DIAL = Instrument(
     kind=CheckpointKind.PRESSURE_GAUGE,
@@ -138,16 +143,16 @@ DIAL = Instrument(
         beside=grid(0.0, np.array([-0.010, -0.008, 0.008, 0.010]), _NEEDLE),
         low=math.radians(-135),
         high=math.radians(135),
-        move=turned,
+        move=turn_points,
     ),
 )
 """a red needle over a round scale of 270 degrees"""
 
-_FLOAT = np.linspace(-0.012, 0.012, 7)  # m, of the float that is looked at
+_FLOAT = np.linspace(-0.012, 0.012, 7)  # m from the middle, points of the float that are searched
 
 
-def _lifted(points: NDArray[np.float64], heights: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Points moved up by heights (m), shape (m, n, 3)."""
+def lift_points(points: NDArray[np.float64], heights: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Move points up by heights (m), shape (m, n, 3)."""
     return np.asarray(points[None] + heights[:, None, None] * np.array([0.0, 0.0, 1.0]))
 
 
@@ -164,13 +169,13 @@ LEVEL = Instrument(
         beside=grid(0.0, _FLOAT, np.array([-0.015, -0.013, 0.013, 0.015])),
         low=-0.12,
         high=0.12,
-        move=_lifted,
+        move=lift_points,
     ),
 )
 """a red float in a glass beside a scale of 240 mm"""
 
-_LEVER = np.linspace(0.025, 0.150, 26)  # m, of the lever that is looked at
-_MIDDLE = -0.004  # m, of its thickness
+_LEVER = np.linspace(0.025, 0.150, 26)  # m from the axis, points of the lever that are searched
+_MIDDLE = -0.004  # m along x, middle of the lever's thickness
 
 VALVE = Instrument(
     kind=CheckpointKind.VALVE,
@@ -185,7 +190,7 @@ VALVE = Instrument(
         beside=grid(_MIDDLE, np.array([-0.026, -0.022, 0.022, 0.026]), _LEVER),
         low=0.0,
         high=math.radians(90),
-        move=turned,
+        move=turn_points,
     ),
 )
 """a red lever over a plate with a mark for shut and one for open"""

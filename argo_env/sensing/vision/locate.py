@@ -1,5 +1,7 @@
-"""Finding a face in a picture: first where bright patches of the right shape and size are, and how
-it is rolled, then how it stands exactly."""
+"""Search for a face in a picture.
+
+First come bright patches of the right shape and size, then their rolls, then the exact pose.
+"""
 
 import math
 from dataclasses import dataclass, replace
@@ -21,16 +23,18 @@ from argo_env.sensing.vision.photo import Photo
 from argo_env.world.placement import MAX_OFFSET, MAX_TURN
 
 _THRESHOLDS = 10  # levels of brightness at which patches are cut out
-_SMALLEST = 0.06  # of the area that the face would cover seen from the front
-_UPRIGHT = 0.9  # cosine to the vertical of what may be an upright face
-_FILLED = 0.8  # of an ellipse or rectangle that the hull of a patch must fill, and be filled by
+_SMALLEST = 0.06  # of the area that the face would cover if seen from the front
+_UPRIGHT = 0.9  # cosine to the vertical, at least, of an upright face
+_FILLED = 0.8  # ratio of the areas of a patch's hull and of its ellipse or rectangle, at least
 
 
 def find_outlines(
     photo: Photo, instrument: Instrument, planned: FacePose
 ) -> list[tuple[float, FacePose]]:
-    """The poses, with no roll, of all bright patches that could be the face, with how well the
-    hull of each fills the outline (0 to 1)."""
+    """Return the poses, without roll, of all bright patches that could be the face.
+
+    Each has a number from 0 to 1: how well the hull of the patch fills the outline of a face.
+    """
     import cv2
 
     picture = cv2.GaussianBlur(photo.brightness, (0, 0), 1.0)
@@ -41,14 +45,14 @@ def find_outlines(
             (picture > level).astype(np.uint8), cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE
         )
         for patch in patches:
-            poses += _poses(np.asarray(patch), photo, instrument, planned)
+            poses += _poses_from_patch(np.asarray(patch), photo, instrument, planned)
     return poses
 
 
-def _poses(
+def _poses_from_patch(
     patch: NDArray[np.int32], photo: Photo, instrument: Instrument, planned: FacePose
 ) -> list[tuple[float, FacePose]]:
-    """The poses of a face with this outline, shape (n, 1, 2) in px: turned to either side."""
+    """Return the possible poses of a face with this outline, shape (n, 1, 2) in px."""
     import cv2
 
     shape, eye, focal = instrument.shape, photo.pose.position, photo.lens.focal
@@ -61,14 +65,14 @@ def _poses(
     if not _SMALLEST * expected < area < 2 * expected:
         return []
     if shape.round:
-        return _from_ellipse(hull if len(hull) >= 12 else patch, area, photo, instrument)
-    return _from_corners(hull, area, photo, instrument, planned)
+        return _poses_from_ellipse(hull if len(hull) >= 12 else patch, area, photo, instrument)
+    return _poses_from_corners(hull, area, photo, instrument, planned)
 
 
-def _from_ellipse(
+def _poses_from_ellipse(
     outline: NDArray[np.int32], area: float, photo: Photo, instrument: Instrument
 ) -> list[tuple[float, FacePose]]:
-    """The poses of a disc that is seen as this outline: turned to either side."""
+    """Return the poses of a disc that is seen as this outline: it may be turned to either side."""
     import cv2
 
     eye, focal = photo.pose.position, photo.lens.focal
@@ -86,22 +90,22 @@ def _from_ellipse(
     back = -ray / np.linalg.norm(ray)
     toward, level = math.atan2(back[1], back[0]), math.hypot(back[0], back[1])
     away = math.acos(min(1.0, small / large / max(level, 1e-6)))
-    found = []
+    poses = []
     for radius, _ in instrument.outlines:
         x, y, z = (eye + ray * focal * radius / large).tolist()
         for side in (-1.0, 1.0):
-            found.append((filled, FacePose(x, y, z, toward + side * away, 0.0)))
-    return found
+            poses.append((filled, FacePose(x, y, z, toward + side * away, 0.0)))
+    return poses
 
 
-def _from_corners(
+def _poses_from_corners(
     hull: NDArray[np.int32],
     area: float,
     photo: Photo,
     instrument: Instrument,
     planned: FacePose,
 ) -> list[tuple[float, FacePose]]:
-    """The poses of an upright rectangle whose four corners are those of the hull."""
+    """Return the poses of an upright rectangle whose four corners are those of the hull."""
     import cv2
 
     corners = cv2.approxPolyDP(hull, 0.03 * cv2.arcLength(hull, True), True)
@@ -111,7 +115,7 @@ def _from_corners(
     filled = float(min(area / max(cv2.contourArea(corners), 1.0), 1.0))
     if filled < _FILLED:
         return []
-    # Which corner is which: by how the vertical looks in the picture.
+    # Assign the corners by the direction of the vertical in the picture.
     up = photo.lens.project(
         planned.center + np.array([[0.0, 0.0, 0.05], [0.0, 0.0, 0.0]]), photo.pose
     )
@@ -124,7 +128,7 @@ def _from_corners(
     spots = np.array([top[0], top[1], bottom[1], bottom[0]])
     centre, focal = (photo.lens.size - 1) / 2, photo.lens.focal
     matrix = np.array([[focal, 0.0, centre], [0.0, focal, centre], [0.0, 0.0, 1.0]])
-    found = []
+    poses = []
     for width, height in instrument.outlines:
         flat = np.array(
             [[-width, height, 0], [width, height, 0], [width, -height, 0], [-width, -height, 0]]
@@ -135,29 +139,29 @@ def _from_corners(
             )
             for turn, shift in zip(turns, shifts, strict=True):
                 rotation = photo.pose.rotation @ cv2.Rodrigues(turn)[0]
-                # A rectangle that is not upright is none of a gauge; its front looks to the camera.
+                # Gauges are upright, and turn their front to the camera.
                 if abs(rotation[2, 1]) < _UPRIGHT:
                     continue
                 x, y, z = (photo.pose.position + photo.pose.rotation @ shift.ravel()).tolist()
                 normal = rotation[:, 2]
                 if normal @ (photo.pose.position - np.array([x, y, z])) < 0:
                     normal = -normal
-                found.append((filled, FacePose(x, y, z, math.atan2(normal[1], normal[0]), 0.0)))
-    return found
+                poses.append((filled, FacePose(x, y, z, math.atan2(normal[1], normal[0]), 0.0)))
+    return poses
 
 
 _ROLLS = np.radians(np.arange(-93, 94, 3))
-_DARKEST = 0.03  # of full scale: white that is darker is not looked at
+_DARKEST = 0.03  # of full scale: faces whose white is darker are ignored
 
 
 def spacing(instrument: Instrument) -> float:
-    """m between the points of a face that is compared with pictures."""
+    """Return the distance in m between the points of a face that is compared with pictures."""
     return 0.004 if instrument.shape.round else 0.0045
 
 
 @dataclass(frozen=True)
 class _RolledFaces:
-    """A face at every roll, at the same points: its brightness and weights, (rolls, points)."""
+    """A face at every roll: its brightness and weights at equal points, shape (rolls, points)."""
 
     template: Template
     brightness: NDArray[np.float32]
@@ -188,7 +192,11 @@ def _rolled_faces(instrument: Instrument, blur: float) -> _RolledFaces:
 def likely_rolls(
     photo: Photo, instrument: Instrument, pose: FacePose, blur: float
 ) -> list[tuple[float, FacePose]]:
-    """The pose with the rolls at which the face is most like the picture, and how much so."""
+    """Return `pose` with the rolls at which the face is most similar to the picture.
+
+    Each has its likeness from 0 to 1. There is none if too little of the face is visible, or if the
+    picture is too dark.
+    """
     faces = _rolled_faces(instrument, blur)
     spots = photo.lens.project(pose.to_site(faces.template.points), photo.pose)
     values = sample(photo.brightness, spots)
@@ -197,7 +205,7 @@ def likely_rolls(
     if seen.sum() < len(seen) / 4:
         return []
     values = values[seen].astype(np.float32)
-    # White is most of what is seen; black reflects nearly nothing.
+    # Most of a face is white; black reflects nearly nothing.
     white = float(np.percentile(values, 70)) / float(faces.brightness.max())
     if white < _DARKEST:
         return []
@@ -206,43 +214,45 @@ def likely_rolls(
     likeness = (weights * np.exp(-(difference**2))).sum(axis=1) / weights.sum(axis=1)
     if not instrument.rolled:
         return [(float(likeness[0]), replace(pose, roll=0.0))]
-    found = []
+    poses = []
     for _ in range(3):
         best = int(likeness.argmax())
-        found.append((float(likeness[best]), replace(pose, roll=float(_ROLLS[best]))))
+        poses.append((float(likeness[best]), replace(pose, roll=float(_ROLLS[best]))))
         likeness = np.where(np.abs(_ROLLS - _ROLLS[best]) > math.radians(12), likeness, -1.0)
-    return found
+    return poses
 
 
-_OUTLINES = 30  # that are looked at more closely
-_FITS = 7  # that are fitted
-_CLEARLY = 0.86  # match from which nothing else is looked for
-_AS_GOOD = 0.12  # likeness that another pose may lack to be tried
-_CLEAR = 0.94  # match from which no other candidate is tried
+_MAX_OUTLINES = 30  # whose rolls are compared
+_MAX_FITS = 7  # poses that are fitted
+_GOOD_MATCH = 0.86  # match from which the search ends after the outlines
+_LIKENESS_SLACK = 0.12  # by how much the likeness of another pose may be lower for it to be tried
+_SURE_MATCH = 0.94  # match from which no other candidate is tried
 _OWN_BLUR = 1.1  # px, of the pictures themselves
 _BLUR_STEP = 0.0003  # m
-_ROUGH, _SOFT, _SHARP = 0.006, 0.003, 0.0012  # m, blur of the drawn face from fit to fit
-_SLACK = 0.015  # m, and rad times 10, beyond the rules' limits
+_ROUGH, _SOFT, _SHARP = 0.006, 0.003, 0.0012  # m, blur of the drawn face in successive fits
+_SLACK = 0.015  # m, and times 10 in rad, that a pose may exceed the limits of displacements
 
 
 def find_face(photo: Photo, instrument: Instrument, planned: FacePose) -> Fit | None:
-    """The best match of the face in the picture within what the rules allow about `planned`; None
-    if nothing there looks like it."""
-    pixel = _pixel(photo, planned.center)
-    rough, fine = photo.blurred(_ROUGH / pixel), photo.blurred(_SOFT / pixel)
+    """Return the best match of the face in the picture, or None if nothing looks like it.
+
+    Only poses are searched that a displacement from the pose `planned` can lead to.
+    """
+    pixel_size = _pixel_size(photo, planned.center)
+    rough, fine = photo.blurred(_ROUGH / pixel_size), photo.blurred(_SOFT / pixel_size)
     outlines = [
         (filled, pose)
         for filled, pose in find_outlines(photo, instrument, planned)
-        if _allowed(pose, planned, 0.03)
+        if _is_allowed(pose, planned, 0.03)
     ]
     starts: list[tuple[float, FacePose]] = []
-    for candidate in _best_apart(outlines, _OUTLINES):
+    for candidate in _best_distinct(outlines, _MAX_OUTLINES):
         starts += likely_rolls(fine, instrument, candidate, _SOFT)
         starts += likely_rolls(rough, instrument, candidate, _ROUGH)
     best = _best_fit(photo, rough, fine, instrument, planned, starts)
-    if best is not None and best.match > _CLEARLY:
+    if best is not None and best.match > _GOOD_MATCH:
         return best
-    # The outline may be hidden in part, or run into what is behind.
+    # The outline may be partly hidden, or merge with the background.
     starts = []
     for candidate in find_candidates(photo, instrument, planned):
         starts += likely_rolls(rough, instrument, candidate, _ROUGH)
@@ -258,90 +268,102 @@ def _best_fit(
     planned: FacePose,
     starts: list[tuple[float, FacePose]],
 ) -> Fit | None:
-    """The best match from any of the starts; `rough` and `fine` are the photo blurred so."""
+    """Return the best match from any of the start poses, or None if no allowed pose is found.
+
+    `rough` and `fine` are the photo with the blur `_ROUGH` and `_SOFT`.
+    """
     fits = []
-    for pose in _best_apart(starts, _FITS):
+    for pose in _best_distinct(starts, _MAX_FITS):
         for blur, blurred in ((_ROUGH, rough), (_SOFT, fine)):
             template = make_template(instrument, spacing(instrument), blur)
             fit = refine(blurred, template, pose, instrument.rolled, 8)
             pose = fit.pose
-        if _allowed(fit.pose, planned):
+        if _is_allowed(fit.pose, planned):
             fits.append(fit)
-            if fit.match > _CLEAR:
+            if fit.match > _SURE_MATCH:
                 break
     fits.sort(key=lambda fit: -fit.match)
-    sharp = [look_closer(photo, instrument, fit.pose) for fit in fits[:2]]
-    return max((f for f in sharp if _allowed(f.pose, planned)), key=lambda f: f.match, default=None)
+    sharp = [find_face_near(photo, instrument, fit.pose) for fit in fits[:2]]
+    return max(
+        (f for f in sharp if _is_allowed(f.pose, planned)), key=lambda f: f.match, default=None
+    )
 
 
-def look_closer(photo: Photo, instrument: Instrument, pose: FacePose) -> Fit:
-    """The best match near `pose`. A face that is turned to the left looks much like one that is
-    turned to the right, and a scale much like itself a few marks farther on: so these are tried
-    too."""
-    best = sharpen(photo, instrument, pose)
-    if best.match > _CLEAR:
+def find_face_near(photo: Photo, instrument: Instrument, pose: FacePose) -> Fit:
+    """Return the best match near `pose`, or at a pose that looks similar.
+
+    A face that is turned to the left looks similar to one that is turned to the right, and a scale
+    is similar to itself when shifted by a few marks: so such poses are tried too.
+    """
+    best = refine_coarse_to_fine(photo, instrument, pose)
+    if best.match > _SURE_MATCH:
         return best
-    fine = photo.blurred(_SOFT / _pixel(photo, pose.center))
+    fine = photo.blurred(_SOFT / _pixel_size(photo, pose.center))
     here = likely_rolls(fine, instrument, best.pose, _SOFT)
     starts = list(here)
-    for start in (_mirrored(best.pose, photo), *_slipped(best.pose, photo, instrument)):
+    for start in (_mirrored_pose(best.pose, photo), *_shifted_poses(best.pose, photo, instrument)):
         starts += likely_rolls(fine, instrument, start, _SOFT)
-    as_good = max((likeness for likeness, _ in here), default=0.0) - _AS_GOOD
-    others = _best_apart([s for s in starts if s[0] > as_good], 4)
-    # Seen turned to the other side, a face is elsewhere too: the fit must find where.
-    others.insert(0, _mirrored(best.pose, photo))
+    as_good = max((likeness for likeness, _ in here), default=0.0) - _LIKENESS_SLACK
+    others = _best_distinct([s for s in starts if s[0] > as_good], 4)
+    # A face that is turned to the other side also has another position, which the fit must find.
+    others.insert(0, _mirrored_pose(best.pose, photo))
     for other in others:
-        if _apart(other, best.pose):
-            best = max(best, sharpen(photo, instrument, other), key=lambda fit: fit.match)
+        if _differ(other, best.pose):
+            best = max(
+                best, refine_coarse_to_fine(photo, instrument, other), key=lambda fit: fit.match
+            )
     return best
 
 
-def _slipped(pose: FacePose, photo: Photo, instrument: Instrument) -> list[FacePose]:
-    """Poses at which a straight scale looks like itself: marks over other marks."""
+def _shifted_poses(pose: FacePose, photo: Photo, instrument: Instrument) -> list[FacePose]:
+    """Return poses at which a straight scale looks similar, with its marks over other marks."""
     if instrument.rolled:
         return []
     sight = pose.center - photo.pose.position
-    found = []
+    poses = []
     for up, farther in ((0, -0.08), (0, 0.08), (0.012, 0), (-0.012, 0), (0.024, 0), (-0.024, 0)):
         x, y, z = (pose.center + farther * sight).tolist()
-        found.append(replace(pose, x=x, y=y, z=z + up))
-    return found
+        poses.append(replace(pose, x=x, y=y, z=z + up))
+    return poses
 
 
-def _mirrored(pose: FacePose, photo: Photo) -> FacePose:
-    """The pose turned to the other side of the line of sight."""
+def _mirrored_pose(pose: FacePose, photo: Photo) -> FacePose:
+    """Return the pose turned to the other side of the line of sight."""
     eye = photo.pose.position
     toward = math.atan2(eye[1] - pose.y, eye[0] - pose.x)
     return replace(pose, yaw=2 * toward - pose.yaw)
 
 
-def sharpen(photo: Photo, instrument: Instrument, pose: FacePose) -> Fit:
-    """The best match near `pose`, with the face as sharp as the picture shows it."""
-    pixel = _pixel(photo, pose.center)
-    # In steps, so that there are few different templates.
-    own = math.ceil(_OWN_BLUR * pixel / _BLUR_STEP) * _BLUR_STEP
+def refine_coarse_to_fine(photo: Photo, instrument: Instrument, pose: FacePose) -> Fit:
+    """Return the best match near `pose`, from fits with less and less blur.
+
+    The last fit has the blur of the picture itself.
+    """
+    pixel_size = _pixel_size(photo, pose.center)
+    # Round the blur, so that there are few different templates.
+    own = math.ceil(_OWN_BLUR * pixel_size / _BLUR_STEP) * _BLUR_STEP
     for blur in (_ROUGH, _SOFT, max(_SHARP, own)):
         template = make_template(instrument, spacing(instrument), blur)
-        blurred = photo.blurred(math.sqrt(max(blur**2 - own**2, 0.0)) / pixel)
+        blurred = photo.blurred(math.sqrt(max(blur**2 - own**2, 0.0)) / pixel_size)
         pose = refine(blurred, template, pose, instrument.rolled).pose
     return compare(blurred, template, pose)
 
 
-def _pixel(photo: Photo, point: NDArray[np.float64]) -> float:
-    """How wide a pixel is at a point, in m."""
+def _pixel_size(photo: Photo, point: NDArray[np.float64]) -> float:
+    """Return the width of a pixel at the distance of a point, in m."""
     return float(np.linalg.norm(point - photo.pose.position)) / photo.lens.focal
 
 
-def _best_apart(starts: list[tuple[float, FacePose]], count: int) -> list[FacePose]:
-    """The best of the poses, best first, that differ from each other."""
+def _best_distinct(starts: list[tuple[float, FacePose]], count: int) -> list[FacePose]:
+    """Return up to `count` poses that differ from each other, best first."""
     chosen: list[FacePose] = []
     for _, pose in sorted(starts, key=lambda start: -start[0]):
-        if len(chosen) < count and all(_apart(pose, other) for other in chosen):
+        if len(chosen) < count and all(_differ(pose, other) for other in chosen):
             chosen.append(pose)
     return chosen
 
 
-def _apart(pose: FacePose, other: FacePose) -> bool:
+def _differ(pose: FacePose, other: FacePose) -> bool:
     return bool(
         np.linalg.norm(pose.center - other.center) > 0.008
         or abs(pose.yaw - other.yaw) > math.radians(5)
@@ -349,7 +371,7 @@ def _apart(pose: FacePose, other: FacePose) -> bool:
     )
 
 
-def _allowed(pose: FacePose, planned: FacePose, slack: float = _SLACK) -> bool:
+def _is_allowed(pose: FacePose, planned: FacePose, slack: float = _SLACK) -> bool:
     turn = (pose.yaw - planned.yaw + math.pi) % (2 * math.pi) - math.pi
     return (
         float(np.linalg.norm(pose.center - planned.center)) <= MAX_OFFSET + slack

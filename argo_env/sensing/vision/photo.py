@@ -1,5 +1,4 @@
-"""From the world to what the reader looks at: the camera's picture, with the faults of a real one,
-its brightness and its redness."""
+"""Pictures of the simulated camera, with a real one's errors, and their brightness and redness."""
 
 from dataclasses import dataclass
 
@@ -14,12 +13,12 @@ NEAR, FAR = 0.05, 30.0  # m
 # Of full scale, for one exposure in daylight; in the range of industrial cameras with 8 bits.
 _SHOT_NOISE = 0.012
 _READ_NOISE = 0.008
-_MAX_BLUR = 0.8  # px, of the lens and of what the arm trembles
+_MAX_BLUR = 0.8  # px, from the lens and from vibration of the arm
 
 
 @dataclass(frozen=True)
 class Lens:
-    """A pinhole camera with square pixels and its centre in the middle of the picture."""
+    """Lens of a pinhole camera with square pixels, whose centre is in the middle of the picture."""
 
     size: int
     """px, width and height of its pictures"""
@@ -27,7 +26,7 @@ class Lens:
     """px"""
 
     def project(self, points: NDArray[np.float64], pose: CameraPose) -> NDArray[np.float64]:
-        """Column and row (px) of points (m, in the site's frame), shape (..., 3) to (..., 2)."""
+        """Return column and row (px) of points (m, in the site's frame): (..., 3) to (..., 2)."""
         seen = (points - pose.position) @ pose.rotation
         middle = (self.size - 1) / 2
         return np.asarray(middle + self.focal * seen[..., :2] / seen[..., 2:])
@@ -36,10 +35,10 @@ class Lens:
 def take_picture(
     world: World, lens: Lens, pose: CameraPose, rng: np.random.Generator
 ) -> NDArray[np.uint8]:
-    """What the camera at `pose` sees: red, green and blue, shape (size, size, 3).
+    """Take a picture with the camera at `pose`: red, green and blue, shape (size, size, 3).
 
-    The light of the world dims it. Lens and sensor add blur, shot noise that grows with the root
-    of the light, and read noise that does not.
+    Its brightness is that of the world's light. Lens and sensor add blur, shot noise that grows
+    with the root of the light, and read noise that does not depend on the light.
     """
     import cv2
 
@@ -76,16 +75,17 @@ _DENOISE = 0.7  # px
 
 @dataclass(frozen=True)
 class Photo:
-    """A picture to read in: its brightness and its redness (both 0 to 1, shape (size, size)), and
-    what it was taken with."""
+    """Picture prepared for reading, with the lens and the camera's pose that it was taken with."""
 
     brightness: NDArray[np.float32]
+    """0 to 1, shape (size, size)"""
     redness: NDArray[np.float32]
+    """0 to 1, shape (size, size)"""
     lens: Lens
     pose: CameraPose
 
     def blurred(self, sigma: float) -> "Photo":
-        """The picture blurred by `sigma` (px)."""
+        """Return the picture blurred by `sigma` (px)."""
         import cv2
 
         if sigma < 0.4:
@@ -95,12 +95,12 @@ class Photo:
 
 
 def make_photo(picture: NDArray[np.uint8], lens: Lens, pose: CameraPose) -> Photo:
-    """The picture's brightness, and how red each pixel is, whatever the light."""
+    """Return the picture's brightness and redness; the redness does not depend on the light."""
     import cv2
 
     colours = np.asarray(cv2.GaussianBlur(picture.astype(np.float32) / 255, (0, 0), _DENOISE))
     red, green, blue = colours[..., 0], colours[..., 1], colours[..., 2]
     brightness = colours @ np.array([0.299, 0.587, 0.114], dtype=np.float32)
-    # Grey is 0, pure red 1; the constant keeps the noise of black from being a colour.
+    # Grey is 0, pure red 1; the constant prevents that noise in black pixels counts as a colour.
     redness = np.clip((red - np.maximum(green, blue)) / (red + 0.02) * 1.25, 0.0, 1.0)
     return Photo(np.ascontiguousarray(brightness), np.ascontiguousarray(redness), lens, pose)

@@ -1,4 +1,4 @@
-"""The camera sensor: reads checkpoints from pictures that it takes with the camera on the arm."""
+"""Camera sensor: it reads checkpoints from pictures that it takes with the camera on the arm."""
 
 import math
 from collections.abc import Iterator
@@ -18,10 +18,10 @@ from argo_env.sensing.vision.indicator import (
     PictureReading,
     combine_readings,
     find_indicator,
-    probability,
+    reading_probability,
 )
 from argo_env.sensing.vision.instrument import DIAL, LEVEL, VALVE, Instrument
-from argo_env.sensing.vision.locate import find_face, look_closer
+from argo_env.sensing.vision.locate import find_face, find_face_near
 from argo_env.sensing.vision.photo import Lens, Photo, make_photo, take_picture
 from argo_env.sensing.vision.views import ArmView, plan_views, solids_near
 from argo_env.site import SiteCheckpoint
@@ -32,29 +32,29 @@ from argo_env.world.world import Shot, World
 INSTRUMENTS = {instrument.kind: instrument for instrument in (DIAL, VALVE, LEVEL)}
 
 MIN_CONFIDENCE = 0.5
-"""Readings that are less sure are not told."""
+"""confidence from which on a reading is returned"""
 
 _SEARCH_PIXELS, _PIXELS = 400, 320  # width and height of a picture
-_TURNS = np.radians([0, 55, -55, 80, -80, 20, -20])  # that a checkpoint is looked for at
-_LOOKS = 4  # closer looks at one that was found
-_SPREAD = math.radians(25)  # between two looks, if possible
-_SAME = math.radians(8)  # between two looks that show the same
-_ENOUGH = 0.98  # confidence from which no further look is taken
-_FOUND = 0.72  # match from which a face counts as found
-_SEEN = 0.6  # match from which a closer look tells something
-_SURELY = 0.92  # match from which a closer look needs no second search
-_CLEARLY = 0.86  # match from which no further search is made
-_DARK = 0.07  # of full scale: pictures whose bright parts are darker are too dark
-_STEEP = math.radians(62)
+_TURNS = np.radians([0, 55, -55, 80, -80, 20, -20])  # of the face, assumed one after the other
+_MAX_CLOSE_PICTURES = 4  # of a face that was found
+_SPREAD = math.radians(25)  # between the directions of two pictures, if possible
+_SAME_DIRECTION = math.radians(8)  # between two pictures that show the same
+_SURE_CONFIDENCE = 0.98  # confidence from which no further picture is taken
+_FOUND_MATCH = 0.72  # match from which a face counts as found
+_READABLE_MATCH = 0.6  # match from which a picture is read
+_SURE_MATCH = 0.92  # match from which a close picture needs no second search
+_GOOD_MATCH = 0.86  # match from which the search ends
+_DARK_BRIGHTNESS = 0.07  # of full scale: pictures whose bright parts are darker are too dark
+_STEEP_OBLIQUENESS = math.radians(62)
 
 
 class CameraSensor:
-    """Reads checkpoints by camera. Holds the world that it takes pictures of."""
+    """Sensor that reads checkpoints by camera. It holds the world that it takes pictures of."""
 
     name = "camera"
 
     def __init__(self, world: World, seed: int = 0) -> None:
-        """Raises ArgoError if OpenCV is not installed, or the robot's arm can't be aimed."""
+        """Raise ArgoError if OpenCV is not installed, or if the robot's arm can't aim a camera."""
         try:
             import cv2  # noqa: F401
         except ImportError as error:
@@ -71,42 +71,44 @@ class CameraSensor:
         self._solids: dict[int, tuple[Solid, ...]] = {}
 
     def measure(self, checkpoint_id: int, pose: BodyPose) -> Measurement:
-        """Looks at the checkpoint from as many views as it takes.
+        """Read the checkpoint from as many views as a sure reading needs.
 
-        Raises MeasurementError, with a reason, where no reading is sure enough.
+        Raises MeasurementError, with a reason, if no reading is sure enough.
         """
         checkpoint = self._world.site.checkpoint(checkpoint_id)
-        before = dict(zip(JOINTS, self._world.joint_positions(JOINTS), strict=True))
+        joints_before = dict(zip(JOINTS, self._world.joint_positions(JOINTS), strict=True))
         try:
             return self._measure(checkpoint, pose)
         finally:
-            self._world.set_joints(before)
+            self._world.set_joints(joints_before)
 
     def _measure(self, checkpoint: SiteCheckpoint, pose: BodyPose) -> Measurement:
         x, y, z = checkpoint.position
         planned = FacePose(x, y, z, checkpoint.yaw, 0.0)
-        # Noise that depends on the place only: a resumed run measures what the first run would.
-        place = (round(1000 * v) for v in (pose.x, pose.y, pose.z, pose.yaw))
-        rng = generator(self._seed, "camera", checkpoint.id, *place)
-        look = _Look(self._world, INSTRUMENTS[checkpoint.kind], pose, self._near(checkpoint), rng)
-        found = look.search(planned)
-        if look.brightest < _DARK:
+        # The noise depends on the pose only, so a resumed run measures the same values.
+        rounded_pose = (round(1000 * v) for v in (pose.x, pose.y, pose.z, pose.yaw))
+        rng = generator(self._seed, "camera", checkpoint.id, *rounded_pose)
+        measurement = _CameraMeasurement(
+            self._world, INSTRUMENTS[checkpoint.kind], pose, self._solids_near(checkpoint), rng
+        )
+        fit = measurement.search(planned)
+        if measurement.brightest < _DARK_BRIGHTNESS:
             raise MeasurementError(f"{checkpoint.name}: too dark")
-        if not look.pictures:
+        if not measurement.pictures:
             raise PoorViewError(f"{checkpoint.name}: the camera can't get it in view from here")
-        if found is None:
+        if fit is None:
             raise PoorViewError(f"{checkpoint.name}: not found")
-        reading = look.read(found, planned)
+        reading = measurement.read(fit, planned)
         if reading is None or reading.probability < MIN_CONFIDENCE:
-            steep = look.obliqueness > _STEEP
+            steep = measurement.obliqueness > _STEEP_OBLIQUENESS
             reason = "seen too obliquely" if steep else "hidden"
             raise PoorViewError(f"{checkpoint.name}: {reason}")
         scale = checkpoint.range
         share = min(max(reading.share, 0.0), 1.0)
         value = round(scale.low + share * (scale.high - scale.low), 3)
-        return Measurement(value, look.distance, round(reading.probability, 3))
+        return Measurement(value, measurement.distance, round(reading.probability, 3))
 
-    def _near(self, checkpoint: SiteCheckpoint) -> tuple[Solid, ...]:
+    def _solids_near(self, checkpoint: SiteCheckpoint) -> tuple[Solid, ...]:
         if checkpoint.id not in self._solids:
             self._solids[checkpoint.id] = solids_near(
                 self._world.site, np.array(checkpoint.position), 1.5
@@ -114,8 +116,8 @@ class CameraSensor:
         return self._solids[checkpoint.id]
 
 
-class _Look:
-    """One measurement under way. Holds what it has seen."""
+class _CameraMeasurement:
+    """State of one measurement: the views used and the readings made so far."""
 
     def __init__(
         self,
@@ -134,71 +136,80 @@ class _Look:
         self._readings: list[PictureReading] = []
         self.pictures = 0
         self.brightest = 1.0
-        """of full scale, the bright parts of the brightest picture"""
+        """of full scale: brightness of the bright parts of the brightest picture"""
         self.obliqueness = math.pi / 2
-        """rad, of the least oblique look at the face that was found"""
+        """rad, of the least oblique view of the face that was found"""
         self.distance = 0.0
-        """m, of that look"""
+        """m, of this view"""
 
     def search(self, planned: FacePose) -> Fit | None:
-        """Finds the face somewhere about where it was planned."""
+        """Search for the face around its planned pose; return None if it is not found."""
         best: Fit | None = None
         for turn in _TURNS:
             face = replace(planned, yaw=planned.yaw + turn)
             view = next(self._views(face), None)
             if view is None or not self._is_new(view, planned):
                 continue
-            photo = self._take(view, MAX_OFFSET + self._face_radius, _SEARCH_PIXELS)
-            if self.brightest < _DARK:
+            photo = self._take_photo(view, MAX_OFFSET + self._face_radius, _SEARCH_PIXELS)
+            if self.brightest < _DARK_BRIGHTNESS:
                 break
             fit = find_face(photo, self._instrument, planned)
-            if fit is not None and fit.match > _FOUND:
-                self._read(photo, fit)
+            if fit is not None and fit.match > _FOUND_MATCH:
+                self._record_reading(photo, fit)
             if fit is not None and (best is None or fit.match > best.match):
                 best = fit
-            if best is not None and best.match > _CLEARLY:
+            if best is not None and best.match > _GOOD_MATCH:
                 break
-        return best if best is not None and best.match > _FOUND else None
+        return best if best is not None and best.match > _FOUND_MATCH else None
 
-    def read(self, found: Fit, planned: FacePose) -> PictureReading | None:
-        """Reads the face that was found, from as many views as it takes to be sure."""
-        best = found
-        for _ in range(_LOOKS):
+    def read(self, fit: Fit, planned: FacePose) -> PictureReading | None:
+        """Read the face that was found, from as many views as a sure reading needs.
+
+        Returns None if no picture can be read.
+        """
+        best = fit
+        for _ in range(_MAX_CLOSE_PICTURES):
             view = next(self._views(best.pose), None)
             if view is None:
                 break
-            photo = self._take(view, self._instrument.extent, _PIXELS)
-            fit = look_closer(photo, self._instrument, best.pose)
-            if fit.match < _SURELY:
-                anew = find_face(photo, self._instrument, planned)
-                fit = max((f for f in (fit, anew) if f), key=lambda f: f.match)
+            photo = self._take_photo(view, self._instrument.extent, _PIXELS)
+            fit = find_face_near(photo, self._instrument, best.pose)
+            if fit.match < _SURE_MATCH:
+                searched = find_face(photo, self._instrument, planned)
+                fit = max((f for f in (fit, searched) if f), key=lambda f: f.match)
             if fit.match > best.match:
                 best = fit
-            self._read(photo, fit)
+            self._record_reading(photo, fit)
             total = combine_readings(self._readings)
-            if total is not None and len(self._readings) > 1 and total.probability >= _ENOUGH:
+            if (
+                total is not None
+                and len(self._readings) > 1
+                and total.probability >= _SURE_CONFIDENCE
+            ):
                 break
         return combine_readings(self._readings)
 
-    def _read(self, photo: Photo, fit: Fit) -> None:
-        """Notes what the indicator shows, the face being found there."""
+    def _record_reading(self, photo: Photo, fit: Fit) -> None:
+        """Record the reading of the indicator in a picture in which the face was found."""
         sight = photo.pose.position - fit.pose.center
         distance = float(np.linalg.norm(sight))
         cosine = float(sight @ fit.pose.normal) / distance
         obliqueness = math.acos(max(-1.0, min(1.0, cosine)))
         if obliqueness < self.obliqueness:
             self.obliqueness, self.distance = obliqueness, distance
-        if fit.match < _SEEN:
+        if fit.match < _READABLE_MATCH:
             return
-        pointing = find_indicator(photo, self._instrument, fit.pose)
-        if pointing is not None:
-            sure = probability(fit, pointing, cosine)
-            self._readings.append(PictureReading(pointing.share, sure))
+        indicator = find_indicator(photo, self._instrument, fit.pose)
+        if indicator is not None:
+            probability = reading_probability(fit, indicator, cosine)
+            self._readings.append(PictureReading(indicator.share, probability))
 
     def _is_new(self, view: ArmView, planned: FacePose) -> bool:
-        """Whether it is not nearly from where the camera has looked before."""
+        """Return True if the view is in another direction than all pictures taken so far."""
         toward = _direction(view.camera.position, planned)
-        return all(toward @ _direction(eye, planned) < math.cos(_SAME) for eye in self._used)
+        return all(
+            toward @ _direction(eye, planned) < math.cos(_SAME_DIRECTION) for eye in self._used
+        )
 
     @property
     def _face_radius(self) -> float:
@@ -208,8 +219,8 @@ class _Look:
         size = 0.8 * self._instrument.shape.half_width
         return plan_views(self._world, self._pose, face, self._solids, size, self._used, _SPREAD)
 
-    def _take(self, view: ArmView, radius: float, pixels: int) -> Photo:
-        """A picture of all within a radius (m) about the middle of the view."""
+    def _take_photo(self, view: ArmView, radius: float, pixels: int) -> Photo:
+        """Take a picture of everything within a radius (m) about the middle of the view."""
         half = math.tan(math.asin(min(0.8, radius / view.distance)))
         lens = Lens(pixels, pixels / 2 / half)
         self._world.set_joints(dict(zip(JOINTS, view.joints.tolist(), strict=True)))

@@ -1,6 +1,6 @@
-"""Where to look from: places for the camera that the arm reaches, with the checkpoint in sight.
+"""Views of a checkpoint: camera positions that the arm reaches, with the checkpoint in sight.
 
-Planned with the site as it is drawn; only that the arm touches nothing is asked of the world.
+Sight is planned with the map of the site; only contacts of the arm are checked in the world.
 """
 
 import math
@@ -23,27 +23,27 @@ _AZIMUTHS = np.radians(np.arange(-75, 76, 15))
 _ELEVATIONS = np.radians([0, -18, 18, 36])
 _DISTANCES = np.array([0.35, 0.45, 0.55, 0.7, 0.9, 1.15, 1.5, 1.9])  # m
 _CLEARANCE = 0.02  # m that the arm keeps from everything
-_STEP = 0.05  # rad of the joint that turns most, between the places of the arm that are checked
-_FAR_COST = 0.25  # rad of obliqueness that a metre of distance is worth
-_SAME_COST = 0.9  # rad of obliqueness that a look from the same place as before is worth
-_HIDDEN_COST = 1.5  # rad of obliqueness that a face out of sight is worth
+_STEP = 0.05  # rad of the joint that turns most, between the arm poses that are checked
+_FAR_COST = 0.25  # cost of a metre of distance; obliqueness costs its square in rad²
+_SAME_COST = 0.9  # cost of a position from which a picture was taken already
+_HIDDEN_COST = 1.5  # cost of a face that is out of sight
 
 
 @dataclass(frozen=True)
 class ArmView:
-    """A pose of the arm and of the camera on it."""
+    """Pose of the arm, and of the camera on it, for a picture of a face."""
 
     joints: NDArray[np.float64]
     """rad, in the order of `arm.JOINTS`"""
     camera: CameraPose
     obliqueness: float
-    """rad, between the face's normal, as far as it is known, and the line of sight"""
+    """rad, between the line of sight and the face's normal, which may be an estimate"""
     distance: float
     """m, from the camera to the middle of the face"""
 
 
 def solids_near(site: Site, point: NDArray[np.float64], reach: float) -> tuple[Solid, ...]:
-    """What is drawn within `reach` (m) of a point, along each axis."""
+    """Return the site's solids within `reach` (m) of a point, along each axis."""
     return tuple(
         solid
         for element in site.elements
@@ -61,13 +61,22 @@ def plan_views(
     used: Sequence[NDArray[np.float64]],
     spread: float,
 ) -> Iterator[ArmView]:
-    """Views of the face from a robot at `pose`, best first: as frontal as possible, near, and from
-    elsewhere than the eyes `used`, as seen from the face at least `spread` (rad) apart.
+    """Yield views of the face from a robot at `pose`, best first.
 
-    `size` (m) is the radius about the middle of the face that should be in sight of the `solids`.
+    Good views are frontal and near, and their direction from the face differs from that of used
+    positions.
+
+    Args:
+        world: world in which contacts of the arm are checked.
+        pose: pose of the robot.
+        face: pose of the face, as far as it is known.
+        solids: solids that may hide the face.
+        size: radius in m about the middle of the face that should not be hidden.
+        used: camera positions in m from which pictures were taken already.
+        spread: angle in rad from which on two directions count as different.
     """
-    eyes = _eyes(face, world.robot.sensor)
-    eyes = eyes[_reachable(eyes, pose)]
+    eyes = _camera_positions(face, world.robot.sensor)
+    eyes = eyes[_are_reachable(eyes, pose)]
     if not len(eyes):
         return
     cost = _costs(eyes, face, solids, size, used, spread)
@@ -75,7 +84,7 @@ def plan_views(
         if not math.isfinite(cost[k]):
             return
         for joints in inverse(eyes[k], face.center, pose):
-            if _within_reach(world, joints):
+            if _can_reach(world, joints):
                 sight = eyes[k] - face.center
                 distance = float(np.linalg.norm(sight))
                 cosine = float(sight @ face.normal) / distance
@@ -83,37 +92,39 @@ def plan_views(
                 break
 
 
-def _within_reach(world: World, joints: NDArray[np.float64]) -> bool:
-    """Whether the arm, raised, gets there and back with all joints turning evenly, and touches
-    nothing."""
+def _can_reach(world: World, joints: NDArray[np.float64]) -> bool:
+    """Return True if the raised arm can move to these joint positions and back without contact.
+
+    All joints turn at the same time, each at a constant rate.
+    """
     raised = np.radians([world.robot.arm_raised[name] for name in JOINTS])
-    way = raised - joints
-    count = max(1, math.ceil(float(np.abs(way).max()) / _STEP))
-    # From the far end, since most of what is in the way is near the checkpoint.
+    difference = raised - joints
+    count = max(1, math.ceil(float(np.abs(difference).max()) / _STEP))
+    # Start at the far end, since most obstacles are near the checkpoint.
     return all(
         world.arm_obstacle(
-            dict(zip(JOINTS, (joints + k / count * way).tolist(), strict=True)), _CLEARANCE
+            dict(zip(JOINTS, (joints + k / count * difference).tolist(), strict=True)), _CLEARANCE
         )
         is None
         for k in range(count)
     )
 
 
-def _eyes(face: FacePose, sensor: SensorSpec) -> NDArray[np.float64]:
-    """Places for the camera in front of the face, shape (n, 3)."""
-    found = []
+def _camera_positions(face: FacePose, sensor: SensorSpec) -> NDArray[np.float64]:
+    """Return positions for the camera in front of the face, in m, shape (n, 3)."""
+    offsets = []
     for azimuth, elevation, distance in product(_AZIMUTHS, _ELEVATIONS, _DISTANCES):
         if sensor.min_range <= distance <= sensor.max_range:
             around = face.yaw + azimuth
             level = distance * math.cos(elevation)
-            found.append(
+            offsets.append(
                 (level * math.cos(around), level * math.sin(around), distance * math.sin(elevation))
             )
-    return np.array(found) + face.center
+    return np.array(offsets) + face.center
 
 
-def _reachable(eyes: NDArray[np.float64], pose: BodyPose) -> NDArray[np.bool_]:
-    """Roughly which eyes the arm reaches: all others would be tried in vain."""
+def _are_reachable(eyes: NDArray[np.float64], pose: BodyPose) -> NDArray[np.bool_]:
+    """Return which camera positions the arm can roughly reach; the others need not be tried."""
     shoulder = np.array([pose.x - 0.1 * math.cos(pose.yaw), pose.y - 0.1 * math.sin(pose.yaw)])
     away = np.hypot(*(eyes[:, :2] - shoulder).T)
     return np.asarray(np.hypot(away, eyes[:, 2] - pose.z - 0.66) < 1.08)
@@ -133,9 +144,9 @@ def _costs(
     oblique = np.arccos(np.clip(toward @ face.normal, -1.0, 1.0))
     cost = oblique**2 + _FAR_COST * distance
     for eye in used:
-        before = (eye - face.center) / np.linalg.norm(eye - face.center)
-        apart = np.arccos(np.clip(toward @ before, -1.0, 1.0))
-        cost += _SAME_COST * np.maximum(0.0, 1.0 - apart / spread)
+        used_direction = (eye - face.center) / np.linalg.norm(eye - face.center)
+        angle = np.arccos(np.clip(toward @ used_direction, -1.0, 1.0))
+        cost += _SAME_COST * np.maximum(0.0, 1.0 - angle / spread)
     side = np.array([-math.sin(face.yaw), math.cos(face.yaw), 0.0])
     points = [
         face.center + 0.01 * face.normal + size * (y * side + np.array([0.0, 0.0, z]))

@@ -54,7 +54,7 @@ class Scripted:
         self._left = list(findings)
         self.looks = []
 
-    def look(self, now, pose):
+    def update(self, now, pose):
         self.looks.append((now, pose))
         due = [f for t, f in self._left if t <= now]
         self._left = [(t, f) for t, f in self._left if t > now]
@@ -172,7 +172,7 @@ class TestObstacles:
         class OnTheWay(Scripted):
             """Finds something ahead as soon as the robot is on its way to the next view."""
 
-            def look(self, _, pose):
+            def update(self, _, pose):
                 if not looks or self._left:
                     return ()
                 if math.dist((pose.x, pose.y), (looks[0].x, looks[0].y)) < 0.1:
@@ -278,7 +278,7 @@ class TestResumed:
 
     def test_a_watch_remembers_only_what_it_has_told_itself(self, yard):
         class Remembering(Scripted):
-            def remember(self, told, now):
+            def restore(self, told, now):
                 self.told = [(each.kind, each.pose) for each in told], now
 
         watch = Remembering((0.0, Detection(EventKind.ALL_CLEAR, "", (2.0, 2.0, 1.0))), period=0.1)

@@ -1,4 +1,4 @@
-"""When the battery is called low, and when it is charged again."""
+"""The battery watch reports a low battery once, and again only after it was charged."""
 
 import pytest
 from hypothesis import given, settings
@@ -29,30 +29,30 @@ def reaction(level):
 
 @pytest.mark.rule("R11")
 @pytest.mark.parametrize(("level", "low"), [(None, False), (0.4, False), (0.6, True)])
-def test_a_mission_says_from_which_charge_on_the_battery_is_low(yard, level, low):
+def test_a_mission_states_below_which_charge_the_battery_is_low(yard, level, low):
     plan = mission(measure(1), reactions=(reaction(level),))
     record = simulated(plan, yard, faults=(LowBattery(charge=0.5),))
     assert (EventKind.LOW_BATTERY in {a.kind for a in record.anomalies}) == low
 
 
-@pytest.mark.parametrize(("fault", "left"), [(0.5, 0.3), (0.2, 0.2)])
-def test_a_low_battery_is_never_a_fuller_one(yard, fault, left):
+@pytest.mark.parametrize(("fault", "charge"), [(0.5, 0.3), (0.2, 0.2)])
+def test_a_low_battery_never_raises_the_charge(yard, fault, charge):
     spec = RunConditions(charge=0.3)
     record = simulated(
         mission(measure(1)), yard, faults=(LowBattery(charge=fault),), conditions=spec
     )
-    assert record.path[0].charge == pytest.approx(left, abs=0.01)
+    assert record.path[0].charge == pytest.approx(charge, abs=0.01)
 
 
 @pytest.mark.rule("R11")
-def test_it_is_low_once_and_again_when_it_was_charged(yard):
+def test_a_low_battery_is_reported_once_and_again_after_it_was_charged(yard):
     battery = Battery(yard.robot)
     watch = BatteryWatch(battery, 0.3)
-    told = []
+    kinds = []
     for charge in (0.35, 0.25, 0.2, 0.35, 0.25, 1.0, 0.5, 0.25):
         battery.charge = charge
-        told += [detection.kind for detection in watch.look(0.0, HERE)]
-    assert told == [EventKind.LOW_BATTERY, EventKind.BATTERY_CHARGED, EventKind.LOW_BATTERY]
+        kinds += [detection.kind for detection in watch.update(0.0, HERE)]
+    assert kinds == [EventKind.LOW_BATTERY, EventKind.BATTERY_CHARGED, EventKind.LOW_BATTERY]
 
 
 SHARES = st.floats(0.0, 1.0)
@@ -65,20 +65,20 @@ SHARES = st.floats(0.0, 1.0)
     charges=st.lists(SHARES, min_size=1, max_size=6),
     watts=st.floats(-600.0, 400.0),
 )
-def test_who_need_not_look_would_have_seen_nothing(yard, level, was_low, charges, watts):
+def test_skipped_updates_would_have_detected_nothing(yard, level, was_low, charges, watts):
     battery = Battery(yard.robot)
-    watch, twin = BatteryWatch(battery, level), BatteryWatch(battery, level)
+    watch, skipping = BatteryWatch(battery, level), BatteryWatch(battery, level)
     if was_low:
         battery.charge = 0.0
-        for one in (watch, twin):
-            one.look(0.0, HERE)
-    if not watch.sees_nothing_new(min(charges), max(charges)):
+        for each in (watch, skipping):
+            each.update(0.0, HERE)
+    if not watch.can_skip(min(charges), max(charges)):
         return
     for charge in charges:
         battery.charge = charge
         battery.use(watts, 0.0)
-        assert not watch.look(1.0, HERE)
+        assert not watch.update(1.0, HERE)
     for charge in (0.0, 1.0, 0.0):
         battery.charge = charge
-        told = [[d.kind for d in one.look(2.0, HERE)] for one in (watch, twin)]
-        assert told[0] == told[1], "and what it sees later is the same"
+        kinds = [[d.kind for d in each.update(2.0, HERE)] for each in (watch, skipping)]
+        assert kinds[0] == kinds[1], "both report the same later"

@@ -1,4 +1,4 @@
-"""The watch over the drive: it tells a slow drive, and nothing else that keeps the robot."""
+"""The drive watch reports a slow drive, and no other cause that delays the robot."""
 
 import pytest
 from hypothesis import given, settings
@@ -24,14 +24,16 @@ def stop(at, until):
     return {"kind": "emergency_stop", "at": at, "until": until}
 
 
-def drive_along(yard, *goals, pressed=(), share=1.0):
-    """When a dysfunction is told (s) and how long it took (s), on the way to the goals one after
-    the other, with the emergency stop pressed between those times (s)."""
+def report_times_along(yard, *goals, pressed=(), share=1.0):
+    """Return the times (s) of reports and the duration (s) of a drive to the goals in turn.
+
+    The emergency stop is pressed in the intervals `pressed` (s).
+    """
     drive = Powertrain(RouteDrive(yard.robot))
     watch = DriveWatch(drive, yard.robot)
     drive.place(BodyPose(START.x, START.y, START.z, START.yaw))
     drive.share = share
-    told, step, here = [], 0, START
+    reports, step, here = [], 0, START
     for goal in goals:
         path = yard.plan(here, goal)
         here = path.end
@@ -41,8 +43,8 @@ def drive_along(yard, *goals, pressed=(), share=1.0):
             drive.pressed = any(a <= step * STEP < b for a, b in pressed)
             drive.step()
             if step % round(watch.period / STEP) == 3:
-                told += [step * STEP for _ in watch.look(step * STEP, drive.pose)]
-    return told, step * STEP
+                reports += [step * STEP for _ in watch.update(step * STEP, drive.pose)]
+    return reports, step * STEP
 
 
 FAR, NEAR = Pose(x=6.05, y=4.05, z=0.02), Pose(x=5.05, y=1.05, z=0.02)
@@ -54,21 +56,21 @@ FAR, NEAR = Pose(x=6.05, y=4.05, z=0.02), Pose(x=5.05, y=1.05, z=0.02)
         st.tuples(st.floats(0, 60), st.sampled_from([0.1, 0.4, 0.9, 1.5, 9.0, 40.0])), max_size=9
     )
 )
-def test_whoever_stops_the_robot_however_often_its_drive_is_well(yard, presses):
+def test_emergency_stops_are_never_reported_as_a_slow_drive(yard, presses):
     pressed = [(at, at + seconds) for at, seconds in presses]
-    told, _ = drive_along(yard, FAR, START, NEAR, pressed=pressed)
-    assert told == []
+    reports, _ = report_times_along(yard, FAR, START, NEAR, pressed=pressed)
+    assert reports == []
 
 
 @pytest.mark.parametrize("pressed", [(), [(5.0, 15.0)], [(0.0, 30.0), (33.0, 33.5)]])
-def test_a_slow_drive_is_told_once_a_window_after_its_release(yard, pressed):
-    told, took = drive_along(yard, FAR, START, pressed=pressed, share=0.4)
-    free = max((end for _, end in pressed), default=0.0)
-    assert len(told) == 1
-    assert told[0] <= free + WINDOW + 2.0 < took
+def test_a_slow_drive_is_reported_once_a_window_after_its_release(yard, pressed):
+    reports, took = report_times_along(yard, FAR, START, pressed=pressed, share=0.4)
+    released = max((end for _, end in pressed), default=0.0)
+    assert len(reports) == 1
+    assert reports[0] <= released + WINDOW + 2.0 < took
 
 
-def test_released_again_the_robot_is_not_looked_for_where_its_way_began(shipped, navigator):
+def test_after_a_release_the_position_on_the_path_is_kept(shipped, navigator):
     plan = shipped("mission_1.txt", start_area=1, end_area=2).mission
     record = simulated(plan, navigator, drive="route", faults=faults_of(stop(60, 120)))
     assert [a.kind for a in record.anomalies] == [EventKind.EMERGENCY_STOP]
@@ -76,13 +78,13 @@ def test_released_again_the_robot_is_not_looked_for_where_its_way_began(shipped,
 
 
 @pytest.mark.parametrize("until", [10.0, 29.0, 30.0, 31.0])
-def test_resumed_while_it_is_held_or_just_released(yard, tmp_path, until):
+def test_a_run_that_is_resumed_during_or_after_a_stop_reports_no_slow_drive(yard, tmp_path, until):
     path = tmp_path / "run.journal"
     plan = mission(waypoint("A", 6.05, 4.05), waypoint("B", 1.55, 1.05), waypoint("C", 6.05, 4.05))
     simulated(plan, yard, drive="route", faults=faults_of(stop(6, 30)), journal=path)
     with open_journal(path) as journal:
-        kept = sum(entry.t <= until for entry in journal.entries)
-    cut_after(path, kept)
+        entries = sum(entry.t <= until for entry in journal.entries)
+    cut_after(path, entries)
     record = resumed(path, yard)
     assert record.resumed
     assert [a.kind for a in record.anomalies] == [EventKind.EMERGENCY_STOP]
@@ -90,8 +92,8 @@ def test_resumed_while_it_is_held_or_just_released(yard, tmp_path, until):
     assert record.result.duration > 30 + WINDOW + 2
 
 
-def test_the_shift_to_where_a_way_begins_is_a_part_of_it(yard):
-    # At a snail's pace a robot that was stopped beside the lattice takes seconds for it.
+def test_the_shift_to_the_start_of_a_path_is_a_part_of_it(yard):
+    # A very slow robot that was stopped beside the lattice needs seconds to return to it.
     plan = mission(waypoint("A", 2.05, 2.55, velocity=0.02))
     events = logged((56.8, Pause()), (61.8, Resume()))
     record = simulated(plan, yard, drive="route", events=events)

@@ -1,4 +1,4 @@
-"""The ideal sensor: true values where a camera could see the face, and why not elsewhere."""
+"""The ideal sensor returns true values where a camera could see the face, and reasons elsewhere."""
 
 import math
 
@@ -23,8 +23,10 @@ def sensor(simulation, robot, truth):
 
 
 def in_front_of(umad, robot, id, distance, degrees=0.0):
-    """The robot's pose from which the camera is `distance` (m) from the sight target, level with
-    the robot's camera, seen `degrees` to the side of the face's normal."""
+    """Return a robot's pose with its camera `distance` (m) from the middle of the face.
+
+    The line of sight is `degrees` to the side of the face's normal.
+    """
     checkpoint = umad.checkpoint(id)
     floor = next(f for f in umad.spec.floors if f.number == checkpoint.floor)
     along, _, up = robot.sensor.offset

@@ -1,4 +1,4 @@
-"""The plant and its world, as built."""
+"""Fixtures: the plant, its map and its world, without faults."""
 
 import pytest
 

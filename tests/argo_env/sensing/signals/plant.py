@@ -1,4 +1,4 @@
-"""A plant of one deck, a metre over the ground, with a vessel, a pipe and two pumps: quick to load.
+"""A small plant for tests: one deck, a metre over the ground, with a vessel, a pipe and two pumps.
 
 The deck is `DECK`; along y = 2 it is free from one end to the other.
 """
@@ -54,13 +54,13 @@ def plant():
 
 
 def with_brick(site, x, y, size=(0.1, 0.2, 0.1), yaw=0.0):
-    """The elements of the site with a brick that lies on the deck."""
+    """Return the elements of the site with a brick on the deck."""
     box = Box((x, y, Z + size[2] / 2), size, (0.0, 0.0, yaw))
     return (*site.elements, Element("brick", Role.STRUCTURE, (box,), "brick"))
 
 
 def with_hole(site, x0, y0, x1, y1):
-    """The elements of the site with a hole in the deck."""
+    """Return the elements of the site with a hole in the deck."""
     a0, b0, a1, b1 = DECK
     rests = [(a0, b0, x0, b1), (x1, b0, a1, b1), (x0, b0, x1, y0), (x0, y1, x1, b1)]
     boxes = tuple(
@@ -70,18 +70,18 @@ def with_hole(site, x0, y0, x1, y1):
 
 
 def lane(start, end, y=2.0, backwards=False):
-    """Times and poses from x = `start` to `end` along the lane, 0.4 m/s, every 0.1 s."""
+    """Return times and poses from x = `start` to `end` along the lane, at 0.4 m/s, every 0.1 s."""
     sign = 1 if end > start else -1
     heading = 0.0 if (sign > 0) != backwards else 3.141592653589793
     count = round(abs(end - start) / 0.04)
     return [(0.1 * k, BodyPose(start + sign * 0.04 * k, y, Z, heading)) for k in range(count + 1)]
 
 
-def told(watch, poses):
-    """What a watch tells on its way, with the time and the pose."""
-    due, found = 0.0, []
+def detections_along(watch, poses):
+    """Return the detections of a watch along these times and poses, with time and pose."""
+    due, detections = 0.0, []
     for now, pose in poses:
         if now >= due - 1e-6:
             due = now + watch.period
-            found += [(now, pose, finding) for finding in watch.look(now, pose)]
-    return found
+            detections += [(now, pose, detection) for detection in watch.update(now, pose)]
+    return detections

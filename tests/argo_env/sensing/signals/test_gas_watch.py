@@ -1,4 +1,4 @@
-"""Gas leaks: found by the gas or by the hiss, told once, and over when they are over."""
+"""Gas leaks are detected by the gas or by the hiss; each and its end are reported once."""
 
 import numpy as np
 from hypothesis import given, settings
@@ -6,20 +6,20 @@ from hypothesis import strategies as st
 
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
+from argo_env.sensing.make_watch import ReportedDetection
 from argo_env.sensing.signals.gas_watch import GasSensor, GasWatch, Hysteresis, UltrasonicMicrophone
-from argo_env.sensing.watch import Told
 from argo_env.surroundings import GasLeak, Surroundings, Weather
-from tests.argo_env.sensing.signals.plant import Z, lane, told
+from tests.argo_env.sensing.signals.plant import Z, detections_along, lane
 from tests.conftest import examples
 
-STANDING = [(float(t), BodyPose(8.0, 2.0, Z, 0.0)) for t in range(400)]
+STAY = [(float(t), BodyPose(8.0, 2.0, Z, 0.0)) for t in range(400)]
 
 
-def watch(site, world, site_map, seed=0, around=None):
-    around = around or Surroundings(site)
+def make_watch(site, world, site_map, seed=0, surroundings=None):
+    surroundings = surroundings or Surroundings(site)
     rngs = [np.random.default_rng([seed, k]) for k in range(2)]
-    gas, ear = GasSensor(around, rngs[0]), UltrasonicMicrophone(around, world, rngs[1])
-    return GasWatch(gas, ear, site_map), around
+    gas, ear = GasSensor(surroundings, rngs[0]), UltrasonicMicrophone(surroundings, world, rngs[1])
+    return GasWatch(gas, ear, site_map), surroundings
 
 
 def on_pipe(rate=0.02):
@@ -28,84 +28,92 @@ def on_pipe(rate=0.02):
 
 def test_clean_air_is_clean(site, world, site_map):
     for seed in range(5):
-        assert told(watch(site, world, site_map, seed)[0], STANDING) == []
+        assert detections_along(make_watch(site, world, site_map, seed)[0], STAY) == []
 
 
-def test_a_leak_is_told_once_and_is_over_when_it_is_closed(site, world, site_map):
+def test_a_leak_is_reported_once_and_its_end_when_it_is_closed(site, world, site_map):
     wind = Weather(wind=(0.7, -0.5))
-    eye, around = watch(site, world, site_map, around=Surroundings(site, wind))
-    assert told(eye, STANDING[:20]) == []
-    around.add(on_pipe(), 20.0)
-    first = [f for t, p in STANDING[20:120] for f in eye.look(t, p)]
-    assert [finding.kind for finding in first] == [EventKind.GAS_LEAK]
+    watch, surroundings = make_watch(site, world, site_map, surroundings=Surroundings(site, wind))
+    assert detections_along(watch, STAY[:20]) == []
+    surroundings.add(on_pipe(), 20.0)
+    first = [f for t, p in STAY[20:120] for f in watch.update(t, p)]
+    assert [detection.kind for detection in first] == [EventKind.GAS_LEAK]
     assert "near pipe 1" in first[0].detail
-    here = STANDING[0][1]
+    here = STAY[0][1]
     assert first[0].noticed_from == (here.x, here.y, here.z)
-    assert first[0].place is None, "the signals do not tell from where they come"
-    around.remove(on_pipe(), 120.0)
-    then = [f for t, p in STANDING[120:300] for f in eye.look(t, p)]
-    assert [finding.kind for finding in then] == [EventKind.ALL_CLEAR]
-    around.add(on_pipe(), 300.0)
-    again = [f for t, p in STANDING[300:] for f in eye.look(t, p)]
-    assert [finding.kind for finding in again] == [EventKind.GAS_LEAK]
+    assert first[0].place is None, "the signals have no direction"
+    surroundings.remove(on_pipe(), 120.0)
+    later = [f for t, p in STAY[120:300] for f in watch.update(t, p)]
+    assert [detection.kind for detection in later] == [EventKind.ALL_CLEAR]
+    surroundings.add(on_pipe(), 300.0)
+    again = [f for t, p in STAY[300:] for f in watch.update(t, p)]
+    assert [detection.kind for detection in again] == [EventKind.GAS_LEAK]
 
 
 class TestResumed:
-    """The watch is a new one, and remembers what the one before has told."""
+    """A new watch continues from the reports of the previous one."""
 
-    def test_what_is_over_meanwhile_is_told(self, site, world, site_map):
-        eye, _ = watch(site, world, site_map)
-        eye.remember([Told(EventKind.GAS_LEAK, STANDING[0][1])], 0.0)
-        assert [f.kind for *_, f in told(eye, STANDING[:60])] == [EventKind.ALL_CLEAR]
+    def test_the_end_of_a_leak_before_the_resume_is_reported(self, site, world, site_map):
+        watch, _ = make_watch(site, world, site_map)
+        watch.restore([ReportedDetection(EventKind.GAS_LEAK, STAY[0][1])], 0.0)
+        assert [f.kind for *_, f in detections_along(watch, STAY[:60])] == [EventKind.ALL_CLEAR]
 
-    def test_what_was_over_is_not_told_again(self, site, world, site_map):
-        eye, _ = watch(site, world, site_map)
-        pose = STANDING[0][1]
-        eye.remember([Told(EventKind.GAS_LEAK, pose), Told(EventKind.ALL_CLEAR, pose)], 0.0)
-        assert told(eye, STANDING[:60]) == []
+    def test_a_reported_end_is_not_reported_again(self, site, world, site_map):
+        watch, _ = make_watch(site, world, site_map)
+        pose = STAY[0][1]
+        watch.restore(
+            [
+                ReportedDetection(EventKind.GAS_LEAK, pose),
+                ReportedDetection(EventKind.ALL_CLEAR, pose),
+            ],
+            0.0,
+        )
+        assert detections_along(watch, STAY[:60]) == []
 
-    def test_what_goes_on_is_not_told_again_even_far_from_where_it_was(self, site, world, site_map):
-        eye, around = watch(site, world, site_map)
-        around.add(on_pipe(), -1000.0)
+    def test_a_leak_that_goes_on_is_not_reported_again_even_far_from_its_report(
+        self, site, world, site_map
+    ):
+        watch, surroundings = make_watch(site, world, site_map)
+        surroundings.add(on_pipe(), -1000.0)
         x, y, z, yaw = 20.0, 2.0, Z, 0.0
-        eye.remember([Told(EventKind.GAS_LEAK, BodyPose(x, y, z, yaw))], 0.0)
-        assert told(eye, STANDING[:60]) == []
+        watch.restore([ReportedDetection(EventKind.GAS_LEAK, BodyPose(x, y, z, yaw))], 0.0)
+        assert detections_along(watch, STAY[:60]) == []
 
-    def test_another_one_is(self, site, world, site_map):
-        eye, around = watch(site, world, site_map)
-        eye.remember([Told(EventKind.GAS_LEAK, BodyPose(40.0, 2.0, Z, 0.0))], 0.0)
-        assert told(eye, STANDING[:30]) == []
-        around.add(on_pipe(), 30.0)
-        then = [f.kind for t, p in STANDING[30:90] for f in eye.look(t, p)]
-        assert then == [EventKind.GAS_LEAK]
+    def test_a_new_leak_is_reported(self, site, world, site_map):
+        watch, surroundings = make_watch(site, world, site_map)
+        watch.restore([ReportedDetection(EventKind.GAS_LEAK, BodyPose(40.0, 2.0, Z, 0.0))], 0.0)
+        assert detections_along(watch, STAY[:30]) == []
+        surroundings.add(on_pipe(), 30.0)
+        later = [f.kind for t, p in STAY[30:90] for f in watch.update(t, p)]
+        assert later == [EventKind.GAS_LEAK]
 
 
-def test_upwind_it_is_heard_and_not_smelt(site, world, site_map):
+def test_upwind_a_leak_is_detected_by_its_hiss_only(site, world, site_map):
     wind = Weather(wind=(-1.0, 0.5))
-    eye, around = watch(site, world, site_map, around=Surroundings(site, wind))
-    around.add(on_pipe())
-    (_, _, finding), *rest = told(eye, STANDING[:60])
+    watch, surroundings = make_watch(site, world, site_map, surroundings=Surroundings(site, wind))
+    surroundings.add(on_pipe())
+    (_, _, detection), *rest = detections_along(watch, STAY[:60])
     assert not rest
-    assert "a hiss" in finding.detail
-    assert "ppm" not in finding.detail
+    assert "a hiss" in detection.detail
+    assert "ppm" not in detection.detail
 
 
 def test_driving_away_is_no_all_clear(site, world, site_map):
-    eye, around = watch(site, world, site_map)
-    around.add(GasLeak((2.0, 3.0, Z + 0.5), 0.02))
+    watch, surroundings = make_watch(site, world, site_map)
+    surroundings.add(GasLeak((2.0, 3.0, Z + 0.5), 0.02))
     away = [(t, BodyPose(p.x - 40 * (t > 20), p.y, p.z, p.yaw)) for t, p in lane(1.0, 15.0)]
-    assert [f.kind for *_, f in told(eye, away)] == [EventKind.GAS_LEAK]
+    assert [f.kind for *_, f in detections_along(watch, away)] == [EventKind.GAS_LEAK]
 
 
 @settings(deadline=None, max_examples=examples(10))
 @given(st.floats(2.0, 14.0), st.floats(0.01, 0.05), st.integers(0, 99))
-def test_a_leak_beside_the_way_is_found_and_without_it_nothing(
+def test_a_leak_beside_the_path_is_detected_and_nothing_without_it(
     site, world, site_map, x, rate, seed
 ):
-    eye, around = watch(site, world, site_map, seed)
-    around.add(GasLeak((x, 3.0, Z + 0.5), rate), 0.0)
-    assert [f.kind for *_, f in told(eye, lane(0.5, 15.0))] == [EventKind.GAS_LEAK]
-    assert told(watch(site, world, site_map, seed)[0], lane(0.5, 15.0)) == []
+    watch, surroundings = make_watch(site, world, site_map, seed)
+    surroundings.add(GasLeak((x, 3.0, Z + 0.5), rate), 0.0)
+    assert [f.kind for *_, f in detections_along(watch, lane(0.5, 15.0))] == [EventKind.GAS_LEAK]
+    assert detections_along(make_watch(site, world, site_map, seed)[0], lane(0.5, 15.0)) == []
 
 
 def test_the_sensor_shows_nine_tenths_after_its_time(site):
@@ -113,9 +121,9 @@ def test_the_sensor_shows_nine_tenths_after_its_time(site):
         def standard_normal(self, n=None):
             return 0.0 if n is None else np.zeros(n)
 
-    around = Surroundings(site)
-    around.add(GasLeak((7.0, 2.0, Z + 0.5), 0.05), -1e6)
-    sensor = GasSensor(around, Still())
+    surroundings = Surroundings(site)
+    surroundings.add(GasLeak((7.0, 2.0, Z + 0.5), 0.05), -1e6)
+    sensor = GasSensor(surroundings, Still())
     pose = BodyPose(9.0, 2.0, Z, 0.0)
     shown = [sensor.read(t, pose) for t in (0.0, GasSensor.T90, 1000.0)]
     assert shown[0] == GasSensor.BACKGROUND

@@ -1,4 +1,4 @@
-"""The map's rays, against the same site in PyBullet."""
+"""The map's rays end where they do in PyBullet's world of the same site."""
 
 import numpy as np
 import pytest
@@ -11,17 +11,17 @@ REACH = 5.0
 @pytest.mark.parametrize("seed", range(12))
 def test_rays_on_the_map_end_where_they_do_in_the_world(umad, simulation, navigator, seed):
     rng = np.random.default_rng(seed)
-    places = navigator.surface.positions()
-    origin = places[rng.integers(len(places))] + [0.0, 0.0, rng.uniform(0.3, 0.9)]
+    positions = navigator.surface.positions()
+    origin = positions[rng.integers(len(positions))] + [0.0, 0.0, rng.uniform(0.3, 0.9)]
     turn, spread = rng.uniform(0, 2 * np.pi), [0.3, 1.0, 3.0][seed % 3]
     around, up = turn + rng.uniform(-spread, spread, 150), rng.uniform(-1.2, 0.8, 150)
     rays = np.column_stack([np.cos(around) * np.cos(up), np.sin(around) * np.cos(up), np.sin(up)])
-    found, solids = SiteMap(umad).distances(origin, rays, REACH)
-    there = simulation.ranges(tuple(origin.tolist()), origin + REACH * rays)
-    apart = np.abs(np.minimum(found, REACH) - np.minimum(there, REACH)) > 0.01
-    # The bodies of checkpoints are not on the map, and rims differ by a hair.
-    assert apart.sum() <= 0.05 * len(rays)
-    assert np.array_equal(np.isfinite(found), solids >= 0)
+    on_map, solids = SiteMap(umad).distances(origin, rays, REACH)
+    in_world = simulation.ranges(tuple(origin.tolist()), origin + REACH * rays)
+    differ = np.abs(np.minimum(on_map, REACH) - np.minimum(in_world, REACH)) > 0.01
+    # The bodies of checkpoints are not on the map, and edges differ slightly.
+    assert differ.sum() <= 0.05 * len(rays)
+    assert np.array_equal(np.isfinite(on_map), solids >= 0)
 
 
 def test_the_nearest_equipment_is_named(site_map):

@@ -1,4 +1,4 @@
-"""The camera's arm against PyBullet's forward kinematics, and what it keeps clear of."""
+"""The camera's arm has PyBullet's kinematics, and avoids contacts."""
 
 import math
 from itertools import product
@@ -40,16 +40,16 @@ def tracker(client, robot):
 
 
 def by_pybullet(tracker, joints, pose):
-    """The lens and the line of sight of the robot at `pose`."""
+    """Return position and axes of the lens according to PyBullet, for the robot at `pose`."""
     client, body, infos = tracker
     base = pybullet.getDynamicsInfo(body, -1, physicsClientId=client)
-    place = pybullet.multiplyTransforms(
+    base_pose = pybullet.multiplyTransforms(
         (pose.x, pose.y, pose.z),
         pybullet.getQuaternionFromEuler((pose.roll, pose.pitch, pose.yaw)),
         base[3],
         base[4],
     )
-    pybullet.resetBasePositionAndOrientation(body, *place, physicsClientId=client)
+    pybullet.resetBasePositionAndOrientation(body, *base_pose, physicsClientId=client)
     for name, angle in zip(JOINTS, joints, strict=True):
         pybullet.resetJointState(body, infos[name][0], angle, physicsClientId=client)
     state = pybullet.getLinkState(
@@ -61,7 +61,7 @@ def by_pybullet(tracker, joints, pose):
 
 @given(joints=angles, pose=poses)
 @settings(max_examples=examples(60), deadline=None)
-def test_forward_kinematics_is_pybullets(tracker, joints, pose):
+def test_forward_kinematics_equals_that_of_pybullet(tracker, joints, pose):
     camera = forward(np.array(joints), pose)
     lens, axes = by_pybullet(tracker, joints, pose)
     assert camera.position == pytest.approx(lens, abs=1e-5)
@@ -75,34 +75,36 @@ def test_forward_kinematics_is_pybullets(tracker, joints, pose):
 def test_inverse_kinematics_brings_the_lens_there(tracker, joints, pose, reach):
     camera = forward(np.array(joints), pose)
     target = camera.position + reach * camera.rotation[:, 2]
-    found = list(inverse(camera.position, target, pose))
-    for solution in found:
+    solutions = list(inverse(camera.position, target, pose))
+    for solution in solutions:
         again = forward(solution, pose)
         assert again.position == pytest.approx(camera.position, abs=1e-6)
         assert again.rotation[:, 2] == pytest.approx(camera.rotation[:, 2], abs=1e-6)
         for name, angle in zip(JOINTS, solution, strict=True):
             low, high = tracker[2][name][8:10]
             assert low <= angle <= high
-    assert found, "the joints that it came from are one way at least"
+    assert solutions, "the given joints are one solution at least"
 
 
 @pytest.fixture
-def look_at(simulation, navigator, umad):
-    """Places the robot where it sees a checkpoint; returns that, the place and the face."""
+def place_before(simulation, navigator, umad):
+    """Place the robot where it sees a checkpoint; return the checkpoint, the pose and the face."""
 
-    def placed(id):
+    def place(id):
         checkpoint = umad.checkpoint(id)
-        stand = navigator.plan_to_view(umad.docks[1], id).end
-        pose = BodyPose(stand.x, stand.y, stand.z, stand.yaw)
+        view_pose = navigator.plan_to_view(umad.docks[1], id).end
+        pose = BodyPose(view_pose.x, view_pose.y, view_pose.z, view_pose.yaw)
         simulation.place_robot(pose)
         return checkpoint, pose, FacePose(*checkpoint.position, checkpoint.yaw, 0.0)
 
-    return placed
+    return place
 
 
 @pytest.mark.parametrize("id", [1, 2, 4, 5, 10, 12, 16, 19])
-def test_planned_views_touch_nothing_and_see_the_checkpoint(id, look_at, simulation, umad, robot):
-    checkpoint, pose, face = look_at(id)
+def test_planned_views_touch_nothing_and_see_the_checkpoint(
+    id, place_before, simulation, umad, robot
+):
+    checkpoint, pose, face = place_before(id)
     solids = solids_near(umad, face.center, 1.5)
     views = plan_views(simulation, pose, face, solids, 0.05, (), 0.5)
     obliqueness = []
@@ -119,41 +121,41 @@ def test_planned_views_touch_nothing_and_see_the_checkpoint(id, look_at, simulat
     assert min(obliqueness) <= 40
 
 
-def on_the_way(robot, joints):
-    """Places of the arm between where it is raised and `joints`, by name, in rad."""
+def poses_between(robot, joints):
+    """Yield joint positions between the raised arm and `joints`, by name, in rad."""
     raised = np.radians([robot.arm_raised[name] for name in JOINTS])
     for share in np.linspace(0.0, 1.0, 120):
         yield dict(zip(JOINTS, (raised + share * (joints - raised)).tolist(), strict=True))
 
 
 @pytest.mark.parametrize("id", [1, 2, 4, 5, 10])
-def test_the_arm_gets_to_a_view_past_what_is_in_the_way(id, look_at, simulation, robot):
-    _, pose, face = look_at(id)
+def test_the_arm_reaches_a_view_past_an_obstacle(id, place_before, simulation, robot):
+    _, pose, face = place_before(id)
 
     def best_view():
         return next(plan_views(simulation, pose, face, (), 0.05, (), 0.5))
 
-    free = best_view()
-    way = list(on_the_way(robot, free.joints))
-    # Something small where the camera would pass, and neither begins nor ends.
-    camera = forward(np.array([*way[60].values()]), pose)
+    direct = best_view()
+    path = list(poses_between(robot, direct.joints))
+    # A small box on the path of the camera, away from both ends.
+    camera = forward(np.array([*path[60].values()]), pose)
     middle = camera.position - LENS * camera.rotation[:, 2]
     box = Box(tuple(middle.tolist()), (0.05, 0.05, 0.05))
     screen = simulation.add_screen("box", box, (0.4, 0.4, 0.4))
     try:
-        assert simulation.arm_obstacle(way[0], 0.0) is None
-        assert simulation.arm_obstacle(way[-1], 0.02) is None
-        assert simulation.arm_obstacle(way[60], 0.0) == "box"
-        past = best_view()
-        assert not np.array_equal(past.joints, free.joints)
-        for positions in on_the_way(robot, past.joints):
+        assert simulation.arm_obstacle(path[0], 0.0) is None
+        assert simulation.arm_obstacle(path[-1], 0.02) is None
+        assert simulation.arm_obstacle(path[60], 0.0) == "box"
+        around_box = best_view()
+        assert not np.array_equal(around_box.joints, direct.joints)
+        for positions in poses_between(robot, around_box.joints):
             assert simulation.arm_obstacle(positions, 0.0) is None
     finally:
         simulation.remove_screen(screen)
         simulation.move_arm(robot.arm_stowed)
 
 
-def test_arm_check_moves_nothing_and_names_what_is_hit(simulation, robot):
+def test_the_arm_check_moves_nothing_and_names_the_obstacle(simulation, robot):
     simulation.place_robot(BodyPose(3.25, 4.2, 0.0, 0.0))
     before = simulation.joint_positions(JOINTS)
     raised = {name: math.radians(angle) for name, angle in robot.arm_raised.items()}
@@ -165,7 +167,7 @@ def test_arm_check_moves_nothing_and_names_what_is_hit(simulation, robot):
     assert simulation.joint_positions(JOINTS) == before
 
 
-def test_is_raised_at_every_view_without_touching_anything(simulation, navigator, robot):
+def test_the_arm_is_raised_at_every_view_without_contact(simulation, navigator, robot):
     stowed, raised = (
         np.radians([pose[name] for name in JOINTS]) for pose in (robot.arm_stowed, robot.arm_raised)
     )

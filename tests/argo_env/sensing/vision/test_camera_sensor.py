@@ -1,4 +1,4 @@
-"""Checkpoints read from pictures: what the sensor says, and what it says when it can't."""
+"""The camera sensor reads checkpoints from pictures, and gives a reason when it can't."""
 
 import math
 
@@ -23,13 +23,13 @@ ALLOWED = {DIAL: 0.2, LEVEL: 2.0, VALVE: 5.0}  # bar, %, deg
 
 
 @pytest.fixture
-def stage(simulation, navigator, umad, robot):
-    """Puts the robot before a checkpoint that shows a value, and puts all back in the end."""
+def set_checkpoint(simulation, navigator, umad, robot):
+    """Place the robot before a checkpoint that shows a value; restore everything at the end."""
     screens = []
 
-    def put(id, value, placement=AS_PLANNED, light=1.0):
-        stand = navigator.plan_to_view(umad.docks[1], id).end
-        pose = BodyPose(stand.x, stand.y, stand.z, stand.yaw)
+    def set_up(id, value, placement=AS_PLANNED, light=1.0):
+        view_pose = navigator.plan_to_view(umad.docks[1], id).end
+        pose = BodyPose(view_pose.x, view_pose.y, view_pose.z, view_pose.yaw)
         simulation.place_robot(pose)
         simulation.move_arm(robot.arm_raised)
         simulation.show_value(id, value)
@@ -37,8 +37,8 @@ def stage(simulation, navigator, umad, robot):
         simulation.light = light
         return pose
 
-    put.world, put.screens = simulation, screens
-    yield put
+    set_up.world, set_up.screens = simulation, screens
+    yield set_up
     simulation.light = 1.0
     simulation.move_arm(robot.arm_stowed)
     for id in ALLOWED:
@@ -55,17 +55,17 @@ def stage(simulation, navigator, umad, robot):
         pytest.param(VALVE, marks=pytest.mark.long),
     ],
 )
-def test_reads_any_value_where_planned(stage, umad, id):
+def test_reads_any_value_where_planned(set_checkpoint, umad, id):
     scale = umad.checkpoint(id).range
     rng = np.random.default_rng(id)
     for share in (0.0, 1.0, *rng.uniform(size=2)):
         value = scale.low + float(share) * (scale.high - scale.low)
-        pose = stage(id, value)
-        found = CameraSensor(stage.world, seed=3).measure(id, pose)
-        assert found.value == pytest.approx(value, abs=ALLOWED[id] / 2)
-        assert scale.low <= found.value <= scale.high
-        assert 0.9 <= found.confidence <= 1.0
-        assert 0.3 <= found.distance <= 2.0
+        pose = set_checkpoint(id, value)
+        measurement = CameraSensor(set_checkpoint.world, seed=3).measure(id, pose)
+        assert measurement.value == pytest.approx(value, abs=ALLOWED[id] / 2)
+        assert scale.low <= measurement.value <= scale.high
+        assert 0.9 <= measurement.confidence <= 1.0
+        assert 0.3 <= measurement.distance <= 2.0
 
 
 @pytest.mark.parametrize(
@@ -83,60 +83,60 @@ def test_reads_any_value_where_planned(stage, umad, id):
         (VALVE, 62.0, Placement((0.0, 0.06, 0.04), math.radians(30), math.radians(-80)), 0.5),
     ],
 )
-def test_reads_what_is_displaced_turned_and_dim(stage, id, value, placement, light):
-    pose = stage(id, value, placement, light)
-    found = CameraSensor(stage.world, seed=5).measure(id, pose)
-    assert found.value == pytest.approx(value, abs=ALLOWED[id])
+def test_reads_a_displaced_turned_and_dim_checkpoint(set_checkpoint, id, value, placement, light):
+    pose = set_checkpoint(id, value, placement, light)
+    measurement = CameraSensor(set_checkpoint.world, seed=5).measure(id, pose)
+    assert measurement.value == pytest.approx(value, abs=ALLOWED[id])
 
 
-def test_looks_past_what_is_in_the_way(stage, umad):
-    pose = stage(DIAL, 4.4)
+def test_looks_past_an_obstacle(set_checkpoint, umad):
+    pose = set_checkpoint(DIAL, 4.4)
     x, y, z = umad.checkpoint(DIAL).position
     screen = Box((x, y + 0.25, z), (0.05, 0.01, 0.4))
-    stage.screens.append(stage.world.add_screen("board", screen, (0.4, 0.4, 0.4)))
-    found = CameraSensor(stage.world, seed=1).measure(DIAL, pose)
-    assert found.value == pytest.approx(4.4, abs=0.2)
+    set_checkpoint.screens.append(set_checkpoint.world.add_screen("board", screen, (0.4, 0.4, 0.4)))
+    measurement = CameraSensor(set_checkpoint.world, seed=1).measure(DIAL, pose)
+    assert measurement.value == pytest.approx(4.4, abs=0.2)
 
 
 @pytest.mark.parametrize("id", [DIAL, LEVEL, VALVE])
-def test_too_dark(stage, id):
-    pose = stage(id, 30.0 if id != DIAL else 3.0, light=0.02)
+def test_too_dark(set_checkpoint, id):
+    pose = set_checkpoint(id, 30.0 if id != DIAL else 3.0, light=0.02)
     with pytest.raises(MeasurementError, match="too dark"):
-        CameraSensor(stage.world).measure(id, pose)
+        CameraSensor(set_checkpoint.world).measure(id, pose)
 
 
 @pytest.mark.long
-def test_not_there(stage):
-    pose = stage(DIAL, 3.0, Placement((0.0, 0.0, -30.0)))
+def test_an_absent_checkpoint_is_not_found(set_checkpoint):
+    pose = set_checkpoint(DIAL, 3.0, Placement((0.0, 0.0, -30.0)))
     with pytest.raises(MeasurementError, match="pressure gauge 1: not found"):
-        CameraSensor(stage.world).measure(DIAL, pose)
+        CameraSensor(set_checkpoint.world).measure(DIAL, pose)
 
 
 @pytest.mark.long
-def test_all_hidden(stage, umad):
-    pose = stage(VALVE, 45.0)
+def test_a_hidden_checkpoint_is_not_read(set_checkpoint, umad):
+    pose = set_checkpoint(VALVE, 45.0)
     x, y, z = umad.checkpoint(VALVE).position
     board = Box((x + 0.15, y, z), (0.01, 1.2, 1.2))
-    stage.screens.append(stage.world.add_screen("board", board, (0.4, 0.4, 0.4)))
+    set_checkpoint.screens.append(set_checkpoint.world.add_screen("board", board, (0.4, 0.4, 0.4)))
     with pytest.raises(MeasurementError, match=r"valve R25: (not found|hidden|the camera)"):
-        CameraSensor(stage.world).measure(VALVE, pose)
+        CameraSensor(set_checkpoint.world).measure(VALVE, pose)
 
 
-def test_from_too_far_away(stage):
-    pose = stage(DIAL, 3.0)
+def test_from_too_far_away(set_checkpoint):
+    pose = set_checkpoint(DIAL, 3.0)
     away = BodyPose(pose.x, pose.y + 6.0, pose.z, pose.yaw)
     with pytest.raises(MeasurementError, match="can't get it in view"):
-        CameraSensor(stage.world).measure(DIAL, away)
+        CameraSensor(set_checkpoint.world).measure(DIAL, away)
 
 
-def test_unknown_checkpoint(stage):
+def test_unknown_checkpoint(set_checkpoint):
     with pytest.raises(NotFound):
-        CameraSensor(stage.world).measure(99, stage(DIAL, 3.0))
+        CameraSensor(set_checkpoint.world).measure(99, set_checkpoint(DIAL, 3.0))
 
 
-def test_same_seed_same_reading_and_pictures_are_told(stage):
-    pose = stage(DIAL, 6.1, light=0.6)
-    world, shots = stage.world, []
+def test_equal_seeds_give_equal_readings_and_pictures_are_reported(set_checkpoint):
+    pose = set_checkpoint(DIAL, 6.1, light=0.6)
+    world, shots = set_checkpoint.world, []
     before = world.joint_positions(("arm_yaw", "arm_elbow", "camera_pan"))
     world.on_shot = shots.append
     try:
@@ -150,10 +150,10 @@ def test_same_seed_same_reading_and_pictures_are_told(stage):
     assert first.value != other.value
     assert world.joint_positions(("arm_yaw", "arm_elbow", "camera_pan")) == before
     assert count >= 2
-    for one, two in zip(shots[:count], shots[count:], strict=False):
-        assert np.array_equal(one.pixels, two.pixels)
-        assert one.pixels.dtype == np.uint8
-        assert one.rotation.T @ one.rotation == pytest.approx(np.eye(3), abs=1e-9)
+    for first_shot, second_shot in zip(shots[:count], shots[count:], strict=False):
+        assert np.array_equal(first_shot.pixels, second_shot.pixels)
+        assert first_shot.pixels.dtype == np.uint8
+        assert first_shot.rotation.T @ first_shot.rotation == pytest.approx(np.eye(3), abs=1e-9)
 
 
 @pytest.mark.parametrize("kind", CheckpointKind)

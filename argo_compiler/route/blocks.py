@@ -1,9 +1,8 @@
-"""What can come next on a route, and how long it takes: for the checks of what solvers claim, which
-use none of the solvers' code.
+"""Blocks of a problem and the times between them, for checks that use none of the solvers' code.
 
-A block is what is made as one: a visit outside of rounds, or an outermost round with all that lies
-in it. How long a round takes depends on where the robot comes from and on the order of its members,
-but not on when, for its members have no time windows.
+A block is a visit outside of rounds, or an outermost round with all its members: a route does not
+interrupt it. The time of a round depends on where the robot comes from and on the order of its
+members, but not on when the round begins, as its members have no time windows.
 """
 
 from collections.abc import Callable
@@ -16,20 +15,21 @@ from numpy.typing import NDArray
 from argo_compiler.route.evaluation import after_rounds
 from argo_compiler.route.problem import NEVER, RouteProblem, Visit
 
-Places = frozenset[int]
-"""where the robot may be: it is reckoned with the worst"""
+Locations = frozenset[int]
+"""possible locations of the robot; the worst one counts for the next drive"""
 
-Reached = tuple[int, int, Places]
-"""the time and energy that it takes to where the robot is then"""
+Arrival = tuple[int, int, Locations]
+"""time and energy of a drive or a block, and the robot's possible locations at its end"""
 
 _MOST_MEMBERS = 7
-"""of a round whose orders are all gone through"""
+"""highest number of members of a round whose orders are all enumerated"""
 
 
 class Blocks:
-    """A problem's blocks, by their numbers; sets of blocks are the bits of a whole number.
+    """Blocks of a problem, by their numbers; sets of blocks are the bits of an integer.
 
-    `spend` is called before each step of work, and may raise what ends it.
+    Caches the executions of its blocks. `spend` is called before each step of work, and may raise
+    an exception to end it.
     """
 
     def __init__(self, problem: RouteProblem, spend: Callable[[], None]) -> None:
@@ -50,22 +50,25 @@ class Blocks:
             for first in precedence.sequence[:k]
         }
         self.exact = all(len(members) <= _MOST_MEMBERS for members in self.members)
-        """whether `made` tells all there is; else, of larger rounds, what takes less than any"""
-        self._orders = [self._legal_orders(members) for members in self.members]
-        made = [[problem.visits[v] for v in members] for members in self.members]
-        self.prize = [sum(visit.prize for visit in visits) for visits in made]
+        """true if `executions` returns all executions of each block; if false, it returns lower
+        bounds for large rounds"""
+        self._orders = [self._feasible_orders(members) for members in self.members]
+        visits_by_block = [[problem.visits[v] for v in members] for members in self.members]
+        self.prize = [sum(visit.prize for visit in visits) for visits in visits_by_block]
         self.mandatory = sum(
-            1 << b for b, visits in enumerate(made) if any(visit.mandatory for visit in visits)
+            1 << b
+            for b, visits in enumerate(visits_by_block)
+            if any(visit.mandatory for visit in visits)
         )
-        alone = zip(made, self._round, strict=True)
-        self.visit = [visits[0] if k is None else Visit("") for visits, k in alone]
-        """service and time window of a block that is no round"""
+        with_round = zip(visits_by_block, self._round, strict=True)
+        self.visit = [visits[0] if k is None else Visit("") for visits, k in with_round]
+        """visit, with service and time window, of each block; an empty one for rounds"""
         self.followers, self.needs = [0] * self.count, [0] * self.count
-        """for each block, those that can't be made before it, and those that have to be"""
-        self._find_order()
-        self._made: dict[tuple[int, Places], list[tuple[Reached, tuple[int, ...]]]] = {}
+        """for each block, the set of those that can't come before it, and of those that must"""
+        self._add_precedences()
+        self._executions: dict[tuple[int, Locations], list[tuple[Arrival, tuple[int, ...]]]] = {}
 
-    def _find_order(self) -> None:
+    def _add_precedences(self) -> None:
         block = {v: b for b, members in enumerate(self.members) for v in members}
         for precedence in self.problem.precedences:
             numbers = [block[v] for v in precedence.sequence]
@@ -75,99 +78,120 @@ class Blocks:
                         self.followers[first] |= 1 << second
                         self.needs[second] |= 1 << first if precedence.needed else 0
 
-    def may_follow(self, made: int, block: int) -> bool:
-        """Whether a block may be made after a set of others."""
+    def can_follow(self, made: int, block: int) -> bool:
+        """Return True if a block may come after a set of blocks."""
         return not made & (self.followers[block] | 1 << block) and not self.needs[block] & ~made
 
-    def way(self, places: Places, place: int) -> Reached | None:
-        """At a place, with the time and energy from where the robot is; None: there is no way."""
+    def drive(self, origins: Locations, goal: int) -> Arrival | None:
+        """Return the arrival after a drive to a location, or None if it is impossible.
+
+        A drive is impossible without a path, and if it needs more energy than a full battery has.
+        """
         self._spend()
         battery = self.problem.battery
-        time = max(int(self.problem.travel[origin, place]) for origin in places)
+        time = max(int(self.problem.travel[origin, goal]) for origin in origins)
         energy = 0
         if battery is not None:
-            energy = max(int(battery.energy[origin, place]) for origin in places)
+            energy = max(int(battery.energy[origin, goal]) for origin in origins)
         if time >= NEVER or (battery is not None and energy > battery.capacity):
             return None
-        return time, energy, frozenset([place])
+        return time, energy, frozenset([goal])
 
-    def made(self, block: int, places: Places) -> list[tuple[Reached, tuple[int, ...]]]:
-        """The ways to make a block from there: when it is over (when a visit is reached), the
-        energy used till then and where the robot is, with the order of the members."""
-        if (block, places) not in self._made:
-            self._made[block, places] = self._find_made(block, places)
-        return self._made[block, places]
+    def executions(self, block: int, origins: Locations) -> list[tuple[Arrival, tuple[int, ...]]]:
+        """Return the possible executions of a block, from the locations before it.
 
-    def _find_made(self, block: int, places: Places) -> list[tuple[Reached, tuple[int, ...]]]:
+        Each has the arrival at the end of a round, or at a visit before its service, and the order
+        of the members.
+        """
+        if (block, origins) not in self._executions:
+            self._executions[block, origins] = self._compute_executions(block, origins)
+        return self._executions[block, origins]
+
+    def _compute_executions(
+        self, block: int, origins: Locations
+    ) -> list[tuple[Arrival, tuple[int, ...]]]:
         number, members = self._round[block], self.members[block]
         if number is None:
-            there = self.way(places, members[0])
-            return [] if there is None or not self._orders[block] else [(there, members)]
+            arrival = self.drive(origins, members[0])
+            return [] if arrival is None or not self._orders[block] else [(arrival, members)]
         if len(members) > _MOST_MEMBERS:
-            least = self._least(members)
+            least = self._least_time(members)
             return [((least, 0, frozenset([v])), members) for v in members]
-        found: dict[Reached, tuple[int, ...]] = {}
+        order_by_arrival: dict[Arrival, tuple[int, ...]] = {}
         for order in self._orders[block]:
             self._spend()
-            there = after_rounds(self.problem, number, order, places)
-            if there is not None:
-                found.setdefault(there, order)
-        return list(found.items())
+            arrival = after_rounds(self.problem, number, order, origins)
+            if arrival is not None:
+                order_by_arrival.setdefault(arrival, order)
+        return list(order_by_arrival.items())
 
-    def _legal_orders(self, members: tuple[int, ...]) -> list[tuple[int, ...]]:
-        """The orders that keep to what comes before what, and the rounds inside together."""
+    def _feasible_orders(self, members: tuple[int, ...]) -> list[tuple[int, ...]]:
+        """Return the orders that meet the precedences and do not interrupt inner rounds.
+
+        Returns none for large rounds.
+        """
         if len(members) > _MOST_MEMBERS:
             return []
-        inside = [set(r.members) for r in self.problem.rounds if set(r.members) <= set(members)]
-        return [order for order in permutations(members) if self._legal(order, inside)]
+        inner = [set(r.members) for r in self.problem.rounds if set(r.members) <= set(members)]
+        return [order for order in permutations(members) if self._is_feasible(order, inner)]
 
-    def _legal(self, order: tuple[int, ...], inside: list[set[int]]) -> bool:
+    def _is_feasible(self, order: tuple[int, ...], inner: list[set[int]]) -> bool:
         self._spend()
         for k, second in enumerate(order):
             if any((second, first) in self._before for first in order[: k + 1]):
                 return False
-        places = [[k for k, v in enumerate(order) if v in group] for group in inside]
-        return all(there[-1] - there[0] + 1 == len(there) for there in places)
+        positions = [[k for k, v in enumerate(order) if v in group] for group in inner]
+        return all(group[-1] - group[0] + 1 == len(group) for group in positions)
 
-    def _least(self, members: tuple[int, ...]) -> int:
-        """One pass of all members, or the duration after which some round is left at the least."""
-        inside = [r for r in self.problem.rounds if set(r.members) <= set(members)]
+    def _least_time(self, members: tuple[int, ...]) -> int:
+        """Return a lower bound on the time of a large round.
+
+        It is the least time of one repetition, or the shortest duration that may interrupt it.
+        """
+        inner = [r for r in self.problem.rounds if set(r.members) <= set(members)]
         once = sum(
             int(np.delete(self.problem.travel[:, v], v).min()) + self.problem.visits[v].service
             for v in members
         )
-        return min([once, *(r.duration for r in inside if r.duration and not r.soft)])
+        return min([once, *(r.duration for r in inner if r.duration and not r.soft)])
 
     @cached_property
-    def between(self) -> NDArray[np.int64]:
-        """The least time from the end of each block to the end of each other, by way of a charger
-        or not, shape (n + 1, n + 1) with n blocks: the last row is the start, the last column the
-        end. NEVER: it can't follow."""
+    def least_times(self) -> NDArray[np.int64]:
+        """Least time from the end of each block to the end of each other, straight or by a charger.
+
+        Shape (n + 1, n + 1) with n blocks: the last row is the start, the last column the end.
+        NEVER: the block can't follow.
+        """
         n, first = self.count, (self.count, frozenset([self.problem.size]))
         times = np.full((n + 1, n + 1), NEVER, np.int64)
         waiting, seen = [first], {first}
         while waiting:
-            last, places = waiting.pop()
-            for added, there in self._departures(places):
-                home = self.way(there, self.problem.end)
-                if home and (last == n or not self.followers[last] & self.mandatory):
-                    times[last, n] = min(times[last, n], added + home[0])
+            last, locations = waiting.pop()
+            for added, origins in self._departures(locations):
+                arrival = self.drive(origins, self.problem.end)
+                if arrival and (last == n or not self.followers[last] & self.mandatory):
+                    times[last, n] = min(times[last, n], added + arrival[0])
                 for b in range(n):
                     if b == last or (last < n and self.followers[b] >> last & 1):
                         continue
-                    for (time, _, then), _ in self.made(b, there):
-                        takes = added + time + self.visit[b].service
-                        times[last, b] = min(times[last, b], takes)
-                        if (b, then) not in seen:
-                            seen.add((b, then))
-                            waiting.append((b, then))
+                    for (time, _, end), _ in self.executions(b, origins):
+                        block_time = added + time + self.visit[b].service
+                        times[last, b] = min(times[last, b], block_time)
+                        if (b, end) not in seen:
+                            seen.add((b, end))
+                            waiting.append((b, end))
         return times
 
-    def _departures(self, places: Places) -> list[tuple[int, Places]]:
-        """Where the robot may set off from, and after what time at least: from here, or charged."""
-        found = [(0, places)]
+    def _departures(self, locations: Locations) -> list[tuple[int, Locations]]:
+        """Return where the next drive may start, and the least time until then.
+
+        It starts at the robot's locations, or at a charger after a charge.
+        """
+        departures = [(0, locations)]
         for charger in range(len(self.problem.chargers)):
-            way = self.way(places, self.problem.charger(charger))
-            if way is not None and self.problem.battery is not None:
-                found.append((way[0] + self.problem.battery.overhead + way[1], way[2]))
-        return found
+            arrival = self.drive(locations, self.problem.charger(charger))
+            if arrival is not None and self.problem.battery is not None:
+                departures.append(
+                    (arrival[0] + self.problem.battery.overhead + arrival[1], arrival[2])
+                )
+        return departures

@@ -1,8 +1,8 @@
-"""What is sure of a suggestion, checked by means that share no code with the solvers.
+"""Checks of a suggestion's claims, by code that shares nothing with the solvers.
 
-The route is followed as `evaluation` defines it. That none is better is checked by going through
-all routes (`exhaustion`) where they are few, else by a relaxation (`relaxation`), which may be too
-weak to tell.
+The route is simulated as `evaluation` defines it. The claim that no route is better is checked by
+an enumeration of all routes (`enumeration`) if they are few, otherwise by a relaxation
+(`relaxation`), which may be too weak to decide.
 """
 
 import time
@@ -15,70 +15,70 @@ from math import inf
 
 from argo_compiler.base.errors import Invalid
 from argo_compiler.route.blocks import Blocks
+from argo_compiler.route.enumeration import Enumeration
 from argo_compiler.route.evaluation import evaluate
-from argo_compiler.route.exhaustion import Exhaustion
 from argo_compiler.route.problem import RouteProblem, Tour
 from argo_compiler.route.relaxation import Relaxation
 from argo_compiler.route.suggested import RouteSuggestion
 
-_TRIVIAL = "no route is worth more than all visits, or costs less than nothing"
-_PLAIN = 20_000
-"""steps of work that all routes may take without comparing any"""
+_TRIVIAL = "no route wins more than the prizes of all visits, or costs less than 0"
+_STEPS_WITHOUT_DOMINANCE = 20_000
+"""highest number of steps of work for the enumeration without dominance"""
 
 
 class Claim(StrEnum):
-    """What a suggestion says."""
+    """Claim of a suggestion."""
 
     ROUTE = "route"
-    """the route keeps to everything, and wins, costs and leaves out what is said"""
+    """the route is feasible, with the stated prize, cost and left out visits"""
     PRIZE_BOUND = "prize bound"
-    """no route wins more"""
+    """no route wins more than the prize bound"""
     BOUND = "bound"
-    """no route that wins the prize bound costs less"""
+    """no route that wins the prize bound costs less than the bound"""
     BEST = "best"
-    """no route wins more than is said of this one, or as much and costs less"""
+    """no route wins more than the stated prize of this one, or as much at a lower cost"""
     NONE = "none"
     """there is no route"""
     SUBSET = "infeasible subset"
-    """these requirements can't all be met, though each smaller set of them can"""
+    """the requirements cannot all be met, although each smaller set of them can"""
 
 
 class Judgement(StrEnum):
-    """What can be said of a claim."""
+    """Result of the check of a claim."""
 
     CONFIRMED = "confirmed"
     REFUTED = "refuted"
     OPEN = "open"
-    """not checked, or to no result"""
+    """not checked, or the check was not conclusive"""
 
 
 @dataclass(frozen=True)
 class CheckedClaim:
-    """A claim, and what can be said of it."""
+    """Claim with the result of its check."""
 
     claim: Claim
     judgement: Judgement
     why: str
     counterexample: Tour | None = None
-    """a route that shows that the claim is wrong"""
+    """route that refutes the claim"""
     shown: tuple[int, int] | None = None
-    """where a relaxation is too weak, what it shows: no route wins more than the first, and none
-    that wins what is claimed costs less than the second, in units"""
+    """bounds of a relaxation that is too weak: no route wins more than the first, and none that
+    wins the claimed prize costs less than the second, in units"""
 
 
 @dataclass(frozen=True)
 class Certificate:
-    """Each claim of a suggestion, and what can be said of it."""
+    """Claims of a suggestion with the results of their checks."""
 
     claims: tuple[CheckedClaim, ...]
 
-    def of(self, claim: Claim) -> CheckedClaim | None:
-        """None: the suggestion does not claim it."""
-        return next((one for one in self.claims if one.claim is claim), None)
+    def find(self, claim: Claim) -> CheckedClaim | None:
+        """Return a claim with its result, or None if the suggestion does not make the claim."""
+        return next((checked for checked in self.claims if checked.claim is claim), None)
 
     @property
     def refuted(self) -> tuple[CheckedClaim, ...]:
-        return tuple(one for one in self.claims if one.judgement is Judgement.REFUTED)
+        return tuple(c for c in self.claims if c.judgement is Judgement.REFUTED)
 
 
 def certify(
@@ -87,142 +87,153 @@ def certify(
     time_limit: float = 10.0,
     clock: Callable[[], float] = time.perf_counter,
 ) -> Certificate:
-    """Checks what the suggestion claims of the problem, for about that long (s)."""
+    """Check the claims of a suggestion, for about `time_limit` s."""
     check = _Check(problem, suggestion, clock, clock() + time_limit)
-    check.follow()
+    check.check_route()
     check.search()
     return check.certificate()
 
 
 class _OutOfTime(Exception):
-    """Ends a search."""
+    """Raised when a search has used up its time or work."""
 
 
 class _Check:
-    """Has state: what is said of each claim, and how long a search may take."""
+    """Check of one suggestion, which holds the result of each claim and the limits of a search."""
 
     def __init__(
         self,
         problem: RouteProblem,
-        made: RouteSuggestion,
+        suggestion: RouteSuggestion,
         clock: Callable[[], float],
         deadline: float,
     ) -> None:
-        self._problem, self._made = problem, made
+        self._problem, self._suggestion = problem, suggestion
         self._clock, self._deadline, self._until = clock, deadline, deadline
         self._work, self._most_work = 0, inf
-        self._done: dict[Claim, CheckedClaim] = {}
+        self._decided: dict[Claim, CheckedClaim] = {}
         self._why: dict[Claim, tuple[str, tuple[int, int] | None]] = {}
-        # What no route is said to be better than: a prize and, at that prize, a cost; None: there
-        # is said to be no route.
+        # The claim is that no route is better than this prize and, at the same prize, this cost;
+        # None: the claim is that there is no route.
         self._open: dict[Claim, tuple[int, int] | None] = {
-            Claim.PRIZE_BOUND: (made.prize_bound, 0),
-            Claim.BOUND: (made.prize_bound, made.bound),
+            Claim.PRIZE_BOUND: (suggestion.prize_bound, 0),
+            Claim.BOUND: (suggestion.prize_bound, suggestion.bound),
         }
-        if made.proven:
+        if suggestion.proven:
             self._open |= (
-                {Claim.NONE: None} if made.route is None else {Claim.BEST: (made.prize, made.cost)}
+                {Claim.NONE: None}
+                if suggestion.route is None
+                else {Claim.BEST: (suggestion.prize, suggestion.cost)}
             )
 
     def certificate(self) -> Certificate:
         for claim in list(self._open):
             why, shown = self._why.get(claim, ("there was too little time", None))
-            self._say(claim, Judgement.OPEN, why, shown=shown)
-        return Certificate(tuple(self._done[claim] for claim in Claim if claim in self._done))
+            self._decide(claim, Judgement.OPEN, why, shown=shown)
+        return Certificate(tuple(self._decided[claim] for claim in Claim if claim in self._decided))
 
-    def follow(self) -> None:
-        """Checks the route itself, and what it shows of the other claims."""
-        made = self._made
-        if made.infeasible_subset:
-            self._say(Claim.SUBSET, Judgement.OPEN, "requirements in words can't be tried")
-        if made.route is None:
+    def check_route(self) -> None:
+        """Check the route itself, and refute the other claims that it contradicts."""
+        suggestion = self._suggestion
+        if suggestion.infeasible_subset:
+            self._decide(Claim.SUBSET, Judgement.OPEN, "requirements in words can't be checked")
+        if suggestion.route is None:
             return
         try:
-            worth = evaluate(self._problem, made.route)
+            evaluation = evaluate(self._problem, suggestion.route)
         except Invalid as error:
-            self._say(Claim.ROUTE, Judgement.REFUTED, str(error))
+            self._decide(Claim.ROUTE, Judgement.REFUTED, str(error))
             return
-        faults = list(worth.violations)
-        prize, cost = worth.prize, worth.cost(self._problem.objective)
-        if (prize, cost) != (made.prize, made.cost):
-            faults.append(f"it wins {prize} and costs {cost}, not {made.prize} and {made.cost}")
-        if set(made.dropped) != set(range(self._problem.size)) - set(made.order):
-            faults.append("it leaves out something else than is said")
-        judgement = Judgement.REFUTED if faults else Judgement.CONFIRMED
-        self._say(Claim.ROUTE, judgement, "; ".join(faults) or "followed from visit to visit")
-        self._try(made.route)
+        errors = list(evaluation.violations)
+        prize, cost = evaluation.prize, evaluation.cost(self._problem.objective)
+        if (prize, cost) != (suggestion.prize, suggestion.cost):
+            errors.append(
+                f"it wins {prize} and costs {cost}, not {suggestion.prize} and {suggestion.cost}"
+            )
+        if set(suggestion.dropped) != set(range(self._problem.size)) - set(suggestion.order):
+            errors.append("it leaves out other visits than it states")
+        judgement = Judgement.REFUTED if errors else Judgement.CONFIRMED
+        self._decide(Claim.ROUTE, judgement, "; ".join(errors) or "followed from visit to visit")
+        self._refute_by(suggestion.route)
 
     def search(self) -> None:
-        """Looks for better routes, and for reasons why there are none."""
-        self._bounded(sum(v.prize for v in self._problem.visits), lambda *_: 0, _TRIVIAL)
+        """Search for better routes, and for proofs that there are none."""
+        self._confirm_by_bounds(sum(v.prize for v in self._problem.visits), lambda *_: 0, _TRIVIAL)
         self._why.clear()
         with suppress(_OutOfTime):
             blocks = Blocks(self._problem, self._spend)
-            self._exhaust(blocks, same_place=False)
+            self._enumerate(blocks, use_dominance=False)
             self._until = (self._clock() + self._deadline) / 2
             with suppress(_OutOfTime):
                 self._relax(blocks)
             self._until = self._deadline
-            self._exhaust(blocks, same_place=True)
+            self._enumerate(blocks, use_dominance=True)
 
     def _spend(self) -> None:
         self._work += 1
         if self._work > self._most_work or (self._work % 256 == 0 and self._clock() > self._until):
             raise _OutOfTime
 
-    def _exhaust(self, blocks: Blocks, *, same_place: bool) -> None:
-        """Goes through all routes; without comparing any, as long as they are few."""
+    def _enumerate(self, blocks: Blocks, *, use_dominance: bool) -> None:
+        """Enumerate all routes; without dominance, only within a limit of work."""
         if not self._open or not blocks.exact:
             return
-        search, through = Exhaustion(blocks, _weakest(self._open), self._spend), False
-        self._most_work = inf if same_place else self._work + _PLAIN
+        enumeration, is_complete = Enumeration(blocks, _weakest(self._open), self._spend), False
+        self._most_work = inf if use_dominance else self._work + _STEPS_WITHOUT_DOMINANCE
         with suppress(_OutOfTime):
-            search.run(same_place=same_place)
-            through = True
+            enumeration.run(use_dominance=use_dominance)
+            is_complete = True
         self._most_work = inf
-        if search.best is not None:
-            self._try(search.best)
-        for claim in list(self._open) if through else []:
-            why = f"all routes gone through, by {search.count} beginnings"
-            self._say(claim, Judgement.CONFIRMED, why)
+        if enumeration.best is not None:
+            self._refute_by(enumeration.best)
+        for claim in list(self._open) if is_complete else []:
+            why = f"all routes enumerated, with {enumeration.count} partial routes"
+            self._decide(claim, Judgement.CONFIRMED, why)
 
     def _relax(self, blocks: Blocks) -> None:
         if not self._open:
             return
         relaxation = Relaxation(blocks, self._clock, self._until)
-        prize = relaxation.most_prize(min(than[0] if than else -1 for than in self._open.values()))
+        prize = relaxation.prize_bound(
+            min(claimed[0] if claimed else -1 for claimed in self._open.values())
+        )
         if prize is not None:
-            self._bounded(prize, cache(relaxation.least_cost), "a relaxation shows it")
+            self._confirm_by_bounds(prize, cache(relaxation.cost_bound), "a relaxation shows it")
             return
         for claim in list(self._open):
-            self._say(claim, Judgement.CONFIRMED, "even a relaxation has no route")
+            self._decide(claim, Judgement.CONFIRMED, "even a relaxation has no route")
 
-    def _bounded(self, most: int, least: Callable[[int, int], int | None], why: str) -> None:
-        """Confirms what follows if no route wins more than that, and none that wins a prize costs
-        less than its least; None: none wins it."""
-        for claim, than in list(self._open.items()):
-            if than is None:
+    def _confirm_by_bounds(
+        self, prize_bound: int, cost_bound: Callable[[int, int], int | None], why: str
+    ) -> None:
+        """Confirm the claims that follow from bounds, and record why the others don't.
+
+        `cost_bound` takes a prize and the claimed cost, and returns a lower bound on the cost of
+        routes that win that prize, or None if none wins it.
+        """
+        for claim, claimed in list(self._open.items()):
+            if claimed is None:
                 self._why[claim] = "a relaxation has a route", None
                 continue
-            cost = 0 if claim is Claim.PRIZE_BOUND else least(*than)
-            cheaper = cost is not None and cost < than[1]
-            if cheaper or (claim is not Claim.BOUND and most > than[0]):
-                self._why[claim] = "a relaxation is too weak", (most, cost or 0)
+            cost = 0 if claim is Claim.PRIZE_BOUND else cost_bound(*claimed)
+            may_be_cheaper = cost is not None and cost < claimed[1]
+            if may_be_cheaper or (claim is not Claim.BOUND and prize_bound > claimed[0]):
+                self._why[claim] = "a relaxation is too weak", (prize_bound, cost or 0)
             else:
-                self._say(claim, Judgement.CONFIRMED, why)
+                self._decide(claim, Judgement.CONFIRMED, why)
 
-    def _try(self, route: Tour) -> None:
-        """Refutes what the route shows to be wrong."""
-        worth = evaluate(self._problem, route)
-        prize, cost = worth.prize, worth.cost(self._problem.objective)
-        for claim, than in list(self._open.items()) if worth.feasible else []:
-            if than is None or (-prize, cost) < (-than[0], than[1]):
-                # Of the bound nothing is known if the prize bound is wrong.
-                other = claim is Claim.BOUND and than is not None and prize > than[0]
-                judgement = Judgement.OPEN if other else Judgement.REFUTED
-                self._say(claim, judgement, f"a route wins {prize} and costs {cost}", route)
+    def _refute_by(self, route: Tour) -> None:
+        """Refute the claims that a route contradicts."""
+        evaluation = evaluate(self._problem, route)
+        prize, cost = evaluation.prize, evaluation.cost(self._problem.objective)
+        for claim, claimed in list(self._open.items()) if evaluation.feasible else []:
+            if claimed is None or (-prize, cost) < (-claimed[0], claimed[1]):
+                # If the prize bound is wrong, the bound on the cost remains undecided.
+                wins_more = claim is Claim.BOUND and claimed is not None and prize > claimed[0]
+                judgement = Judgement.OPEN if wins_more else Judgement.REFUTED
+                self._decide(claim, judgement, f"a route wins {prize} and costs {cost}", route)
 
-    def _say(
+    def _decide(
         self,
         claim: Claim,
         judgement: Judgement,
@@ -231,12 +242,15 @@ class _Check:
         shown: tuple[int, int] | None = None,
     ) -> None:
         self._open.pop(claim, None)
-        self._done[claim] = CheckedClaim(claim, judgement, why, counterexample, shown)
+        self._decided[claim] = CheckedClaim(claim, judgement, why, counterexample, shown)
 
 
 def _weakest(claims: dict[Claim, tuple[int, int] | None]) -> tuple[int, int] | None:
-    """What the best route is better than if any claim is wrong."""
-    worths = [than for than in claims.values() if than is not None]
-    if len(worths) < len(claims):
+    """Return the worst claimed prize and cost: if any claim is wrong, a route is better than these.
+
+    Returns None if one claim is that there is no route.
+    """
+    values = [claimed for claimed in claims.values() if claimed is not None]
+    if len(values) < len(claims):
         return None
-    return min(worths, key=lambda than: (than[0], -than[1]))
+    return min(values, key=lambda claimed: (claimed[0], -claimed[1]))

@@ -21,11 +21,11 @@ from argo_compiler.route import (
 from argo_compiler.route import certificate as certificate_module
 from argo_compiler.route.blocks import Blocks
 from argo_compiler.route.certificate import Certificate, Claim, Judgement, certify
-from argo_compiler.route.exhaustion import Exhaustion
+from argo_compiler.route.enumeration import Enumeration
 from argo_compiler.route.relaxation import Relaxation
 from tests.argo_compiler.route.random_problems import random_problem
 
-CHECKING = {"blocks", "exhaustion", "relaxation", "certificate"}
+CHECKING = {"blocks", "enumeration", "relaxation", "certificate"}
 MAY_USE = CHECKING | {"problem", "evaluation", "suggested"}
 
 
@@ -43,7 +43,7 @@ def check(problem: RouteProblem, suggestion: RouteSuggestion) -> Certificate:
 
 
 def judged(certificate: Certificate, claim: Claim) -> Judgement:
-    found = certificate.of(claim)
+    found = certificate.find(claim)
     assert found is not None
     return found.judgement
 
@@ -54,7 +54,7 @@ def test_true_claims_are_confirmed(part: int) -> None:
         certificate = check(problem, suggestion)
         assert {one.judgement for one in certificate.claims} == {Judgement.CONFIRMED}
         what = Claim.NONE if suggestion.route is None else Claim.BEST
-        assert certificate.of(what)
+        assert certificate.find(what)
         assert not certificate.refuted
 
 
@@ -71,7 +71,7 @@ def test_wrong_claims_are_refuted_by_routes_that_show_it() -> None:
             Claim.ROUTE: replace(best, cost=best.cost - 1),
         }
         for claim, suggestion in wrong.items():
-            made = check(problem, suggestion).of(claim)
+            made = check(problem, suggestion).find(claim)
             assert made is not None
             assert made.judgement is Judgement.REFUTED
             if claim is not Claim.ROUTE:
@@ -116,11 +116,11 @@ def test_no_search_finds_more_and_no_relaxation_shows_less(part: int) -> None:
     for seed in range(400 + 30 * part, 420 + 30 * part):
         problem = random_problem(np.random.default_rng(seed), 5)
         blocks = Blocks(problem, lambda: None)
-        every, fewer = Exhaustion(blocks, None, int), Exhaustion(blocks, None, int)
-        every.run(same_place=False)
-        fewer.run(same_place=True)
+        every, fewer = Enumeration(blocks, None, int), Enumeration(blocks, None, int)
+        every.run(use_dominance=False)
+        fewer.run(use_dominance=True)
         relaxation = Relaxation(blocks, lambda: 0.0, 1.0)
-        prize = relaxation.most_prize(-1)
+        prize = relaxation.prize_bound(-1)
         if every.best is None:
             assert fewer.best is None
             tight += prize is None
@@ -133,7 +133,7 @@ def test_no_search_finds_more_and_no_relaxation_shows_less(part: int) -> None:
         assert (best.prize, cost) == (same.prize, same.cost(problem.objective))
         assert prize is not None
         assert prize >= best.prize
-        least = relaxation.least_cost(best.prize, NEVER)
+        least = relaxation.cost_bound(best.prize, NEVER)
         assert least is not None
         assert least <= cost
         tight += (prize, least) == (best.prize, cost)
@@ -175,7 +175,7 @@ def test_rounds_entered_from_elsewhere_may_take_less_in_an_order_that_is_longer_
     wrong = RouteSuggestion(Tour((1, 0, 2)), 0, 0, 108, 108, proven=True)
     certificate = check(problem, wrong)
     assert judged(certificate, Claim.ROUTE) is Judgement.CONFIRMED
-    refuted = certificate.of(Claim.BEST)
+    refuted = certificate.find(Claim.BEST)
     assert refuted in certificate.refuted
     assert refuted is not None
     assert refuted.counterexample == Tour((0, 1, 2))

@@ -144,7 +144,7 @@ class ConnectionWatch:
 
     def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
         here = (pose.x, pose.y, pose.z)
-        if not self._network.connected(pose):
+        if not self._network.is_connected(pose):
             self._missed += 1
             if self._missed == self._limit:
                 silent = self._limit * self.period

@@ -1,4 +1,4 @@
-"""What surrounds the robot besides solids: sources of gas, heat and sound, and their fields."""
+"""Surroundings of the robot apart from solids: sources of gas, heat and sound, and their fields."""
 
 from argo_env.surroundings.surroundings import (
     Alarm,

@@ -1,8 +1,9 @@
-"""Heat: how warm the surfaces of the site are.
+"""Temperatures of the site's surfaces.
 
-A surface takes up the sun by the cosine of its angle to it (Lambert), so its excess over the air is
-g max(0, n·s) with a gain g for each material. The gains are our choice: a painted vessel that faces
-a clear sky's sun is 25 K warmer than the air. A running pump's motor is 40 K warmer than the air.
+A surface absorbs sunlight in proportion to the cosine of the angle between its normal n and the sun
+s (Lambert), so it is g max(0, n·s) warmer than the air, with a gain g for each material. The gains
+are a choice of this project: a painted vessel that faces the sun in a clear sky is 25 K warmer than
+the air. The motor of a running pump is 40 K warmer than the air.
 """
 
 import numpy as np
@@ -22,23 +23,29 @@ SUN_GAIN: dict[Role, float] = {
     Role.STRUCTURE: 15.0,
     Role.DOCK: 15.0,
 }
-"""K, of a surface that faces the sun"""
+"""K by which a surface that faces the sun is warmer than the air"""
 OWN_HEAT: dict[Role, float] = {Role.PUMP: 40.0}
-"""K over the air, of what runs"""
+"""K by which running machines are warmer than the air"""
 SKY_DEFICIT = 25.0
-"""K that the sky is colder than the air"""
+"""K by which the sky is colder than the air"""
 
 
 def temperatures(
     roles: list[Role | None], normals: NDArray[np.float64], weather: Weather
 ) -> NDArray[np.float64]:
-    """°C of surfaces with the given roles (None: the sky) and outward normals, shape (n, 3)."""
+    """Return the temperatures (°C) of surfaces with these roles and outward normals, shape (n, 3).
+
+    A role of None is the sky.
+    """
     facing = np.maximum(normals @ np.array(weather.sun), 0.0)
     gain = np.array([0.0 if r is None else SUN_GAIN[r] for r in roles])
     own = np.array([-SKY_DEFICIT if r is None else OWN_HEAT.get(r, 0.0) for r in roles])
     return np.asarray(weather.temperature + own + gain * facing)
 
 
-def warmest(role: Role | None, air: float) -> float:
-    """°C that a sound surface can have at most when the air has `air` °C."""
+def highest_temperature(role: Role | None, air: float) -> float:
+    """Return the highest temperature (°C) of a surface without a fault, with air of `air` °C.
+
+    A role of None is the sky, for which it is the temperature of the air.
+    """
     return air if role is None else air + SUN_GAIN[role] + OWN_HEAT.get(role, 0.0)

@@ -1,6 +1,8 @@
-"""The surroundings of the robot: the sources of gas, heat and sound out of the ordinary that are
-there now, since when, the weather, and where the wireless network has a signal. What they send out
-is in the modules beside this one; how the robot senses it, in `argo_env.sensing.signals`."""
+"""Surroundings of the robot: abnormal sources of gas, heat and sound, the weather, and the network.
+
+The fields of the sources are in the other modules of this package; how the robot senses them, in
+`argo_env.sensing.signals`.
+"""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -13,7 +15,7 @@ from argo_env.site.spec import Rect
 
 
 class PumpFault(StrEnum):
-    """What can be wrong with a running pump."""
+    """Fault of a running pump."""
 
     BEARING = "bearing"
     """a spall in the outer race: a burst of ringing each time that a ball rolls over it"""
@@ -23,35 +25,41 @@ class PumpFault(StrEnum):
 
 @dataclass(frozen=True)
 class GasLeak:
-    """Natural gas that escapes at `place` (m) with `rate` (kg/s), and hisses."""
+    """Leak of natural gas, which hisses."""
 
     place: Vector
+    """m"""
     rate: float = 0.02
+    """kg/s"""
 
 
 @dataclass(frozen=True)
 class HotSpot:
-    """A glowing ball about `place` (m) of `radius` (m) and `temperature` (°C), half sunk into what
-    it lies on."""
+    """Hot spot: a glowing ball, half sunk into the surface that it lies on."""
 
     place: Vector
+    """m, middle of the ball"""
     radius: float = 0.15
+    """m"""
     temperature: float = 90.0
+    """°C"""
 
 
 @dataclass(frozen=True)
 class PumpSound:
-    """The pump of the site with the name `pump` runs with a fault. All other pumps run well."""
+    """Sound of a pump that runs with a fault; pumps without such a source run well."""
 
     pump: str
+    """name of the pump"""
     fault: PumpFault = PumpFault.BEARING
 
 
 @dataclass(frozen=True)
 class Alarm:
-    """The general platform alarm sounds, from loudspeakers all over the site, with `level` (dB)."""
+    """General platform alarm, from loudspeakers all over the site."""
 
     level: float = 85.0
+    """dB"""
 
 
 Source = GasLeak | HotSpot | PumpSound | Alarm
@@ -62,48 +70,50 @@ class Weather:
     """The weather, the same all over the site."""
 
     wind: tuple[float, float] = (0.8, 0.4)
-    """m/s along x and y, where it blows to"""
+    """m/s along x and y: velocity of the air"""
     diffusivity: float = 0.3
     """m²/s, of the eddies"""
     temperature: float = 20.0
     """°C, of the air"""
     sun: Vector = (-0.5, -0.5, 0.707)
-    """a vector of length 1 towards the sun, or of length 0 at night"""
+    """vector of length 1 towards the sun, or of length 0 at night"""
 
 
 @dataclass(frozen=True)
 class Release:
-    """Gas that has escaped from a leak between `start` and `end` (s); None: it goes on."""
+    """Gas that escapes, or has escaped, from a leak."""
 
     leak: GasLeak
     start: float
+    """s"""
     end: float | None = None
+    """s; None if gas still escapes"""
 
 
 class Surroundings:
-    """Holds the sources that are there now. Gas that has escaped stays until it has dispersed."""
+    """Sources that are active now, with the gas that has escaped from earlier leaks."""
 
     def __init__(self, site: Site, weather: Weather | None = None) -> None:
         self.site = site
         self.weather = weather or Weather()
-        self._there: list[tuple[Source, float]] = []  # and since when
+        self._active: list[tuple[Source, float]] = []  # and since when
         self._ended: list[Release] = []
 
     @property
     def sources(self) -> tuple[Source, ...]:
-        """The sources that are there now, in the order in which they came; equal ones add up."""
-        return tuple(source for source, _ in self._there)
+        """Sources that are active now, in the order in which they began; equal ones add up."""
+        return tuple(source for source, _ in self._active)
 
     @property
     def releases(self) -> tuple[Release, ...]:
-        """All gas that escapes or has escaped."""
-        now = [Release(s, t) for s, t in self._there if isinstance(s, GasLeak)]
+        """Gas that escapes or has escaped."""
+        now = [Release(s, t) for s, t in self._active if isinstance(s, GasLeak)]
         return (*self._ended, *now)
 
     def add(self, source: Source, now: float = 0.0) -> None:
-        """From time `now` (s) on the source is there, beside equal ones that are there already.
+        """Add a source that is active from time `now` (s) on, in addition to equal sources.
 
-        Raises ArgoError for a pump that the site does not have.
+        Raises NotFound if the site does not have the source's pump.
         """
         if isinstance(source, PumpSound):
             known = [pump.name for floor in self.site.spec.floors for pump in floor.pumps]
@@ -112,30 +122,32 @@ class Surroundings:
                 raise NotFound(
                     f"site {self.site.name} has no pump `{source.pump}`; there are: {names}"
                 )
-        self._there.append((source, now))
+        self._active.append((source, now))
 
     def remove(self, source: Source, now: float = 0.0) -> None:
-        """From time `now` (s) on the source is gone, of equal ones that which came first.
+        """Remove a source at time `now` (s); of equal sources, the one that began first.
 
-        Raises NotFound if it is not there.
+        Raises NotFound if there is no such source.
         """
-        first = next((k for k, (there, _) in enumerate(self._there) if there == source), None)
+        first = next((k for k, (active, _) in enumerate(self._active) if active == source), None)
         if first is None:
             raise NotFound(f"site {self.site.name} has no such source: {source}")
-        _, start = self._there.pop(first)
+        _, start = self._active.pop(first)
         if isinstance(source, GasLeak):
             self._ended.append(Release(source, start, now))
 
 
 @dataclass(frozen=True)
 class Shadow:
-    """A part of the site without a signal; what is None does not limit it."""
+    """Part of the site without a radio signal."""
 
     rect: Rect | None = None
+    """m, [x0, y0, x1, y1]; None: not limited in x and y"""
     floor: int | None = None
+    """number of the floor; None: all floors"""
 
-    def holds(self, pose: BodyPose, site: Site) -> bool:
-        """Whether a robot at `pose` is in it."""
+    def contains(self, pose: BodyPose, site: Site) -> bool:
+        """Return True if a robot at `pose` is in this part."""
         if self.floor is not None and site.floor_at(pose.z) != self.floor:
             return False
         if self.rect is None:
@@ -145,12 +157,12 @@ class Shadow:
 
 
 class RadioNetwork:
-    """The network of a site. Holds the shadows that are there now."""
+    """Wireless network of a site, with the parts that have no signal at present."""
 
     def __init__(self, site: Site) -> None:
         self._site = site
         self.shadows: list[Shadow] = []
 
-    def connected(self, pose: BodyPose) -> bool:
-        """Whether a robot at `pose` has a connection."""
-        return not any(shadow.holds(pose, self._site) for shadow in self.shadows)
+    def is_connected(self, pose: BodyPose) -> bool:
+        """Return True if a robot at `pose` has a connection."""
+        return not any(shadow.contains(pose, self._site) for shadow in self.shadows)

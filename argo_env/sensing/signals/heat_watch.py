@@ -18,7 +18,7 @@ from argo_env.sensing.signals.site_map import SiteMap
 from argo_env.sensing.watch import Detection
 from argo_env.site.shapes import Role, Vector
 from argo_env.surroundings import HotSpot, Surroundings
-from argo_env.surroundings.heat import temperatures, warmest
+from argo_env.surroundings.heat import highest_temperature, temperatures
 from argo_env.world.world import World
 
 WIDTH, HEIGHT = 80, 60
@@ -239,7 +239,7 @@ def find_spots(image: ThermalImage, site_map: SiteMap, air: float) -> tuple[Spot
         depths, solids = depths[: len(probed)], solids[: len(probed)]
         if not np.isfinite(depths).any():
             continue
-        allowed = max(warmest(site_map.element(k).role, air) for k in solids_hit)
+        allowed = max(highest_temperature(site_map.element(k).role, air) for k in solids_hit)
         if float(np.median(warmth[probed])) <= allowed + MARGIN:
             continue
         nearest = int(np.argmin(depths))

@@ -424,5 +424,5 @@ def test_a_checkpoint_that_was_moved_twice_goes_back_in_two_steps(stage):
 
 def test_a_connection_is_back_when_nothing_shadows_it(stage):
     lost = fault("connection_loss", 1, 5), fault("connection_loss", 3, 8)
-    seen = along(stage, lambda s: s.network.connected(POSE), (0, 4, 6, 8), *lost)
+    seen = along(stage, lambda s: s.network.is_connected(POSE), (0, 4, 6, 8), *lost)
     assert seen == [True, False, False, True]

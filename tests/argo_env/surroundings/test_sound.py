@@ -1,4 +1,4 @@
-"""Ultrasound, the sound of pumps and of the alarm, and heat."""
+"""Leaks, pumps and the alarm have their levels and spectra, and surfaces their temperatures."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from argo_env.site.shapes import Role
 from argo_env.surroundings import GasLeak, PumpFault, Weather
-from argo_env.surroundings.heat import temperatures, warmest
+from argo_env.surroundings.heat import highest_temperature, temperatures
 from argo_env.surroundings.sound import (
     ABSORPTION,
     ALARM_TONE,
@@ -15,7 +15,7 @@ from argo_env.surroundings.sound import (
     LENGTH,
     RATE,
     REFERENCE,
-    SHADOW,
+    SHADOW_LOSS,
     alarm_sound,
     leak_level,
     pump_sound,
@@ -32,11 +32,11 @@ def level(samples):
 
 @settings(deadline=None, max_examples=examples(50))
 @given(st.floats(0.2, 20.0), st.floats(0.001, 0.2))
-def test_a_hiss_falls_by_6_db_with_each_doubling_and_by_what_the_air_takes(r, rate):
+def test_a_hiss_falls_by_6_db_with_each_doubling_and_by_absorption(r, rate):
     leak = GasLeak((0, 0, 0), rate)
     fall = leak_level(leak, r, False) - leak_level(leak, 2 * r, False)
     assert fall == pytest.approx(20 * np.log10(2) + ABSORPTION * r)
-    assert leak_level(leak, r, False) - leak_level(leak, r, True) == pytest.approx(SHADOW)
+    assert leak_level(leak, r, False) - leak_level(leak, r, True) == pytest.approx(SHADOW_LOSS)
     assert leak_level(GasLeak((0, 0, 0), 2 * rate), r, False) > leak_level(leak, r, False)
 
 
@@ -48,7 +48,7 @@ def test_a_pump_hums_at_its_blades_passing(pump):
     assert level(sound) == pytest.approx(85.0, abs=3.0)
     assert np.argmax(power) * RATE / LENGTH == pytest.approx(6 * shaft_rate(pump))
     assert np.array_equal(sound, pump_sound(pump, None))
-    # No seam: the step over the end is no greater than any within.
+    # The step from the end back to the start is not greater than the steps within.
     steps = np.abs(np.diff(sound))
     assert abs(sound[0] - sound[-1]) <= steps.max()
 
@@ -56,11 +56,11 @@ def test_a_pump_hums_at_its_blades_passing(pump):
 @settings(deadline=None, max_examples=examples(10))
 @given(PUMPS, st.sampled_from(PumpFault))
 def test_a_fault_adds_to_high_frequencies_and_leaves_the_lines(pump, fault):
-    well, ill = (np.abs(np.fft.rfft(pump_sound(pump, f))) ** 2 for f in (None, fault))
+    normal, faulty = (np.abs(np.fft.rfft(pump_sound(pump, f))) ** 2 for f in (None, fault))
     line = round(6 * shaft_rate(pump) * LENGTH / RATE)
-    assert ill[line] == pytest.approx(well[line], rel=0.05)
+    assert faulty[line] == pytest.approx(normal[line], rel=0.05)
     high = slice(2000 * LENGTH // RATE, 7000 * LENGTH // RATE)
-    assert ill[high].sum() > 2 * well[high].sum()
+    assert faulty[high].sum() > 2 * normal[high].sum()
 
 
 @pytest.mark.parametrize("fault", [None, *PumpFault])
@@ -70,8 +70,8 @@ def test_only_a_bearing_rings_with_its_balls(fault):
     spectrum[: 2500 * LENGTH // RATE] = 0
     envelope = np.abs(np.fft.rfft(np.fft.irfft(spectrum, LENGTH) ** 2))
     rate = BEARING_ORDER * shaft_rate("P-1") * LENGTH / RATE
-    swell = envelope[round(0.97 * rate) : round(1.03 * rate) + 1].max() / envelope[0]
-    assert (swell > 0.4) == (fault is PumpFault.BEARING)
+    modulation = envelope[round(0.97 * rate) : round(1.03 * rate) + 1].max() / envelope[0]
+    assert (modulation > 0.4) == (fault is PumpFault.BEARING)
 
 
 def test_the_alarm_sounds_a_second_and_is_silent_a_second():
@@ -90,7 +90,7 @@ def test_no_sound_surface_is_warmer_than_its_role_allows(role, tilt, turn, air):
     normal = [np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)]
     weather = Weather(temperature=air)
     warm = temperatures([role], np.array([normal]), weather)[0]
-    assert warm <= warmest(role, air) + 1e-2
+    assert warm <= highest_temperature(role, air) + 1e-2
     night = temperatures([role], np.array([normal]), Weather(temperature=air, sun=(0, 0, 0)))[0]
     assert night <= warm
 

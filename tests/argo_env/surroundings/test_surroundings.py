@@ -1,4 +1,4 @@
-"""What the surroundings hold."""
+"""The surroundings hold the active sources, and gas that has escaped."""
 
 import pytest
 
@@ -10,38 +10,38 @@ LEAK = GasLeak((1, 2, 3))
 
 
 def test_sources_come_and_go(umad):
-    around = Surroundings(umad)
+    surroundings = Surroundings(umad)
     spot = HotSpot((0, 0, 1))
-    around.add(spot, 3.0)
-    around.add(Alarm(), 4.0)
-    around.add(spot, 9.0)
-    assert around.sources == (spot, Alarm(), spot)
-    around.remove(Alarm(), 5.0)
-    around.remove(spot, 5.5)
-    assert around.sources == (spot,)
+    surroundings.add(spot, 3.0)
+    surroundings.add(Alarm(), 4.0)
+    surroundings.add(spot, 9.0)
+    assert surroundings.sources == (spot, Alarm(), spot)
+    surroundings.remove(Alarm(), 5.0)
+    surroundings.remove(spot, 5.5)
+    assert surroundings.sources == (spot,)
     with pytest.raises(NotFound):
-        around.remove(Alarm(), 6.0)
+        surroundings.remove(Alarm(), 6.0)
 
 
 def test_gas_stays_after_its_leak_is_closed(umad):
-    around = Surroundings(umad)
-    around.add(LEAK, 10.0)
-    assert around.releases == (Release(LEAK, 10.0),)
-    around.remove(LEAK, 20.0)
-    around.add(LEAK, 30.0)
-    assert around.releases == (Release(LEAK, 10.0, 20.0), Release(LEAK, 30.0))
+    surroundings = Surroundings(umad)
+    surroundings.add(LEAK, 10.0)
+    assert surroundings.releases == (Release(LEAK, 10.0),)
+    surroundings.remove(LEAK, 20.0)
+    surroundings.add(LEAK, 30.0)
+    assert surroundings.releases == (Release(LEAK, 10.0, 20.0), Release(LEAK, 30.0))
 
 
-def test_two_equal_leaks_are_two(umad):
-    around = Surroundings(umad)
-    around.add(LEAK, 10.0)
-    around.add(LEAK, 20.0)
-    around.remove(LEAK, 30.0)
-    assert around.sources == (LEAK,)
-    around.remove(LEAK, 40.0)
-    assert around.releases == (Release(LEAK, 10.0, 30.0), Release(LEAK, 20.0, 40.0))
+def test_two_equal_leaks_add_up(umad):
+    surroundings = Surroundings(umad)
+    surroundings.add(LEAK, 10.0)
+    surroundings.add(LEAK, 20.0)
+    surroundings.remove(LEAK, 30.0)
+    assert surroundings.sources == (LEAK,)
+    surroundings.remove(LEAK, 40.0)
+    assert surroundings.releases == (Release(LEAK, 10.0, 30.0), Release(LEAK, 20.0, 40.0))
 
 
-def test_a_pump_that_is_not_there_is_refused_with_the_ones_that_are(umad):
+def test_the_error_for_an_unknown_pump_names_the_pumps(umad):
     with pytest.raises(ArgoError, match="no pump `P-9`; there are: pump P-301, "):
         Surroundings(umad).add(PumpSound("P-9"))

@@ -23,7 +23,7 @@ from importlib import resources
 from pathlib import Path
 
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound
-from argo_compiler.files.writing import write_whole
+from argo_compiler.files.atomic_write import write_atomically
 from argo_compiler.route import RouteProblem, RouteSuggestion, Tour, suggest_route
 from argo_compiler.route.evaluation import evaluate
 from argo_env.envs.route_instance import DOCK
@@ -145,7 +145,7 @@ def improve(
             print(f"{tests.name} {number}: {_change(one, found[-1])}", file=sys.stderr, flush=True)
     lines = ",\n".join(json.dumps(asdict(one)) for one in found)
     text = f'{{"checksum": {json.dumps(checksum)}, "instances": [\n{lines}\n]}}\n'
-    write_whole(file, text)
+    write_atomically(file, text)
 
 
 def routes_of(results: Sequence[Path], name: str) -> dict[int, list[Route]]:

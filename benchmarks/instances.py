@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.base.errors import ArgoError
-from argo_compiler.files.reading import read_text
+from argo_compiler.files.loading import read_text
 from argo_compiler.route.problem import (
     NEVER,
     Objective,

@@ -1,1 +1,1 @@
-"""Mission files: read with errors in place, brought up to date, and written whole."""
+"""Mission files and other files: loading with located errors, migration, and atomic writing."""

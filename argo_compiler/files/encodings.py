@@ -1,20 +1,23 @@
-"""Which encoding a text is in, where its bytes leave no doubt."""
+"""Detection of a text's encoding from its bytes."""
 
 import codecs
 
 _MARKS = {
-    # The longer first: UTF-32 begins as UTF-16 does.
+    # The longer mark first: that of UTF-32 begins like that of UTF-16.
     codecs.BOM_UTF32_LE: "utf-32-le",
     codecs.BOM_UTF32_BE: "utf-32-be",
     codecs.BOM_UTF16_LE: "utf-16-le",
     codecs.BOM_UTF16_BE: "utf-16-be",
 }
-_PLAIN = 0.9  # share of characters from Latin-1 that shows UTF-16 without a mark
+_MIN_LATIN_SHARE = 0.9  # share of Latin-1 characters that shows UTF-16 without a mark
 
 
-def encoding_of(content: bytes) -> str | None:
-    """`utf-8`, which other 8-bit encodings are taken for too, `utf-16-le`, `utf-16-be`,
-    `utf-32-le` or `utf-32-be`; None for what is no text but binary."""
+def detect_encoding(content: bytes) -> str | None:
+    """Return the encoding of a text, or None if the content is binary.
+
+    The encoding is `utf-8` (also for other 8-bit encodings), `utf-16-le`, `utf-16-be`, `utf-32-le`
+    or `utf-32-be`.
+    """
     for mark, encoding in _MARKS.items():
         if content.startswith(mark):
             return encoding
@@ -22,11 +25,14 @@ def encoding_of(content: bytes) -> str | None:
 
 
 def _unmarked_utf16(content: bytes) -> str | None:
-    """By the zero bytes at every second place, which Latin letters have there and nowhere else."""
+    """Return the kind of UTF-16 by its zero bytes, or None.
+
+    In UTF-16, every second byte of Latin text is zero, and no other byte.
+    """
     if len(content) % 2:
         return None
     for encoding, low in (("utf-16-le", 0), ("utf-16-be", 1)):
         letters, zeros = content[low::2], content[1 - low :: 2]
-        if 0 not in letters and zeros.count(0) >= _PLAIN * len(zeros):
+        if 0 not in letters and zeros.count(0) >= _MIN_LATIN_SHARE * len(zeros):
             return encoding
     return None

@@ -1,4 +1,4 @@
-"""The fields that a model has at a path, for hints about those that it has not."""
+"""Hints for fields that a model does not have, from the fields that it has at the same path."""
 
 from typing import Any, get_args
 
@@ -8,34 +8,39 @@ from argo_compiler.files.json_places import JsonPath
 
 
 def field_hint(model: type[Model], path: JsonPath) -> str:
-    """What to do about the unknown field at that path of a `model`."""
+    """Return a hint for the unknown field at a path of a `model`."""
     names = [name for owner in _models_at(model, path[:-1]) for name in owner.model_fields]
-    near = nearest_name(str(path[-1]), tuple(dict.fromkeys(names)))
-    return f"is `{near}` meant?" if near else "check its spelling or remove it"
+    nearest = nearest_name(str(path[-1]), tuple(dict.fromkeys(names)))
+    return f"is `{nearest}` meant?" if nearest else "check its spelling or remove it"
 
 
 def _models_at(model: type[Model], path: JsonPath) -> list[type[Model]]:
-    """The model at a path, or all that a choice is made among; a path names the one chosen by its
-    `kind`."""
-    found = [model]
+    """Return the models that the value at a path may have.
+
+    They are several if the type is a union. A step of the path may choose one of them by its
+    `kind`.
+    """
+    models = [model]
     for step in path:
         if isinstance(step, int):
             continue
-        chosen = [m for m in found if "kind" in m.model_fields and _kind(m) == step]
-        owners = [m for m in found if step in m.model_fields]
+        chosen = [m for m in models if "kind" in m.model_fields and _kind(m) == step]
+        owners = [m for m in models if step in m.model_fields]
         if owners:
-            found = [inner for m in owners for inner in _inside(m.model_fields[step].annotation)]
+            models = [
+                inner for m in owners for inner in _models_in(m.model_fields[step].annotation)
+            ]
         elif chosen:
-            found = chosen
-    return found
+            models = chosen
+    return models
 
 
 def _kind(model: type[Model]) -> Any:
     return model.model_fields["kind"].default
 
 
-def _inside(annotation: Any) -> list[type[Model]]:
-    """The models that values of that type are made of."""
+def _models_in(annotation: Any) -> list[type[Model]]:
+    """Return the models in a type annotation, such as those of a list's items."""
     if isinstance(annotation, type) and issubclass(annotation, Model):
         return [annotation]
-    return [model for part in get_args(annotation) for model in _inside(part)]
+    return [model for part in get_args(annotation) for model in _models_in(part)]

@@ -1,4 +1,4 @@
-"""Where the values of a JSON text stand: line and column for the paths that someone asks for."""
+"""Places of values in a JSON text: line and column for given paths."""
 
 import json
 import re
@@ -11,54 +11,59 @@ from argo_compiler.diagnostics import Span
 
 Step = str | int
 JsonPath = tuple[Step, ...]
-"""names of fields and positions in lists, from the outermost value inward"""
+"""Names of fields and positions in lists, from the outermost value inward."""
 
 _TOKEN = re.compile(r'"[^"\\]*(?:\\.[^"\\]*)*"|[{}\[\],:]|[^\s{}\[\],:"]+')
 
 
 def format_path(path: JsonPath) -> str:
-    """The path as it is written: `tasks[3].transitions[0]`."""
+    """Return the path as text, such as `tasks[3].transitions[0]`."""
     steps = (f"[{step}]" if isinstance(step, int) else f".{step}" for step in path)
     return "".join(steps).removeprefix(".")
 
 
-class Value(NamedTuple):
-    """Where a value stands, by offsets in the text. A container ends with its opening bracket."""
+class JsonValue(NamedTuple):
+    """Place of a value as offsets in the text; that of a container is only its opening bracket."""
 
     depth: int
-    """in how many containers it lies"""
+    """number of containers around the value"""
     step: Step
-    """its key or its position in the container"""
+    """key of the value, or its position in a list"""
     key: tuple[int, int] | None
-    """start and end of its key, quotes included"""
+    """start and end of its key with the quotes; None in a list and for the outermost value"""
     start: int
     end: int
 
 
 class JsonText:
-    """A JSON text that `json.loads` has accepted. Knows where its lines begin."""
+    """JSON text that `json.loads` has accepted, with the offsets at which its lines begin."""
 
     def __init__(self, text: str) -> None:
         self.text = text
         self._lines = [0, *(m.end() for m in re.finditer("\n", text))]
 
     def span(self, start: int, end: int) -> Span:
-        """The stretch from `start` to `end`, or to the end of the line that it begins in."""
+        """Return the span from `start` to `end`, or to the end of the line of `start`."""
         line = bisect_right(self._lines, start)
         end = min(end, self._line_end(line))
         column = start - self._lines[line - 1] + 1
         return Span(line=line, column=column, length=max(1, end - start))
 
     def line(self, number: int) -> str:
-        """The text of a line, without its end."""
+        """Return the text of a line (from 1) without its line end."""
         return self.text[self._lines[number - 1] : self._line_end(number)].rstrip("\r")
 
     def _line_end(self, number: int) -> int:
         return self._lines[number] - 1 if number < len(self._lines) else len(self.text)
 
-    def values(self) -> Iterator[Value]:
-        """All values in the order in which they begin. Depth of nesting costs nothing."""
-        positions: list[int | None] = []  # for each open container: in lists, the next position
+    def values(self) -> Iterator[JsonValue]:
+        """Yield all values in the order of their first characters.
+
+        Not recursive, so any depth of nesting is possible.
+        """
+        positions: list[
+            int | None
+        ] = []  # for each open container: the next position in a list, None in an object
         key: tuple[int, int] | None = None
         for token in _TOKEN.finditer(self.text):
             start, end = token.span()
@@ -77,7 +82,7 @@ class JsonText:
                 key = (start, end)
                 continue
             step = self._name(key) if key else position or 0
-            yield Value(len(positions), step, key, start, end)
+            yield JsonValue(len(positions), step, key, start, end)
             key = None
             if character in "{[":
                 positions.append(None if character == "{" else 0)
@@ -91,52 +96,52 @@ class JsonText:
 
 @dataclass(slots=True)
 class _Node:
-    """A path that is looked for, with the paths that go on from it."""
+    """Node of the tree of paths to find; holds its value and the next steps of the paths."""
 
-    value: Value | None = None
-    first: Value | None = None
-    """the first member, if it is an object"""
-    further: dict[Step, "_Node"] = field(default_factory=dict)
+    value: JsonValue | None = None
+    first: JsonValue | None = None
+    """first member of the value if that is an object"""
+    children: dict[Step, "_Node"] = field(default_factory=dict)
 
 
 def find_places(text: JsonText, paths: Collection[JsonPath]) -> dict[JsonPath, Span]:
-    """The place of each path's value, with its key where it has one.
+    """Return the place of each path's value, including the value's key if it has one.
 
-    An object is shown by its first member, which tells more than a brace. If a path does not exist,
-    the longest part of it that does stands for it. Linear time.
+    The place of an object without a key is that of its first member, which shows more than a brace.
+    If a path does not exist, the place is that of its longest existing part. Takes linear time.
     """
     root = _Node()
     for path in paths:
         node = root
         for step in path:
-            node = node.further.setdefault(step, _Node())
+            node = node.children.setdefault(step, _Node())
     _locate(text, root)
     return {path: _place(text, root, path) for path in paths}
 
 
 def _locate(text: JsonText, root: _Node) -> None:
-    around: list[_Node | None] = []  # for each open container, what is looked for in it
+    enclosing: list[_Node | None] = []  # node of each open container; None if no path leads there
     for value in text.values():
-        del around[value.depth :]
+        del enclosing[value.depth :]
         if value.depth == 0:
             node: _Node | None = root
         else:
-            outer = around[-1]
-            node = outer.further.get(value.step) if outer else None
+            outer = enclosing[-1]
+            node = outer.children.get(value.step) if outer else None
             if outer and outer.first is None and value.key:
                 outer.first = value
         if node:
             node.value = value
-        around.append(node)
+        enclosing.append(node)
 
 
 def _place(text: JsonText, root: _Node, path: JsonPath) -> Span:
     node = root
     for step in path:
-        further = node.further[step]
-        if further.value is None:
+        child = node.children[step]
+        if child.value is None:
             break
-        node = further
+        node = child
     value = node.value
     if value is None:
         return Span(line=1, column=1)
@@ -145,12 +150,12 @@ def _place(text: JsonText, root: _Node, path: JsonPath) -> Span:
     return text.span(value.key[0] if value.key else value.start, value.end)
 
 
-def find_duplicates(text: JsonText, limit: int) -> dict[JsonPath, Span]:
-    """The keys that stand more than once in their object, with where each stands first.
+def find_duplicate_keys(text: JsonText, limit: int) -> dict[JsonPath, Span]:
+    """Return the paths of keys that occur repeatedly in their object, with their first place.
 
-    At most `limit` of them. `find_places` tells where a key stands last.
+    At most `limit` paths are returned. `find_places` returns the last place of a key.
     """
-    found: dict[JsonPath, Span] = {}
+    duplicates: dict[JsonPath, Span] = {}
     path: list[Step] = []
     seen: list[dict[Step, tuple[int, int]]] = [{}]  # for each depth, the keys of the open object
     for value in text.values():
@@ -160,8 +165,8 @@ def find_duplicates(text: JsonText, limit: int) -> dict[JsonPath, Span]:
         if value.key:
             first = seen[value.depth].setdefault(value.step, value.key)
             if first != value.key:
-                found.setdefault(tuple(path), text.span(*first))
-                if len(found) == limit:
+                duplicates.setdefault(tuple(path), text.span(*first))
+                if len(duplicates) == limit:
                     break
         seen.append({})
-    return found
+    return duplicates

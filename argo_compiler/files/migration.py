@@ -1,4 +1,4 @@
-"""Older mission files: what each version of the format lacked, and what it meant otherwise."""
+"""Migration of mission files of older versions: fields they lacked, and meanings that changed."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -10,9 +10,9 @@ from argo_compiler.il import Action, EventKind, Mission, Mode, OnFailure, Respon
 from argo_compiler.il.velocities import of_ways_there
 
 VERSION = 3
-"""of the mission format that is written"""
+"""Version of the mission format that Argo writes."""
 
-_NEW = {
+_NEW_FIELDS = {
     "tasks": (
         "wait",
         "failure_target",
@@ -25,15 +25,15 @@ _NEW = {
     "groups": ("every", "until"),
     "reactions": ("hold_limit", "on_limit", "area", "battery_below"),
 }
-"""Fields that came with version 3, by list."""
+"""Fields that were added in version 3, by list of the mission."""
 
 
 def migrate(data: dict[str, Any]) -> tuple[dict[str, Any], int]:
-    """The mission's data as ones of the present version, and which version they are of.
+    """Return a mission's data marked as the current version, and the data's own version.
 
-    All fields of older versions are fields of the present one; `fields_of_later` names those that
-    they had not, and `updated` makes them mean what they meant. Data of unknown versions stay as
-    they are.
+    All fields of older versions exist in the current one. After the data have become a mission,
+    `newer_fields` finds fields that the older version did not have, and `upgrade` restores the
+    meaning of the others. Data of unknown versions are returned unchanged.
     """
     version = data.get("version", VERSION)
     if isinstance(version, bool) or version not in range(1, VERSION):
@@ -41,14 +41,16 @@ def migrate(data: dict[str, Any]) -> tuple[dict[str, Any], int]:
     return {**data, "version": VERSION}, int(version)
 
 
-def fields_of_later(mission: Mission, version: int) -> Iterator[tuple[JsonPath, str]]:
-    """What a mission that was read from data of an older version has and that version had not: the
-    path of each field, and its name."""
+def newer_fields(mission: Mission, version: int) -> Iterator[tuple[JsonPath, str]]:
+    """Yield path and name of each field that is set but did not exist in the given version.
+
+    This includes the `action` of WAIT tasks, with the name `WAIT`.
+    """
     if version >= VERSION:
         return
-    for name, new in _NEW.items():
+    for name, new_fields in _NEW_FIELDS.items():
         for i, part in enumerate(getattr(mission, name)):
-            for field in new:
+            for field in new_fields:
                 if getattr(part, field) != type(part).model_fields[field].default:
                     yield (name, i, field), field
     if mission.before:
@@ -58,23 +60,27 @@ def fields_of_later(mission: Mission, version: int) -> Iterator[tuple[JsonPath, 
             yield ("tasks", i, "action"), "WAIT"
 
 
-def updated(mission: Mission, version: int) -> tuple[Mission, tuple[Diagnostic, ...]]:
-    """A mission that was read from data of an older version, as it meant them, and what it can't
-    say any more.
+def upgrade(mission: Mission, version: int) -> tuple[Mission, tuple[Diagnostic, ...]]:
+    """Return a mission with the meaning that its data had in an older version, and warnings.
 
-    Version 2 added reactions, failure policies, the dock and inclusive bounds; all may be left out,
-    and then mean what version 1 meant.
+    The warnings name meanings that the current version can't express. Version 2 added reactions,
+    failure policies, the dock and inclusive bounds; a mission without these means the same in
+    versions 1 and 2.
     """
     return _to_3(mission) if version < VERSION else (mission, ())
 
 
 def _to_3(mission: Mission) -> tuple[Mission, tuple[Diagnostic, ...]]:
-    """Version 3 has the velocity of the way to a task, not to the next one; uses the pose of a
-    MEASURE and of a RETURN reaction; and ranks reactions by their event if no priority is given."""
-    notes = tuple(_changes(mission))
+    """Return the mission in version 3, and warnings.
+
+    In version 3, a velocity applies to the path to its task, not to the path to the next one; the
+    poses of a MEASURE and of a RETURN reaction are used; and a reaction without a priority gets its
+    rank from its event.
+    """
+    warnings = tuple(_changes(mission))
     mission, differ = of_ways_there(mission)
     if differ:
-        notes = (*notes, _velocities(differ))
+        warnings = (*warnings, _velocity_warning(differ))
     reactions = tuple(
         reaction.model_copy(
             update={
@@ -88,27 +94,27 @@ def _to_3(mission: Mission) -> tuple[Mission, tuple[Diagnostic, ...]]:
         task.model_copy(update={"pose": None}) if _has_own_pose(task) else task
         for task in mission.tasks
     )
-    return mission.model_copy(update={"tasks": tasks, "reactions": reactions}), notes
+    return mission.model_copy(update={"tasks": tasks, "reactions": reactions}), warnings
 
 
 def _changes(mission: Mission) -> Iterator[Diagnostic]:
-    """What does not mean what it meant."""
-    looked_at = {c.object_id for task in mission.tasks for t in task.transitions
+    """Yield a warning for each part of an older mission whose meaning has changed."""
+    compared = {c.object_id for task in mission.tasks for t in task.transitions
                  for c in t.conditions}  # fmt: skip
     failing = [
         task.name
         for task in mission.tasks
         if task.action is Action.MEASURE
-        and task.object_id in looked_at
+        and task.object_id in compared
         and task.on_failure is OnFailure.CONTINUE
     ]
     if failing:
         yield diagnostic_of(
             "file.meaning-changed",
-            f"where {quoted(failing)} fails, conditions do not see the value of an earlier "
-            "measurement any more",
-            "add a transition with a READING_FAILED condition, or a `failure_target`, for what is "
-            "to follow then",
+            f"if {quoted(failing)} fails, conditions no longer use the value of an earlier "
+            "measurement",
+            "add a transition with a READING_FAILED condition, or a `failure_target`, for this "
+            "case",
             "tasks",
         )
     interrupting = [r for r in mission.reactions if r.response is not Response.REPORT]
@@ -118,23 +124,23 @@ def _changes(mission: Mission) -> Iterator[Diagnostic]:
         if safety and any(priority >= (reaction.priority or 0) for priority in others):
             yield diagnostic_of(
                 "file.meaning-changed",
-                f"the reaction to {reaction.event} comes before all others now, whatever their "
-                "priorities",
-                "nothing is to be done if that is what was meant",
+                f"the reaction to {reaction.event} now comes before all others, regardless of "
+                "their priorities",
+                "if that is intended, change nothing",
                 f"reactions['{reaction.event}']",
             )
     if mission.mode is Mode.SUPERVISORY:
         yield diagnostic_of(
             "file.meaning-changed",
-            "a mission in supervisory mode begins paused now, until a person resumes it",
-            "set `mode` to autonomous if it is to begin by itself",
+            "a mission in supervisory mode now starts paused, until a person resumes it",
+            "set `mode` to autonomous if the mission must start by itself",
             "mode",
         )
-    if posed := [task.name for task in mission.tasks if _has_own_pose(task)]:
+    if with_pose := [task.name for task in mission.tasks if _has_own_pose(task)]:
         yield diagnostic_of(
             "file.meaning-changed",
-            f"the pose of {quoted(posed)} was never used, and is left out",
-            "give it again if the robot is to measure from there",
+            f"the pose of {quoted(with_pose)} was never used, and has been removed",
+            "set it again if the robot must measure from that pose",
             "tasks",
         )
 
@@ -143,12 +149,12 @@ def _has_own_pose(task: Task) -> bool:
     return task.action is Action.MEASURE and task.pose is not None
 
 
-def _velocities(differ: tuple[str, ...]) -> Diagnostic:
+def _velocity_warning(differ: tuple[str, ...]) -> Diagnostic:
     return diagnostic_of(
         "file.meaning-changed",
-        f"{quoted(differ)} was driven to at different velocities, by where the robot came from; "
-        "it is the slowest of them now",
-        "a velocity belongs to the way to a task now, wherever the robot comes from: save the "
-        f"mission as version {VERSION}, and set `velocity` there",
+        f"the velocity of the path to {quoted(differ)} depended on the previous task; it is now "
+        "the lowest of these velocities",
+        "a velocity now applies to the path to its task, from wherever the robot comes: save the "
+        f"mission as version {VERSION}, and set `velocity` of the task",
         "tasks",
     )

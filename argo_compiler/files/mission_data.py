@@ -1,7 +1,7 @@
-"""From the data in a JSON file to a mission, with bounded effort however wrong the data are.
+"""Validation of a mission file's data with bounded effort, however many errors there are.
 
-A file of 50 MB may hold tens of millions of faults, each of which pydantic would describe. So the
-lists of a mission are validated in portions, and no further than some faults have been found.
+A file of 50 MB may contain tens of millions of errors, and pydantic would describe each of them. So
+the lists of a mission are validated in portions, until a limited number of errors has been fault.
 """
 
 import json
@@ -18,10 +18,10 @@ from argo_compiler.files.json_places import JsonPath, format_path
 from argo_compiler.il import Group, Mission, Reaction, Task
 
 MAX_FAULTS = 100
-"""that are looked for in one file"""
+"""Largest number of errors that are reported for one file."""
 
 MAX_ITEM = 300_000
-"""characters of one task, group or reaction, and of all else together"""
+"""Largest size of one task, group or reaction, and of all other fields together, in characters."""
 
 _LISTS: dict[str, TypeAdapter[Any]] = {
     "tasks": TypeAdapter(tuple[Task, ...]),
@@ -31,7 +31,7 @@ _LISTS: dict[str, TypeAdapter[Any]] = {
 
 
 class UnplacedDiagnostic(NamedTuple):
-    """A diagnostic that has no place yet, and the path of what it is about."""
+    """Diagnostic without a place in the file, and the path of the value that it is about."""
 
     diagnostic: Diagnostic
     path: JsonPath | None
@@ -40,50 +40,52 @@ class UnplacedDiagnostic(NamedTuple):
 def unplaced(
     code: str, message: str, hint: str | None, path: JsonPath | None = None
 ) -> UnplacedDiagnostic:
-    """An error about what is at the path; None: about the whole file."""
+    """Return an error about the value at the path, or about the whole file if that is None."""
     subject = None if path is None else format_path(path)
     return UnplacedDiagnostic(diagnostic_of(code, message, hint, subject), path)
 
 
 def too_deep() -> UnplacedDiagnostic:
-    """The fault of data that are nested deeper than a program's stack."""
-    return unplaced("file.too-deep", "is nested too deeply", "no mission is: check the file")
+    """Return the error for data that are nested too deeply for the program's stack."""
+    return unplaced(
+        "file.too-deep", "is nested too deeply", "no mission needs that: check the file"
+    )
 
 
-def to_mission(data: dict[str, Any]) -> Mission | list[UnplacedDiagnostic]:
-    """The mission that the data of the present version describe, or what is wrong with them."""
+def validate_mission(data: dict[str, Any]) -> Mission | list[UnplacedDiagnostic]:
+    """Return the mission in data of the current version, or the errors in the data."""
     lists = {name: data[name] for name in _LISTS if isinstance(data.get(name), list)}
     header = {name: value for name, value in data.items() if name not in lists}
     try:
-        read, faults = _read_header(header)
+        mission, faults = _validate_header(header)
         items: dict[str, tuple[Model, ...]] = {}
         for name, values in lists.items():
-            items[name], found = _read_list(name, values, MAX_FAULTS - len(faults))
-            faults += found
+            items[name], list_faults = _validate_list(name, values, MAX_FAULTS - len(faults))
+            faults += list_faults
     except RecursionError:
         return [too_deep()]
-    return faults or read.model_copy(update=items)
+    return faults or mission.model_copy(update=items)
 
 
-def _read_header(header: dict[str, Any]) -> tuple[Mission, list[UnplacedDiagnostic]]:
+def _validate_header(header: dict[str, Any]) -> tuple[Mission, list[UnplacedDiagnostic]]:
     text = json.dumps(header)
     if len(text) > MAX_ITEM:
-        return Mission(), [_too_large("what is no task, group or reaction", None)]
+        return Mission(), [_too_large("the mission without its tasks, groups and reactions", None)]
     try:
-        # As JSON: only then is pydantic strict about numbers and takes the values of enumerations.
+        # From JSON: only then pydantic is strict about numbers and accepts values of enumerations.
         return Mission.model_validate_json(text, strict=True), []
     except ValidationError as error:
         return Mission(), list(_faults(error, (), 0))
 
 
-def _read_list(
-    name: str, values: list[Any], most: int
+def _validate_list(
+    name: str, values: list[Any], max_faults: int
 ) -> tuple[tuple[Model, ...], list[UnplacedDiagnostic]]:
-    """The items of a list, as far as there were no more than `most` faults in them."""
+    """Return the valid items of a list, and its errors; stop after `max_faults` errors."""
     items: list[Model] = []
     faults: list[UnplacedDiagnostic] = []
     for start, text in _portions(values):
-        if len(faults) >= most:
+        if len(faults) >= max_faults:
             break
         if len(text) > MAX_ITEM + 2:
             faults.append(_too_large(format_path((name, start)), (name, start)))
@@ -92,11 +94,14 @@ def _read_list(
             items += _LISTS[name].validate_json(text, strict=True)
         except ValidationError as error:
             faults += _faults(error, (name,), start)
-    return tuple(items), faults[:most]
+    return tuple(items), faults[:max_faults]
 
 
 def _portions(values: list[Any]) -> Iterator[tuple[int, str]]:
-    """The values as JSON lists no longer than MAX_ITEM or one value, and where each begins."""
+    """Yield JSON lists of the values, each with the position of its first value.
+
+    A list is not longer than MAX_ITEM, unless it has only one value.
+    """
     texts: list[str] = []
     length = start = 0
     for i, value in enumerate(values):
@@ -110,35 +115,40 @@ def _portions(values: list[Any]) -> Iterator[tuple[int, str]]:
         yield start, f"[{','.join(texts)}]"
 
 
-def _too_large(what: str, path: JsonPath | None) -> UnplacedDiagnostic:
+def _too_large(part: str, path: JsonPath | None) -> UnplacedDiagnostic:
     return unplaced(
         "file.too-large",
-        f"{what}: takes more than {MAX_ITEM} characters",
-        "no mission's does: check the file",
+        f"{part}: is longer than {MAX_ITEM} characters",
+        "no mission needs that much: check the file",
         path,
     )
 
 
-def _faults(error: ValidationError, around: JsonPath, first: int) -> Iterator[UnplacedDiagnostic]:
-    """The faults in a portion of the list `around`, which begins with its item `first`."""
-    for found in error.errors(include_url=False, include_input=False)[:MAX_FAULTS]:
-        if found["type"] == "json_invalid":
-            if "recursion" in found["msg"]:
+def _faults(
+    error: ValidationError, list_path: JsonPath, first: int
+) -> Iterator[UnplacedDiagnostic]:
+    """Yield the errors in a portion of the list at `list_path`, which starts with item `first`.
+
+    `list_path` is empty for the mission without its lists.
+    """
+    for fault in error.errors(include_url=False, include_input=False)[:MAX_FAULTS]:
+        if fault["type"] == "json_invalid":
+            if "recursion" in fault["msg"]:
                 yield too_deep()
             else:  # a character that JSON allows and Unicode does not
-                message = re.sub("^Invalid JSON: (.*) at line .*", r"\1", found["msg"])
-                where = format_path((*around, first)) if around else "the file"
+                message = re.sub("^Invalid JSON: (.*) at line .*", r"\1", fault["msg"])
+                where = format_path((*list_path, first)) if list_path else "the file"
                 yield unplaced(
                     "file.not-json",
-                    f"{where} or what follows is not usable JSON: {message}",
+                    f"{where} or a part after it is not usable JSON: {message}",
                     "correct the character",
                 )
             continue
-        path = found["loc"]
-        if around and path and isinstance(path[0], int):
-            path = (*around, path[0] + first, *path[1:])
-        message, hint = found["msg"][:1].lower() + found["msg"][1:], None
-        if found["type"] == "extra_forbidden":
+        path = fault["loc"]
+        if list_path and path and isinstance(path[0], int):
+            path = (*list_path, path[0] + first, *path[1:])
+        message, hint = fault["msg"][:1].lower() + fault["msg"][1:], None
+        if fault["type"] == "extra_forbidden":
             message, hint = "the mission format has no such field", field_hint(Mission, path)
         where = format_path(path) or "the file"
         yield unplaced("file.wrong-field", f"{where}: {message}", hint, path)

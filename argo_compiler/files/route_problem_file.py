@@ -1,7 +1,7 @@
-"""Route problems and what is suggested for them as JSON, for other programs and for later.
+"""JSON files of route problems and of suggested routes, for other programs and for later use.
 
-A problem is an object with `version` 1 and the fields of `RouteProblem`; a matrix is a list of
-rows, in which `null` is NEVER. Fields with their default value may be left out.
+A problem is an object with `version` 1 and the fields of `RouteProblem`. A matrix is a list of
+rows, where `null` stands for NEVER. Fields with their default value may be omitted.
 """
 
 import json
@@ -16,9 +16,9 @@ from pydantic import BaseModel, ConfigDict, ValidationError, create_model
 
 from argo_compiler.base.errors import Invalid, Unavailable
 from argo_compiler.base.nearest_name import nearest_name
+from argo_compiler.files.atomic_write import write_atomically
 from argo_compiler.files.json_places import JsonPath, JsonText, find_places, format_path
-from argo_compiler.files.reading import decode_text, read_bytes
-from argo_compiler.files.writing import write_whole
+from argo_compiler.files.loading import decode_text, read_bytes
 from argo_compiler.route.problem import (
     NEVER,
     EnergyBudget,
@@ -32,14 +32,14 @@ from argo_compiler.route.suggested import RouteSuggestion
 
 VERSION = 1
 MAX_BYTES = 200_000_000
-"""far above a problem of 3,000 visits"""
+"""Limit far above the size of a problem with 3,000 visits."""
 
 _Rows = tuple[tuple[int | None, ...], ...]
 
 
-def _model(data: type, **other: Any) -> type[BaseModel]:
-    """What the JSON object of a dataclass holds. `other`: types that differ in JSON."""
-    hints = {**get_type_hints(data), **other}
+def _model(data: type, **json_types: Any) -> type[BaseModel]:
+    """Return the model of a dataclass's JSON object; `json_types` are types that differ in JSON."""
+    hints = {**get_type_hints(data), **json_types}
     defaults = {
         f.name: f.default_factory() if f.default_factory is not MISSING else f.default
         for f in fields(data)
@@ -67,65 +67,68 @@ _PROBLEM = _model(
 
 
 def write_route_problem(problem: RouteProblem, path: Path) -> None:
-    """Writes a problem as JSON. Raises Unavailable if that can't be done."""
+    """Write a problem as JSON. Raises Unavailable if the file can't be written."""
     try:
-        write_whole(path, route_problem_text(problem))
+        write_atomically(path, route_problem_text(problem))
     except OSError as error:
         raise Unavailable(f"{path}: can't be written: {error.strerror}") from error
 
 
 def route_problem_text(problem: RouteProblem) -> str:
-    """What `write_route_problem` writes."""
-    plain = {field.name: _plain(getattr(problem, field.name)) for field in fields(problem)}
-    needed = {name: value for name, value in plain.items() if value not in (None, [], {})}
+    """Return the text that `write_route_problem` writes."""
+    values = {field.name: _json_value(getattr(problem, field.name)) for field in fields(problem)}
+    needed = {name: value for name, value in values.items() if value not in (None, [], {})}
     return json.dumps({"version": VERSION, "visits": [], **needed}, ensure_ascii=False) + "\n"
 
 
-def _plain(value: Any) -> Any:
-    """What JSON can hold of a part of a problem."""
+def _json_value(value: Any) -> Any:
+    """Return a part of a problem as a value that JSON can represent."""
     if isinstance(value, np.ndarray):
         return [[None if time == NEVER else time for time in row] for row in value.tolist()]
     if isinstance(value, EnergyBudget):
-        return {f.name: _plain(getattr(value, f.name)) for f in fields(value)}
+        return {f.name: _json_value(getattr(value, f.name)) for f in fields(value)}
     if isinstance(value, tuple):
-        return [one if isinstance(one, str) else asdict(one) for one in value]
+        return [item if isinstance(item, str) else asdict(item) for item in value]
     return dict(value) if isinstance(value, Mapping) else value
 
 
 def read_route_problem(path: Path) -> RouteProblem:
-    """The problem in a JSON file. Raises FileError or Invalid, with the place in the file."""
+    """Return the problem in a JSON file.
+
+    Raises FileError, or Invalid with the place in the file.
+    """
     content = read_bytes(path, "file of a route problem", MAX_BYTES)
     return parse_route_problem(decode_text(content, path, "file of a route problem"), str(path))
 
 
 def parse_route_problem(text: str, name: str) -> RouteProblem:
-    """The problem in a JSON text, which messages call `name`. Raises Invalid."""
+    """Return the problem in a JSON text, which messages call `name`. Raises Invalid."""
     try:
         data = json.loads(text)
     except (json.JSONDecodeError, RecursionError) as error:
         where = f"{error.lineno}:{error.colno}:" if isinstance(error, json.JSONDecodeError) else ""
         what = getattr(error, "msg", "it is nested too deeply")
         raise Invalid(f"{name}:{where} is not JSON: {what}; correct it there") from error
-    except ValueError as error:  # an integer of thousands of digits
+    except ValueError as error:  # an integer with thousands of digits
         raise Invalid(f"{name}: is not usable JSON: {error}; correct the number") from error
     version = data.get("version") if isinstance(data, dict) else None
     if version != VERSION or isinstance(version, bool):
         raise Invalid(
-            f"{name}: is no route problem of version {VERSION}: it begins with "
-            f'{{"version": {VERSION}, "visits": [; write it anew with this version of Argo'
+            f"{name}: is not a route problem of version {VERSION}, which begins with "
+            f'{{"version": {VERSION}, "visits": [; write it again with this version of Argo'
         )
     try:
-        found = _PROBLEM.model_validate_json(text)
+        model = _PROBLEM.model_validate_json(text)
     except ValidationError as error:
-        raise Invalid(f"{name}{_said(error, text)}") from None
+        raise Invalid(f"{name}{_fault_text(error, text)}") from None
     try:
-        return _problem(found)
+        return _to_problem(model)
     except Invalid as error:
         raise Invalid(f"{name}: {error}") from None
 
 
-def _said(error: ValidationError, text: str) -> str:
-    """The first fault with its place: `:3:7: visits[0].prize: …`."""
+def _fault_text(error: ValidationError, text: str) -> str:
+    """Return the first error with its place, such as `:3:7: visits[0].prize: …`."""
     first = error.errors(include_url=False)[0]
     path: JsonPath = first["loc"]
     owner = path[:-1] if first["type"] in {"missing", "extra_forbidden"} else path
@@ -133,20 +136,24 @@ def _said(error: ValidationError, text: str) -> str:
     place = f":{span.line}:{span.column}" if span else ""
     what = first["msg"][:1].lower() + first["msg"][1:]
     if first["type"] == "extra_forbidden":
-        near = nearest_name(str(path[-1]), tuple(_PROBLEM.model_fields))
-        what = f"there is no such field; is `{near}` meant?" if near else "there is no such field"
+        nearest = nearest_name(str(path[-1]), tuple(_PROBLEM.model_fields))
+        what = (
+            f"there is no such field; is `{nearest}` meant?"
+            if nearest
+            else "there is no such field"
+        )
     more = len(error.errors()) - 1
     return f"{place}: {format_path(path)}: {what}" + (f" (and {more} more)" if more else "")
 
 
-def _problem(found: Any) -> RouteProblem:
-    battery = found.battery
+def _to_problem(model: Any) -> RouteProblem:
+    battery = model.battery
     return RouteProblem(
-        tuple(Visit(**visit.model_dump()) for visit in found.visits),
-        _matrix(found.travel, "travel"),
-        tuple(Precedence(**one.model_dump()) for one in found.precedences),
-        tuple(Round(**one.model_dump()) for one in found.rounds),
-        found.max_duration,
+        tuple(Visit(**visit.model_dump()) for visit in model.visits),
+        _matrix(model.travel, "travel"),
+        tuple(Precedence(**pair.model_dump()) for pair in model.precedences),
+        tuple(Round(**round.model_dump()) for round in model.rounds),
+        model.max_duration,
         None
         if battery is None
         else EnergyBudget(
@@ -155,10 +162,10 @@ def _problem(found: Any) -> RouteProblem:
             battery.used,
             battery.overhead,
         ),
-        found.chargers,
-        Objective(found.objective),
-        found.unit,
-        found.words,
+        model.chargers,
+        Objective(model.objective),
+        model.unit,
+        model.words,
     )
 
 
@@ -170,10 +177,12 @@ def _matrix(rows: _Rows, name: str) -> NDArray[np.int64]:
             [[NEVER if time is None else time for time in row] for row in rows], np.int64
         ).reshape(len(rows), -1 if rows else 0)
     except OverflowError:
-        raise Invalid(f"{name}: a number in it is too large: take a greater unit") from None
+        raise Invalid(f"{name}: a number in it is too large: use a larger unit") from None
 
 
 def route_suggestion_text(suggestion: RouteSuggestion) -> str:
-    """A suggestion as JSON: its fields, the curve of the search included; the charges of the route
-    by the position as a string."""
+    """Return a suggestion as JSON, with all its fields, also the history of the search.
+
+    The keys of the route's charges, which are positions, become strings.
+    """
     return json.dumps(asdict(suggestion), ensure_ascii=False) + "\n"

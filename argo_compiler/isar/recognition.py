@@ -3,8 +3,8 @@
 import json
 from typing import Any
 
+from argo_compiler.files.loading import FileError, decode_text
 from argo_compiler.files.mission_file import MAX_BYTES
-from argo_compiler.files.reading import FileError, decode_text
 
 INSPECTION = "inspection"
 RETURN_TO_HOME = "return_to_home"

@@ -10,7 +10,7 @@ from typing import Any
 
 from argo_compiler.base.errors import Invalid
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.files.reading import FileError
+from argo_compiler.files.loading import FileError
 from argo_compiler.il import Mission
 from argo_compiler.ros.compression import (
     TooLargeError,

@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-from argo_compiler.files.reading import FileError, opened
+from argo_compiler.files.loading import FileError, open_file
 
 ROS1 = b"#ROSBAG V"
 MCAP = b"\x89MCAP0\r\n"
@@ -34,5 +34,5 @@ def first_bytes(path: Path) -> bytes:
 
 def beginning(path: Path) -> bytes:
     """Return enough of a file to tell what it is. Raises FileError if it can't be read."""
-    with opened(path, "bag") as file:
+    with open_file(path, "bag") as file:
         return file.read(16)

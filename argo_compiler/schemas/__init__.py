@@ -1,6 +1,6 @@
-"""The JSON Schemas of the files that Argo writes, made from its models and shipped beside this.
+"""JSON Schemas of the files that Argo writes; generated from the models and shipped with Argo.
 
-`python -m argo_compiler.schemas` writes them anew after a model has changed.
+`python -m argo_compiler.schemas` generates them again after a change of a model.
 """
 
 from enum import StrEnum
@@ -8,7 +8,7 @@ from pathlib import Path
 
 
 class SchemaName(StrEnum):
-    """What there is a schema of."""
+    """Names of the schemas, by the content of the files that they describe."""
 
     MISSION = "mission"
     MACHINE = "machine"
@@ -16,10 +16,10 @@ class SchemaName(StrEnum):
 
 
 def schema_path(name: SchemaName) -> Path:
-    """Where the schema of that name is shipped."""
+    """Return the path of the shipped schema."""
     return Path(__file__).parent / f"{name}.schema.json"
 
 
 def read_schema(name: SchemaName) -> str:
-    """The text of the shipped schema."""
+    """Return the text of the shipped schema."""
     return schema_path(name).read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""`python -m argo_compiler.schemas` writes the shipped schemas anew."""
+"""Command `python -m argo_compiler.schemas`, which generates the shipped schemas."""
 
 from argo_compiler.schemas import SchemaName, schema_path
 from argo_compiler.schemas.generate import schema_text

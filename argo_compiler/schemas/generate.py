@@ -1,4 +1,4 @@
-"""Makes the JSON Schemas from the models, with the docstrings of fields as descriptions."""
+"""Generation of the JSON Schemas from the models, with docstrings of fields as descriptions."""
 
 import ast
 import inspect
@@ -21,43 +21,43 @@ MODELS: dict[SchemaName, type[Model]] = {
 
 
 class _Generator(GenerateJsonSchema):
-    """Without titles of fields, which would only repeat their names."""
+    """Generator that omits the titles of fields, which would only repeat their names."""
 
     def field_title_should_be_set(self, schema: Any) -> bool:  # noqa: ARG002
         return False
 
 
 def schema_text(name: SchemaName) -> str:
-    """The schema of that name as it is shipped."""
-    return schema_of(MODELS[name], name)
+    """Return the text of the schema that is to be shipped under a name."""
+    return model_schema(MODELS[name], name)
 
 
-def schema_of(model: type[Model], name: str) -> str:
-    """The schema of the files that hold such a model; `name` says what they are."""
+def model_schema(model: type[Model], name: str) -> str:
+    """Return the text of the schema for files of a model; its title names them by `name`."""
     schema = model.model_json_schema(schema_generator=_Generator)
-    described = {m.__name__: m for m in _models(model)}
+    models = {m.__name__: m for m in _nested_models(model)}
     for title, definition in [(model.__name__, schema), *schema.get("$defs", {}).items()]:
-        if title in described:
-            _describe(definition, described[title])
-    head = {"$schema": GenerateJsonSchema.schema_dialect, "title": f"Argo {name}"}
-    return json.dumps(head | schema | head, indent=2, ensure_ascii=False) + "\n"
+        if title in models:
+            _describe(definition, models[title])
+    header = {"$schema": GenerateJsonSchema.schema_dialect, "title": f"Argo {name}"}
+    return json.dumps(header | schema | header, indent=2, ensure_ascii=False) + "\n"
 
 
-def _models(model: type[Model]) -> set[type[Model]]:
-    """The model and all models that its fields are made of."""
-    found: set[type[Model]] = set()
-    ahead: list[Any] = [model]
-    while ahead:
-        part = ahead.pop()
-        if isinstance(part, type) and issubclass(part, Model) and part not in found:
-            found.add(part)
-            ahead += [field.annotation for field in part.model_fields.values()]
-        ahead += getattr(part, "__args__", ())
-    return found
+def _nested_models(model: type[Model]) -> set[type[Model]]:
+    """Return the model and all models in the types of its fields, at any depth."""
+    models: set[type[Model]] = set()
+    pending: list[Any] = [model]
+    while pending:
+        part = pending.pop()
+        if isinstance(part, type) and issubclass(part, Model) and part not in models:
+            models.add(part)
+            pending += [field.annotation for field in part.model_fields.values()]
+        pending += getattr(part, "__args__", ())
+    return models
 
 
 def _describe(definition: dict[str, Any], model: type[Model]) -> None:
-    # A field that is inherited is described where it is said first.
+    # An inherited field gets its description from the most derived class that has one.
     for base in (c for c in model.__mro__ if issubclass(c, Model)):
         for name, text in field_docstrings(base).items():
             if name in definition.get("properties", {}):
@@ -65,7 +65,7 @@ def _describe(definition: dict[str, Any], model: type[Model]) -> None:
 
 
 def field_docstrings(model: type[Model]) -> dict[str, str]:
-    """The text below each field of a model's class."""
+    """Return the docstring below each field of a model's class, by the field's name."""
     tree = ast.parse(textwrap.dedent(inspect.getsource(model))).body[0]
     if not isinstance(tree, ast.ClassDef):
         return {}

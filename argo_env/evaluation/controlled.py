@@ -12,8 +12,8 @@ from pydantic import Field, ValidationError
 
 from argo_compiler.base.errors import Conflict, Invalid, NotFound
 from argo_compiler.base.model import Model
-from argo_compiler.files.reading import read_bytes
-from argo_compiler.files.writing import write_whole
+from argo_compiler.files.atomic_write import write_atomically
+from argo_compiler.files.loading import read_bytes
 from argo_env.evaluation.estimates.control import (
     FEWEST_PAIRS,
     ControlVariate,
@@ -140,7 +140,7 @@ def _cost(folder: Path, expensive: float, cheap: float) -> float:
         return _MeasuredCost.model_validate_json(read_bytes(path, "measured cost", 1_000)).cost
     except (NotFound, ValidationError):
         cost = max(cheap, 1e-6) / max(expensive, 1e-6)
-        write_whole(path, _MeasuredCost(cost=cost).model_dump_json().encode())
+        write_atomically(path, _MeasuredCost(cost=cost).model_dump_json().encode())
         return cost
 
 

@@ -4,7 +4,7 @@ from pydantic import Field, field_validator, model_validator
 
 from argo_compiler.base.errors import Invalid
 from argo_compiler.base.model import Model
-from argo_compiler.files.reading import decode_text, require_size
+from argo_compiler.files.loading import decode_text, require_size
 from argo_env.evaluation.case import AS_WRITTEN, NO_FAULTS
 from argo_env.evaluation.plan import parse_seeds
 from argo_env.evaluation.requirement import parse_requirement

@@ -10,8 +10,8 @@ from pydantic import ValidationError
 
 from argo_compiler.base.errors import Conflict, Invalid, NotFound, Remedy
 from argo_compiler.base.model import Model
-from argo_compiler.files.reading import read_bytes
-from argo_compiler.files.writing import write_whole
+from argo_compiler.files.atomic_write import write_atomically
+from argo_compiler.files.loading import read_bytes
 from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.rates import is_enough
 from argo_env.evaluation.results import EvaluationResults
@@ -97,7 +97,7 @@ def write_file(path: Path, text: str) -> Path:
     """Writes a file of an evaluation and returns its path. Raises Unavailable where that can't be
     done."""
     with writing(path):
-        write_whole(path, text)
+        write_atomically(path, text)
     return path
 
 

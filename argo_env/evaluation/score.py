@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from argo_compiler.base.model import Model
-from argo_compiler.files.reading import decode_text, read_bytes
+from argo_compiler.files.loading import decode_text, read_bytes
 from argo_env.evaluation.estimates.pairs import difference
 from argo_env.evaluation.estimates.rates import Estimate, world_means
 from argo_env.evaluation.row import RunRow

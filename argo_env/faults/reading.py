@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from argo_compiler.base.model import Model
 from argo_compiler.files.json_places import JsonPath
-from argo_compiler.files.reading import decode_text, read_bytes, require_size
+from argo_compiler.files.loading import decode_text, read_bytes, require_size
 from argo_env.faults.kinds import AnyFault, FaultFile, misfits
 from argo_env.files.yaml_file import parse_yaml, placed
 from argo_env.seeding import generator

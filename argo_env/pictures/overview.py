@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from argo_compiler.files.writing import write_whole
+from argo_compiler.files.atomic_write import write_atomically
 from argo_env.files import cache
 from argo_env.files.folders import ANOTHER_PLACE, writing
 from argo_env.pictures.camera import Camera
@@ -144,7 +144,7 @@ def write_overview(record: RunRecord, site: Site, robot: RobotSpec, file: Path) 
     content = io.BytesIO()
     image.resize(SIZE, Image.Resampling.LANCZOS).save(content, "png")
     with writing(file, "the picture", ANOTHER_PLACE):
-        write_whole(file, content.getvalue())
+        write_atomically(file, content.getvalue())
 
 
 def site_camera(site: Site, size: tuple[int, int]) -> Camera:

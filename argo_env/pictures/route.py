@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from argo_compiler.base.model import Pose
-from argo_compiler.files.writing import write_folder
+from argo_compiler.files.atomic_write import write_folder
 from argo_compiler.il import Action, Task
 from argo_compiler.reorder.mission import MissionRoute
 from argo_compiler.route.evaluation import evaluate

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import Conflict, Invalid
 from argo_compiler.base.stages import stage
-from argo_compiler.files.reading import read_text
+from argo_compiler.files.loading import read_text
 from argo_env.files import cache
 from argo_env.files.parts import NOWHERE, Parts
 from argo_env.planning.catalog import kept_catalog, make_catalog

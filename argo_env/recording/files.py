@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from argo_compiler.base.errors import Invalid, Unavailable
 from argo_compiler.base.extras import install_line
-from argo_compiler.files.writing import check_place
+from argo_compiler.files.atomic_write import check_writable
 from argo_env.recording.output import RecordingFile, UnwritableRecording
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
@@ -87,7 +87,7 @@ def check_recording(file: Path) -> None:
     extra that isn't installed. To be called before a long run is made."""
     if file.suffix.lower() != ".mcap":
         raise Invalid(f"{file}: a recording is an .mcap file; name it so")
-    check_place(file)
+    check_writable(file)
     require_libraries()
 
 

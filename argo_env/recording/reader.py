@@ -18,7 +18,7 @@ from pydantic import ValidationError
 
 from argo_compiler.base.errors import Invalid, NotFound, Remedy
 from argo_compiler.files.json_places import format_path
-from argo_compiler.files.reading import FileError, FileProblem, read_bytes
+from argo_compiler.files.loading import FileError, FileProblem, read_bytes
 from argo_env.files.yaml_messages import message_of
 from argo_env.recording.files import require_libraries
 from argo_env.recording.output import MAGIC, VERSION

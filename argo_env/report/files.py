@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 from argo_compiler.base.errors import Conflict
-from argo_compiler.files.writing import write_folder
+from argo_compiler.files.atomic_write import write_folder
 from argo_env.files.folders import writing
 from argo_env.report.html import page
 from argo_env.run.record import RunRecord

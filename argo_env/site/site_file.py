@@ -4,7 +4,7 @@ from pathlib import Path
 
 import yaml
 
-from argo_compiler.files.reading import read_text
+from argo_compiler.files.loading import read_text
 from argo_env.files.yaml_file import parse_yaml
 from argo_env.site.spec import MAX_BYTES, SiteSpec
 

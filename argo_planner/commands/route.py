@@ -10,8 +10,8 @@ from rich.console import Console
 
 from argo_compiler.base.errors import Conflict, Invalid
 from argo_compiler.base.stages import stage
+from argo_compiler.files.loading import read_bytes
 from argo_compiler.files.mission_file import write_mission
-from argo_compiler.files.reading import read_bytes
 from argo_compiler.reorder.requirements import Requirements, What
 from argo_compiler.route.robust_spread import CAUTIOUS, SIMULATED
 from argo_env.files.folders import make_folder

@@ -7,7 +7,7 @@ import typer
 from pydantic import ValidationError
 
 from argo_compiler.base.errors import Invalid
-from argo_compiler.files.reading import read_bytes
+from argo_compiler.files.loading import read_bytes
 from argo_env.evaluation.case import AS_WRITTEN, NO_FAULTS
 from argo_env.evaluation.file import MAX_BYTES, EvaluationFile, MissionEntry, decode_evaluation
 from argo_env.files.yaml_messages import message_of

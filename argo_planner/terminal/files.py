@@ -6,9 +6,14 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from argo_compiler.base.errors import Conflict, Invalid, Remedy, Unavailable
+from argo_compiler.files.atomic_write import (
+    check_writable,
+    is_stream,
+    write_atomically,
+    write_folder,
+)
+from argo_compiler.files.loading import read_bytes
 from argo_compiler.files.mission_file import read_mission_bytes
-from argo_compiler.files.reading import read_bytes
-from argo_compiler.files.writing import check_place, is_stream, write_folder, write_whole
 from argo_compiler.ros.recognition import is_bag
 from argo_compiler.script.syntax.reading import MAX_BYTES
 from argo_env.files.folders import check_folder
@@ -55,7 +60,7 @@ def check_outputs(
         if output == STANDARD_OUTPUT:
             continue
         if output in single or os.path.isdir(output.parent):
-            check_place(output)
+            check_writable(output)
         if os.path.exists(output) and not force:
             raise Conflict(
                 f"{output}: is there already: choose another place, or replace it",
@@ -92,7 +97,7 @@ def write_content(path: Path, content: str | bytes | Mapping[str, bytes]) -> Non
         if isinstance(content, Mapping):
             write_folder(path, content)
         elif path != STANDARD_OUTPUT:
-            write_whole(path, content)
+            write_atomically(path, content)
     except OSError as error:
         raise Unavailable(f"{path}: can't be written: {error.strerror}") from error
     if path == STANDARD_OUTPUT and isinstance(content, str):

@@ -18,7 +18,7 @@ from argo_compiler.diagnostics import (
     to_sarif,
     to_text,
 )
-from argo_compiler.files.reading import FileError
+from argo_compiler.files.loading import FileError
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.site_warnings import too_fast, unseen_from_poses
 from argo_planner.use_cases.importing import SourceKind, Upload, kind_of, load, refuse_areas

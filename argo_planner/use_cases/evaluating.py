@@ -9,7 +9,7 @@ from typing import cast
 
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound, located
 from argo_compiler.base.version import __version__
-from argo_compiler.files.reading import read_bytes
+from argo_compiler.files.loading import read_bytes
 from argo_compiler.il import Mission
 from argo_env.evaluation.case import AS_WRITTEN, NO_FAULTS, EvaluationCase
 from argo_env.evaluation.file import DrawnFaults, EvaluationFile, MissionEntry

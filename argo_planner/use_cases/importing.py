@@ -20,8 +20,8 @@ from argo_compiler.diagnostics import (
     has_errors,
     with_excerpts,
 )
+from argo_compiler.files.loading import opened
 from argo_compiler.files.mission_file import MissionFile, decode_mission
-from argo_compiler.files.reading import opened
 from argo_compiler.il import Mission
 from argo_compiler.isar.recognition import find_definition
 from argo_compiler.ros.recognition import is_bag_content

@@ -7,7 +7,7 @@ from argo_compiler.analysis import analyse
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, Remedy, located
 from argo_compiler.base.stages import stage
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.files.reading import decode_text, require_size
+from argo_compiler.files.loading import decode_text, require_size
 from argo_compiler.il import Mission
 from argo_compiler.reorder.mission import MissionRoute, require_known
 from argo_compiler.reorder.requirements import Requirements

@@ -20,16 +20,16 @@ def schema(kind: FileKind) -> str:
     """The JSON Schema of files of that kind."""
     if kind in SchemaName:
         return read_schema(SchemaName(kind))
-    from argo_compiler.schemas.generate import schema_of
+    from argo_compiler.schemas.generate import model_schema
 
     if kind is FileKind.READING:
         from argo_compiler.script.write.reading import MissionReading
 
-        return schema_of(MissionReading, kind)
+        return model_schema(MissionReading, kind)
     if kind is FileKind.EVALUATION:
         from argo_env.evaluation.file import EvaluationFile
 
-        return schema_of(EvaluationFile, kind)
+        return model_schema(EvaluationFile, kind)
     from argo_env.faults.kinds import FaultFile
 
-    return schema_of(FaultFile, kind)
+    return model_schema(FaultFile, kind)

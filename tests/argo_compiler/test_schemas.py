@@ -1,4 +1,4 @@
-"""The shipped JSON Schemas: up to date, and in agreement with the models."""
+"""Tests that the shipped JSON Schemas are up to date and agree with the models."""
 
 import json
 from copy import deepcopy
@@ -25,12 +25,12 @@ WRONG = [None, True, -1, 0.5, "", "FLY", [], {}, [[]], {"colour": 1}, 10**30, "2
 
 
 @pytest.mark.parametrize("name", SchemaName)
-def test_the_shipped_schema_is_the_models_own(name):
+def test_the_shipped_schema_is_that_of_the_model(name):
     assert read_schema(name) == schema_text(name), "out of date: run `make generated`"
     Draft202012Validator.check_schema(json.loads(read_schema(name)))
 
 
-def test_fields_are_described():
+def test_fields_have_descriptions():
     schema = json.loads(read_schema(SchemaName.MISSION))
     assert (
         "robot's planning speed" in schema["$defs"]["Task"]["properties"]["velocity"]["description"]
@@ -40,12 +40,12 @@ def test_fields_are_described():
 
 @settings(max_examples=60)
 @given(missions())
-def test_what_is_written_is_accepted(mission):
+def test_written_missions_are_valid(mission):
     VALIDATORS[SchemaName.MISSION].validate(json.loads(mission_text(mission)))
     VALIDATORS[SchemaName.MISSION].validate(mission.model_dump(mode="json"))
 
 
-def places(data, at=()):
+def paths(data, at=()):
     yield at
     for step, inner in (
         data.items()
@@ -54,22 +54,22 @@ def places(data, at=()):
         if isinstance(data, list)
         else ()
     ):
-        yield from places(inner, (*at, step))
+        yield from paths(inner, (*at, step))
 
 
 @settings(max_examples=200)
 @given(missions(), st.data())
-def test_schema_and_model_refuse_the_same(mission, data):
-    """One value is replaced by another one, or a field is left out."""
+def test_schema_and_model_refuse_the_same_data(mission, data):
+    """One value is replaced by another, or one field is removed."""
     changed = deepcopy(json.loads(mission_text(mission)))
-    *path, last = data.draw(st.sampled_from([p for p in places(changed) if p]))
-    inside = changed
+    *path, last = data.draw(st.sampled_from([p for p in paths(changed) if p]))
+    container = changed
     for step in path:
-        inside = inside[step]
+        container = container[step]
     if data.draw(st.booleans()):
-        inside[last] = data.draw(st.sampled_from(WRONG))
+        container[last] = data.draw(st.sampled_from(WRONG))
     else:
-        del inside[last]
+        del container[last]
     try:
         Mission.model_validate_json(json.dumps(changed), strict=True)
         accepted = True

@@ -7,9 +7,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, Remedy
-from argo_compiler.files.writing import write_folder
+from argo_compiler.files.atomic_write import write_folder
 from argo_planner.terminal.words import said
-from tests.argo_compiler.files.test_writing import contents
+from tests.argo_compiler.files.test_atomic_write import contents
 from tests.argo_planner.conftest import argo
 from tests.conftest import examples
 from tests.disks import fill, small_disk

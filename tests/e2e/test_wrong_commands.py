@@ -218,10 +218,10 @@ NAMED = {
 SAID = {
     # documents, pictures and other people's files as scripts
     "run mission.docx": "mission.docx: is no text",
-    "check mission.pdf": "mission.pdf: error: is no plain text but a document (PDF)",
+    "check mission.pdf": "mission.pdf: error: is a document (PDF), not plain text",
     "run photo.png": "photo.png: is no text",
     "import photo.jpg -o n.json": "photo.jpg: is no text",
-    "run notes.rtf": "notes.rtf: error: is no plain text but a document (RTF)",
+    "run notes.rtf": "notes.rtf: error: is a document (RTF), not plain text",
     "check latin1.txt": "latin1.txt: error: is not UTF-8 (byte 3, line 1)",
     "run letter.txt": "letter.txt:2:16: error: `gauge 1` can be read as",
     "run mission.bag": "mission.bag: error: is no bag",
@@ -229,7 +229,7 @@ SAID = {
     "run .": "directory",
     # results as scripts
     "run out": "out: error: is a directory",
-    "run out/report.json": "out/report.json: error: is not a mission but the report of a run",
+    "run out/report.json": "out/report.json: error: is the report of a run, not a mission",
     "run out/run.journal": "but the journal of a run (argo resume out/run.journal)",
     "run run.mcap": "run.mcap: is no mission but the recording of a run (argo replay run.mcap)",
     # scripts and missions with a mistake
@@ -320,12 +320,12 @@ SAID = {
     "run s.txt --report new --drive car": "no drive `car`; there are: route, kinematic, tracked",
     "run s.txt -report new": "no option -report; is --report meant?",
     "run s.txt --render run": "a film is an .mp4 or a .gif",
-    "run s.txt --record missing/run.mcap": "there is no folder missing",
+    "run s.txt --record missing/run.mcap": "folder missing does not exist",
     "run s.txt --record x.mcap --journal x.mcap": "x.mcap is to be written twice",
     "run s.txt --journal run.journal": "run.journal: is there already",
     "format s.txt -o s.txt --force": "s.txt is the input as well",
     "import s.txt -o folder/ --force": "folder: is a folder",
-    "import s.txt -o m.json/n.json": "m.json is a file and no folder",
+    "import s.txt -o m.json/n.json": "m.json is a file, not a folder",
     "export m.json --to ros2-bag -o s.txt --force": "s.txt: is a file, and a folder is asked for",
     "sites darmstadt -o taken.yaml": "taken.yaml: is there already",
     # names with blanks, typographic quotation marks and dashes

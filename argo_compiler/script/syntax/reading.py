@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from argo_compiler.base.errors import Invalid
-from argo_compiler.files.reading import decode_text, read_bytes, require_size
+from argo_compiler.files.loading import decode_text, read_bytes, require_size
 
 MAX_BYTES = 32_000_000
 """of a script's file; a mission of a hundred thousand steps fits"""

@@ -14,8 +14,8 @@ from pydantic import ValidationError
 
 from argo_compiler.base.errors import ArgoError, Conflict, NotFound, Unavailable
 from argo_compiler.base.model import Model
-from argo_compiler.files.reading import FileError, read_bytes
-from argo_compiler.files.writing import write_whole
+from argo_compiler.files.atomic_write import write_atomically
+from argo_compiler.files.loading import FileError, read_bytes
 from argo_env.evaluation.folder import REPORT
 from argo_env.files.folders import make_folder
 from argo_planner.service.evaluations.replay import ReplayedRun, ReplayOrder, replay_run
@@ -59,7 +59,7 @@ class EvaluationFolder:
         """Writes down how one stands. Raises Unavailable."""
         folder = self.path(kept.job.id)
         make_folder(folder)
-        write_whole(folder / _KEPT, kept.model_dump_json().encode())
+        write_atomically(folder / _KEPT, kept.model_dump_json().encode())
 
     def all(self) -> list[KeptEvaluation]:
         """The evaluations, the oldest first. One that was under way has been interrupted."""

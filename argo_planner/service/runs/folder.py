@@ -15,7 +15,7 @@ from pydantic import ValidationError
 
 from argo_compiler.base.errors import NotFound, Unavailable
 from argo_compiler.base.model import Model
-from argo_compiler.files.writing import write_whole
+from argo_compiler.files.atomic_write import write_atomically
 from argo_env.files.checked_lines import (
     checked_line,
     checked_object,
@@ -116,7 +116,7 @@ class RunFolder:
         """Writes down how a run stands. Raises Unavailable."""
         path = self.path(kept.state.id) / _KEPT
         try:
-            write_whole(path, kept.model_dump_json())
+            write_atomically(path, kept.model_dump_json())
             sync_folder(path.parent)
         except OSError as error:
             raise Unavailable(f"{path}: can't be written: {error.strerror}") from error

@@ -10,7 +10,7 @@ from pathlib import Path
 from uuid import uuid4
 
 from argo_compiler.base.errors import ArgoError, Unavailable
-from argo_compiler.files.writing import write_whole
+from argo_compiler.files.atomic_write import write_atomically
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.recording.live import LiveWriter, served_live
 from argo_env.remote.channel import Channel
@@ -77,7 +77,7 @@ def carry_out(
         pipe.send(BrokenOff(problem=str(error)))
         return
     for name, content in report_files(record, site.site, site.robot).items():
-        write_whole(folder / name, content)
+        write_atomically(folder / name, content)
 
 
 class _Segments:

@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.files.writing import write_whole
+from argo_compiler.files.atomic_write import write_atomically
 
 _log = logging.getLogger(__name__)
 MOST_NOTES = 200
@@ -26,7 +26,7 @@ def keep_notes(folder: Path, plan: str, revision: int, notes: tuple[Diagnostic, 
     try:
         path.parent.mkdir(exist_ok=True)
         notes = notes[:MOST_NOTES]
-        write_whole(path, _Notes(revision=revision, notes=notes).model_dump_json())
+        write_atomically(path, _Notes(revision=revision, notes=notes).model_dump_json())
     except OSError as error:
         _log.warning("%s: can't be written: %s", path, error.strerror)
 

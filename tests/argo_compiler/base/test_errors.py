@@ -18,7 +18,7 @@ from argo_compiler.base.errors import (
 )
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span
 from argo_compiler.editing import EditConflict, EditError, EditInvalid, EditNotFound
-from argo_compiler.files.reading import FileError, FileProblem, NoFile, UnreadableFile
+from argo_compiler.files.loading import FileError, FileProblem, MissingFile, UnreadableFile
 from argo_env.recording.output import UnwritableRecording
 from argo_planner.service.core.refusals import (
     ChangedSince,
@@ -51,7 +51,7 @@ MADE = [
     argo_env.closing.CopyRefused("not this one", about="it"),
     DiagnosticError("a.txt", FINDINGS),
     *(kind(FINDINGS) for kind in (EditError, EditNotFound, EditInvalid, EditConflict)),
-    *(kind(*FILE) for kind in (FileError, NoFile, UnreadableFile)),
+    *(kind(*FILE) for kind in (FileError, MissingFile, UnreadableFile)),
     UnwritableRecording(Path("a.mcap"), "No space left on device"),
     *(kind("no") for kind in (CommandIdTaken, NothingToUndo, PlanTooLarge)),
     *(kind("no") for kind in (AccessDenied, TokenMissing, RevisionMissing, TooLarge)),

@@ -1,4 +1,4 @@
-"""Places in JSON texts: what stands at a place is what the path leads to."""
+"""Tests that the place of a path in a JSON text is the place of the path's value."""
 
 import json
 
@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from argo_compiler.diagnostics.subject import parse_subject
 from argo_compiler.files.json_places import (
     JsonText,
-    find_duplicates,
+    find_duplicate_keys,
     find_places,
     format_path,
 )
@@ -32,7 +32,7 @@ def paths(data, at=()):
 
 @settings(max_examples=200)
 @given(DATA, LAYOUTS, st.booleans())
-def test_what_stands_at_a_place_is_the_value_of_its_path(data, layout, ascii):
+def test_the_text_at_a_place_is_the_value_of_its_path(data, layout, ascii):
     text = json.dumps(data, ensure_ascii=ascii, **layout)
     everything = dict(paths(data))
     places = find_places(JsonText(text), everything)
@@ -60,11 +60,11 @@ def split_key(shown):
 
 @settings(max_examples=100)
 @given(DATA, LAYOUTS)
-def test_written_data_have_no_duplicates(data, layout):
-    assert find_duplicates(JsonText(json.dumps(data, **layout)), 9) == {}
+def test_written_data_have_no_duplicate_keys(data, layout):
+    assert find_duplicate_keys(JsonText(json.dumps(data, **layout)), 9) == {}
 
 
-def test_a_path_that_does_not_exist_is_placed_where_it_would_be():
+def test_the_place_of_a_missing_path_is_its_longest_existing_part():
     text = JsonText('{"tasks": [\n  {"name": "A"}\n]}')
     places = find_places(text, [("tasks", 0, "pose", "x"), ("tasks", 7), ("dock",)])
     assert (places["tasks", 0, "pose", "x"].line, places["tasks", 0, "pose", "x"].column) == (2, 4)
@@ -72,24 +72,24 @@ def test_a_path_that_does_not_exist_is_placed_where_it_would_be():
     assert places[("dock",)].line == 1
 
 
-def test_duplicates_are_found_at_any_depth_and_in_any_spelling():
+def test_duplicate_keys_are_found_at_any_depth_and_in_any_spelling():
     text = JsonText('{"a": 1, "b": [{"c": 1,\n "\\u0063": 2, "d": {"c": 3}}],\n"a": {"a": 0}}')
-    found = find_duplicates(text, 9)
-    assert {path: (s.line, s.column) for path, s in found.items()} == {
+    duplicates = find_duplicate_keys(text, 9)
+    assert {path: (s.line, s.column) for path, s in duplicates.items()} == {
         ("b", 0, "c"): (1, 17),
         ("a",): (1, 2),
     }
-    last = find_places(text, found)
+    last = find_places(text, duplicates)
     assert (last["b", 0, "c"].line, last["b", 0, "c"].column) == (2, 2)
     assert last[("a",)].line == 3
-    assert len(find_duplicates(text, 1)) == 1
+    assert len(find_duplicate_keys(text, 1)) == 1
 
 
 @pytest.mark.parametrize("path", ["tasks[3].transitions[0].target", "tasks", "groups[10].name"])
-def test_paths_are_written_and_read_back(path):
+def test_a_parsed_path_is_formatted_as_before(path):
     assert format_path(parse_subject(path)) == path
 
 
-def test_depth_costs_nothing():
+def test_deep_nesting_is_no_problem():
     text = JsonText('{"a": ' + "[" * 100_000 + "]" * 100_000 + "}")
     assert find_places(text, [("a", 0, 0)])["a", 0, 0].column == 9

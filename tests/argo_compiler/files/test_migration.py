@@ -1,4 +1,4 @@
-"""Files of older versions: they mean what they meant, or a warning says what changed."""
+"""Tests that files of older versions keep their meaning, or a warning reports the change."""
 
 import json
 
@@ -35,7 +35,7 @@ def velocities(mission):
 
 @pytest.mark.rule("M6", "T6")
 @pytest.mark.parametrize("version", [1, 2])
-def test_the_velocity_of_the_way_on_becomes_that_of_the_way_there(version):
+def test_a_velocity_moves_from_the_previous_task_to_the_task_it_leads_to(version):
     start = task("S", "A", action="START", velocity=0.2)
     file = read(version, tasks=[start, task("A", "B", velocity=0.3), task("B")])
     assert velocities(file.mission) == {"S": None, "A": 0.2, "B": 0.3}
@@ -44,7 +44,7 @@ def test_the_velocity_of_the_way_on_becomes_that_of_the_way_there(version):
 
 
 @pytest.mark.rule("M6")
-def test_where_velocities_differ_the_slowest_is_taken_and_said():
+def test_the_lowest_of_different_velocities_is_used_and_reported():
     file = read(tasks=[task("A", "C", velocity=0.3), task("B", "C", velocity=0.5), task("C", "B")])
     assert velocities(file.mission)["C"] == 0.3
     (change,) = file.changes
@@ -54,7 +54,7 @@ def test_where_velocities_differ_the_slowest_is_taken_and_said():
     assert placed.span is not None
 
 
-def test_the_next_round_is_a_way_too():
+def test_the_path_to_the_next_round_has_a_velocity_too():
     groups = [{"name": "G", "start": "A", "end": "B", "max_repeat_count": 3}]
     file = read(
         tasks=[
@@ -70,9 +70,9 @@ def test_the_next_round_is_a_way_too():
 
 @pytest.mark.rule("M6")
 @pytest.mark.parametrize(
-    ("data", "said"),
+    ("data", "message"),
     [
-        ({"mode": "supervisory", "tasks": [task("A")]}, "begins paused"),
+        ({"mode": "supervisory", "tasks": [task("A")]}, "starts paused"),
         ({"tasks": [task("A", pose=DOCK)]}, "was never used"),
         (
             {"tasks": [task("A", transitions=[{"target": "A", "conditions": [LOW]}])]},
@@ -90,10 +90,10 @@ def test_the_next_round_is_a_way_too():
         ),
     ],
 )
-def test_what_does_not_mean_the_same_is_said(data, said):
+def test_a_change_of_meaning_is_reported(data, message):
     file = read(**data)
     (change,) = file.changes
-    assert said in change.message
+    assert message in change.message
     assert change.hint
     assert not decode_mission(
         json.dumps({**file.mission.model_dump(mode="json")}).encode(), "new.json"
@@ -112,7 +112,7 @@ def test_what_does_not_mean_the_same_is_said(data, said):
         ),
     ],
 )
-def test_a_file_has_the_fields_of_its_version_only(data, field):
+def test_a_file_may_only_have_the_fields_of_its_version(data, field):
     with pytest.raises(DiagnosticError) as caught:
         read(**data)
     (fault,) = caught.value.diagnostics
@@ -122,7 +122,7 @@ def test_a_file_has_the_fields_of_its_version_only(data, field):
     read(3, **data)
 
 
-def test_priorities_and_unused_poses_stay_what_they_were():
+def test_missing_priorities_stay_0_and_unused_poses_stay_unused():
     file = read(
         dock=DOCK,
         tasks=[task("A")],
@@ -136,7 +136,7 @@ def test_priorities_and_unused_poses_stay_what_they_were():
 
 @st.composite
 def routes(draw):
-    """Missions in which each task is come to at one velocity."""
+    """Draw a mission of drives in which each task has at most one transition."""
     names = [f"T{i}" for i in range(draw(st.integers(1, 6)))]
     speeds = st.sampled_from([None, 0.2, 0.4])
     ways_on = st.lists(st.sampled_from(names), max_size=1)
@@ -155,17 +155,17 @@ def routes(draw):
 
 @settings(max_examples=200)
 @given(routes())
-def test_each_way_keeps_its_velocity_or_its_task_is_named(mission):
+def test_each_path_keeps_its_velocity_or_its_task_is_reported(mission):
     there, differ = of_ways_there(mission)
-    on, now = velocities(mission), velocities(there)
+    old_velocities, new_velocities = velocities(mission), velocities(there)
     for source, target in ways(mission):
-        old = None if source == BEGINNING else on[source]
-        assert now[target] == old or target in differ
+        old = None if source == BEGINNING else old_velocities[source]
+        assert new_velocities[target] == old or target in differ
 
 
 @settings(max_examples=200)
 @given(routes())
-def test_both_conventions_say_the_same_where_one_can_say_what_the_other_does(mission):
+def test_converting_velocities_to_version_2_and_back_changes_nothing(mission):
     on, differ = of_ways_on(mission)
     if not differ:
         there, _ = of_ways_there(on)

@@ -1,4 +1,4 @@
-"""Route problems as JSON: what is written is read again; what is wrong is said with its place."""
+"""Tests that route problems survive writing and reading, and that errors name their place."""
 
 import json
 from dataclasses import fields, is_dataclass
@@ -42,7 +42,7 @@ def assert_equal(one: object, other: object) -> None:
 
 
 @given(st.integers(0, 10_000))
-def test_what_is_written_is_read_again(seed: int) -> None:
+def test_reading_returns_the_written_problem(seed: int) -> None:
     problem = random_problem(np.random.default_rng(seed), 6)
     assert_equal(problem, parse_route_problem(route_problem_text(problem), "problem"))
 
@@ -58,12 +58,12 @@ def test_files(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("{", r"^p:1:2: is not JSON"),
         ("[" * 100_000, "^p: is not JSON: it is nested too deeply"),
-        ("[]", "no route problem of version 1"),
-        ('{"version": 2}', "no route problem of version 1"),
+        ("[]", "not a route problem of version 1"),
+        ('{"version": 2}', "not a route problem of version 1"),
         ('{"version": 1, "visits": []}', "travel: field required"),
         (TEXT.replace("prize", "prise", 1), r"^p:1:\d+: visits\[0\].prise: there is no such field"),
         (
@@ -76,12 +76,12 @@ def test_files(tmp_path: Path) -> None:
         (TEXT.replace('"members": [0, 1]', '"members": [0, 9]'), "one that is no visit"),
     ],
 )
-def test_what_is_wrong_is_said_with_its_place(text: str, said: str) -> None:
-    with pytest.raises(Invalid, match=said):
+def test_an_error_names_its_place(text: str, message: str) -> None:
+    with pytest.raises(Invalid, match=message):
         parse_route_problem(text, "p")
 
 
-def test_a_suggestion_as_json_has_its_curve() -> None:
+def test_a_suggestion_as_json_has_its_history() -> None:
     data = json.loads(route_suggestion_text(suggest_route(PROBLEM)))
     assert data["route"]["order"] in ([0, 1], [1, 0])
     assert data["proven"]

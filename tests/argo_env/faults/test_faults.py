@@ -16,7 +16,7 @@ from pydantic_core import PydanticUndefined
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.il import EventKind
-from argo_compiler.schemas.generate import schema_of
+from argo_compiler.schemas.generate import model_schema
 from argo_env.drives.battery import Battery
 from argo_env.drives.powertrain import Powertrain
 from argo_env.drives.timed_drive import RouteDrive
@@ -99,7 +99,7 @@ class TestFiles:
         assert caught.value.diagnostics[0].hint == "begin with `faults:` and a list below it"
 
     def test_the_schema_agrees(self):
-        schema = json.loads(schema_of(FaultFile, "faults"))
+        schema = json.loads(model_schema(FaultFile, "faults"))
         validator = Draft202012Validator(schema)
         for path in SCENARIOS:
             data = FaultFile(faults=read_faults(path)).model_dump(mode="json")
@@ -107,7 +107,7 @@ class TestFiles:
         assert not validator.is_valid({"faults": [{"kind": "brick", "at": 3}]})
 
     def test_the_schema_says_what_each_field_is(self):
-        schema = json.loads(schema_of(FaultFile, "faults"))
+        schema = json.loads(model_schema(FaultFile, "faults"))
         for model in (schema, *(d for d in schema["$defs"].values() if "properties" in d)):
             for name, field in model["properties"].items():
                 assert name == "kind" or field["description"], f"{model['title']}.{name}"

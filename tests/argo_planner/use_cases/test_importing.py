@@ -74,7 +74,7 @@ def test_a_bag_may_lie_on_this_machine(site, tmp_path):
     ("upload", "code", "says"),
     [
         (Upload("a.txt", b""), "invalid", "a.txt is empty"),
-        (Upload("a.txt", b"Mission\0"), "invalid", "a.txt: is no text but a binary file"),
+        (Upload("a.txt", b"Mission\0"), "invalid", "a.txt: is a binary file, not text"),
         (Upload("a.txt", "Öl".encode("cp1252")), "invalid", "a.txt: is not UTF-8"),
         (Upload("a.txt", b"Dear robot"), "invalid", "script.nothing-to-do"),
         (Upload("a.json", b"{"), "invalid", "a.json:1:2: error"),

@@ -6,15 +6,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.files import writing
-from argo_compiler.files.writing import write_folder, write_whole
+from argo_compiler.files import atomic_write
+from argo_compiler.files.atomic_write import write_atomically, write_folder
 from tests.conftest import examples
 from tests.disks import fill, small_disk
 
 
 def test_text_is_written_as_utf_8_with_unix_line_ends(tmp_path):
     path = tmp_path / "a.txt"
-    write_whole(path, "Öl\n\n")
+    write_atomically(path, "Öl\n\n")
     assert path.read_bytes() == "Öl\n\n".encode()
     assert list(tmp_path.iterdir()) == [path]
 
@@ -26,18 +26,18 @@ def test_a_failure_half_way_leaves_the_old_file(tmp_path, monkeypatch):
     def fail(_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(writing.os, "fsync", fail)
+    monkeypatch.setattr(atomic_write.os, "fsync", fail)
     with pytest.raises(OSError, match="No space"):
-        write_whole(path, "new")
+        write_atomically(path, "new")
     assert path.read_text() == "old"
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_text_that_can_not_be_encoded_leaves_the_old_file(tmp_path):
+def test_text_that_cannot_be_encoded_leaves_the_old_file(tmp_path):
     path = tmp_path / "a.txt"
     path.write_text("old")
     with pytest.raises(UnicodeEncodeError):
-        write_whole(path, "\ud800")
+        write_atomically(path, "\ud800")
     assert path.read_text() == "old"
 
 
@@ -46,7 +46,7 @@ def test_permissions_and_links_stay(tmp_path):
     path.write_text("old")
     path.chmod(0o640)
     link.symlink_to(path)
-    write_whole(link, "new")
+    write_atomically(link, "new")
     assert link.is_symlink()
     assert path.read_text() == "new"
     assert stat.S_IMODE(path.stat().st_mode) == 0o640
@@ -54,27 +54,27 @@ def test_permissions_and_links_stay(tmp_path):
 
 def test_a_new_file_has_the_usual_permissions(tmp_path):
     (tmp_path / "usual").write_text("")
-    write_whole(tmp_path / "new", "")
+    write_atomically(tmp_path / "new", "")
     assert (tmp_path / "new").stat().st_mode == (tmp_path / "usual").stat().st_mode
 
 
-def test_what_is_no_file_is_written_to(tmp_path):
+def test_a_pipe_is_written_to_directly(tmp_path):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
     try:
-        write_whole(pipe, "text")
+        write_atomically(pipe, "text")
         assert os.read(reader, 99) == b"text"
     finally:
         os.close(reader)
     assert stat.S_ISFIFO(pipe.stat().st_mode)
 
 
-def test_what_the_process_has_open_is_added_to(tmp_path):
-    path = tmp_path / "kept.txt"
+def test_an_open_file_descriptor_is_written_to_directly(tmp_path):
+    path = tmp_path / "open.txt"
     path.write_text("before, ")
     with path.open("a") as file:
-        write_whole(Path(f"/dev/fd/{file.fileno()}"), "after")
+        write_atomically(Path(f"/dev/fd/{file.fileno()}"), "after")
     assert path.read_text() == "before, after"
     assert list(tmp_path.iterdir()) == [path]
 
@@ -102,12 +102,12 @@ def test_files_of_a_folder_are_replaced_and_others_stay(tmp_path):
     ]  # fmt: skip
 
 
-def test_a_folder_is_made_with_those_that_it_is_in(tmp_path):
+def test_a_folder_is_created_with_its_parents(tmp_path):
     write_folder(tmp_path / "a" / "b", FILES)
     assert contents(tmp_path / "a" / "b") == FILES
 
 
-def test_a_folder_in_the_way_stays(tmp_path):
+def test_a_folder_with_the_name_of_a_file_stays(tmp_path):
     (tmp_path / "page.html").mkdir()
     with pytest.raises(IsADirectoryError, match="directory"):
         write_folder(tmp_path, FILES)
@@ -115,17 +115,17 @@ def test_a_folder_in_the_way_stays(tmp_path):
 
 
 @pytest.mark.parametrize("steps", range(8))
-def test_whoever_is_interrupted_leaves_all_old_or_all_new(tmp_path, monkeypatch, steps):
+def test_an_interruption_leaves_all_old_or_all_new(tmp_path, monkeypatch, steps):
     old = {"data.json": b"old data", "page.html": b"old page"}
     write_folder(tmp_path, old)
-    replace, done = Path.replace, []
+    replace, moves = Path.replace, []
 
     def interrupted(self, target):
-        done.append(replace(self, target))
-        # What has been seen meanwhile: never a new page with old data, or the other way round.
-        seen = contents(tmp_path)
-        assert len({seen[name][:3] for name in old if name in seen}) <= 1
-        if len(done) == steps + 1:
+        moves.append(replace(self, target))
+        # At no time there is a new page with old data, or an old page with new data.
+        visible = contents(tmp_path)
+        assert len({visible[name][:3] for name in old if name in visible}) <= 1
+        if len(moves) == steps + 1:
             raise KeyboardInterrupt
 
     monkeypatch.setattr(Path, "replace", interrupted)
@@ -141,15 +141,15 @@ def test_whoever_is_interrupted_leaves_all_old_or_all_new(tmp_path, monkeypatch,
 
 @pytest.mark.parametrize("steps", range(1, 6))
 @pytest.mark.parametrize("more", range(1, 6))
-def test_whoever_is_interrupted_again_loses_nothing(tmp_path, monkeypatch, steps, more):
-    """The second time while the old files are moved back."""
+def test_a_second_interruption_loses_nothing(tmp_path, monkeypatch, steps, more):
+    """The second interruption comes while the old files are moved back."""
     old = {"data.json": b"old data", "page.html": b"old page"}
     write_folder(tmp_path, old)
-    replace, done = Path.replace, []
+    replace, moves = Path.replace, []
 
     def interrupted(self, target):
-        done.append(replace(self, target))
-        if len(done) in {steps, steps + more}:
+        moves.append(replace(self, target))
+        if len(moves) in {steps, steps + more}:
             raise KeyboardInterrupt
 
     monkeypatch.setattr(Path, "replace", interrupted)
@@ -164,7 +164,7 @@ _PAGE = 4096  # bytes
 
 def test_a_full_disk_leaves_all_old_or_all_new():
     old = {"data.json": b"o" * 7 * _PAGE, "page.html": b"o" * 2 * _PAGE}
-    kept = set()
+    outcomes = set()
 
     @settings(max_examples=examples(60))
     @given(room=st.integers(0, 30), sizes=st.lists(st.integers(0, 9), min_size=3, max_size=3))
@@ -172,15 +172,15 @@ def test_a_full_disk_leaves_all_old_or_all_new():
         new = {name: b"n" * size * _PAGE for name, size in zip(FILES, sizes, strict=True)}
         write_folder(disk, old)
         filler = fill(disk, leave=room * _PAGE)
-        before = {path: path.stat().st_mode for path in disk.rglob("*")}
+        modes = {path: path.stat().st_mode for path in disk.rglob("*")}
         try:
             write_folder(disk, new)
         except OSError:
-            kept.add("old")
+            outcomes.add("old")
             assert contents(disk) == old | {"filler": filler.read_bytes()}
-            assert {path: path.stat().st_mode for path in disk.rglob("*")} == before
+            assert {path: path.stat().st_mode for path in disk.rglob("*")} == modes
         else:
-            kept.add("new")
+            outcomes.add("new")
             assert contents(disk) == new | {"filler": filler.read_bytes()}
         for path in disk.rglob("*"):
             path.is_dir() or path.unlink()
@@ -188,4 +188,4 @@ def test_a_full_disk_leaves_all_old_or_all_new():
 
     with small_disk(64 * _PAGE) as disk:
         check()
-    assert kept == {"old", "new"}
+    assert outcomes == {"old", "new"}

@@ -1,0 +1,155 @@
+"""Loading of files: each file that can't be read raises an error with a message and a hint."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from enum import StrEnum
+from pathlib import Path
+from typing import BinaryIO
+
+from argo_compiler.base.errors import ArgoError, Invalid, NotFound
+from argo_compiler.files.encodings import detect_encoding
+
+_CHUNK = 1 << 20
+_DOCUMENTS = {b"%PDF-": "PDF", rb"{\rtf": "RTF"}
+"""First bytes of documents that may look like text, with the name of their format."""
+
+
+class FileProblem(StrEnum):
+    """Reason why a file can't be used."""
+
+    MISSING = "missing"
+    DIRECTORY = "directory"
+    UNREADABLE = "unreadable"
+    TOO_LARGE = "too-large"
+    NOT_TEXT = "not-text"
+
+
+class FileError(ArgoError):
+    """Raised when a file can't be read.
+
+    Attributes:
+        problem: The reason.
+        message: The reason in words.
+        hint: What the user can do.
+    """
+
+    def __init__(self, name: object, problem: FileProblem, message: str, hint: str) -> None:
+        super().__init__(f"{name}: {message}; {hint}")
+        self.problem = problem
+        self.message = message
+        self.hint = hint
+
+    def __reduce__(self) -> tuple[object, ...]:
+        name = str(self).removesuffix(f": {self.message}; {self.hint}")
+        return type(self), (name, self.problem, self.message, self.hint), vars(self)
+
+
+class MissingFile(FileError, NotFound):
+    """Raised when there is no file with that name."""
+
+
+class UnreadableFile(FileError, Invalid):
+    """Raised when a file exists, but can't be read or is not of the expected kind."""
+
+
+def read_bytes(path: Path, kind: str, max_bytes: int, magic: bytes = b"") -> bytes:
+    """Return the content of a file.
+
+    Args:
+        path: The file.
+        kind: What the file should be, such as `script`; for messages.
+        max_bytes: Size of the largest file that is accepted.
+        magic: First bytes of all files of this kind. If the file has others, only its first bytes,
+            as many as `magic` has, are returned.
+
+    Raises:
+        FileError: The file does not exist, can't be read, or is too large.
+    """
+    with open_file(path, kind) as file:
+        content = file.read(len(magic))
+        if content == magic:
+            size = os.fstat(file.fileno()).st_size
+            # `read(n)` allocates n bytes at once, and pipes report no size.
+            fits = 0 < size <= max_bytes
+            content += file.read() if fits else _read_at_most(file, max_bytes + 1)
+    require_size(content, path, kind, max_bytes)
+    return content
+
+
+@contextmanager
+def open_file(path: Path, kind: str) -> Iterator[BinaryIO]:
+    """Yield a file that is open for reading; messages call it a `kind`.
+
+    Raises FileError if the file can't be opened, or if reading fails inside the block.
+    """
+    try:
+        if os.path.isdir(path):
+            message = "can't be read: is a directory"
+            raise UnreadableFile(path, FileProblem.DIRECTORY, message, f"name the {kind} in it")
+        with path.open("rb") as file:
+            yield file
+    except FileNotFoundError:
+        raise MissingFile(
+            path,
+            FileProblem.MISSING,
+            "can't be read: it does not exist (no such file)",
+            f"check the name of the {kind}",
+        ) from None
+    except OSError as error:
+        message = f"can't be read: {error.strerror}"
+        raise UnreadableFile(path, FileProblem.UNREADABLE, message, "check the file") from error
+    except ValueError as error:  # a NUL in the path
+        message = f"can't be read: {error}"
+        raise UnreadableFile(path, FileProblem.UNREADABLE, message, "check its name") from error
+
+
+def _read_at_most(file: BinaryIO, count: int) -> bytes:
+    parts = []
+    while count > 0 and (part := file.read(min(count, _CHUNK))):
+        parts.append(part)
+        count -= len(part)
+    return b"".join(parts)
+
+
+def read_text(path: Path, kind: str, max_bytes: int) -> str:
+    """Return the text of a file; messages call it a `kind`. Raises FileError if it has no text."""
+    return decode_text(read_bytes(path, kind, max_bytes), path, kind)
+
+
+def require_size(content: bytes, name: object, kind: str, max_bytes: int) -> None:
+    """Raise UnreadableFile if the content is larger than any `kind` of file may be."""
+    if len(content) > max_bytes:
+        raise UnreadableFile(
+            name,
+            FileProblem.TOO_LARGE,
+            f"is larger than {max_bytes} bytes",
+            f"a {kind} is far smaller: is it the right file?",
+        )
+
+
+def decode_text(content: bytes, name: object, kind: str) -> str:
+    """Return the text of a file's content; messages call the file a `kind`.
+
+    The content may be UTF-8 with or without a byte order mark, UTF-32 with such a mark, or UTF-16,
+    which Windows calls Unicode. Raises UnreadableFile if it is binary or in another encoding.
+    """
+    for first_bytes, document in _DOCUMENTS.items():
+        if content.startswith(first_bytes):
+            message = f"is a document ({document}), not plain text"
+            raise UnreadableFile(name, FileProblem.NOT_TEXT, message, "save it as plain text")
+    encoding = detect_encoding(content)
+    try:
+        text = "\0" if encoding is None else content.decode(encoding).removeprefix("\ufeff")
+    except UnicodeDecodeError as error:
+        line = content[: error.start].decode(error.encoding, "replace").count("\n") + 1
+        position = f"(byte {error.start + 1}, line {line})"
+        problem = "is not UTF-8" if encoding == "utf-8" else f"is damaged {error.encoding.upper()}"
+        raise UnreadableFile(
+            name, FileProblem.NOT_TEXT, f"{problem} {position}", "save it as UTF-8"
+        ) from error
+    if "\0" in text:
+        raise UnreadableFile(
+            name, FileProblem.NOT_TEXT, "is a binary file, not text", f"a {kind} is plain text"
+        )
+    return text

@@ -20,7 +20,7 @@ from argo_compiler.diagnostics import (
     has_errors,
     with_excerpts,
 )
-from argo_compiler.files.loading import opened
+from argo_compiler.files.loading import open_file
 from argo_compiler.files.mission_file import MissionFile, decode_mission
 from argo_compiler.il import Mission
 from argo_compiler.isar.recognition import find_definition
@@ -131,7 +131,7 @@ def _refuse_runs(upload: Upload) -> None:
     if isinstance(upload.content, bytes):
         beginning = upload.content[:64]
     elif isinstance(upload.content, Path) and os.path.isfile(upload.content):
-        with opened(upload.content, "bag") as file:
+        with open_file(upload.content, "bag") as file:
             beginning = file.read(64)
     for begins, what, remedy in (
         (_JOURNAL, "journal", Remedy.RESUME),

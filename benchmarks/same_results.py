@@ -45,7 +45,7 @@ def records(drive: str) -> Iterator[tuple[str, bytes]]:
     from argo_env.faults.reading import read_faults
     from argo_env.planning import open_site
     from argo_env.run.session import simulate
-    from argo_env.run.spec import RunSpec, logged
+    from argo_env.run.spec import RunSpec, logged_events
     from argo_planner.use_cases.importing import Upload, import_mission
 
     site = open_site("umad").prepare()
@@ -73,7 +73,7 @@ def records(drive: str) -> Iterator[tuple[str, bytes]]:
                 sensor=sensor,
                 seed=seed,
                 faults=faults,
-                events=logged((300.0, Resume())),
+                events=logged_events((300.0, Resume())),
             )
             record = simulate(spec, site)
             said = f"{len(record.contacts)} contacts, {len(record.anomalies)} anomalies"

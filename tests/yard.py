@@ -31,7 +31,7 @@ from argo_env.run.record import RunRecord
 from argo_env.run.run_setup import RunSetup
 from argo_env.run.session import resume, simulate
 from argo_env.run.simulation import Simulation
-from argo_env.run.spec import RunSpec, logged
+from argo_env.run.spec import RunSpec, logged_events
 from argo_env.sensing.sensor import Measurement
 from argo_env.site import make_site
 from argo_env.site.spec import SiteSpec
@@ -227,7 +227,7 @@ class Watching(Observer):
         self._observe, self._announce = observe, announce
 
     def on_change(self, entry, _):
-        for news in entry.news if self._announce else ():
+        for news in entry.sensed if self._announce else ():
             self._announce(news)
 
     def on_step(self, now, action):
@@ -261,7 +261,7 @@ def run_with(plan, setup, *, observers=(), journal=None, interrupted=lambda: Fal
 
 def run(navigator, plan, *events, values=None):
     """The record of a run without physics that is told of these events at their times."""
-    return run_with(plan, fast_setup(navigator, values), events=logged(*events))
+    return run_with(plan, fast_setup(navigator, values), events=logged_events(*events))
 
 
 def simulation_of(spec, site, **arguments):
@@ -273,7 +273,11 @@ def simulation_of(spec, site, **arguments):
 def journaled(path, spec, site, **arguments):
     """A simulation that a journal is kept of; where there is one already, from where that ends."""
     known = path.exists()
-    with open_journal(path) if known else create_journal(path, Header.of(site, spec)) as journal:
+    with (
+        open_journal(path)
+        if known
+        else create_journal(path, Header.from_run(site, spec)) as journal
+    ):
         past = journal.entries if known else ()
         with simulation_of(spec, site, past=past, observers=[journal], **arguments) as simulation:
             yield simulation
@@ -320,7 +324,7 @@ def until(simulation, reached):
 
 
 def to_rest(simulation):
-    until(simulation, lambda: simulation.task is None or simulation.over)
+    until(simulation, lambda: simulation.task is None or simulation.ended)
 
 
 def take_over(simulation, after=0):

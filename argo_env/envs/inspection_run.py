@@ -139,7 +139,7 @@ class Inspection(Closing):
     def finish(self) -> None:
         """No task will follow: the run ends with the last one."""
         self._machine.close()
-        self._simulation.settle()
+        self._simulation.end_if_finished()
 
     @property
     def _surely_not_full(self) -> float:
@@ -158,12 +158,12 @@ class Inspection(Closing):
 
     @property
     def _over(self) -> bool:
-        return self._simulation.over or self.time_up
+        return self._simulation.ended or self.time_up
 
     def _carry_out(self, task: Task) -> Deed:
         self._told.clear()
         began = self.now
-        self._simulation.give(task)
+        self._simulation.append_task(task)
         while self._simulation.task is not None and not self._over:
             self._step(math.inf)
         if self.time_up:
@@ -171,13 +171,13 @@ class Inspection(Closing):
         return self._deed(began)
 
     def _stop(self) -> None:
-        if not self._simulation.over:
+        if not self._simulation.ended:
             self._simulation.handle(StopRun(f"the time limit of {self._limit:g} s was reached"))
 
     def _step(self, until: float) -> None:
         """Goes on for one time step, or for many up to that time (s)."""
         began = self.now
-        places = self._simulation.leap(min(until, self._limit))
+        places = self._simulation.fast_forward(min(until, self._limit))
         for number in _apart(_position(self._trail[-1][1]), places):
             now = round(began + (number + 1) * self._drive.time_step, 6)
             self._trail.append((now, BodyPose(*place_of(places, number))))
@@ -186,7 +186,7 @@ class Inspection(Closing):
     def _deed(self, began: float = math.inf) -> Deed:
         """What came since the clearing; contacts are those with a touch after time `began` (s)."""
         told = self._told
-        found = tuple(n for n in told.news if isinstance(n, Anomaly))
+        found = tuple(n for n in told.sensed if isinstance(n, Anomaly))
         self._noticed += [anomaly.kind for anomaly in found]
         touched = {(c.start, c.link, c.element) for c in told.contacts() if c.end > began}
         return Deed(told.reading, told.failure, found, tuple(told.mishaps), len(touched))
@@ -235,7 +235,7 @@ def _position(pose: BodyPose) -> Vector:
 class _Told(Observer):
     """Holds what was told of the run since it was cleared."""
 
-    hears_samples = False
+    wants_samples = False
 
     def __init__(self) -> None:
         self.clear()
@@ -253,13 +253,13 @@ class _Told(Observer):
         return (*self._over, *self._open)
 
     def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
-        self.news += entry.news
+        self.news += entry.sensed
         self.reading = entry.reading or self.reading
         self.mishaps += entry.mishaps
         self._over += entry.contacts
         self._open = entry.touching
         for event in entry.events:
-            original = event.original()
+            original = event.to_event()
             if isinstance(original, ActionFailed):
                 self.failure = original.reason
 

@@ -140,4 +140,4 @@ def false_alarms(record: RunRecord, spec: RunSpec, site: Site) -> int:
             return True
         return finding.kind in _TRUE and _TRUE[finding.kind](world, finding)
 
-    return sum(not (finding.is_told or was_so(finding)) for finding in record.findings)
+    return sum(not (finding.is_reported or was_so(finding)) for finding in record.findings)

@@ -186,12 +186,12 @@ class RunRecorder(Observer):
             self.on_step(entry.t, None)
         now = self._now = entry.t
         for event in entry.events:
-            original = event.original()
+            original = event.to_event()
             if isinstance(original, Occurred):
                 detail = f": {original.detail}" if original.detail else ""
                 self._log(f"{original.event.replace('_', ' ')}{detail}", Log.WARNING, "event", now)
         assert self._setup is not None, "on_begin comes first"
-        found = (*entry.found, *entry.told(self._setup.navigator.site))
+        found = (*entry.found, *entry.reported_anomalies(self._setup.navigator.site))
         for anomaly in found:
             self._found.append(anomaly)
             self._writer.put_json("/findings", anomaly, now)
@@ -313,7 +313,7 @@ class RunRecorder(Observer):
         self._writer.put_json("/tasks", task, task.end)
         level = {"done": Log.INFO, "failed": Log.ERROR}.get(task.outcome, Log.WARNING)
         because = f": {task.reason}" if task.reason else ""
-        self._log(f"{task.task} {task.how}{because}", level, "task", task.end)
+        self._log(f"{task.task} {task.outcome_in_words}{because}", level, "task", task.end)
 
     def _contact(self, contact: Contact, now: float) -> None:
         self._writer.put_json("/contacts", contact, now)

@@ -75,7 +75,7 @@ def _finding(id: str, anomaly: Anomaly, place: Vector, t: float) -> SceneEntity:
     text = anomaly.kind.replace("_", " ") + (f": {anomaly.detail}" if anomaly.detail else "")
     looks = [Visual("sphere", (_BALL, _BALL, _BALL), place, level, _ABNORMAL)]
     if anomaly.place is None:
-        text, looks = f"{'told' if anomaly.is_told else 'noticed from'} here: {text}", []
+        text, looks = f"{'told' if anomaly.is_reported else 'noticed from'} here: {text}", []
     if anomaly.extent is not None:
         x0, y0, x1, y1 = anomaly.extent
         middle = ((x0 + x1) / 2, (y0 + y1) / 2, place[2])

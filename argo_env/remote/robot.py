@@ -27,7 +27,7 @@ from argo_env.robot.pose import BodyPose
 from argo_env.run.initial_state import InitialState
 from argo_env.run.log import Entry
 from argo_env.run.odometry import Odometry
-from argo_env.run.perception import abnormal_reading
+from argo_env.run.perception import located_anomaly
 from argo_env.run.record import DIGITS, Anomaly, Reading, TaskRun
 from argo_env.run.robot import ActionEnd, RobotAction, Sensed
 from argo_env.run.run_setup import RunSetup
@@ -126,7 +126,7 @@ class RemoteAction:
     """Holds what was ordered, and whether it is to be cancelled."""
 
     path: Path | None = None
-    came: Path | None = None
+    arrival_path: Path | None = None
 
     def __init__(
         self,
@@ -170,7 +170,7 @@ class RemoteAction:
         reason = report.reason or f"the robot reported that it has {report.outcome}"
         return ActionFailed(name, reason, report.unreadable, id)
 
-    def run(self, end: ActionEnd, now: float, distance: float, climbed: float) -> TaskRun:
+    def to_task_run(self, end: ActionEnd, now: float, distance: float, climbed: float) -> TaskRun:
         """The action as it goes into the record."""
         reason = end.reason if isinstance(end, ActionFailed) else None
         outcome = "done"
@@ -254,22 +254,22 @@ class RemoteRobot:
             self._channel.take()
         return not self._channel.pending
 
-    def begin(self, beginning: InitialState) -> None:
-        self.odometry.distance, self.odometry.climbed = beginning.distance, beginning.climbed
+    def apply_initial_state(self, initial: InitialState) -> None:
+        self.odometry.distance, self.odometry.climbed = initial.distance, initial.climbed
 
     def restore(self, last: Entry) -> None:
         self.odometry.restore(last)
 
-    def remember(self, told: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
+    def restore_anomalies(self, reported: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
         """The robot remembers itself."""
 
-    def let_faults_happen(self, now: float) -> None:
+    def update_faults(self, now: float) -> None:
         """What goes wrong is real."""
 
     def avoid(self, blockages: Sequence[Blockage]) -> None:
         self.setup = replace(self.setup, navigator=self.setup.navigator.avoiding(blockages))
 
-    def start(self, command: StartAction, now: float, came: Path | None) -> RobotAction:  # noqa: ARG002
+    def start(self, command: StartAction, now: float, arrival_path: Path | None) -> RobotAction:  # noqa: ARG002
         """Orders an action. One of the same run and id that the robot knows already goes on."""
         # What a person asks for has no number, and a time of its own.
         id = f"{self._run}/{command.id}" if command.id else f"{self._run}/by hand at {now:g} s"
@@ -305,12 +305,12 @@ class RemoteRobot:
                     ended = report
                 case FoundReport() as report if report.event is not EventKind.TIME_UP:
                     found.append(anomaly_of(report, site, self._drive.pose, now))
-        self.odometry.moved(before, self._drive.pose, (), now)
+        self.odometry.add_motion(before, self._drive.pose, (), now)
         if own is None or ended is None:
             return Sensed(found=tuple(found))
         reading = reading_of(own.task, ended, site, self._drive.pose, now)
         if reading and not reading.normal:
-            found.append(abnormal_reading(reading, site))
+            found.append(located_anomaly(reading, site))
         self._action = None
         end = own.end(ended, reading is not None and not reading.normal)
         return Sensed(end, reading, tuple(found))
@@ -324,7 +324,7 @@ class RemoteRobot:
             "charge": self.supply.charge,
         }
 
-    def told(self) -> None:
+    def clear_reported(self) -> None:
         """Contacts and mishaps are not reported."""
 
     def _await_state(self, patience: float) -> None:

@@ -193,7 +193,9 @@ def _values(record: RunRecord, until: Sequence[Condition], at: float) -> str:
         before = [one for one in told if str(one.checkpoint) == id and one.t <= at]
         last = max(before, key=lambda one: one.t, default=None)
         text = "no value" if last is None else f"{last.value:.4g} {last.unit} at {clock(last.t)}"
-        failed = [t.end for t in record.tasks if t.object_id == id and t.how == "failed"]
+        failed = [
+            t.end for t in record.tasks if t.object_id == id and t.outcome_in_words == "failed"
+        ]
         since = max((end for end in failed if end <= at), default=-math.inf)
         if since > (-math.inf if last is None else last.t):
             text = f"failed at {clock(since)}"

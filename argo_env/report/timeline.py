@@ -64,7 +64,7 @@ def is_untold(run: TaskRun) -> bool:
 
 def _bars(run: TaskRun, y: float, px: float) -> list[Node]:
     """The bar of a run, and over it a darker one for each time that the robot measured."""
-    text = f"{run.task}: {clock(run.start)} to {clock(run.end)}, {run.how}"
+    text = f"{run.task}: {clock(run.start)} to {clock(run.end)}, {run.outcome_in_words}"
     text += f" ({run.reason})" if run.reason else ""
     untold = " untold" if is_untold(run) else ""
     spans = [(run.start, run.end, f"run{untold} {run.outcome}", text)]

@@ -1,1 +1,1 @@
-"""Running a mission: the simulation, what it is made with, its log, journal and record."""
+"""Runs of missions: simulation, run setup, state, log, journal, observers and record."""

@@ -1,4 +1,4 @@
-"""The drives and the sensors by name. What one of them needs is imported when it is made."""
+"""Drives and sensors by name; the modules that one of them needs are imported when it is made."""
 
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from argo_env.world.world import World
 
 ROUTE = "route"
-"""The drive that goes by travel times alone, and has no world."""
+"""Name of the drive that uses travel times alone and has no world."""
 
 
 def _kinematic(world: "World", robot: "RobotSpec", friction: float) -> "Drive":  # noqa: ARG001
@@ -30,14 +30,14 @@ WORLD_DRIVES: dict[str, Callable[["World", "RobotSpec", float], "Drive"]] = {
     "kinematic": _kinematic,
     "tracked": _tracked,
 }
-"""What makes the drives that move the robot in PyBullet's world, with the friction beside the
-calibrated one."""
+"""Factories of the drives that move the robot in PyBullet's world; their last argument is the
+friction as a factor of the calibrated one."""
 
 DRIVES = (ROUTE, *WORLD_DRIVES)
-"""The names of all drives."""
+"""Names of all drives."""
 
 IDEAL = "ideal"
-"""The sensor that knows the true values; the only one that needs no world to look at."""
+"""Name of the sensor that knows the true values; the only one that needs no simulated world."""
 
 
 def _ideal(world: "World", truth: Mapping[int, float], seed: int) -> "Sensor":  # noqa: ARG001
@@ -56,5 +56,4 @@ SENSORS: dict[str, Callable[["World", Mapping[int, float], int], "Sensor"]] = {
     IDEAL: _ideal,
     "camera": _camera,
 }
-"""What makes a sensor for the world, in which the checkpoints have these true values, with a
-seed."""
+"""Factories of the sensors, from the world, the true values of the checkpoints, and a seed."""

@@ -1,4 +1,4 @@
-"""Where a run begins that goes on from where another one stood."""
+"""Initial state of a run that continues another run, and the machine restored to that state."""
 
 from collections.abc import Sequence
 
@@ -14,7 +14,7 @@ from argo_env.run.record import Anomaly
 
 
 class KnownAnomaly(Model):
-    """What the robot had found before, and where it stood then."""
+    """Anomaly that the robot found in the earlier run, with the pose from which it found it."""
 
     anomaly: Anomaly
     pose: tuple[float, float, float, float, float]
@@ -22,24 +22,24 @@ class KnownAnomaly(Model):
 
 
 class InitialState(Model):
-    """What a run goes on from: how far its mission has come, and where the robot stands."""
+    """State from which a run continues: the mission's progress and the state of the robot."""
 
     progress: Progress
-    """of the mission, with all times as they are when the run begins"""
+    """progress of the mission, with all times as they are when the run begins"""
     pose: tuple[float, float, float, float, float]
     """x, y, z (m), yaw, pitch (rad)"""
     charge: float | None = None
-    """of the battery, 0 to 1; None: full"""
+    """charge of the battery, 0 to 1; None: full"""
     distance: float = 0.0
     """m, driven since the mission's start"""
     climbed: float = 0.0
     """m, upwards since the mission's start"""
     known: tuple[KnownAnomaly, ...] = ()
-    """what was found, in the order of time"""
+    """anomalies found so far, in the order of time"""
 
     @property
     def at(self) -> float:
-        """s of the mission's time at which the run begins."""
+        """Time at which the run begins, in s since the mission's start."""
         return round(self.progress.elapsed, 6)
 
     @property
@@ -48,9 +48,9 @@ class InitialState(Model):
 
 
 def make_machine(mission: Mission, beginning: InitialState | None = None) -> Executor:
-    """A machine for a run of the mission, from its start or from a beginning.
+    """Return a machine for a run of the mission, from its start or restored to an initial state.
 
-    Raises ArgoError if the mission has errors, or the beginning is not one of it.
+    Raises ArgoError if the mission has errors, or the initial state is not one of this mission.
     """
     if beginning is None:
         return Executor(lower(mission))
@@ -59,9 +59,9 @@ def make_machine(mission: Mission, beginning: InitialState | None = None) -> Exe
 
 
 def progress_now(machine: Machine, now: float, by_hand: Sequence[ByHand]) -> Progress:
-    """The progress at time `now` (s of the mission's time), with what was done by hand until now.
+    """Return the progress at time `now` (s since the mission's start), work by hand included.
 
-    Raises Conflict while an action still runs, or once nothing is left of the mission.
+    Raises Conflict if an action still runs, or the mission has ended or has nothing left to do.
     """
     if machine.finished or machine.outcome is not None:
         raise Conflict("the mission has ended: there is nothing that could go on")
@@ -75,13 +75,13 @@ def progress_now(machine: Machine, now: float, by_hand: Sequence[ByHand]) -> Pro
     return hand_over(progress, by_hand, max(0.0, now - progress.elapsed))
 
 
-def matched(progress: Progress, mission: Mission) -> tuple[Progress, tuple[Diagnostic, ...]]:
-    """The progress as that of an edited mission, and what does not fit any more.
+def match_progress(progress: Progress, mission: Mission) -> tuple[Progress, tuple[Diagnostic, ...]]:
+    """Return the progress in an edited mission, and diagnostics of what no longer fits.
 
-    Raises DiagnosticError if the mission has errors, or can't go on from there.
+    Raises DiagnosticError if the mission has errors, or can't continue from this progress.
     """
     lower(mission)
-    found, diagnostics = match(progress, mission)
-    if found is None:
+    matched, diagnostics = match(progress, mission)
+    if matched is None:
         raise DiagnosticError("the edited mission", diagnostics)
-    return found, diagnostics
+    return matched, diagnostics

@@ -1,8 +1,8 @@
-"""The journal: a run on disk, so that it can go on after its process has died.
+"""Journal of a run: a file from which the run can continue after its process has died.
 
-A file of lines, each a checksum and an entry as JSON. The first line holds the spec of the run. It
-is there as a whole or not at all; of what follows only the last line can be torn, and is cut off
-then. One process at a time has the journal.
+Each line of the file holds a checksum and JSON. The first line is the header with the spec of the
+run; the file is never without a complete header. Each further line is an entry; only the last line
+can be incomplete, and is cut off then. One process at a time can open a journal.
 """
 
 import fcntl
@@ -33,8 +33,8 @@ from argo_env.run.observer import Observer
 from argo_env.run.spec import RunSpec
 
 VERSION = 4
-"""of the journal's format"""
-MAX_BYTES = 1_000_000_000  # of a journal; the longest run takes some 20 MB
+"""version of the journal's format"""
+MAX_BYTES = 1_000_000_000  # size of a journal; the longest run takes some 20 MB
 _MARK = "argo journal"
 _FLAGS = os.O_RDWR | os.O_APPEND | os.O_CLOEXEC
 
@@ -42,48 +42,53 @@ ModelT = TypeVar("ModelT", bound=Model)
 
 
 class Header(Model):
-    """The first line: what the run is made from."""
+    """Header of a journal, its first line: what the run is made from."""
 
     format: Literal["argo journal"] = "argo journal"
     version: Literal[4] = 4
     spec: RunSpec
     fingerprints: dict[str, str]
-    """of all that must be the same when the run goes on, by what it is"""
+    """digests of all that must be the same when the run continues, by names such as `mission`"""
 
     @classmethod
-    def of(cls, site: OpenedSite, spec: RunSpec) -> Self:
-        """That of a run of the spec on the site. Raises ArgoError if its source can't be read."""
+    def from_run(cls, site: OpenedSite, spec: RunSpec) -> Self:
+        """Return the header of a run of the spec on the site.
+
+        Raises ArgoError if the mission's file can't be read.
+        """
         return cls(spec=spec, fingerprints=fingerprints(site, spec))
 
 
 class Journal(Observer, Closing):
-    """An open journal, which writes down the run that it observes. Holds the file and its lock;
-    close it, or use it as a context."""
+    """Open journal, which writes the entries of the run that it observes.
+
+    It holds the file and its lock: close it, or use it as a context manager.
+    """
 
     def __init__(self, path: Path, file: int, header: Header, entries: Sequence[Entry], size: int):
         self.path = path
         self.header = header
         self.entries = tuple(entries)
-        """those that were there when it was opened"""
+        """the entries in the file when it was opened"""
         self._file = file
         self._size = size
         self._lines = 1 + len(entries)
 
     @property
     def ended(self) -> bool:
-        """Whether the run had ended when the journal was opened."""
+        """True if the run had ended when the journal was opened."""
         return bool(self.entries) and self.entries[-1].ended
 
     def on_entry(self, entry: Entry) -> None:
-        """Writes an entry. When this returns, a process that dies does not lose it; a machine that
-        loses its power keeps what is precious.
+        """Write an entry to the file.
 
-        Raises ArgoError if it can't be written; what has been written stays.
+        When this returns, the entry survives the death of the process; an essential entry survives
+        a power failure too. Raises ArgoError if it can't be written; earlier entries stay.
         """
         line = _line(self._lines, entry)
         try:
             write_all(self._file, line)
-            if entry.precious:
+            if entry.is_essential:
                 os.fsync(self._file)
         except OSError as error:
             cut_off(self._file, self._size)
@@ -96,8 +101,8 @@ class Journal(Observer, Closing):
         self._size += len(line)
         self._lines += 1
 
-    def require_going_on(self) -> None:
-        """Raises ArgoError if the run has ended, and can't be told anything more."""
+    def require_not_ended(self) -> None:
+        """Raise ArgoError if the run has ended, so that no further event can occur in it."""
         if self.ended:
             raise Conflict(
                 f"{self.path}: the run has ended, at {self.entries[-1].t:g} s: nothing more can "
@@ -106,21 +111,21 @@ class Journal(Observer, Closing):
             )
 
     def require_unchanged(self, site: OpenedSite) -> None:
-        """Raises ArgoError if the run would not go on with what it began with."""
-        before = self.header.fingerprints
+        """Raise ArgoError if anything that the run depends on has changed since it began."""
+        recorded = self.header.fingerprints
         source = self.header.spec.source
         now = fingerprints(site, self.header.spec)
         if source is not None and not os.path.isfile(source):
-            now["mission file"] = before.get("mission file", "")
+            now["mission file"] = recorded.get("mission file", "")
         changed = [
-            f"{what} (was {before.get(what, 'absent')}, is {now.get(what, 'absent')})"
-            for what in sorted(before.keys() | now.keys())
-            if before.get(what) != now.get(what)
+            f"{name} (was {recorded.get(name, 'absent')}, is {now.get(name, 'absent')})"
+            for name in sorted(recorded.keys() | now.keys())
+            if recorded.get(name) != now.get(name)
         ]
         if changed:
             raise Conflict(
-                f"{self.path}: the run can't go on, as something has changed since it began: "
-                f"{', '.join(changed)}. Put it back as it was, or begin a new run",
+                f"{self.path}: the run can't continue, because something has changed since it "
+                f"began: {', '.join(changed)}. Restore it, or begin a new run",
                 remedies=(Remedy.RUN_ANEW,),
             )
 
@@ -129,25 +134,27 @@ class Journal(Observer, Closing):
 
 
 def fingerprints(site: OpenedSite, spec: RunSpec) -> dict[str, str]:
-    """Short digests of all that a run depends on, by what it is."""
-    found = {"Argo": __version__, "mission": _digest(spec.mission.model_dump_json())}
-    for what, model in (("site", site.site.spec), ("robot", site.robot)):
+    """Return short digests of all that a run depends on, by names such as `mission`."""
+    digests = {"Argo": __version__, "mission": _digest(spec.mission.model_dump_json())}
+    for name, model in (("site", site.site.spec), ("robot", site.robot)):
         for field, value in model.model_dump(mode="json").items():
-            found[f"{what}'s {field}"] = _digest(json.dumps(value))
+            digests[f"{name}'s {field}"] = _digest(json.dumps(value))
     if site.site.altered is not None:
-        found["site's alterations"] = _digest(repr(site.site.altered))
+        digests["site's alterations"] = _digest(repr(site.site.altered))
     source = None if spec.source is None else Path(spec.source)
-    if source is not None and os.path.isfile(source):  # a pipe can't be read once more
+    if source is not None and os.path.isfile(source):  # a pipe can't be read twice
         try:
-            found["mission file"] = _digest(source.read_bytes())
+            digests["mission file"] = _digest(source.read_bytes())
         except OSError as error:
             raise Unavailable(f"{source}: can't be read: {error.strerror}") from error
-    return found
+    return digests
 
 
 def require_free(path: Path, replace: bool = False) -> None:
-    """Raises ArgoError if no new journal can be written there; with `replace` one that is there
-    already is in the way only while a process has it."""
+    """Raise ArgoError if no new journal can be written at this path.
+
+    A file that exists already is refused; with `replace` only while another process has it open.
+    """
     if replace and os.path.isfile(path):
         file = _open(path)
         try:
@@ -167,13 +174,13 @@ def require_free(path: Path, replace: bool = False) -> None:
 
 
 def create_journal(path: Path, header: Header, replace: bool = False) -> Journal:
-    """A new journal with its header on disk, locked.
+    """Create a journal, write its header to disk and lock the file.
 
-    Raises ArgoError if the file is there already, unless it may be replaced and no process has it,
-    or can't be written.
+    Raises ArgoError if the file can't be written, or exists already and `replace` is False or
+    another process has it open.
     """
     require_free(path, replace)
-    # The header is written under another name, so that a journal is never without it.
+    # The header is first written to a draft, so that a journal is never without its header.
     draft = path.with_name(path.name + ".new")
     line = _line(0, header)
     try:
@@ -202,9 +209,9 @@ def create_journal(path: Path, header: Header, replace: bool = False) -> Journal
 
 
 def open_journal(path: Path) -> Journal:
-    """The journal of an earlier run, locked and ready to go on; a torn last line is cut off.
+    """Open and lock the journal of an earlier run; cut off an incomplete last line.
 
-    Raises ArgoError if it is none, is damaged, or another process has it.
+    Raises ArgoError if the file is no journal, is damaged, or another process has it open.
     """
     if os.path.exists(path) and not os.path.isfile(path):
         _refuse(path, "is no file: name a journal that a run has written", Remedy.KEEP_JOURNAL)
@@ -226,32 +233,35 @@ def open_journal(path: Path) -> Journal:
 
 
 def _parse(path: Path, content: bytes) -> tuple[Header, list[Entry], int]:
-    """The header, the entries, and how many bytes of the content they take."""
+    """Return the header, the entries, and how many bytes of the content they take."""
     lines = content.split(b"\n")
-    # Behind the last line end there is nothing, or the beginning of a line.
-    whole = lines[:-1]
-    first = checked_object(whole[0]) if whole else None
-    if whole and whole[0].endswith(b"\r") and checked_object(whole[0][:-1]) is not None:
-        _refuse(path, "has line ends of another system (CR LF): bring it over as it was written")
+    # After the last line end there is nothing, or an incomplete line.
+    complete = lines[:-1]
+    first = checked_object(complete[0]) if complete else None
+    if complete and complete[0].endswith(b"\r") and checked_object(complete[0][:-1]) is not None:
+        _refuse(
+            path,
+            "has line ends of another system (CR LF): copy it again, with its line ends unchanged",
+        )
     if first is None or first.get("format") != _MARK:
-        _refuse(path, "is no journal, or its first line is damaged: nothing can go on from it")
+        _refuse(path, "is no journal, or its first line is damaged: no run can continue from it")
     if first.get("version") != VERSION:
         _refuse(
             path,
             f"has version {json.dumps(first.get('version'))} of the journal's format, and this "
-            f"Argo reads {VERSION}: resume it with the Argo that began it",
+            f"Argo reads {VERSION}: resume it with the version of Argo that wrote it",
         )
     header = _model(Header, first, path, 0)
     entries: list[Entry] = []
-    size = len(whole[0]) + 1
-    for number, line in enumerate(whole[1:], start=1):
+    size = len(complete[0]) + 1
+    for number, line in enumerate(complete[1:], start=1):
         data = checked_object(line)
         if data is None or data.pop("n", None) != number:
-            if number + 1 < len(whole) or lines[-1]:
+            if number + 1 < len(complete) or lines[-1]:
                 _refuse(
                     path,
-                    f"is damaged from line {number + 1} on, where more follows than a line that a "
-                    "run could not end: take it from a copy",
+                    f"is damaged from line {number + 1} on, and this is not only an incomplete "
+                    "last line: restore it from a copy",
                 )
             break
         entries.append(_model(Entry, data, path, number))
@@ -264,8 +274,8 @@ def _model(cls: type[ModelT], data: dict[str, object], path: Path, number: int) 
         return cls.model_validate({k: v for k, v in data.items() if k != "n"})
     except ValidationError as error:
         fault = error.errors(include_url=False)[0]
-        place = ".".join(str(part) for part in fault["loc"])
-        _refuse(path, f"line {number + 1}, {place}: {message_of(fault, fault['loc'])}")
+        field = ".".join(str(part) for part in fault["loc"])
+        _refuse(path, f"line {number + 1}, {field}: {message_of(fault, fault['loc'])}")
 
 
 def _line(number: int, model: Model) -> bytes:
@@ -280,7 +290,7 @@ def _open(path: Path) -> int:
         return os.open(path, _FLAGS)
     except FileNotFoundError:
         raise NotFound(
-            f"{path}: there is no such journal: a run begins one", remedies=(Remedy.KEEP_JOURNAL,)
+            f"{path}: there is no such journal: a run writes one", remedies=(Remedy.KEEP_JOURNAL,)
         ) from None
     except OSError as error:
         _refuse(path, f"can't be opened: {error.strerror}", kind=Unavailable)
@@ -292,14 +302,14 @@ def _lock(file: int, path: Path) -> None:
     except BlockingIOError:
         _refuse(
             path,
-            "is in use: another process goes on with this run; wait for its end",
+            "is in use: another process continues this run; wait until it has ended",
             kind=Conflict,
         )
 
 
 def _read(file: int, path: Path) -> bytes:
     if os.fstat(file).st_size > MAX_BYTES:
-        _refuse(path, f"is larger than {MAX_BYTES // 1_000_000} MB: no journal is")
+        _refuse(path, f"is larger than {MAX_BYTES // 1_000_000} MB, the maximum for a journal")
     parts = []
     while part := os.read(file, 1 << 20):
         parts.append(part)

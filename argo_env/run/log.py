@@ -1,7 +1,7 @@
-"""The log of a run: entries, one for each moment of note, and what they add up to.
+"""Log of a run: entries, one for each moment at which something happens, and their sums.
 
-A run that goes on from its journal reads the same entries that it would have made, so its log is
-the same as that of a run that was never cut short.
+A run that continues from its journal reads the same entries that it would have made, so its log is
+the same as that of a run that was never interrupted.
 """
 
 import math
@@ -34,7 +34,7 @@ from argo_env.files.yaml_messages import message_of
 from argo_env.robot.pose import BodyPose, Place
 from argo_env.run.record import (
     DIGITS,
-    TOLD,
+    REPORTED,
     Anomaly,
     Contact,
     GivenValue,
@@ -59,12 +59,12 @@ _EVENTS: dict[str, type[Event]] = {
     "cancel": Cancel,
 }
 _NAMES = {cls: name for name, cls in _EVENTS.items()}
-FROM_OUTSIDE = frozenset(_EVENTS) - {"succeeded", "failed", "stopped", "tick"}
-"""The kinds of events that a run may be told; the others it makes itself."""
+EXTERNAL_KINDS = frozenset(_EVENTS) - {"succeeded", "failed", "stopped", "tick"}
+"""Kinds of events that may come from outside the run; the run makes the other kinds itself."""
 
 
 class LoggedEvent(Model):
-    """An event as data; the fields that its kind has not are left out."""
+    """Event as data; fields that its kind does not have are None."""
 
     kind: Literal[
         "succeeded", "failed", "stopped", "tick", "occurred", "reading_given", "pause", "resume",
@@ -82,8 +82,8 @@ class LoggedEvent(Model):
     by_hand: tuple[ByHand, ...] | None = None
 
     @classmethod
-    def of(cls, event: Event) -> "LoggedEvent":
-        """The event as data; Invalid if it is none, or has values that it can't have."""
+    def from_event(cls, event: Event) -> "LoggedEvent":
+        """Return the event as data. Raises Invalid if it is no event, or has invalid values."""
         kind = _NAMES.get(type(event))
         if kind is None:
             raise Invalid(f"{event!r} is no event")
@@ -93,35 +93,39 @@ class LoggedEvent(Model):
             fault = error.errors(include_url=False)[0]
             raise Invalid(f"{event!r}: {message_of(fault, fault['loc'])}") from None
 
-    def original(self) -> Event:
-        """The event; ValueError if fields are missing or too many."""
-        given = {name: value for name, value in self if name != "kind" and value is not None}
+    def to_event(self) -> Event:
+        """Return the event for the machine. Raises ValueError if fields are missing or too many."""
+        fields = {name: value for name, value in self if name != "kind" and value is not None}
         try:
-            return _EVENTS[self.kind](**given)
+            return _EVENTS[self.kind](**fields)
         except TypeError as error:
-            raise ValueError(f"no event of kind {self.kind} has {sorted(given)}") from error
+            raise ValueError(f"no event of kind {self.kind} has {sorted(fields)}") from error
 
 
-def require_from_outside(event: LoggedEvent) -> None:
-    """Raises Invalid for an event that nobody outside can tell a run."""
+def require_external(event: LoggedEvent) -> None:
+    """Raise Invalid for an event that can't come from outside the run."""
     try:
-        event.original()
+        event.to_event()
     except ValueError as error:
         raise Invalid(str(error)) from None
-    if event.kind not in FROM_OUTSIDE:
-        raise Invalid(f"the robot itself tells that an action has {event.kind}")
+    if event.kind not in EXTERNAL_KINDS:
+        raise Invalid(f"events of kind `{event.kind}` come from the run itself")
     if event.event == EventKind.TIME_UP:
         raise Invalid("`time_up` occurs by itself, at the mission's max_duration")
 
 
-def require_time(t: float) -> None:
-    """Raises Invalid for a time (s) at which a run can't be told anything."""
+def require_event_time(t: float) -> None:
+    """Raise Invalid for a time (s) at which no event can occur."""
     if not 0 <= t < math.inf:
-        raise Invalid(f"nothing occurs at {t:g} s, before the run or never")
+        raise Invalid(f"no event can occur at {t:g} s: give a time from 0 s on")
 
 
 class Entry(Model):
-    """What is to be known of one moment: where the robot was, and what had happened."""
+    """Entry of a run's log: one moment, with the robot's pose then and the events since the last.
+
+    The fields of an event or an ended task say what happened; most of them are empty in most
+    entries.
+    """
 
     t: float
     """s"""
@@ -132,36 +136,36 @@ class Entry(Model):
     climbed: float
     """m, upwards since the mission's start"""
     charge: float | None = None
-    """of the battery, 0 to 1"""
+    """charge of the battery, 0 to 1"""
     given: int = 0
-    """how many of the events that the run was given had occurred"""
+    """number of scheduled events that had occurred"""
     added: tuple[tuple[float, LoggedEvent], ...] = ()
-    """events that the run is given from here on, and when (s)"""
+    """events that are scheduled from here on, with their times in s"""
     faults: tuple[AnyFault, ...] = ()
-    """what goes wrong from here on beside that"""
+    """faults that are injected here"""
     running: str | None = None
     """the task whose action ran before the events"""
     events: tuple[LoggedEvent, ...] = ()
-    """for the executor, in this order"""
+    """events for the executor, in this order"""
     found: tuple[Anomaly, ...] = ()
-    """what the robot noticed by itself"""
+    """anomalies that the robot noticed by itself"""
     mishaps: tuple[Mishap, ...] = ()
-    """what the drive had trouble with"""
+    """mishaps of the drive since the previous entry"""
     reading: Reading | None = None
     task: TaskRun | None = None
     """the run of a task that has ended"""
     by_hand: Task | None = None
-    """what a person lets the robot do from here on"""
+    """the task that a person lets the robot carry out from here on"""
     stop_by_hand: bool = False
-    """whether that is to be stopped"""
+    """whether a person stops the action by hand"""
     contacts: tuple[Contact, ...] = ()
-    """those that are over since the entry before"""
+    """contacts that have ended since the previous entry"""
     touching: tuple[Contact, ...] = ()
-    """those that may still go on"""
+    """contacts that may still go on"""
     sample: bool = False
     """whether the pose is a point of the recorded path"""
     resumed: bool = False
-    """whether the run goes on here after its process had died"""
+    """whether the run was resumed here after its process had died"""
     ended: bool = False
     """whether this is the end of the run"""
     stopped: str | None = None
@@ -172,28 +176,28 @@ class Entry(Model):
         return BodyPose(*self.pose)
 
     @property
-    def precious(self) -> bool:
-        """Whether it tells more than where the robot was."""
-        told = self.events or self.faults or self.task or self.by_hand or self.stop_by_hand
-        return bool(told) or self.resumed or self.ended
+    def is_essential(self) -> bool:
+        """True if the entry holds more than where the robot was, so that it must not be lost."""
+        has_news = self.events or self.faults or self.task or self.by_hand or self.stop_by_hand
+        return bool(has_news) or self.resumed or self.ended
 
     @property
-    def news(self) -> tuple[Reading | Anomaly, ...]:
-        """What was sensed: things noticed, then the reading."""
-        # An abnormal reading is found as well; it is told as the reading.
+    def sensed(self) -> tuple[Reading | Anomaly, ...]:
+        """Anomalies that the robot noticed, then the reading."""
+        # An abnormal reading is an anomaly as well, and is returned only as the reading.
         noticed = tuple(anomaly for anomaly in self.found if not anomaly.is_reading)
         return (*noticed, *((self.reading,) if self.reading else ()))
 
-    def told(self, site: Site) -> tuple[Anomaly, ...]:
-        """What the robot was told of from outside, and where it was then. What it has found itself
-        comes first among the events."""
+    def reported_anomalies(self, site: Site) -> tuple[Anomaly, ...]:
+        """Return the anomalies that the events report from outside, with the robot's position."""
+        # The events of what the robot found itself come first.
         x, y, z = (round(v, DIGITS) for v in self.pose[:3])
         return tuple(
             Anomaly(
                 t=self.t,
                 kind=event.event,
                 detail=event.detail or "",
-                source=TOLD,
+                source=REPORTED,
                 noticed_from=(x, y, z),
                 floor=site.floor_at(self.pose[2]),
             )
@@ -202,16 +206,16 @@ class Entry(Model):
         )
 
     @property
-    def _read_by_hand(self) -> bool:
-        """Whether the first event after what was found is what the robot itself read, by hand."""
+    def _has_reading_by_hand(self) -> bool:
+        """True if the first event after the anomalies is a reading that the robot took by hand."""
         return self.reading is not None and self.task is not None and self.task.by_hand
 
     def given_values(self, site: Site) -> tuple[GivenValue, ...]:
-        """The values of checkpoints that the robot was told."""
+        """Return the values of checkpoints that a person reported, without the robot's own."""
         given = []
-        own = len(self.found) if self._read_by_hand else None
+        own_reading = len(self.found) if self._has_reading_by_hand else None
         for number, event in enumerate(self.events):
-            if number == own:
+            if number == own_reading:
                 continue
             if event.kind == "reading_given" and event.value is not None:
                 checkpoint = site.measured_by(event.object_id)
@@ -235,7 +239,7 @@ _PATH = TypeAdapter(list[PathSample])
 
 
 class RunLog:
-    """What the record is made from. Grows as entries are added."""
+    """Sum of a run's entries, from which the record is made; grows with each entry."""
 
     def __init__(self, site: Site) -> None:
         self.site = site
@@ -245,15 +249,15 @@ class RunLog:
         self.given_values: list[GivenValue] = []
         self.anomalies: list[Anomaly] = []
         self.found: list[tuple[Anomaly, tuple[float, float, float, float, float]]] = []
-        """what the robot noticed by itself, and its pose then"""
+        """anomalies that the robot noticed by itself, each with its pose then"""
         self.mishaps: list[Mishap] = []
         self.last_event = 0.0
-        """s, when the machine was told of something last, or a person let the robot do something"""
+        """s, time of the last event, start of an action by hand or end of a task"""
         self.contacts: list[Contact] = []
         self.resumed: list[float] = []
         self._path: list[PathSample] = []
-        self._passed: list[tuple[float, Place, float | None]] = []
-        """what the path has besides: times (s), poses and charges"""
+        self._pending_samples: list[tuple[float, Place, float | None]] = []
+        """samples that are not yet in the path: times (s), poses and charges"""
 
     def add(self, entry: Entry) -> None:
         self.last = entry
@@ -263,7 +267,7 @@ class RunLog:
             self.readings.append(entry.reading)
         self.given_values += entry.given_values(self.site)
         self.found += [(anomaly, entry.pose) for anomaly in entry.found]
-        self.anomalies += (*entry.found, *entry.told(self.site))
+        self.anomalies += (*entry.found, *entry.reported_anomalies(self.site))
         self.mishaps += entry.mishaps
         if entry.events or entry.by_hand or entry.task:
             self.last_event = entry.t
@@ -274,33 +278,35 @@ class RunLog:
             self.sample(entry.t, entry.pose, entry.charge)
 
     def with_entry(self, entry: Entry) -> "RunLog":
-        """Another log, with one more entry; this one stays as it is."""
+        """Return a copy of the log with one more entry."""
         other = RunLog(self.site)
         for name in _LISTS:
             setattr(other, name, list(getattr(self, name)))
-        other._path, other._passed = list(self._path), list(self._passed)
+        other._path, other._pending_samples = list(self._path), list(self._pending_samples)
         other.last_event = self.last_event
         other.add(entry)
         return other
 
     def sample(self, t: float, pose: Place, charge: float | None) -> None:
-        """One more point of the recorded path: at time `t` (s), with such a charge (0 to 1)."""
-        self._passed.append((t, pose, charge))
+        """Add a point to the recorded path: time `t` (s), pose and battery charge (0 to 1)."""
+        self._pending_samples.append((t, pose, charge))
 
     @property
-    def sampled_at(self) -> float | None:
-        """s, of the last point of the recorded path."""
-        if self._passed:
-            return self._passed[-1][0]
+    def last_sample_time(self) -> float | None:
+        """Time of the last point of the recorded path in s; None if it has no point."""
+        if self._pending_samples:
+            return self._pending_samples[-1][0]
         return self._path[-1].t if self._path else None
 
     @property
     def path(self) -> Sequence[PathSample]:
-        """The recorded path."""
-        if self._passed:
-            # Many samples in one go take half the time of one by one.
-            self._path += _PATH.validate_python([self._point(*passed) for passed in self._passed])
-            self._passed.clear()
+        """Recorded path."""
+        if self._pending_samples:
+            # Validating many samples at once takes half the time of one by one.
+            self._path += _PATH.validate_python(
+                [self._point(*passed) for passed in self._pending_samples]
+            )
+            self._pending_samples.clear()
         return self._path
 
     def _point(self, t: float, pose: Place, charge: float | None) -> dict[str, float | None]:

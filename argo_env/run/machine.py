@@ -1,4 +1,4 @@
-"""The machines that a simulation drives: what it asks of them, and one without a fixed mission."""
+"""Machines that a simulation runs: their protocol, and one that takes its tasks one by one."""
 
 from collections.abc import Mapping, Sequence
 from typing import Protocol
@@ -21,7 +21,10 @@ from argo_compiler.il import EventKind, Mission, Task, Transition
 
 
 class Machine(Protocol):
-    """A machine under way, as an `Executor` is. Takes events and times (s), gives commands."""
+    """Protocol of a machine: it handles events at times (s) and returns commands.
+
+    `Executor` is one.
+    """
 
     @property
     def hfsm(self) -> Hfsm: ...
@@ -50,59 +53,59 @@ class Machine(Protocol):
 
 
 class OpenMachine:
-    """The machine of a mission whose tasks are given one by one. Holds all that it was told.
+    """Machine of a mission whose tasks are appended one by one; holds the events it has handled.
 
-    With each task it becomes the machine of the longer mission, told the same: so it stands as if
-    the task had been in the mission from the beginning.
+    With each task it becomes the machine of the longer mission and handles the same events again.
+    So its state is as if the task had been in the mission from the beginning.
     """
 
     def __init__(self, mission: Mission) -> None:
-        """The mission to begin with; its tasks follow one another."""
+        """Start with a mission whose tasks follow one another."""
         self.mission = mission
         self._executor = Executor(lower(mission))
-        self._told: list[tuple[Event, float]] = []
-        self._began = 0.0
+        self._handled: list[tuple[Event, float]] = []
+        self._start_time = 0.0
         self._closed = False
 
-    def give(self, task: Task) -> tuple[Command, ...]:
-        """The next task, to be done when those before it have been.
+    def append_task(self, task: Task) -> tuple[Command, ...]:
+        """Append a task to the mission, and return the command that starts it if it can start now.
 
-        Raises Conflict if an action runs, DiagnosticError if the mission makes no sense with it.
+        Raises Conflict if an action runs, DiagnosticError if the mission has errors with the task.
         """
         if (running := self.running) is not None:
             raise Conflict(f"task '{running.name}' is still under way")
-        *before, last = self.mission.tasks
-        joined = last.model_copy(update={"transitions": (Transition(target=task.name),)})
-        mission = self.mission.model_copy(update={"tasks": (*before, joined, task)})
+        *earlier, last = self.mission.tasks
+        linked = last.model_copy(update={"transitions": (Transition(target=task.name),)})
+        mission = self.mission.model_copy(update={"tasks": (*earlier, linked, task)})
         executor = Executor(lower(mission))
-        begun = [*executor.start(self._began)]
-        told: list[tuple[Event, float]] = []
-        for event, at in self._told:
-            told.append((event, at))
+        all_commands = [*executor.start(self._start_time)]
+        handled: list[tuple[Event, float]] = []
+        for event, at in self._handled:
+            handled.append((event, at))
             commands = executor.handle(event, at)
-            begun += commands
+            all_commands += commands
             if any(isinstance(c, CancelAction) for c in commands) and (
                 executor.running is not None and executor.running.name == task.name
             ):
-                # In truth it has not begun yet.
-                told.append((ActionStopped(task.name), at))
-                begun += executor.handle(*told[-1])
-        self.mission, self._executor, self._told = mission, executor, told
-        starts = [command for command in begun if isinstance(command, StartAction)]
+                # The action of the new task has not really started, so it ends at once.
+                handled.append((ActionStopped(task.name), at))
+                all_commands += executor.handle(*handled[-1])
+        self.mission, self._executor, self._handled = mission, executor, handled
+        starts = [command for command in all_commands if isinstance(command, StartAction)]
         return () if executor.running is None else (starts[-1],)
 
     def close(self) -> None:
-        """No task will follow: the mission ends with those that were given."""
+        """Close the mission: no task follows, and it ends with its last task."""
         self._closed = True
 
     def start(self, now: float) -> tuple[Command, ...]:
-        """Starts the mission."""
-        self._began = now
+        """Start the mission at time `now` (s) and return its first commands."""
+        self._start_time = now
         return self._executor.start(now)
 
     def handle(self, event: Event, now: float) -> tuple[Command, ...]:
-        """Takes note of an event at time `now` (s)."""
-        self._told.append((event, now))
+        """Handle an event at time `now` (s), record it, and return the commands that follow."""
+        self._handled.append((event, now))
         return self._executor.handle(event, now)
 
     def progress(self) -> Progress:
@@ -114,7 +117,7 @@ class OpenMachine:
 
     @property
     def finished(self) -> bool:
-        """Whether it was closed, and all is done."""
+        """True if the mission was closed and has ended."""
         return self._closed and self._executor.finished
 
     @property

@@ -1,4 +1,4 @@
-"""What is told of a run to whoever observes it: a journal, a recording, a display."""
+"""Observers of a run, such as a journal, a recording or a display."""
 
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
@@ -9,35 +9,38 @@ from argo_env.run.spec import RunSpec
 
 
 class Observer:
-    """Observes one run. Does nothing: override what is of interest.
+    """Observer of one run, whose methods do nothing: override those of interest.
 
-    It can't steer the run while it is told of it. What it raises breaks the simulation off.
+    An observer can't send commands to the run from within its methods. An exception that a method
+    raises ends the simulation.
     """
 
-    hears_samples = True
-    """whether it is told as well where the robot was while nothing happened"""
+    wants_samples = True
+    """whether it is also called with entries in which only the robot's pose is new"""
 
     def on_begin(self, setup: RunSetup, spec: RunSpec) -> None:
-        """The run is about to begin, or to go on from its journal."""
+        """Prepare for a run that is about to begin, or to continue from its journal."""
 
     def on_entry(self, entry: Entry) -> None:
-        """Something is to be known, and nobody has acted on it yet. What is raised here keeps it
-        from having happened, and the run ends without it."""
+        """Receive an entry before the run applies it.
+
+        An exception raised here keeps the entry from being applied, and the simulation ends.
+        """
 
     def on_change(self, entry: Entry, machine: Machine) -> None:
-        """The same, now that the machine has been told."""
+        """Receive an entry after the machine has handled its events."""
 
     def on_step(self, now: float, action: RobotAction | None) -> None:
-        """A step of simulated time has ended at `now` (s), `action` under way."""
+        """Follow a step of simulated time that has ended at `now` (s) with the running action."""
 
     def on_interrupted(self, record: RunRecord) -> None:
-        """The run goes on no further for now, and this is its record as it stands."""
+        """Receive the record so far of a run that was interrupted before its end."""
 
     def on_end(self, record: RunRecord) -> None:
-        """The run has ended, and this is its record."""
+        """Receive the record of the ended run."""
 
 
-def hears(observer: Observer, name: str) -> bool:
-    """Whether the observer does anything when it is told this, such as `on_step`."""
+def overrides(observer: Observer, name: str) -> bool:
+    """Return True if the observer overrides the method of this name, such as `on_step`."""
     own = getattr(getattr(observer, name), "__func__", None)
     return own is not getattr(Observer, name)

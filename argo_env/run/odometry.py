@@ -1,5 +1,7 @@
-"""Sums along the robot's way: metres, contacts with the site, and mishaps. Touches that follow each
-other closely are one contact, from first to last."""
+"""Odometry of a run: distance, climb, contacts with the site, and mishaps of the drive.
+
+Touches that follow each other closely are one contact, from the first touch to the last.
+"""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -11,33 +13,36 @@ from argo_env.run.record import DIGITS, Contact, Mishap
 from argo_env.site import Site
 from argo_env.world.world import Touch
 
-CONTACT_GAP = 0.5  # s without a touch that end a contact; shorter, it is the same scrape
+CONTACT_GAP = 0.5  # s without a touch that end a contact; after a shorter gap it continues
 
 
 class ContactTracker:
-    """Joins touches to contacts, one for each pair of parts. Holds those that may still go on."""
+    """Tracker that joins touches to contacts, one for each pair of robot link and site element.
+
+    It holds the open contacts, those that may still go on.
+    """
 
     def __init__(self) -> None:
         self._open: dict[tuple[str, str], Contact] = {}
 
     @property
     def open(self) -> tuple[Contact, ...]:
-        """The contacts that may still go on."""
+        """Contacts that may still go on."""
         return tuple(self._open.values())
 
     def restore(self, contacts: Iterable[Contact]) -> None:
-        """Goes on from what `open` was."""
+        """Replace the open contacts, for a run that is resumed."""
         self._open = {(c.link, c.element): c for c in contacts}
 
-    def note(self, touches: Iterable[Touch], now: float) -> tuple[Contact, ...]:
-        """Takes note of all touches at time `now` (s); returns the contacts that are over."""
+    def update(self, touches: Iterable[Touch], now: float) -> tuple[Contact, ...]:
+        """Add all touches at time `now` (s), and return the contacts that have ended."""
         deepest: dict[tuple[str, str], Touch] = {}
         for touch in touches:
             key = (touch.link, touch.element)
             if key not in deepest or touch.depth > deepest[key].depth:
                 deepest[key] = touch
-        over = [k for k, c in self._open.items() if now - c.end > CONTACT_GAP]
-        closed = tuple(self._open.pop(key) for key in over)
+        ended_keys = [k for k, c in self._open.items() if now - c.end > CONTACT_GAP]
+        ended = tuple(self._open.pop(key) for key in ended_keys)
         for key, touch in deepest.items():
             known = self._open.get(key)
             depth = round(touch.depth, DIGITS)
@@ -50,22 +55,22 @@ class ContactTracker:
             else:
                 update = {"end": now, "depth": max(depth, known.depth)}
                 self._open[key] = known.model_copy(update=update)
-        return closed
+        return ended
 
 
 class Odometry:
-    """Adds up step by step. Holds the sums and the contacts that may still go on."""
+    """Sums of the robot's motion, which grow with each step, and its contacts and mishaps."""
 
     def __init__(self, site: Site) -> None:
         self.distance = 0.0
         """m, driven since the mission's start"""
         self.climbed = 0.0
         """m, upwards since the mission's start"""
-        self.over: list[Contact] = []
-        """contacts that are over and not yet told"""
+        self.ended_contacts: list[Contact] = []
+        """ended contacts that are in no entry yet"""
         self.mishaps: list[Mishap] = []
-        """those that are not yet told"""
-        self._seen = 0  # of the drive's incidents
+        """mishaps that are in no entry yet"""
+        self._incident_count = 0  # incidents of the drive that were added already
         self._site = site
         self._contacts = ContactTracker()
 
@@ -75,26 +80,26 @@ class Odometry:
         return self._contacts.open
 
     def restore(self, entry: Entry) -> None:
-        """Goes on from an entry."""
+        """Restore the sums and the open contacts from an entry."""
         self.distance, self.climbed = entry.distance, entry.climbed
         self._contacts.restore(entry.touching)
 
-    def close(self) -> None:
-        """No contact goes on any longer."""
-        self.over += self._contacts.open
+    def close_contacts(self) -> None:
+        """End all open contacts."""
+        self.ended_contacts += self._contacts.open
         self._contacts.restore(())
 
-    def moved(
+    def add_motion(
         self, before: BodyPose, after: BodyPose, touches: Iterable[Touch], now: float
     ) -> None:
-        """The robot has gone from `before` to `after` until time `now` (s), touching these."""
+        """Add a motion from `before` to `after`, up to time `now` (s), with its touches."""
         self.distance += math.dist((before.x, before.y, before.z), (after.x, after.y, after.z))
         self.climbed += max(0.0, after.z - before.z)
-        self.over += self._contacts.note(touches, now)
+        self.ended_contacts += self._contacts.update(touches, now)
 
-    def trouble(self, incidents: Sequence[Incident], now: float) -> None:
-        """Notes which of the drive's `incidents` are new at time `now` (s)."""
-        for incident in incidents[self._seen :]:
+    def add_incidents(self, incidents: Sequence[Incident], now: float) -> None:
+        """Add the new ones of the drive's `incidents` as mishaps at time `now` (s)."""
+        for incident in incidents[self._incident_count :]:
             pose = incident.pose
             self.mishaps.append(
                 Mishap(
@@ -105,4 +110,4 @@ class Odometry:
                     floor=self._site.floor_at(pose.z),
                 )
             )
-        self._seen = len(incidents)
+        self._incident_count = len(incidents)

@@ -1,5 +1,7 @@
-"""What the robot notices by itself: watches are called at their periods, and each thing is told
-once, also when the run has been resumed meanwhile."""
+"""Perception of the robot: watches are updated at their periods, and their detections reported.
+
+Each anomaly is reported once, even if the run was resumed in between.
+"""
 
 import math
 from collections.abc import Sequence
@@ -20,56 +22,72 @@ from argo_env.site import Site
 from argo_env.site.shapes import Vector
 
 OBSTACLES = frozenset({EventKind.POSITIVE_OBSTACLE, EventKind.NEGATIVE_OBSTACLE})
-_AROUND = 0.25  # m about the place of an obstacle whose extent was not seen
-_SAME_PLACE = 1.0  # m within which a watch finds the same again, after a run was resumed
+_AROUND = 0.25  # m around the position of an obstacle whose extent was not seen
+_SAME_PLACE = 1.0  # m within which a detection is a known anomaly, after a run was resumed
 
 
 class Perception:
-    """Calls the watches of one run. Holds what was told before the run was resumed."""
+    """Watches of one run, and the anomalies that were reported before the run was resumed."""
 
     def __init__(self, watches: Sequence[Watch], site: Site, time_step: float) -> None:
-        """`time_step` (s): how often it is asked."""
+        """Take the watches; `update` is called after each `time_step` (s)."""
         self._site = site
-        every = [max(1, round(watch.period / time_step)) for watch in watches]
-        # Those of one period look in turn, not all in the same step.
+        periods = [max(1, round(watch.period / time_step)) for watch in watches]
+        # Watches of one period are updated in different steps, which spreads their cost.
         self._turns = [
             (watch, steps, k % steps)
-            for k, (watch, steps) in enumerate(zip(watches, every, strict=True))
+            for k, (watch, steps) in enumerate(zip(watches, periods, strict=True))
         ]
-        self._patient = [w if isinstance(w, SkippableWatch) else None for w in watches]
+        self._skippable = [w if isinstance(w, SkippableWatch) else None for w in watches]
         self._known: list[Anomaly] = []
 
-    def remember(self, told: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
-        """The run goes on at time `now` (s) after these have been told, with the robot at these
-        poses; the watches are new."""
-        self._known = [anomaly for anomaly, _ in told]
+    def restore_anomalies(self, reported: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
+        """Restore the anomalies reported so far, for a run that continues with new watches.
+
+        Args:
+            reported: the anomalies, each with the robot's pose then.
+            now: time at which the run continues in s.
+        """
+        self._known = [anomaly for anomaly, _ in reported]
         for watch, _, _ in self._turns:
             if isinstance(watch, RestorableWatch):
                 own = [
-                    ReportedDetection(a.kind, pose) for a, pose in told if a.source == watch.name
+                    ReportedDetection(a.kind, pose) for a, pose in reported if a.source == watch.name
                 ]
                 watch.restore(own, now)
 
-    def look(self, step: int, now: float, pose: BodyPose) -> tuple[Anomaly, ...]:
-        """What is found in the step of that number, at time `now` (s) with the robot at `pose`."""
+    def update(self, step: int, now: float, pose: BodyPose) -> tuple[Anomaly, ...]:
+        """Update the watches that are due in step number `step`, and return their new anomalies.
+
+        Args:
+            step: number of the time step since the run began.
+            now: time in s.
+            pose: pose of the robot.
+        """
         found = []
         for watch, every, turn in self._turns:
             if step % every == turn:
                 for detection in watch.update(now, pose):
-                    if not self._was_told(watch, detection):
+                    if not self._was_reported(watch, detection):
                         found.append(self._anomaly(watch, detection, now))
         return tuple(found)
 
-    def steps_to_look(self, first: int, last: int, charges: tuple[float, float]) -> set[int]:
-        """The steps from the first to the last number in which anything may be noticed, if no fault
-        begins or ends meanwhile and the charge of the battery is between these two (0 to 1)."""
-        found: set[int] = set()
-        for (_, every, turn), patient in zip(self._turns, self._patient, strict=True):
-            if patient is None or not patient.can_skip(*charges):
-                found.update(range(first + (turn - first) % every, last + 1, every))
-        return found
+    def update_steps(self, first: int, last: int, charges: tuple[float, float]) -> set[int]:
+        """Return the numbers of the steps in which an update may find or change anything.
 
-    def _was_told(self, watch: Watch, detection: Detection) -> bool:
+        Args:
+            first: number of the first step of a batch.
+            last: number of its last step; no fault begins or ends in the batch.
+            charges: least and greatest charge of the battery in the batch, 0 to 1.
+        """
+        steps: set[int] = set()
+        for (_, every, turn), skippable in zip(self._turns, self._skippable, strict=True):
+            if skippable is None or not skippable.can_skip(*charges):
+                steps.update(range(first + (turn - first) % every, last + 1, every))
+        return steps
+
+    def _was_reported(self, watch: Watch, detection: Detection) -> bool:
+        """Return True if the detection is an anomaly known from before the resumption, once."""
         if detection.place is None or isinstance(watch, RestorableWatch):
             return False
         for known in self._known:
@@ -96,10 +114,11 @@ class Perception:
         )
 
 
-def blockage(anomaly: Anomaly) -> Blockage | None:
-    """What an obstacle closes of the surface; None for all else.
+def blockage_from_anomaly(anomaly: Anomaly) -> Blockage | None:
+    """Return the part of the surface that an obstacle closes; None if the anomaly is no obstacle.
 
-    It may reach a little farther than was seen from the one side, without being told again.
+    The part is a little larger than what was seen, because the obstacle may reach farther than it
+    seemed from one side, and is not reported again.
     """
     if anomaly.kind not in OBSTACLES or anomaly.place is None:
         return None
@@ -109,11 +128,11 @@ def blockage(anomaly: Anomaly) -> Blockage | None:
     return Blockage((x0 - more, y0 - more, x1 + more, y1 + more), z, anomaly.detail)
 
 
-def abnormal_reading(reading: Reading, site: Site) -> Anomaly:
-    """What a reading outside the checkpoint's nominal range tells."""
+def located_anomaly(reading: Reading, site: Site) -> Anomaly:
+    """Return the anomaly of an abnormal reading, at the position of its checkpoint."""
     return anomaly_from_reading(reading, _rounded(site.checkpoint(reading.checkpoint).position))
 
 
-def _rounded(place: Vector) -> Vector:
-    x, y, z = (round(v, DIGITS) for v in place)
+def _rounded(position: Vector) -> Vector:
+    x, y, z = (round(v, DIGITS) for v in position)
     return x, y, z

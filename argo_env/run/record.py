@@ -1,7 +1,7 @@
-"""The record of a run: all that a report is made from, as data that can be written and read back.
+"""Record of a run: all that a report is made from, as data that can be written and read back.
 
-It holds simulated times only. What depends on the machine it ran on is not part of it, so that the
-same mission, site and seed give the same record.
+It holds simulated times only, and nothing that depends on the computer. So the same mission, site
+and seed give the same record.
 """
 
 from collections.abc import Sequence
@@ -23,11 +23,11 @@ from argo_env.site.shapes import Vector
 from argo_env.site.spec import Rect
 
 DIGITS = 4
-"""of recorded lengths and angles: below what the geometry means"""
+"""decimal digits of recorded lengths and angles: finer than the geometry is exact"""
 FROM_READING = "reading"
-"""the source of an anomaly that a value measured at a checkpoint is"""
-TOLD = "told"
-"""the source of an anomaly that the robot was told of from outside"""
+"""source of an anomaly that is an abnormal value measured at a checkpoint"""
+REPORTED = "told"
+"""source of an anomaly that was reported to the robot from outside"""
 _ENDS = {
     EventKind.ALL_CLEAR: frozenset(
         {
@@ -42,11 +42,11 @@ _ENDS = {
     EventKind.BATTERY_CHARGED: frozenset({EventKind.LOW_BATTERY}),
     EventKind.CONNECTION_RESTORED: frozenset({EventKind.CONNECTION_LOST}),
 }
-"""What tells that something is over, and what that may be."""
+"""Events that report the end of others, with the events that each of them can end."""
 
 
 class PathSample(Model):
-    """Where the robot was at a time: a point of its track."""
+    """Point of the recorded path: the robot's pose at a time."""
 
     t: float
     """s"""
@@ -62,11 +62,11 @@ class PathSample(Model):
     """rad, positive with the front down"""
     floor: int
     charge: float | None = None
-    """of the battery, 0 to 1; None: it has none that is looked at"""
+    """charge of the battery, 0 to 1; None: not known, or no battery"""
 
 
 class TaskRun(Model):
-    """One execution of a task, from the start of its action to its end."""
+    """Run of a task: one execution of its action, from start to end."""
 
     task: str
     action: Action
@@ -84,28 +84,28 @@ class TaskRun(Model):
     climbed: float
     """m upwards"""
     measuring: tuple[tuple[float, float], ...] | None = None
-    """s, the start and end of each measurement, arm included; several if it looked from several
-    places. None: not told, as in old records"""
+    """s, start and end of each measurement, arm included; several if the robot looked from several
+    poses. None: not recorded, as in old records"""
     early: tuple[float, float] | None = None
-    """s, from when to when it stood at the place, as the task's window had not begun yet"""
+    """s, start and end of the wait at the pose until the task's window began"""
     unmoved: tuple[str, ...] = ()
-    """the joints that the task asks for, and this robot or its simulation does not move"""
+    """joints that the task states and this robot or its simulation does not move"""
     by_hand: bool = False
-    """whether a person let the robot do it, and not the mission"""
+    """whether a person let the robot do this, and not the mission"""
 
     @property
-    def measured_for(self) -> float:
-        """s, that it measured."""
+    def measuring_duration(self) -> float:
+        """Time that the measurements took in s."""
         return sum(end - start for start, end in self.measuring or ())
 
     @property
-    def how(self) -> str:
-        """Its outcome in words."""
+    def outcome_in_words(self) -> str:
+        """Outcome in words, such as `done by hand`."""
         return f"{self.outcome} by hand" if self.by_hand else self.outcome
 
 
 class Reading(Model):
-    """What was measured at a checkpoint."""
+    """Reading: a value that was measured at a checkpoint."""
 
     checkpoint: int
     name: str
@@ -122,22 +122,22 @@ class Reading(Model):
     distance: float
     """m, from the camera to the face"""
     views: int = 1
-    """from how many places it was tried, the last one with success"""
+    """number of poses from which the robot tried to read, the last one with success"""
     confidence: float = 1.0
-    """of the sensor that it is right, 0 to 1"""
+    """confidence of the sensor in the value, 0 to 1"""
 
 
 class Contact(Model):
-    """A touch between the robot and the site, from its beginning to its end."""
+    """Contact between the robot and the site, from its start to its end."""
 
     start: float
     """s"""
     end: float
     """s"""
     link: str
-    """of the robot"""
+    """link of the robot"""
     element: str
-    """of the site"""
+    """element of the site"""
     x: float
     """m"""
     y: float
@@ -149,7 +149,7 @@ class Contact(Model):
 
 
 class Mishap(Model):
-    """The robot slipped, was stuck or tipped over; it may have got free again."""
+    """Mishap of the drive: the robot slipped, was stuck or tipped over, perhaps only for a time."""
 
     t: float
     """s"""
@@ -157,13 +157,12 @@ class Mishap(Model):
     detail: str
     """in a few words, such as `made 0.09 m of 0.45 m commanded`"""
     place: Vector
-    """m"""
+    """position in m"""
     floor: int
 
 
 class Anomaly(Model):
-    """Something that the robot found by sensing or was told of, or that tells that such a thing is
-    over."""
+    """Anomaly that the robot noticed or that was reported to it, or the end of one."""
 
     t: float
     """s"""
@@ -171,130 +170,135 @@ class Anomaly(Model):
     detail: str
     """in a few words, such as `gas, 840 ppm, near pump P-301`"""
     source: str
-    """the watch that found it, `reading` or `told`"""
+    """name of the watch that noticed it, or `reading`, or `told` if it was reported from outside"""
     place: Vector | None = None
-    """m, where it is; None where the signal tells no place"""
+    """position in m; None if the signal does not contain one"""
     noticed_from: Vector | None = None
-    """m, where the robot was when it noticed what has no place, if that says anything about it, as
-    of gas and connection; and when it was told of something"""
+    """position of the robot in m when it noticed an anomaly without a position, if that says
+    anything about the anomaly, as for gas and the connection, or when the anomaly was reported"""
     floor: int | None = None
     """the floor of `place` or `noticed_from`"""
     confidence: float = 1.0
     """0 to 1"""
     extent: Rect | None = None
-    """m, [x0, y0, x1, y1]: what an obstacle closes of the surface"""
+    """m, [x0, y0, x1, y1]: part of the surface that an obstacle closes"""
 
     @property
-    def over(self) -> bool:
-        """Whether it tells that something is over."""
+    def is_end(self) -> bool:
+        """True if this reports the end of something."""
         return self.kind in _ENDS
 
     @property
     def is_reading(self) -> bool:
-        """Whether it is a value that was measured."""
+        """True if this is an abnormal value that was measured."""
         return self.source == FROM_READING
 
     @property
-    def is_told(self) -> bool:
-        """Whether the robot was told of it, and did not sense it."""
-        return self.source == TOLD
+    def is_reported(self) -> bool:
+        """True if this was reported to the robot, and not noticed by it."""
+        return self.source == REPORTED
 
     @property
     def whereabouts(self) -> str:
-        """Where it is, or where the robot was, in words; empty if neither is known."""
+        """Position of the anomaly or of the robot then, in words; empty if neither is known."""
         if self.place is not None:
             return f"on {where(self.floor, self.place)}"
         if self.noticed_from is None:
             return ""
-        how = "told while the robot was on" if self.is_told else "noticed from"
-        return f"{how} {where(self.floor, self.noticed_from)}"
+        prefix = "told while the robot was on" if self.is_reported else "noticed from"
+        return f"{prefix} {where(self.floor, self.noticed_from)}"
 
-    def ends(self, other: "Anomaly") -> bool:
-        """Whether it tells that the other, of before, is over: a watch can say so of what it found
-        itself, a person of anything."""
-        return other.kind in _ENDS.get(self.kind, ()) and self.source in (TOLD, other.source)
+    def is_end_of(self, other: "Anomaly") -> bool:
+        """Return True if this reports the end of the earlier anomaly `other`.
+
+        A watch can end an anomaly that it noticed itself, a person can end any.
+        """
+        return other.kind in _ENDS.get(self.kind, ()) and self.source in (REPORTED, other.source)
 
 
 class Finding(Anomaly):
-    """An anomaly that is none of the ends of others, and what came of it."""
+    """Finding: an anomaly, without reports of ends, and the mission's answer to it."""
 
     number: int | None
-    """of the anomaly in the record, from 1; None: an abnormal reading of which it tells nothing"""
+    """number of the anomaly in the record, from 1; None: an abnormal reading without an anomaly"""
     what: str
     """in a few words, such as `gas leak`, or `gauge 5 (#8) abnormal: 9.2 bar`"""
     answered: bool
     """whether a reaction of the mission answered it"""
     answer: str
-    """in words: by what, or that none did"""
+    """the answer in words, or that there was none"""
     over_at: float | None = None
-    """s, when it was told to be over; None: it was not"""
+    """s, when its end was reported; None: it was not"""
 
     @property
     def in_words(self) -> str:
-        """What it is and what came of it: of a reading, that no reaction answers it goes unsaid, as
-        its value is what the mission was to find out."""
+        """Finding and answer in words.
+
+        For an abnormal reading that no reaction answers, the answer is left out: its value is what
+        the mission was to find out.
+        """
         if self.is_reading:
             return self.what + (f" ({self.answer})" if self.answered else "")
-        over = "" if self.over_at is None else f", over at {clock(self.over_at)}"
-        return f"{self.what} at {clock(self.t)} ({self.answer}){over}"
+        end = "" if self.over_at is None else f", over at {clock(self.over_at)}"
+        return f"{self.what} at {clock(self.t)} ({self.answer}){end}"
 
 
 class Interruption(Model):
-    """A pause or a reaction, during which the mission stood still."""
+    """Interruption of the mission: a pause or a reaction, during which it did not progress."""
 
     start: float
     """s"""
     end: float
     """s"""
     event: EventKind | None = None
-    """the event of the reaction; None: paused until a person goes on"""
+    """event that the reaction answers; None: a pause until a person resumes the mission"""
     limit_over: bool = False
-    """whether the limit of its hold ended it"""
+    """whether the time limit of the reaction's hold ended it"""
 
     @property
     def cause(self) -> str:
-        """In words."""
+        """Cause in words."""
         if self.event is None:
             return "paused"
         return f"reaction to {self.event.replace('_', ' ')}"
 
 
 class WaitRun(Model):
-    """The mission stood at a WAIT."""
+    """Visit of a WAIT task, during which the mission waited."""
 
     task: str
     what: str
-    """it waited for, in words"""
+    """the awaited condition, in words"""
     start: float
     """s"""
     end: float
     """s"""
     ended: bool
-    """whether that was its end, or that of the run"""
+    """whether the wait itself ended; False: the run ended during the wait"""
     failure: str | None = None
-    """why it failed, if it did: its limit or its window was over"""
+    """reason of a failure: the time limit or the window was over; None: it did not fail"""
     why: str | None = None
-    """what ended it, in words"""
+    """reason of its end, in words"""
 
 
 class WindowOutcome(StrEnum):
-    """What came of a task's time window."""
+    """Outcome of a visit with regard to the task's time window."""
 
     KEPT = "kept"
     LATE = "late"
-    """done all the same, as the window is soft"""
+    """done after a soft window"""
     MISSED = "missed"
     FAILED = "failed"
-    """for another reason"""
+    """failed for another reason than the window"""
     LEFT = "left"
-    """the visit was ended from outside: by a group's time, a person or a reaction"""
+    """ended from outside: by a group's time limit, a person or a reaction"""
     OPEN = "open"
-    """the run ended, or stands, in the middle of it"""
+    """not ended when the record was made"""
     NOT_VISITED = "not visited"
 
 
 class WindowRun(Model):
-    """One visit of a task that has a time window, or none."""
+    """Visit of a task that has a time window, or the lack of one."""
 
     task: str
     earliest: float
@@ -303,30 +307,30 @@ class WindowRun(Model):
     """s"""
     hard: bool
     visited: float | None
-    """s, when the mission came to it"""
+    """s, start of the visit; None: the task was not visited"""
     ended: float | None
     """s"""
     kept: WindowOutcome
 
 
 class RoundRun(Model):
-    """A round of a group."""
+    """Round of a group."""
 
     group: str
     number: int
     """from 1"""
     since: float
-    """s, when the group was entered, or the round before had ended"""
+    """s, when the group was entered or the previous round ended"""
     due: float | None = None
     """s, for groups with `every`"""
     began: float | None = None
-    """s; None: the mission left the group, or the run ended, before it was due"""
+    """s; None: the mission left the group or the run ended before the round was due"""
     ended: float | None = None
     """s; None: the run ended before"""
 
 
 class GivenValue(Model):
-    """A value of a checkpoint that somebody told the run."""
+    """Value of a checkpoint that a person reported to the run."""
 
     t: float
     """s"""
@@ -335,52 +339,54 @@ class GivenValue(Model):
     value: float
     unit: str
     normal: bool
-    """whether it lies in the nominal range"""
+    """whether the value lies in the nominal range"""
 
     @property
     def in_words(self) -> str:
-        odd = "" if self.normal else ", which is abnormal"
-        return f"told that {self.name} (#{self.checkpoint}) shows {self.value:.4g} {self.unit}{odd}"
+        note = "" if self.normal else ", which is abnormal"
+        return (
+            f"told that {self.name} (#{self.checkpoint}) shows {self.value:.4g} {self.unit}{note}"
+        )
 
 
 class TraceStep(Model):
-    """One step of the state machine."""
+    """Step of the state machine."""
 
     t: float
     """s"""
     source: str | None
     target: str | None
     cause: str
-    """in words"""
+    """cause in words"""
 
 
 class Reordering(Model):
-    """The order in which the tasks were done, as it was suggested before the run."""
+    """Reordering of the mission's tasks that was suggested before the run and applied to it."""
 
     written: tuple[str, ...]
-    """the names of the tasks that may change places, as the mission was written"""
+    """names of the tasks that may change places, in the written order"""
     order: tuple[str, ...]
-    """the same in the order suggested, without what is left out"""
+    """their names in the suggested order, without the tasks that it leaves out"""
     written_duration: float
-    """s, predicted for the order that was written"""
+    """s, predicted for the written order"""
     duration: float
-    """s, predicted for the order suggested"""
+    """s, predicted for the suggested order"""
     bound: float
-    """s, less than which no order takes that does as much"""
+    """s, lower bound on the duration of any order that does as much"""
     proven: bool
     """whether no other order is better"""
 
 
 class Result(Model):
-    """How the mission ended."""
+    """Result of a mission: verdict, outcome, duration and distance."""
 
     success: bool
     verdict: str
     """one sentence: success, or what is missing"""
     ended: bool = True
-    """whether this is the end of the run; else it was interrupted here, and may go on"""
+    """whether the run has ended; False: it was interrupted here and may continue"""
     outcome: Outcome | None = None
-    """how the state machine ended; None: the run was stopped before"""
+    """outcome of the state machine; None: the run was stopped before the machine ended"""
     duration: float
     """s since the mission's start"""
     max_duration: float | None
@@ -395,16 +401,16 @@ class Result(Model):
 
     @property
     def only_failures(self) -> bool:
-        """Whether the plan came to its end, and nothing but failed tasks is missing."""
-        at_its_end = self.outcome is Outcome.COMPLETED_WITH_FAILURES
-        return at_its_end and self.within_max_duration and self.docked is not False
+        """True if the mission came to its end, and all that is missing are failed tasks."""
+        completed = self.outcome is Outcome.COMPLETED_WITH_FAILURES
+        return completed and self.within_max_duration and self.docked is not False
 
 
 class RunRecord(Model):
-    """A whole run."""
+    """Record of a run."""
 
     version: int = 5
-    """of this format"""
+    """version of the format"""
     mission: Mission
     hfsm: Hfsm
     site: str
@@ -413,7 +419,7 @@ class RunRecord(Model):
     sensor: str
     seed: int
     diagnostics: tuple[Diagnostic, ...]
-    """of the import: what was healed or respelled"""
+    """diagnostics of the import: what was repaired or respelled"""
     result: Result
     tasks: tuple[TaskRun, ...]
     readings: tuple[Reading, ...]
@@ -422,31 +428,31 @@ class RunRecord(Model):
     path: tuple[PathSample, ...]
     interruptions: tuple[Interruption, ...] = ()
     waits: tuple[WaitRun, ...] = ()
-    """what the mission waited for, in the order of time"""
+    """visits of WAIT tasks, in the order of time"""
     windows: tuple[WindowRun, ...] = ()
-    """what came of time windows"""
+    """visits of tasks with time windows, and tasks with windows that were not visited"""
     rounds: tuple[RoundRun, ...] = ()
-    """of groups, in the order in which they could begin"""
+    """rounds of groups, in the order in which they could begin"""
     given_values: tuple[GivenValue, ...] = ()
     mishaps: tuple[Mishap, ...] = ()
-    """what the drive had trouble with, in the order of time"""
+    """mishaps of the drive, in the order of time"""
     anomalies: tuple[Anomaly, ...] = ()
-    """what was found, in the order of time"""
+    """anomalies that were noticed or reported, in the order of time"""
     faults: tuple[AnyFault, ...] = ()
-    """what really went wrong, with all that the seed drew; the robot was told nothing of it"""
+    """simulated faults, with all values that the seed drew; the robot did not know them"""
     began: float = 0.0
-    """s of the mission's time: more than 0 where the run goes on from where another one stood"""
+    """s since the mission's start; more than 0 if the run continues another run"""
     before: tuple[TaskTally, ...] = ()
-    """what had ended before that, and is none of this run"""
+    """tasks that ended before that, in the earlier run"""
     resumed: tuple[float, ...] = ()
-    """s, when the run went on from its journal after its process had died"""
+    """s, times at which the run was resumed from its journal after its process had died"""
     reordering: Reordering | None = None
-    """None: the tasks were done in the order in which the mission was written"""
+    """None: the tasks are in the order in which the mission was written"""
 
     @model_validator(mode="before")
     @classmethod
     def _without_computed(cls, data: object) -> object:
-        """What follows from the rest is written for other programs, and not read back."""
+        """Drop the computed fields, which are written for other programs and not read back."""
         if not isinstance(data, dict):
             return data
         return {
@@ -456,21 +462,21 @@ class RunRecord(Model):
     @computed_field  # type: ignore[prop-decorator]
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """All that was out of the ordinary, each once, and what came of it."""
-        told = {anomaly.t for anomaly in self.anomalies if anomaly.is_reading}
-        bare = [anomaly_from_reading(r) for r in self.readings if not (r.normal or r.t in told)]
-        found = [
+        """Findings of the run in the order of time, each once, with the mission's answers."""
+        known = {anomaly.t for anomaly in self.anomalies if anomaly.is_reading}
+        bare = [anomaly_from_reading(r) for r in self.readings if not (r.normal or r.t in known)]
+        findings = [
             self._finding(anomaly, number, self.anomalies[number:])
             for number, anomaly in enumerate(self.anomalies, start=1)
-            if not anomaly.over
+            if not anomaly.is_end
         ]
-        found += [self._finding(anomaly, None, ()) for anomaly in bare]
-        return tuple(sorted(found, key=lambda finding: finding.t))
+        findings += [self._finding(anomaly, None, ()) for anomaly in bare]
+        return tuple(sorted(findings, key=lambda finding: finding.t))
 
     @computed_field  # type: ignore[prop-decorator]
     @property
     def headline(self) -> Headline:
-        """How the run went, in a line."""
+        """Headline of the run: its verdict and what was noticed, in one line."""
         return headline(
             self.result.verdict,
             success=self.result.success,
@@ -488,16 +494,16 @@ class RunRecord(Model):
 
     @property
     def late(self) -> tuple[WindowRun, ...]:
-        """The visits that ended after their soft window."""
+        """Visits that ended after their soft window."""
         return tuple(run for run in self.windows if run.kept is WindowOutcome.LATE)
 
     @property
     def missed_faults(self) -> tuple[AnyFault, ...]:
-        """The faults that did not happen: the run ended before they would have begun."""
+        """Faults that did not happen because the run ended before they began."""
         return tuple(fault for fault in self.faults if fault.begins > self.result.duration)
 
-    def why_missed(self, fault: AnyFault) -> str:
-        """Says of one of these why it did not happen."""
+    def explain_missed(self, fault: AnyFault) -> str:
+        """Return a text that says why a missed fault did not happen."""
         return (
             f"fault {fault.kind.replace('_', ' ')} did not happen: begins at {fault.begins:g} s, "
             f"the mission ended at {round(self.result.duration, 1):g} s"
@@ -511,7 +517,7 @@ class RunRecord(Model):
             what=self._what(anomaly),
             answered=answered,
             answer=answer,
-            over_at=next((a.t for a in later if a.ends(anomaly)), None),
+            over_at=next((a.t for a in later if a.is_end_of(anomaly)), None),
         )
 
     def _what(self, anomaly: Anomaly) -> str:
@@ -522,23 +528,28 @@ class RunRecord(Model):
         return anomaly.kind.replace("_", " ")
 
     def _answer(self, anomaly: Anomaly) -> tuple[bool, str]:
-        """Whether a reaction answered it, and by what in words."""
-        own = next((r for r in self.mission.reactions if r.event is anomaly.kind), None)
-        if own is None:
+        """Return whether a reaction answered the anomaly, and the answer in words."""
+        reaction = next((r for r in self.mission.reactions if r.event is anomaly.kind), None)
+        if reaction is None:
             return False, "no reaction answers it"
-        begun = own.response is Response.REPORT or any(
+        begun = reaction.response is Response.REPORT or any(
             i.event is anomaly.kind and i.end >= anomaly.t for i in self.interruptions
         )
-        # The end of the mission is no interruption.
-        aborted = own.response is Response.ABORT and self.result.outcome is Outcome.ABORTED
+        # An abort ends the mission, so it is not among the interruptions.
+        aborted = reaction.response is Response.ABORT and self.result.outcome is Outcome.ABORTED
         if begun or aborted:
-            return True, f"answered by reaction: {own.response.replace('_', ' ')}"
+            return True, f"answered by reaction: {reaction.response.replace('_', ' ')}"
         return False, "the reaction to it did not begin"
 
 
 def anomaly_from_reading(reading: Reading, place: Vector | None = None) -> Anomaly:
-    """Return what a reading outside the nominal range tells; `place` (m) is its checkpoint's, None
-    for one that no anomaly was made of, as one made by hand."""
+    """Return the anomaly of a reading outside the nominal range.
+
+    Args:
+        reading: the reading.
+        place: position of the checkpoint in m; None if the record has no anomaly of the reading,
+            as for a reading taken by hand.
+    """
     return Anomaly(
         t=reading.t,
         kind=EventKind.ABNORMAL_READING,

@@ -1,7 +1,6 @@
-"""The verdict, whether the mission is a success and what is missing if it is not; and the record of
-the run.
+"""Verdict of a run, success or what is missing, and the record of the run.
 
-`verdict_line.py` makes the line of it that people see.
+`verdict_line.py` makes the headline that people see.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -36,9 +35,11 @@ from argo_env.run.visits_and_rounds import (
 )
 
 _ENDINGS = {
-    Outcome.RETURNED: "the mission was given up, and the robot returned to its dock",
-    Outcome.SHELTERED: "the mission was given up, and the robot went to a safe area",
-    Outcome.FAILED: "the mission was given up, and the robot did not get to where it should wait",
+    Outcome.RETURNED: "the mission was aborted, and the robot returned to its dock",
+    Outcome.SHELTERED: "the mission was aborted, and the robot went to a safe area",
+    Outcome.FAILED: (
+        "the mission was aborted, and the robot did not reach the place where it should wait"
+    ),
     Outcome.ABORTED: "the mission was aborted",
     Outcome.CANCELLED: "the mission was cancelled by a person",
 }
@@ -47,7 +48,7 @@ _ENDINGS = {
 def failed_tasks(
     runs: Sequence[TaskRun], trace: Sequence[TraceEntry], visits: Sequence[Visit]
 ) -> tuple[str, ...]:
-    """The tasks that failed for good, by name and in order."""
+    """Return the names of the tasks that failed without a retry, in the order of their failures."""
     retried = {(e.time, e.source) for e in trace if e.cause is Cause.RETRY}
     failed = [
         (r.end, r.task)
@@ -66,12 +67,19 @@ def judge(
     trace: Sequence[TraceEntry],
     visits: Sequence[Visit],
     windows: Sequence[WindowRun],
-    before: Progress,
+    earlier: Progress,
 ) -> Result:
-    """How the mission ended: the machine with `outcome`, by the steps of its `trace`, the visits of
-    tasks and what came of their windows; and by what had come of it `before` this run.
+    """Determine the result of a mission.
 
-    An `outcome` of None is that of a run that was stopped before, or is still under way.
+    Args:
+        mission: the mission.
+        docks: poses of the docks by number of their starting area.
+        log: the run's log.
+        outcome: outcome of the machine; None: the run was stopped before, or still goes on.
+        trace: the machine's trace.
+        visits: the visits of tasks.
+        windows: the outcomes of the tasks' time windows.
+        earlier: progress of the mission before this run.
     """
     last = log.last
     assert last is not None
@@ -79,23 +87,23 @@ def judge(
     docked = None if area is None else at_dock(last.body_pose, docks[area])
     missing = []
     if outcome is None and not last.ended:
-        missing.append(f"the mission is not at its end after {now:.0f} s")
+        missing.append(f"the mission has not ended after {now:.0f} s")
     elif outcome is None:
         missing.append(last.stopped or f"it was stopped after {now:.0f} s")
     elif outcome in _ENDINGS:
         missing.append(_ENDINGS[outcome])
     optional = {task.name for task in mission.tasks if task.optional}
     failed = tuple(
-        dict.fromkeys((*_failed_before(before, mission), *failed_tasks(log.tasks, trace, visits)))
+        dict.fromkeys((*_failed_earlier(earlier, mission), *failed_tasks(log.tasks, trace, visits)))
     )
     needed = [name for name in failed if name not in optional]
     missed = {run.task for run in windows if run.kept is WindowOutcome.MISSED}
-    for what, names in (
+    for failure, names in (
         ("failed", [name for name in needed if name not in missed]),
         ("missed the time window", [name for name in needed if name in missed]),
     ):
         if names:
-            missing.append(f"{what}: {', '.join(names)}")
+            missing.append(f"{failure}: {', '.join(names)}")
     if limit is not None and now > limit:
         took, most = told_apart(now, limit)
         missing.append(f"it took {took} s of at most {most} s")
@@ -113,7 +121,7 @@ def judge(
     return Result(
         success=success,
         ended=last.ended,
-        verdict=_praise(mission, log.tasks, trace, visits, failed, before)
+        verdict=_success_verdict(mission, log.tasks, trace, visits, failed, earlier)
         if success
         else "; ".join(missing),
         outcome=outcome,
@@ -126,53 +134,59 @@ def judge(
     )
 
 
-def _praise(
+def _success_verdict(
     mission: Mission,
     runs: Sequence[TaskRun],
     trace: Sequence[TraceEntry],
     visits: Sequence[Visit],
     failed: Sequence[str],
-    before: Progress,
+    earlier: Progress,
 ) -> str:
-    """The verdict of a success: a plan with conditions may pass tasks over, a person may have done
-    or skipped some, and optional ones may have failed."""
+    """Return the verdict of a successful mission.
+
+    It names tasks that a condition passed over, that a person did or skipped, that were done before
+    this run, and optional ones that failed.
+    """
     by_hand, skipped = _by_hand(trace, skipped=False), _by_hand(trace, skipped=True)
     done = {
         run.task for run in runs if run.outcome != "interrupted" and not run.by_hand
     } | RESERVED_NAMES
     ended = done.union(by_hand, skipped, (visit.task for visit in visits if visit.end is not None))
-    ended |= {tally.task for tally in before.tallies}
-    # Of all tasks: a machine that was restored has only those that it could still come to.
+    ended |= {tally.task for tally in earlier.tallies}
+    # From the mission: a restored machine has only the tasks that it can still reach.
     own_tasks = (task.name for task in mission.tasks if task.action is not Action.START)
     passed_over = [name for name in own_tasks if name not in ended]
-    said = ["the plan was carried out"]
-    if earlier := [tally.task for tally in before.tallies if tally.done]:
-        said.append(f"done before this run: {', '.join(earlier)}")
-    if earlier := [tally.task for tally in before.tallies if tally.by_hand]:
-        said.append(f"done by hand or skipped before this run: {', '.join(earlier)}")
+    parts = ["the mission was completed"]
+    if names := [tally.task for tally in earlier.tallies if tally.done]:
+        parts.append(f"done before this run: {', '.join(names)}")
+    if names := [tally.task for tally in earlier.tallies if tally.by_hand]:
+        parts.append(f"done by hand or skipped before this run: {', '.join(names)}")
     if passed_over:
-        said.append(f"it led past {', '.join(passed_over)}")
+        parts.append(f"passed over: {', '.join(passed_over)}")
     if by_hand:
-        said.append(f"done by hand: {', '.join(by_hand)}")
+        parts.append(f"done by hand: {', '.join(by_hand)}")
     if skipped:
-        said.append(f"skipped by a person: {', '.join(skipped)}")
+        parts.append(f"skipped by a person: {', '.join(skipped)}")
     if failed:
-        said.append(f"failed, and optional: {', '.join(failed)}")
-    return "; ".join(said) if len(said) > 1 else AS_PLANNED
+        parts.append(f"optional tasks that failed: {', '.join(failed)}")
+    return "; ".join(parts) if len(parts) > 1 else AS_PLANNED
 
 
-def _failed_before(before: Progress, mission: Mission) -> Iterator[str]:
-    """The tasks that had failed for good. One that the plan does not have any more counts if the
-    mission does: nobody can say of it alone whether it was optional."""
-    for tally in before.tallies:
-        if tally.failed and (mission.task(tally.task) is not None or before.failed):
+def _failed_earlier(earlier: Progress, mission: Mission) -> Iterator[str]:
+    """Yield the tasks that failed before this run.
+
+    A task that the mission no longer has counts if the mission had failed: it is not known whether
+    the task was optional.
+    """
+    for tally in earlier.tallies:
+        if tally.failed and (mission.task(tally.task) is not None or earlier.failed):
             yield tally.task
 
 
 def _by_hand(trace: Sequence[TraceEntry], *, skipped: bool) -> tuple[str, ...]:
-    """The tasks that a person did in place of the machine, or skipped, in this order."""
-    found = (e.source for e in trace if e.by_hand and e.skipped is skipped and e.source)
-    return tuple(dict.fromkeys(found))
+    """Return the tasks that a person did by hand, or else those they skipped, in their order."""
+    tasks = (e.source for e in trace if e.by_hand and e.skipped is skipped and e.source)
+    return tuple(dict.fromkeys(tasks))
 
 
 def make_record(
@@ -183,7 +197,7 @@ def make_record(
     interruptions: InterruptionTracker,
     rounds: RoundTracker,
 ) -> RunRecord:
-    """The record of a run with this log, whose machine stands like this."""
+    """Make the record of a run from its log, the state of its machine and its trackers."""
     site = setup.navigator.site
     assert log.last is not None
     trace = tuple(machine.trace)

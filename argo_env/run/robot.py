@@ -33,7 +33,7 @@ class Sensed:
 class RobotAction(Protocol):
     """The action of a task, from its start to its end."""
 
-    came: Path | None
+    arrival_path: Path | None
     """the path that the robot came by, where that is known"""
 
     @property
@@ -48,7 +48,7 @@ class RobotAction(Protocol):
     def detour(self, setup: RunSetup) -> None:
         """Goes on with a setup whose navigator knows of something new in the way."""
 
-    def run(self, end: ActionEnd, now: float, distance: float, climbed: float) -> TaskRun:
+    def to_task_run(self, end: ActionEnd, now: float, distance: float, climbed: float) -> TaskRun:
         """The action as it goes into the record: it ended at `now` (s), after the robot's whole way
         of `distance` and `climbed` (m)."""
 
@@ -87,22 +87,22 @@ class AnyRobot(Protocol):
         """The run begins or goes on, at `now`; a robot that can be put somewhere stands at `pose`
         from now on."""
 
-    def begin(self, beginning: InitialState) -> None:
+    def apply_initial_state(self, initial: InitialState) -> None:
         """The run goes on from where another one stood."""
 
     def restore(self, last: Entry) -> None:
         """The run goes on after the entry, as its process has died."""
 
-    def remember(self, told: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
+    def restore_anomalies(self, reported: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
         """These were found before `now`, with the robot at these poses."""
 
-    def let_faults_happen(self, now: float) -> None:
+    def update_faults(self, now: float) -> None:
         """Lets all begin and end that is due, where faults are simulated."""
 
     def avoid(self, blockages: Sequence[Blockage]) -> None:
         """From now on paths keep clear of these as well."""
 
-    def start(self, command: StartAction, now: float, came: Path | None) -> RobotAction:
+    def start(self, command: StartAction, now: float, arrival_path: Path | None) -> RobotAction:
         """Starts an action; no other one is under way."""
 
     def advance(self, step: int, now: float, action: RobotAction | None) -> Sensed:
@@ -111,5 +111,5 @@ class AnyRobot(Protocol):
     def state(self) -> dict[str, Any]:
         """What an entry tells of it, from its pose to what it touches."""
 
-    def told(self) -> None:
+    def clear_reported(self) -> None:
         """What the last `state` told of mishaps and contacts is not told again."""

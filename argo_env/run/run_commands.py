@@ -21,7 +21,7 @@ from argo_compiler.hfsm.handover import match
 from argo_compiler.il import Action, Mission, Task
 from argo_env.faults.fault import Fault, TimedFault
 from argo_env.faults.kinds import AnyFault, settle_one
-from argo_env.run.log import Entry, LoggedEvent, require_from_outside, require_time
+from argo_env.run.log import Entry, LoggedEvent, require_event_time, require_external
 from argo_env.run.machine import Machine
 from argo_env.run.record import TaskRun
 from argo_env.run.run_setup import RunSetup
@@ -40,13 +40,13 @@ class Supervision:
         self.acting = False
         """whether an action by hand is under way"""
         self._mission = mission
-        self._done: list[tuple[float, ByHand]] = []
+        self._results: list[tuple[float, ByHand]] = []
 
-    def done(self, now: float) -> tuple[ByHand, ...]:
+    def results_at(self, now: float) -> tuple[ByHand, ...]:
         """The mission's tasks done by hand since the take-over, told at time `now` (s)."""
-        return tuple(one.model_copy(update={"age": now - end}) for end, one in self._done)
+        return tuple(one.model_copy(update={"age": now - end}) for end, one in self._results)
 
-    def ended(self, run: TaskRun, entry: Entry) -> None:
+    def end_action(self, run: TaskRun, entry: Entry) -> None:
         """An action by hand has ended."""
         self.acting = False
         if run.outcome != "done" or self._mission.task(run.task) is None:
@@ -58,15 +58,15 @@ class Supervision:
             abnormal=reading is not None and not reading.normal,
             duration=run.end - run.start,
         )
-        self._done.append((run.end, done))
+        self._results.append((run.end, done))
 
-    def heard(self, kind: str, machine: Machine) -> None:
+    def update(self, kind: str, machine: Machine) -> None:
         """The machine was told an event of that kind."""
         if kind == "take_over" and machine.paused:
             self.taken_over = True
         elif kind in ("resume", "give_back") or not machine.paused:
             self.taken_over = False
-            self._done.clear()
+            self._results.clear()
 
 
 def check_by_hand(task: Task, mission: Mission, site: Site) -> None:
@@ -143,9 +143,9 @@ def check_event(event: RunCommand, mission: Mission, site: Site) -> Event:
     NotFound for a checkpoint that the site does not have."""
     if not isinstance(event, _TO_THE_MACHINE):
         raise Invalid(f"{event!r} is nothing that a run can be told from outside")
-    logged = LoggedEvent.of(event)
+    logged = LoggedEvent.from_event(event)
     _check(logged, mission, site)
-    return logged.original()
+    return logged.to_event()
 
 
 def check_scheduled_events(
@@ -156,7 +156,7 @@ def check_scheduled_events(
         if not isinstance(event, LoggedEvent):
             raise Invalid(f"{event!r} is no event as data: make it one with `logged`")
         try:
-            require_time(t)
+            require_event_time(t)
             _check(event, mission, site)
         except (Invalid, NotFound) as error:
             raise Invalid(f"the event {event.kind} given at {t:g} s: {error}") from None
@@ -215,7 +215,7 @@ def mark_abnormal(site: Site, mission: Mission, event: Event) -> Event:
 
 def _check(event: LoggedEvent, mission: Mission, site: Site) -> None:
     """Raises Invalid or NotFound for what a run of the mission can't be told."""
-    require_from_outside(event)
+    require_external(event)
     if event.by_hand:
         _check_by_hand(event.by_hand, mission)
     if event.object_id is not None:

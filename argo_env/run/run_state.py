@@ -1,5 +1,4 @@
-"""The state of a run: what its entries add up to, the machine that they are told to, and the
-events that are given beforehand."""
+"""State of a run: the sum of its entries, the machine that handles them, and scheduled events."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -19,18 +18,18 @@ from argo_env.navigation import Path
 from argo_env.run.initial_state import InitialState, KnownAnomaly
 from argo_env.run.log import Entry, LoggedEvent, RunLog
 from argo_env.run.machine import Machine
-from argo_env.run.perception import blockage
+from argo_env.run.perception import blockage_from_anomaly
 from argo_env.run.record import RunRecord, TaskRun
 from argo_env.run.result import make_record
 from argo_env.run.robot import ActionEnd, AnyRobot, RobotAction
 from argo_env.run.run_commands import Supervision, mark_abnormal
 from argo_env.run.spec import RunSpec
-from argo_env.run.vehicle import way_come
+from argo_env.run.vehicle import find_arrival_path
 from argo_env.run.visits_and_rounds import InterruptionTracker, RoundTracker
 
 
 class ScheduledEvents:
-    """Gives out events when they are due. Holds how many have occurred."""
+    """Events of a run in the order of their times; holds how many of them have occurred."""
 
     def __init__(self, events: Iterable[tuple[float, LoggedEvent]]) -> None:
         self._events: list[tuple[float, Event]] = []
@@ -39,189 +38,199 @@ class ScheduledEvents:
 
     @property
     def pending(self) -> bool:
-        """Whether any are still to occur."""
+        """True if any event is still to occur."""
         return self.occurred < len(self._events)
 
     @property
     def next_time(self) -> float:
-        """When the next one occurs (s); infinite if none does."""
+        """Time of the next event in s; infinite if there is none."""
         return self._events[self.occurred][0] if self.pending else math.inf
 
     @property
-    def ahead(self) -> tuple[tuple[float, LoggedEvent], ...]:
-        """Those that are still to occur."""
-        return tuple((t, LoggedEvent.of(event)) for t, event in self._events[self.occurred :])
+    def upcoming(self) -> tuple[tuple[float, LoggedEvent], ...]:
+        """Events that are still to occur, with their times in s."""
+        return tuple(
+            (t, LoggedEvent.from_event(event)) for t, event in self._events[self.occurred :]
+        )
 
     def add(self, events: Iterable[tuple[float, LoggedEvent]]) -> None:
-        """More of them; of equal times, those that were there before come first."""
-        ahead = [*self._events[self.occurred :], *((t, event.original()) for t, event in events)]
-        self._events[self.occurred :] = sorted(ahead, key=lambda given: given[0])
+        """Add events with their times (s); at equal times, earlier added events come first."""
+        upcoming = [*self._events[self.occurred :], *((t, event.to_event()) for t, event in events)]
+        self._events[self.occurred :] = sorted(upcoming, key=lambda timed: timed[0])
 
-    def due(self, now: float, at_rest: bool, acting: bool = False) -> list[Event]:
-        """Those that occur now, at time `now` (s). A robot is given back only `at_rest`, without
-        an action, and in a step of its own; and where it is `acting` by hand the mission is not
-        resumed. What comes after waits as well."""
+    def take_due(self, now: float, at_rest: bool, acting: bool = False) -> list[Event]:
+        """Return the events that occur at time `now` (s), and count them as occurred.
+
+        Two kinds of events wait, and so do all events after them: the robot is given back only
+        `at_rest`, with no action running, and in a step of its own; the mission is not resumed
+        while the robot is `acting` by hand.
+        """
         first = self.occurred
         while self.pending and self._events[self.occurred][0] <= now:
-            if self._gives_back and (not at_rest or self.occurred > first):
+            if self._is_give_back_next and (not at_rest or self.occurred > first):
                 break
             if acting and isinstance(self._events[self.occurred][1], Resume):
                 break
             self.occurred += 1
         return [event for _, event in self._events[first : self.occurred]]
 
-    def waits_to_give_back(self, now: float) -> bool:
-        """Whether something should have been given back by `now` (s), and waits."""
-        return self.pending and self._events[self.occurred][0] <= now and self._gives_back
+    def is_give_back_waiting(self, now: float) -> bool:
+        """Return True if the robot should have been given back by `now` (s), and that waits."""
+        return self.pending and self._events[self.occurred][0] <= now and self._is_give_back_next
 
     @property
-    def _gives_back(self) -> bool:
+    def _is_give_back_next(self) -> bool:
         return isinstance(self._events[self.occurred][1], GiveBack)
 
 
 class RunState:
-    """Where a run stands. Holds the machine, the log and the action under way, which change with
-    the entries that it takes: equal entries lead to the same place, made now or read again."""
+    """State of a run: the machine, the log and the running action.
+
+    It changes with the entries that it applies. Equal entries lead to equal states, whether they
+    are made now or read from a journal.
+    """
 
     def __init__(self, machine: Machine, vehicle: AnyRobot, spec: RunSpec) -> None:
         self.machine = machine
         self.action: RobotAction | None = None
-        """the one under way"""
+        """the running action, if there is one"""
         self.log = RunLog(vehicle.setup.navigator.site)
         self.supervision = Supervision(spec.mission)
-        self.lost: TaskRun | None = None
-        """the action by hand that was under way when the process before this one died"""
-        self.given = ScheduledEvents(spec.events)
+        self.lost_task_run: TaskRun | None = None
+        """the action by hand that was running when the previous process died, if there was one"""
+        self.scheduled = ScheduledEvents(spec.events)
         self.steps = 0
         """time steps of the drive since the run began"""
         self._beginning = spec.beginning
-        self._begun = spec.beginning.at if spec.beginning else 0.0
-        self.now = self._begun
+        self._start_time = spec.beginning.at if spec.beginning else 0.0
+        self.now = self._start_time
         """s of simulated time"""
         self._mission = spec.mission
         self._time_step = vehicle.setup.drive.time_step
         self._vehicle = vehicle
         self._interruptions = InterruptionTracker()
         self._rounds = RoundTracker()
-        self._came: Path | None = None
+        self._arrival_path: Path | None = None
 
     @property
-    def unsampled(self) -> bool:
-        """Whether the present place is no point of the recorded path yet."""
-        last = self.log.sampled_at
+    def is_unsampled(self) -> bool:
+        """True if the current pose is not yet a point of the recorded path."""
+        last = self.log.last_sample_time
         return last is None or last < self.now
 
-    def step_to(self, steps: int) -> None:
-        """So many time steps of the drive have passed since the run began."""
+    def set_steps(self, steps: int) -> None:
+        """Set the number of time steps since the run began, and with it the simulated time."""
         self.steps = steps
-        # Counted in steps, so that nothing adds up.
-        self.now = round(self._begun + steps * self._time_step, 6)
+        # From the number of steps, so that rounding errors do not add up.
+        self.now = round(self._start_time + steps * self._time_step, 6)
 
     def entry(
         self, events: Sequence[Event] = (), *, sample: bool = False, task: TaskRun | None = None
     ) -> Entry:
-        """An entry of the present moment."""
+        """Return an entry of the current time with these events; nothing changes yet."""
         return Entry(
             t=self.now,
-            given=self.given.occurred,
-            running=self._running,
-            events=tuple(LoggedEvent.of(self._seen(event)) for event in events),
+            given=self.scheduled.occurred,
+            running=self._running_task,
+            events=tuple(LoggedEvent.from_event(self._with_abnormality(event)) for event in events),
             task=task,
             sample=sample,
             **self._vehicle.state(),
         )
 
-    def take(self, entry: Entry) -> None:
-        """Adds an entry to the log and tells the machine its events."""
+    def apply(self, entry: Entry) -> None:
+        """Add an entry to the log, let the machine handle its events, and execute its commands."""
         self.log.add(entry)
-        self.given.add(entry.added)
+        self.scheduled.add(entry.added)
         if schedule := self._vehicle.setup.schedule:
             for fault in entry.faults:
                 schedule.add(fault)
-        if closed := [b for anomaly in entry.found if (b := blockage(anomaly))]:
+        if closed := [b for anomaly in entry.found if (b := blockage_from_anomaly(anomaly))]:
             self._vehicle.avoid(closed)
         if entry.task:
-            self._came = (self.action and self.action.path) or self._came
+            self._arrival_path = (self.action and self.action.path) or self._arrival_path
             self.action = None
             if entry.task.by_hand:
-                self.supervision.ended(entry.task, entry)
+                self.supervision.end_action(entry.task, entry)
         for event in entry.events:
             if not self.machine.finished:
-                self.obey(self.machine.handle(event.original(), self.now))
-                self._look()
-                self.supervision.heard(event.kind, self.machine)
+                self.execute(self.machine.handle(event.to_event(), self.now))
+                self._update_trackers()
+                self.supervision.update(event.kind, self.machine)
         if entry.by_hand:
             self.supervision.acting = True
-            self._begin(StartAction(entry.by_hand))
+            self._start_action(StartAction(entry.by_hand))
         if entry.stop_by_hand and self.action:
             self.action.cancel("a person stopped it", interrupted=False)
         if closed and self.action:
             self.action.detour(self._vehicle.setup)
 
     def start(self) -> None:
-        """Starts the machine."""
-        self.obey(self.machine.start(self.now))
-        self._look()
+        """Start the machine and execute its first commands."""
+        self.execute(self.machine.start(self.now))
+        self._update_trackers()
 
-    def obey(self, commands: Sequence[Command]) -> None:
-        """Does what the machine asks for."""
+    def execute(self, commands: Sequence[Command]) -> None:
+        """Execute the machine's commands: start actions and cancel them."""
         for command in commands:
             match command:
                 case StartAction():
-                    self._begin(command)
+                    self._start_action(command)
                 case CancelAction(_, reason):
                     if self.action:
-                        goes_on = self.machine.paused or self.machine.reaction is not None
-                        self.action.cancel(reason, interrupted=goes_on)
+                        interrupted = self.machine.paused or self.machine.reaction is not None
+                        self.action.cancel(reason, interrupted=interrupted)
 
     def replay(self, entry: Entry) -> None:
-        """Does again what led to an entry, but for what the robot did.
+        """Apply an entry of a journal, with the robot's odometry as it was then.
 
-        Raises Invalid if it is one of another run.
+        Raises Invalid if the entry belongs to another run.
         """
-        self.step_to(round((entry.t - self._begun) / self._time_step))
+        self.set_steps(round((entry.t - self._start_time) / self._time_step))
         self._vehicle.odometry.restore(entry)
-        self.given.occurred = entry.given
+        self.scheduled.occurred = entry.given
         try:
-            if entry.events and entry.running != self._running:
-                raise ValueError(f"{entry.running} is said to run, and {self._running} does")
-            self.take(entry)
+            if entry.events and entry.running != self._running_task:
+                raise ValueError(
+                    f"the entry names '{entry.running}' as the running task, and the machine runs "
+                    f"'{self._running_task}'"
+                )
+            self.apply(entry)
         except ValueError as error:
             raise Invalid(
                 f"the journal does not fit its mission at {entry.t:g} s: {error}; begin a new run",
                 remedies=(Remedy.RUN_ANEW,),
             ) from error
 
-    def look_back(self) -> None:
-        """After a replay: by what path the robot came is what the log has seen of it, and what it
-        did by hand is over."""
+    def finish_replay(self) -> None:
+        """Restore the arrival path from the log after a replay, and end an action by hand."""
         if self.supervision.acting and self.action:
             self.action.cancel("the process that carried it out died", interrupted=True)
-            self.lost = self.run_of(ActionStopped(self.action.task.name))
+            self.lost_task_run = self.task_run(ActionStopped(self.action.task.name))
             self.action, self.supervision.acting = None, False
-        if came := way_come(self.log):
-            self._came = came
+        if arrival_path := find_arrival_path(self.log):
+            self._arrival_path = arrival_path
             if self.action:
-                self.action.came = came
+                self.action.arrival_path = arrival_path
 
-    def run_of(self, end: ActionEnd) -> TaskRun:
-        """The action under way as it goes into the record, now that it ends."""
+    def task_run(self, end: ActionEnd) -> TaskRun:
+        """Return the entry for the record of the running action, which ends now."""
         assert self.action is not None
         odometry = self._vehicle.odometry
-        run = self.action.run(end, self.now, odometry.distance, odometry.climbed)
+        run = self.action.to_task_run(end, self.now, odometry.distance, odometry.climbed)
         return run.model_copy(update={"by_hand": True}) if self.supervision.acting else run
 
-    def break_off(self) -> TaskRun | None:
-        """Ends the action under way, if there is one, as the run ends."""
+    def stop_action(self) -> TaskRun | None:
+        """Cancel the running action as the run ends; return its entry for the record, if any."""
         if self.action is None:
             return None
         self.action.cancel("the run was stopped", interrupted=False)
-        return self.run_of(ActionStopped(self.action.task.name))
+        return self.task_run(ActionStopped(self.action.task.name))
 
-    def beginning(self, progress: Progress) -> InitialState:
-        """Where a run begins that goes on from here, with such a progress."""
+    def initial_state(self, progress: Progress) -> InitialState:
+        """Return the initial state of a run that continues from here with the given progress."""
         drive, odometry = self._vehicle.setup.drive, self._vehicle.odometry
-        before = self._beginning.known if self._beginning else ()
+        known = self._beginning.known if self._beginning else ()
         found = (KnownAnomaly(anomaly=a, pose=pose) for a, pose in self.log.found)
         pose = drive.pose
         return InitialState(
@@ -230,26 +239,26 @@ class RunState:
             charge=self._vehicle.supply.charge,
             distance=odometry.distance,
             climbed=odometry.climbed,
-            known=(*before, *found),
+            known=(*known, *found),
         )
 
     def record(self, spec: RunSpec, present: Entry | None = None) -> RunRecord:
-        """The record of the run as far as its log goes, or up to the `present` entry."""
+        """Return the record of the run up to the end of its log, or up to the `present` entry."""
         log = self.log if present is None else self.log.with_entry(present)
         return make_record(
             spec, self._vehicle.setup, self.machine, log, self._interruptions, self._rounds
         )
 
-    def _begin(self, command: StartAction) -> None:
-        self.action = self._vehicle.start(command, self.now, self._came)
+    def _start_action(self, command: StartAction) -> None:
+        self.action = self._vehicle.start(command, self.now, self._arrival_path)
 
-    def _seen(self, event: Event) -> Event:
+    def _with_abnormality(self, event: Event) -> Event:
         return mark_abnormal(self.log.site, self._mission, event)
 
-    def _look(self) -> None:
-        for watch in (self._interruptions, self._rounds):
-            watch.look(self.machine, self.now)
+    def _update_trackers(self) -> None:
+        for tracker in (self._interruptions, self._rounds):
+            tracker.update(self.machine, self.now)
 
     @property
-    def _running(self) -> str | None:
+    def _running_task(self) -> str | None:
         return self.action.task.name if self.action else None

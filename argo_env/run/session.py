@@ -65,7 +65,7 @@ def simulate(
         told = [*_paced(pace), *observers]
         if journal is not None:
             # First, so that nobody is told what is not on disk.
-            book = create_journal(Path(journal), Header.of(site, spec), replace)
+            book = create_journal(Path(journal), Header.from_run(site, spec), replace)
             told.insert(0, stack.enter_context(book))
         simulation = Simulation(machine, site, known, observers=told, gui=gui)
         return stack.enter_context(simulation).run(interrupted)
@@ -92,11 +92,11 @@ def resume(
             or there are `events` for a run that has ended.
     """
     if events:
-        journal.require_going_on()
+        journal.require_not_ended()
     spec = journal.header.spec
     site = site or open_site(spec.site, load_robot(spec.robot))
     journal.require_unchanged(site)
-    return go_on(
+    return continue_run(
         journal,
         site,
         observers=observers,
@@ -107,7 +107,7 @@ def resume(
     )
 
 
-def go_on(
+def continue_run(
     journal: Journal,
     site: OpenedSite,
     *,

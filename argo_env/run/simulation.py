@@ -16,11 +16,11 @@ from argo_env.closing import Closing
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.start import start_pose
 from argo_env.robot.pose import BodyPose, Places
-from argo_env.run import ending
-from argo_env.run.initial_state import matched, progress_now
+from argo_env.run import termination
+from argo_env.run.initial_state import match_progress, progress_now
 from argo_env.run.log import Entry, LoggedEvent
 from argo_env.run.machine import Machine, OpenMachine
-from argo_env.run.observer import Observer, hears
+from argo_env.run.observer import Observer, overrides
 from argo_env.run.record import RunRecord
 from argo_env.run.robot import AnyRobot, Sensed
 from argo_env.run.run_commands import (
@@ -41,11 +41,11 @@ from argo_env.run.run_commands import (
 )
 from argo_env.run.run_setup import RunSetup, check_spec, make_run_setup
 from argo_env.run.run_state import RunState
-from argo_env.run.spec import RunSpec, checked
+from argo_env.run.spec import RunSpec, validate_spec
 from argo_env.run.termination import exhaustion_reason, standstill_reason
 from argo_env.run.validation import (
     CheckedRun,
-    require_begun,
+    require_initial_state,
     require_machine,
     require_site,
 )
@@ -110,10 +110,10 @@ class Simulation(Closing):
                 a machine that was used before.
         """
         known = isinstance(spec, CheckedRun) and spec.site is site
-        self._spec = spec = spec.spec if isinstance(spec, CheckedRun) else checked(spec)
+        self._spec = spec = spec.spec if isinstance(spec, CheckedRun) else validate_spec(spec)
         self._observers = tuple(observers)
         self._hearing = any(
-            observer.hears_samples and hears(observer, name)
+            observer.wants_samples and overrides(observer, name)
             for observer in observers
             for name in ("on_entry", "on_change")
         )
@@ -152,7 +152,7 @@ class Simulation(Closing):
         return self._state.now
 
     @property
-    def over(self) -> bool:
+    def ended(self) -> bool:
         """Whether the run has ended."""
         return self._ended
 
@@ -198,7 +198,7 @@ class Simulation(Closing):
     def done_by_hand(self) -> tuple[ByHand, ...]:
         """The mission's tasks that a person let the robot do since they took it over, and how long
         ago: what `GiveBack` tells the machine if it is given this, now."""
-        return self._state.supervision.done(self.now)
+        return self._state.supervision.results_at(self.now)
 
     def record(self) -> RunRecord:
         """The record of the run: of the whole of it, or as it stands now."""
@@ -206,7 +206,7 @@ class Simulation(Closing):
             if self._record is None:
                 self._record = self._state.record(self._spec)
             return self._record
-        present = self._state.entry(sample=self._state.unsampled)
+        present = self._state.entry(sample=self._state.is_unsampled)
         contacts = (*present.contacts, *present.touching)
         present = present.model_copy(update={"contacts": contacts})
         return self._state.record(self._spec, present)
@@ -224,9 +224,9 @@ class Simulation(Closing):
             self._advance()
             for observer in self._observers:
                 observer.on_step(self._state.now, self._state.action)
-        self.settle()
+        self.end_if_finished()
 
-    def leap(self, until: float = math.inf) -> Places:
+    def fast_forward(self, until: float = math.inf) -> Places:
         """Lets time pass up to the next moment at which something may happen, and not beyond
         `until` (s): many time steps where the robot only drives, measures or stands and surely
         touches nothing, else one. Observers are told all but the single steps; records are the
@@ -241,7 +241,7 @@ class Simulation(Closing):
             passed = self._glide(self._quiet_steps(until))
             if passed is None:
                 self._advance()
-        self.settle()
+        self.end_if_finished()
         return _NOWHERE if passed is None else passed
 
     def handle(self, event: RunCommand) -> None:
@@ -262,7 +262,7 @@ class Simulation(Closing):
             case InjectFault(fault):
                 settled = resolve_new_fault(fault, self.setup, self._spec.seed, self.now)
                 self._tell(self._state.entry().model_copy(update={"faults": (settled,)}))
-                self._vehicle.let_faults_happen(self.now)
+                self._vehicle.update_faults(self.now)
             case DoByHand(task):
                 check_by_hand(task, self._spec.mission, self.setup.navigator.site)
                 require_supervised(self._state.supervision, self.machine.running or self.task)
@@ -277,9 +277,9 @@ class Simulation(Closing):
                 if isinstance(checked, GiveBack):
                     require_no_action(self.machine)
                 self._tell(self._state.entry([checked]))
-        self.settle()
+        self.end_if_finished()
 
-    def going_on(self, mission: Mission, by_hand: Sequence[ByHand] = ()) -> RunSpec:
+    def continuation_spec(self, mission: Mission, by_hand: Sequence[ByHand] = ()) -> RunSpec:
         """The spec of a run that goes on from here with the mission as a person has edited it while
         they had the robot, and with what they did or skipped `by_hand` until now. In it the robot
         is given back. What does not fit any more is among its diagnostics.
@@ -293,21 +293,24 @@ class Simulation(Closing):
         seen = mark_abnormal(site, self._spec.mission, GiveBack(tuple(by_hand)))
         assert isinstance(seen, GiveBack)
         progress = progress_now(self.machine, self.now, seen.by_hand)
-        progress, diagnostics = matched(progress, mission)
+        progress, diagnostics = match_progress(progress, mission)
         spec = self._spec.model_copy(
             update={
                 "mission": mission,
-                "beginning": self._state.beginning(progress),
-                "events": ((self.now, LoggedEvent.of(Resume())), *self._state.given.ahead),
+                "beginning": self._state.initial_state(progress),
+                "events": (
+                    (self.now, LoggedEvent.from_event(Resume())),
+                    *self._state.scheduled.upcoming,
+                ),
                 "faults": self.setup.schedule.faults if self.setup.schedule else (),
                 "diagnostics": (*self._spec.diagnostics, *diagnostics),
                 "reordering": None,
                 "source": None,
             }
         )
-        return checked(spec)
+        return validate_spec(spec)
 
-    def give(self, task: Task) -> None:
+    def append_task(self, task: Task) -> None:
         """Gives the next task to a machine that takes them one by one, an `OpenMachine`. A journal
         does not hold such tasks, and can't be gone on from.
 
@@ -317,9 +320,9 @@ class Simulation(Closing):
         machine = self.machine
         if not isinstance(machine, OpenMachine):
             raise Conflict("the tasks of this run are those of its mission")
-        commands = machine.give(task)
+        commands = machine.append_task(task)
         self._spec = self._spec.model_copy(update={"mission": machine.mission})
-        self._state.obey(commands)
+        self._state.execute(commands)
 
     def run(self, interrupted: Callable[[], bool] = never) -> RunRecord:
         """Goes on to the end of the run; returns its record. A robot that stands still and waits
@@ -327,27 +330,27 @@ class Simulation(Closing):
 
         Where `interrupted` says so between two steps, the record is that of the run as it stands.
         """
-        if not self.over:
+        if not self.ended:
             self._require_usable()
         step_by_step = interrupted is not never or any(
-            hears(observer, "on_step") for observer in self._observers
+            overrides(observer, "on_step") for observer in self._observers
         )
-        go_on = self.step if step_by_step else self.leap
-        while not self.over and not interrupted() and not self._open():
+        go_on = self.step if step_by_step else self.fast_forward
+        while not self.ended and not interrupted() and not self._open():
             if why := self._standstill():
                 self._end(why)
             else:
                 go_on()
         record = self.record()
-        if not self.over:
+        if not self.ended:
             _log.info("the run was interrupted at %g s", self.now)
             for observer in self._observers:
                 observer.on_interrupted(record)
         return record
 
-    def settle(self) -> None:
+    def end_if_finished(self) -> None:
         """Ends the run if its machine has come to its end, or nothing can go on."""
-        if self.over:
+        if self.ended:
             return
         if self._state.machine.finished:
             self._end(None)
@@ -365,9 +368,9 @@ class Simulation(Closing):
         vehicle, beginning = self._vehicle, self._spec.beginning
         start = self._start_pose()
         if beginning:
-            vehicle.begin(beginning)
+            vehicle.apply_initial_state(beginning)
         state.start()
-        require_begun(state.machine, self._spec)
+        require_initial_state(state.machine, self._spec)
         for entry in past:
             state.replay(entry)
         last = state.log.last
@@ -375,11 +378,11 @@ class Simulation(Closing):
         told = [(k.anomaly, BodyPose(*k.pose)) for k in (beginning.known if beginning else ())]
         told += [(anomaly, e.body_pose) for e in past for anomaly in e.found]
         if beginning or last:
-            vehicle.remember(told, self.now)
+            vehicle.restore_anomalies(told, self.now)
         if last is None:
             return
         vehicle.restore(last)
-        state.look_back()
+        state.finish_replay()
         if last.ended:
             self._conclude()
 
@@ -396,7 +399,7 @@ class Simulation(Closing):
             place = beginning.body_pose
             navigator.snap(Pose(x=place.x, y=place.y, z=place.z, yaw=place.yaw))
             return place
-        pose = navigator.snap(self._spec.conditions.standing(start_pose(mission, docks)))
+        pose = navigator.snap(self._spec.conditions.actual_start_pose(start_pose(mission, docks)))
         return BodyPose(pose.x, pose.y, pose.z, pose.yaw)
 
     def _open(self) -> bool:
@@ -407,18 +410,18 @@ class Simulation(Closing):
             events = []
             if self._spec.beginning and state.log.last is None:
                 # What was told while nothing ran, as that the robot was given back.
-                events = state.given.due(self.now, at_rest=state.machine.running is None)
+                events = state.scheduled.take_due(self.now, at_rest=state.machine.running is None)
             resumed = state.log.last is not None and not state.machine.finished
             first = {"resumed": resumed, "added": self._more}
-            entry = state.entry(events, sample=state.unsampled, task=state.lost)
+            entry = state.entry(events, sample=state.is_unsampled, task=state.lost_task_run)
             self._tell(entry.model_copy(update=first))
-            self.settle()
-        return self.over
+            self.end_if_finished()
+        return self.ended
 
     def _advance(self) -> None:
         """One step of simulated time."""
         state = self._state
-        state.step_to(state.steps + 1)
+        state.set_steps(state.steps + 1)
         self._react(self._vehicle.advance(state.steps, state.now, state.action))
 
     def _quiet_steps(self, until: float) -> int:
@@ -436,14 +439,14 @@ class Simulation(Closing):
             return 0  # it waits for what is told
         schedule = self.setup.schedule
         next_time = min(
-            state.given.next_time,
+            state.scheduled.next_time,
             schedule.next_change if schedule else math.inf,
             math.inf if deadline is None else deadline,
-            ending.TIME_LIMIT,
+            termination.TIME_LIMIT,
             until,
         )
-        if ending.is_held(self.setup):
-            settled = ending.settled_at(self.setup, state.log)
+        if termination.is_emergency_stopped(self.setup):
+            settled = termination.final_standstill_time(self.setup, state.log)
             next_time = min(next_time, settled if settled > state.now else math.inf)
         steps = int((next_time - state.now) / self.setup.drive.time_step) - 1
         return min(steps, _LONGEST)
@@ -456,10 +459,10 @@ class Simulation(Closing):
             return None
         glide, first = vehicle.glide(state.action, most), state.steps
         last, every = first + glide.steps, self._sampled_every
-        looks = vehicle.steps_to_look(glide, first + 1)
+        looks = vehicle.update_steps(glide, first + 1)
         samples = range(first + every - first % every, last + 1, every)
         for step in sorted({*looks, *samples, last} if glide.steps else ()):
-            state.step_to(step)
+            state.set_steps(step)
             if step in looks or step == last or self._hearing:
                 glide.go_to(step - first, state.now)
             sensed = vehicle.look(step, state.now) if step in looks else None
@@ -479,15 +482,15 @@ class Simulation(Closing):
         # Before the end, so that a reaction to it comes first and no next task is begun.
         events: list[Event] = [Occurred(a.kind, a.detail) for a in sensed.found]
         acting, reading = state.supervision.acting, sensed.reading
-        run = state.run_of(sensed.end) if sensed.end else None
+        run = state.task_run(sensed.end) if sensed.end else None
         if sensed.end and not acting:
             events.append(sensed.end)
         elif reading:
             events.append(ReadingGiven(str(reading.checkpoint), reading.value))
-        given = state.given
+        given = state.scheduled
         at_rest = machine.running is None and not acting and not events
-        events += given.due(now, at_rest, acting)
-        if not events and given.waits_to_give_back(now):
+        events += given.take_due(now, at_rest, acting)
+        if not events and given.is_give_back_waiting(now):
             require_taken_over(machine, now)
         due = state.steps % self._sampled_every == 0
         if events or due or run:
@@ -505,8 +508,8 @@ class Simulation(Closing):
         with self._change():
             for observer in self._observers:
                 observer.on_entry(entry)
-            self._vehicle.told()
-            self._state.take(entry)
+            self._vehicle.clear_reported()
+            self._state.apply(entry)
             for observer in self._observers:
                 observer.on_change(entry, self.machine)
 
@@ -523,7 +526,7 @@ class Simulation(Closing):
             self._changing = outer
 
     def _require_going_on(self) -> None:
-        if self.over:
+        if self.ended:
             raise Conflict(f"the run has ended, at {self.now:g} s: make another simulation")
         self._require_usable()
 
@@ -539,16 +542,16 @@ class Simulation(Closing):
             raise Conflict("an observer can't steer the run that it is told of: between two steps")
 
     def _standstill(self) -> str | None:
-        if self._state.given.pending or self._vehicle.supply.charging:
+        if self._state.scheduled.pending or self._vehicle.supply.charging:
             return None
         acting = self._state.supervision.acting
         return standstill_reason(self.now, self.machine, self.setup, self._state.log, acting)
 
     def _end(self, stopped: str | None) -> None:
         state = self._state
-        run = state.break_off()
-        self._vehicle.odometry.close()
-        last = state.entry(sample=state.unsampled, task=run)
+        run = state.stop_action()
+        self._vehicle.odometry.close_contacts()
+        last = state.entry(sample=state.is_unsampled, task=run)
         self._tell(last.model_copy(update={"ended": True, "stopped": stopped}))
         self._conclude()
 
@@ -556,5 +559,5 @@ class Simulation(Closing):
         self._ended = True
         _log.info("the run has ended at %g s", self.now)
         for observer in self._observers:
-            if hears(observer, "on_end"):
+            if overrides(observer, "on_end"):
                 observer.on_end(self.record())

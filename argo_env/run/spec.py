@@ -15,7 +15,7 @@ from argo_compiler.il import Mission
 from argo_env.faults.kinds import AnyFault
 from argo_env.files.yaml_messages import message_of
 from argo_env.run.initial_state import InitialState
-from argo_env.run.log import LoggedEvent, require_from_outside, require_time
+from argo_env.run.log import LoggedEvent, require_event_time, require_external
 from argo_env.run.record import Reordering
 
 
@@ -61,7 +61,7 @@ class RunConditions(Model):
     values: dict[int, ValueProfile] = Field(default_factory=dict)
     """how values change, by number of the checkpoint"""
 
-    def standing(self, start: Pose) -> Pose:
+    def actual_start_pose(self, start: Pose) -> Pose:
         """Where the robot really stands when it is to stand there."""
         c, s = math.cos(start.yaw), math.sin(start.yaw)
         return start.model_copy(
@@ -118,8 +118,8 @@ class RunSpec(Model):
     ) -> tuple[tuple[float, LoggedEvent], ...]:
         for t, event in events:
             try:
-                require_time(t)
-                require_from_outside(event)
+                require_event_time(t)
+                require_external(event)
             except Invalid as error:
                 raise ValueError(str(error)) from None
         return events
@@ -138,7 +138,7 @@ def read_spec(content: str | bytes, name: str = "the run's spec") -> RunSpec:
         raise _invalid(name, error) from None
 
 
-def checked(spec: RunSpec) -> RunSpec:
+def validate_spec(spec: RunSpec) -> RunSpec:
     """The spec with the types that its fields have: pydantic's `model_copy` and `model_construct`
     check nothing. Raises Invalid, with the field, for what is none."""
     if not isinstance(spec, RunSpec):
@@ -156,6 +156,6 @@ def _invalid(name: str, error: ValidationError) -> Invalid:
     return Invalid(f"{name}: {place + ': ' if place else ''}{said}")
 
 
-def logged(*events: tuple[float, Event]) -> tuple[tuple[float, LoggedEvent], ...]:
+def logged_events(*events: tuple[float, Event]) -> tuple[tuple[float, LoggedEvent], ...]:
     """Events and their times (s) as specs hold them; Invalid for what is no event."""
-    return tuple((t, LoggedEvent.of(event)) for t, event in events)
+    return tuple((t, LoggedEvent.from_event(event)) for t, event in events)

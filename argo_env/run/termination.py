@@ -1,4 +1,4 @@
-"""Why a run ends before its mission does."""
+"""Reasons for which a run ends before its mission does: time limit, battery, standstill."""
 
 import math
 
@@ -9,11 +9,14 @@ from argo_env.run.robot import RobotPower
 from argo_env.run.run_setup import RunSetup
 
 TIME_LIMIT = 4 * 3600.0  # s of simulated time after which a run is stopped
-SETTLING = 120.0  # s that a robot which stands still waits for what faults may lead to
+SETTLING = 120.0  # s that a robot at a standstill waits for findings of the last fault
 
 
 def exhaustion_reason(now: float, supply: RobotPower) -> str | None:
-    """Why nothing can go on at time `now` (s), whatever is told; None: it can."""
+    """Return why the run can't continue at time `now` (s), whatever event occurs; None if it can.
+
+    The reason is the time limit of a run, or an empty battery.
+    """
     if now >= TIME_LIMIT:
         return f"it was stopped after {now:.0f} s, Argo's limit for a run"
     if supply.empty:
@@ -24,38 +27,41 @@ def exhaustion_reason(now: float, supply: RobotPower) -> str | None:
 def standstill_reason(
     now: float, machine: Machine, setup: RunSetup, log: RunLog, acting: bool
 ) -> str | None:
-    """Why nothing goes on by itself at time `now` (s), if nothing is to occur any more; `acting`
-    by hand the robot does not stand."""
+    """Return why the robot stands still for good at time `now` (s); None if it does not.
+
+    It is assumed that no further event is scheduled. A robot that is `acting` by hand does not
+    stand still, unless its emergency stop holds it.
+    """
     waits = not acting and machine.running is None and machine.next_deadline is None
-    held = is_held(setup)
-    if not (waits or held):
+    is_stopped = is_emergency_stopped(setup)
+    if not (waits or is_stopped):
         return None
-    since, settled = _stands(setup, log)
-    if now < settled:
+    since, final_from = _standstill_times(setup, log)
+    if now < final_from:
         return None
-    why = "held by its emergency stop" if held else "waiting for an event"
+    why = "held by its emergency stop" if is_stopped else "waiting for an event"
     why = "paused" if machine.paused else why
-    stands = f"the robot stands still since {since:.0f} s, {why}, and nothing more occurs"
+    reason = f"the robot stands still since {since:.0f} s, {why}, and nothing more occurs"
     if machine.paused and machine.hfsm.supervised and not log.tasks:
-        stands += ": a supervisory mission begins when a person resumes it (the event `resume`)"
-    return stands
+        reason += ": a supervisory mission begins when a person resumes it (the event `resume`)"
+    return reason
 
 
-def is_held(setup: RunSetup) -> bool:
-    """Whether the emergency stop holds the robot."""
+def is_emergency_stopped(setup: RunSetup) -> bool:
+    """Return True if the emergency stop holds the robot."""
     return isinstance(setup.drive, Powertrain) and setup.drive.pressed
 
 
-def settled_at(setup: RunSetup, log: RunLog) -> float:
-    """s, from when on a robot that stands still now is taken to do so for good."""
-    return _stands(setup, log)[1]
+def final_standstill_time(setup: RunSetup, log: RunLog) -> float:
+    """Return the time in s from which a robot that stands still now counts as doing so for good."""
+    return _standstill_times(setup, log)[1]
 
 
-def _stands(setup: RunSetup, log: RunLog) -> tuple[float, float]:
-    """s, since when a robot that stands still does so, and from when on for good."""
+def _standstill_times(setup: RunSetup, log: RunLog) -> tuple[float, float]:
+    """Return the times in s since when a robot stands still, and from when on for good."""
     since, schedule = log.last_event, setup.schedule
     if schedule is None or not schedule.faults:
         return since, since
-    # What has begun or ended may still be found.
+    # The robot may still find a fault that has begun, or notice that one has ended.
     since = max(since, schedule.last_change)
     return since, math.inf if schedule.pending else since + SETTLING

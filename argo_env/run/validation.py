@@ -1,4 +1,4 @@
-"""Whether what a run is made of fits together: the machine, the site and the spec."""
+"""Validation of a run: its machine, its site and its spec must belong together."""
 
 from dataclasses import dataclass
 
@@ -9,12 +9,12 @@ from argo_env.robot.spec import load_robot
 from argo_env.run.machine import Machine
 from argo_env.run.run_commands import check_scheduled_events
 from argo_env.run.run_setup import check_spec
-from argo_env.run.spec import RunSpec, checked
+from argo_env.run.spec import RunSpec, validate_spec
 
 
 @dataclass(frozen=True)
 class CheckedRun:
-    """A spec that a run on the site can have, as `check_run` has found."""
+    """Spec and site of a run that `check_run` has accepted."""
 
     spec: RunSpec
     site: OpenedSite
@@ -23,17 +23,22 @@ class CheckedRun:
 def check_run(
     spec: RunSpec | CheckedRun, site: OpenedSite | None = None, *, settings: bool = True
 ) -> CheckedRun:
-    """Return the run of a spec, checked, on the site that it names unless that is open already.
+    """Check the spec of a run and return it with its site.
 
-    Without `settings` only what depends on the mission is checked: for one that became known after
-    `check_spec`. What was checked on that site already is returned as it is. Raises ArgoError for
-    a run that can't be.
+    Args:
+        spec: the spec; a run that was already checked on this site is returned unchanged.
+        site: the opened site that the spec names; None: it is opened.
+        settings: False: only what depends on the mission is checked, for a mission that became
+            known after `check_spec`.
+
+    Raises:
+        ArgoError: there can be no such run.
     """
     if isinstance(spec, CheckedRun):
         if site is None or site is spec.site:
             return spec
         spec = spec.spec
-    spec = checked(spec)
+    spec = validate_spec(spec)
     site = site or open_site(spec.site, load_robot(spec.robot))
     require_site(site, spec)
     if settings:
@@ -43,7 +48,7 @@ def check_run(
 
 
 def require_machine(machine: Machine, spec: RunSpec) -> None:
-    """Raises Conflict for a machine that has been started, or is another than the mission's."""
+    """Raise Conflict for a machine that has been started, or is not the machine of the mission."""
     if machine.configuration:
         raise Conflict("the machine has been started already: make another one for this run")
     progress = spec.beginning.progress if spec.beginning else None
@@ -53,22 +58,25 @@ def require_machine(machine: Machine, spec: RunSpec) -> None:
         )
 
 
-def require_begun(machine: Machine, spec: RunSpec) -> None:
-    """Raises Conflict for a machine, started now, that does not stand where the run begins."""
+def require_initial_state(machine: Machine, spec: RunSpec) -> None:
+    """Raise Conflict unless the machine, just started, is in the initial state of the run."""
     restored = machine.trace[0].cause is Cause.RESTORE
     expected = spec.beginning.progress.active if spec.beginning else None
     if restored != (spec.beginning is not None) or (
         restored and machine.trace[0].target != expected
     ):
         raise Conflict(
-            "the machine does not stand where the run begins: make it with `make_machine` from the "
-            "spec's mission and beginning"
+            "the machine is not in the state in which the run begins: make it with `make_machine` "
+            "from the spec's mission and beginning"
         )
 
 
 def require_site(site: OpenedSite, spec: RunSpec) -> None:
-    """Raises Conflict for a site that is not the spec's, or a mission of another; ArgoError if the
-    site that the spec names in other words than this one can't be opened."""
+    """Raise Conflict for a site that is not that of the spec, or not that of its mission.
+
+    Raises ArgoError if the spec names the site in other words, and the site it names can't be
+    opened for a comparison.
+    """
     planned = spec.mission.site
     if planned and planned != site.name:
         raise Conflict(f"the mission was planned for site {planned}, and the site is {site.name}")

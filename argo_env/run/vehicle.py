@@ -24,7 +24,7 @@ from argo_env.run.action import RETREAT, SimulatedAction
 from argo_env.run.initial_state import InitialState
 from argo_env.run.log import Entry, RunLog
 from argo_env.run.odometry import Odometry
-from argo_env.run.perception import Perception, abnormal_reading, blockage
+from argo_env.run.perception import Perception, blockage_from_anomaly, located_anomaly
 from argo_env.run.power_supply import NO_STEPS, PowerSupply
 from argo_env.run.record import Anomaly
 from argo_env.run.robot import RobotAction, Sensed
@@ -61,7 +61,7 @@ class Glide:
             return
         pose = setup.drive.pose
         here = np.array([(pose.x, pose.y, pose.z, pose.yaw, pose.pitch)])
-        if action and action.driving:
+        if action and action.is_driving:
             self._ahead = setup.drive.steps_ahead(most)
             self._places = np.concatenate([here, self._ahead.places])
             # As the odometry adds them up: a root by NumPy may differ in its last bit.
@@ -69,15 +69,15 @@ class Glide:
             ways = np.array([*map(math.dist, points[:-1], points[1:])])
             rises = np.maximum(0.0, np.diff(self._places[:, 2]))
         else:
-            count = action.steps_measuring(most) if action else most
+            count = action.count_measuring_steps(most) if action else most
             self._places = here.repeat(count + 1, axis=0)
             ways = rises = np.zeros(count)
         self._distance = _sums(odometry.distance, ways)
         self._climbed = _sums(odometry.climbed, rises)
-        measuring = action is not None and action.measuring
+        measuring = action is not None and action.is_measuring
         power, time_step = setup.navigator.robot.power, setup.drive.time_step
         loads = loads_of_steps(power, ways, self._places, time_step, measuring)
-        self._power = supply.ahead(loads, self._places[1:], time_step)
+        self._power = supply.predict(loads, self._places[1:], time_step)
         self.steps = len(self._power)
 
     def places(self, count: int) -> Places:
@@ -92,7 +92,7 @@ class Glide:
     @property
     def charges(self) -> tuple[float, float]:
         """The least and the most charge of the battery after the steps, 0 to 1."""
-        return self._supply.charges(self._power)
+        return self._supply.charge_range(self._power)
 
     def go_to(self, step: int, now: float) -> None:
         """So many of the steps have passed by time `now` (s)."""
@@ -101,10 +101,10 @@ class Glide:
             assert isinstance(self._drive, Powertrain)
             self._drive.go_on(self._ahead, self._passed, count)
         if self._action is not None:
-            self._action.go_on(count, now)
+            self._action.skip_steps(count, now)
         self._odometry.distance = float(self._distance[step])
         self._odometry.climbed = float(self._climbed[step])
-        self._supply.go_to(self._power, step - 1)
+        self._supply.apply(self._power, step - 1)
         self._passed = step
 
 
@@ -135,27 +135,27 @@ class Vehicle:
     def place(self, pose: BodyPose, now: float) -> None:
         """Puts the robot there, at time `now` (s)."""
         self.setup.drive.place(pose)
-        self.let_faults_happen(now)
+        self.update_faults(now)
 
-    def begin(self, beginning: InitialState) -> None:
+    def apply_initial_state(self, initial: InitialState) -> None:
         """Goes on from where another run stood."""
-        self.odometry.distance, self.odometry.climbed = beginning.distance, beginning.climbed
-        if beginning.charge is not None:
-            self.supply.begin(beginning.charge, beginning.body_pose)
-        known = [one.anomaly for one in beginning.known]
-        if closed := [b for anomaly in known if (b := blockage(anomaly))]:
+        self.odometry.distance, self.odometry.climbed = initial.distance, initial.climbed
+        if initial.charge is not None:
+            self.supply.reset(initial.charge, initial.body_pose)
+        known = [one.anomaly for one in initial.known]
+        if closed := [b for anomaly in known if (b := blockage_from_anomaly(anomaly))]:
             self.avoid(closed)
 
-    def remember(self, told: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
+    def restore_anomalies(self, reported: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
         """Goes on at time `now` (s) after these have been found, with the robot at these poses."""
-        self._perception.remember(told, now)
+        self._perception.restore_anomalies(reported, now)
 
     def restore(self, last: Entry) -> None:
         """Goes on after the entry."""
         self.odometry.restore(last)
         self.supply.restore(last)
 
-    def let_faults_happen(self, now: float) -> None:
+    def update_faults(self, now: float) -> None:
         """Lets all begin and end that is due at time `now` (s)."""
         if self.setup.schedule:
             self.setup.schedule.advance(now)
@@ -165,10 +165,12 @@ class Vehicle:
         navigator = self.setup.navigator.avoiding(blockages)
         self.setup = replace(self.setup, navigator=navigator)
 
-    def start(self, command: StartAction, now: float, came: Path | None) -> RobotAction:
+    def start(self, command: StartAction, now: float, arrival_path: Path | None) -> RobotAction:
         """Starts an action at time `now` (s), after the robot `came` by that path."""
         way = self.odometry
-        self._action = SimulatedAction(command, self.setup, now, way.distance, way.climbed, came)
+        self._action = SimulatedAction(
+            command, self.setup, now, way.distance, way.climbed, arrival_path
+        )
         return self._action
 
     def advance(self, step: int, now: float, action: RobotAction | None) -> Sensed:
@@ -181,14 +183,14 @@ class Vehicle:
         own = self._action if action else None
         if own:
             end = own.step(now)
-            after, measuring = drive.pose, own.measuring
-            odometry.moved(before, after, setup.world.touches(), now)
-            odometry.trouble(drive.incidents, now)
-        self.supply.spend(before, after, drive.time_step, measuring)
-        found = self._perception.look(step, now, after)
+            after, measuring = drive.pose, own.is_measuring
+            odometry.add_motion(before, after, setup.world.touches(), now)
+            odometry.add_incidents(drive.incidents, now)
+        self.supply.consume(before, after, drive.time_step, measuring)
+        found = self._perception.update(step, now, after)
         reading = own.reading(now) if own and end else None
         if reading and not reading.normal:
-            found = (*found, abnormal_reading(reading, setup.navigator.site))
+            found = (*found, located_anomaly(reading, setup.navigator.site))
         return Sensed(end, reading, found) if end or found else _NOTHING
 
     @property
@@ -202,15 +204,15 @@ class Vehicle:
         own = self._action if action else None
         return Glide(self.setup, self.odometry, self.supply, own, most)
 
-    def steps_to_look(self, glide: Glide, first: int) -> set[int]:
+    def update_steps(self, glide: Glide, first: int) -> set[int]:
         """The numbers of the steps of a glide, which begin with the `first`, in which it looks
         whether there is anything."""
         last = first + glide.steps - 1
-        return self._perception.steps_to_look(first, last, glide.charges)
+        return self._perception.update_steps(first, last, glide.charges)
 
     def look(self, step: int, now: float) -> Sensed:
         """What it notices in that step of a glide, which ends at `now` (s)."""
-        found = self._perception.look(step, now, self.setup.drive.pose)
+        found = self._perception.update(step, now, self.setup.drive.pose)
         return Sensed(found=found) if found else _NOTHING
 
     def state(self) -> dict[str, Any]:
@@ -222,17 +224,17 @@ class Vehicle:
             "climbed": odometry.climbed,
             "charge": self.supply.charge,
             "mishaps": tuple(odometry.mishaps),
-            "contacts": tuple(odometry.over),
+            "contacts": tuple(odometry.ended_contacts),
             "touching": odometry.touching,
         }
 
-    def told(self) -> None:
+    def clear_reported(self) -> None:
         """What the last `state` told is not told again."""
-        self.odometry.over.clear()
+        self.odometry.ended_contacts.clear()
         self.odometry.mishaps.clear()
 
 
-def way_come(log: RunLog) -> Path | None:
+def find_arrival_path(log: RunLog) -> Path | None:
     """The last piece of the path that the robot came by, from where the log has seen it."""
     if not log.path:
         return None

@@ -173,7 +173,7 @@ class RoundTracker:
         self._hfsm: Hfsm | None = None
         self._rules: dict[str, RepeatRule] = {}
 
-    def look(self, machine: Machine, now: float) -> None:
+    def update(self, machine: Machine, now: float) -> None:
         """Takes note of how the machine stands at time `now` (s), after each of its steps."""
         new = machine.trace[self._steps :]
         self._steps += len(new)
@@ -246,7 +246,7 @@ class InterruptionTracker:
         self._since: float | None = None
         self._steps = 0  # of the trace
 
-    def look(self, machine: Machine, now: float) -> None:
+    def update(self, machine: Machine, now: float) -> None:
         """Takes note of how the machine stands at time `now` (s), after each of its steps."""
         new = machine.trace[self._steps :]
         self._steps += len(new)

@@ -14,8 +14,8 @@ from argo_env.files.folders import make_folder
 from argo_env.planning.opening import open_site
 from argo_env.recording.files import check_recording
 from argo_env.run.journal import open_journal
-from argo_env.run.session import go_on
-from argo_env.run.spec import logged
+from argo_env.run.session import continue_run
+from argo_env.run.spec import logged_events
 from argo_planner.terminal.conclusion import Conclusion
 from argo_planner.terminal.events import KINDS, READING_FORM, parse_events
 from argo_planner.terminal.files import check_outputs
@@ -63,7 +63,7 @@ def resume_run(
         from argo_env.pictures import check_film
 
         check_film(render)
-    events = logged(*parse_events(event or []))
+    events = logged_events(*parse_events(event or []))
     console = Console(stderr=True, highlight=False, quiet=is_quiet())
     with open_journal(journal) as book:
         if report and not force:
@@ -72,7 +72,7 @@ def resume_run(
             if not is_reported(book, report):
                 check_outputs([journal], (), [(report, REPORT_FILES)])
         if events:
-            book.require_going_on()
+            book.require_not_ended()
         site = open_site(book.header.spec.site)
         book.require_unchanged(site)
         if report:
@@ -91,7 +91,7 @@ def resume_run(
                     book.header.spec.mission.max_duration,
                     recording,
                     Path(book.header.spec.source) if book.header.spec.source else None,
-                    lambda observers: go_on(
+                    lambda observers: continue_run(
                         book, site, observers=observers, events=events, interrupted=interruption
                     ),
                 )

@@ -19,7 +19,7 @@ from argo_env.run.journal import require_free
 from argo_env.run.record import RunRecord
 from argo_env.run.run_setup import check_spec
 from argo_env.run.session import simulate
-from argo_env.run.spec import RunSpec, logged
+from argo_env.run.spec import RunSpec, logged_events
 from argo_env.run.validation import check_run
 from argo_planner.terminal.completion import among
 from argo_planner.terminal.conclusion import Conclusion
@@ -180,7 +180,7 @@ def run(
         sensor=sensor,
         seed=seed,
         values=parse_values(value or []),
-        events=logged(*parse_events(event or [])),
+        events=logged_events(*parse_events(event or [])),
         faults=said.faults if said else (),
     )
     started = time.monotonic()

@@ -19,7 +19,7 @@ _STYLES = {Tone.GOOD: "bold green", Tone.NOTICE: "bold yellow", Tone.BAD: "bold 
 def show_record(record: RunRecord, console: Console) -> None:
     """Prints what was measured, what each task took, what was noticed, and how the run went."""
     console.print(_readings(record))
-    measuring = console.width >= _WIDE and any(t.measured_for for t in record.tasks)
+    measuring = console.width >= _WIDE and any(t.measuring_duration for t in record.tasks)
     console.print(_tasks(record, measuring))
     result = record.result
     limit = f" of at most {clock(result.max_duration)}" if result.max_duration else ""
@@ -53,7 +53,7 @@ def _noticed(record: RunRecord) -> Iterator[str]:
         place = where(mishap.floor, mishap.place)
         yield f"{mishap.trouble} at {clock(mishap.t)} on {place}: {mishap.detail}"
     for fault in record.missed_faults:
-        yield record.why_missed(fault)
+        yield record.explain_missed(fault)
 
 
 def _readings(record: RunRecord) -> Table:
@@ -94,7 +94,7 @@ def _task_rows(record: RunRecord) -> Iterator[tuple[float, tuple[str, ...]]]:
     for name in dict.fromkeys([*(t.task for t in record.tasks), *(name for name, _ in missed)]):
         runs = [t for t in record.tasks if t.task == name]
         begins = [t.start for t in runs] + [at for task, at in missed if task == name]
-        outcomes = dict.fromkeys(t.how for t in runs)
+        outcomes = dict.fromkeys(t.outcome_in_words for t in runs)
         if len(begins) > len(runs):
             outcomes["missed"] = None
         reasons = dict.fromkeys(t.reason for t in runs if t.reason)
@@ -105,7 +105,7 @@ def _task_rows(record: RunRecord) -> Iterator[tuple[float, tuple[str, ...]]]:
                 str(len(begins)),
                 clock(min(begins)),
                 clock(sum(t.end - t.start for t in runs)),
-                clock(measured) if (measured := sum(t.measured_for for t in runs)) else "",
+                clock(measured) if (measured := sum(t.measuring_duration for t in runs)) else "",
                 f"{sum(t.distance for t in runs):.1f} m",
                 f"{sum(t.climbed for t in runs):.1f} m",
                 escape(", ".join(outcomes) + (f" ({'; '.join(reasons)})" if reasons else "")),

@@ -41,10 +41,10 @@ class RunDisplay(Observer, Closing):
 
     def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
         """Shows what was told and sensed."""
-        told = entry.told(self._site) if self._site else ()
+        told = entry.reported_anomalies(self._site) if self._site else ()
         for value in entry.given_values(self._site) if self._site else ():
             self._say(f"{value.t!r} s: {value.in_words}")
-        for news in (*told, *entry.news):
+        for news in (*told, *entry.sensed):
             self.announce(news)
 
     def announce(self, news: Reading | Anomaly) -> None:
@@ -55,7 +55,7 @@ class RunDisplay(Observer, Closing):
                 f"{news.value!r} {news.unit}"
             )
         else:
-            how = "told" if news.is_told else "found"
+            how = "told" if news.is_reported else "found"
             said = filter(None, (how, news.kind.replace("_", " "), news.detail))
             text = f"{news.t!r} s: {': '.join(said)}"
             if place := news.whereabouts:

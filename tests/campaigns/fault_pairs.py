@@ -37,7 +37,7 @@ from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
 from argo_env.run.session import simulate
 from argo_env.run.simulation import Simulation
-from argo_env.run.spec import RunSpec, logged
+from argo_env.run.spec import RunSpec, logged_events
 from argo_env.seeding import generator
 from benchmarks.options import seed_number
 from tests.campaigns.fault_causes import given_up_without_cause, without_cause
@@ -128,7 +128,7 @@ def draw(number: int, drive: str, missions: Sequence[tuple[str, int]] = MISSIONS
             drive=drive,
             seed=number,
             faults=faults,
-            events=logged(*((t, Resume()) for t in _OPERATOR)),
+            events=logged_events(*((t, Resume()) for t in _OPERATOR)),
         )
         if not misfits(faults, open_site(site).site, number):
             return FaultPair(number, spec, float(rng.random()) if rng.random() < 0.25 else None)

@@ -314,7 +314,7 @@ def test_killed_and_begun_again_the_rows_are_those_of_an_undisturbed_one(
     for _ in range(KILLS):
         process = begun(killed_file, out)
         wanted = done + chosen.randint(1, max(1, 2 * len(undisturbed) // KILLS - 1))
-        while process.poll() is None and logged(out) < min(wanted, len(undisturbed)):
+        while process.poll() is None and logged_events(out) < min(wanted, len(undisturbed)):
             time.sleep(0.01)
         time.sleep(chosen.random() * 0.05)
         os.kill(process.pid, signal.SIGKILL)
@@ -331,8 +331,8 @@ def test_killed_workers_change_nothing_of_the_rows(killed_file, undisturbed, tmp
     killed, wanted = 0, 1
     while process.poll() is None and killed < KILLS:
         # Some rows between two kills, so that it ever comes to an end.
-        if logged(out) >= wanted and (workers := processes_of(process.pid)):
-            wanted = logged(out) + chosen.randint(1, max(1, len(undisturbed) // KILLS // 2))
+        if logged_events(out) >= wanted and (workers := processes_of(process.pid)):
+            wanted = logged_events(out) + chosen.randint(1, max(1, len(undisturbed) // KILLS // 2))
             with suppress(ProcessLookupError):  # it has ended by itself meanwhile
                 os.kill(chosen.choice(workers), signal.SIGKILL)
                 killed += 1
@@ -350,7 +350,7 @@ def count(out: Path) -> int:
         return 0
 
 
-def logged(out: Path) -> int:
+def logged_events(out: Path) -> int:
     """Return how many rows are on disk while an evaluation is under way, without reading them."""
     try:
         lines = (out / LOG).read_bytes().count(b"\n")
@@ -361,7 +361,7 @@ def logged(out: Path) -> int:
 
 def test_no_worker_is_left_behind(long_file, tmp_path):
     process = begun(long_file, tmp_path / "out")
-    while logged(tmp_path / "out") < 3:
+    while logged_events(tmp_path / "out") < 3:
         time.sleep(0.02)
     assert processes_of(process.pid)
     os.kill(process.pid, signal.SIGKILL)
@@ -375,7 +375,7 @@ def test_no_worker_is_left_behind(long_file, tmp_path):
 def test_ctrl_c_keeps_the_rows(argo, long_file, tmp_path):
     out = tmp_path / "out"
     process = begun(long_file, out, subprocess.PIPE)
-    while logged(out) < 3:
+    while logged_events(out) < 3:
         time.sleep(0.02)
     os.killpg(process.pid, signal.SIGINT)
     _, told = process.communicate(timeout=60)

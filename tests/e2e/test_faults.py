@@ -50,10 +50,10 @@ def test_found_told_kept_and_shown(argo, folder):
     go_on = ("resume", "run.journal", "--report", "again", "--event", "1=hot_spot")
     resumed = argo(*go_on, cwd=folder, status=0)
     again = reported(folder / "again")
-    told = [a.kind for a in again.anomalies if a.is_told]
+    told = [a.kind for a in again.anomalies if a.is_reported]
     assert told == ["hot_spot"]
     assert "hot spot at " in resumed.stdout
-    sensed = sorted(a.kind for a in again.anomalies if not a.is_told)
+    sensed = sorted(a.kind for a in again.anomalies if not a.is_reported)
     assert sensed == sorted(a.kind for a in record.anomalies)
     assert [r.value for r in again.readings] == [r.value for r in record.readings]
     assert any("hot spot" in step.cause for step in again.trace)

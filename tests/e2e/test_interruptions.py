@@ -149,7 +149,7 @@ def test_an_interrupted_run_is_reported_and_goes_on(argo, folder, navigator, tmp
     )
     assert status == 130
     assert "MEASURE 1" in shown
-    assert "the mission is not at its end after" in shown
+    assert "the mission has not ended after" in shown
     so_far = reported(report)
     assert not so_far.result.ended
     assert len(so_far.readings) == len(ANNOUNCED.findall(said)) > 0

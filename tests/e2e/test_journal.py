@@ -19,7 +19,7 @@ from argo_compiler.il import EventKind, Group, TimeWindow
 from argo_env.run.journal import open_journal
 from argo_env.run.record import RunRecord
 from argo_env.run.session import resume
-from argo_env.run.spec import logged
+from argo_env.run.spec import logged_events
 from tests.conftest import FIRST_SEED, examples
 from tests.e2e.conftest import reported, started
 from tests.e2e.test_errors import refused
@@ -122,7 +122,7 @@ def _done(record: RunRecord) -> list[str]:
 
 
 def settings(seed: int) -> dict[str, Any]:
-    return {"seed": seed, "events": logged(*EVENTS), "values": {2: 6.25}}
+    return {"seed": seed, "events": logged_events(*EVENTS), "values": {2: 6.25}}
 
 
 @pytest.mark.long

@@ -211,7 +211,7 @@ class RunDriver:
     @property
     def over(self) -> bool:
         """Whether the run has ended."""
-        return self._simulation.over
+        return self._simulation.ended
 
     def turn(self) -> float:
         """Lets one time step pass if it is due; returns how long (s) nothing has to be done."""
@@ -319,11 +319,14 @@ class RunDriver:
                     raise Conflict("nobody has the robot: it is given back by who took it over")
                 simulation.handle(GiveBack(self._hands.done(simulation.spec.mission)))
                 self._hands.forget()
-                return lambda: simulation.over or not simulation.taken_over
+                return lambda: simulation.ended or not simulation.taken_over
             case asked.GoOnEdited(mission=mission, revision=revision):
                 if not simulation.taken_over:
                     raise Conflict("the plan is exchanged by a person who has the robot")
-                self.following = simulation.going_on(mission, self._hands.done(mission)), revision
+                self.following = (
+                    simulation.continuation_spec(mission, self._hands.done(mission)),
+                    revision,
+                )
                 return lambda: False
             case asked.TakeRobot():
                 simulation.handle(TakeOver())
@@ -341,7 +344,7 @@ class RunDriver:
                 if simulation.taken_over:
                     raise Conflict("a person has the robot: it goes on when they give it back")
                 simulation.handle(Resume())
-                return lambda: simulation.over or not machine.paused
+                return lambda: simulation.ended or not machine.paused
             case asked.StopByHandNow():
                 simulation.handle(StopByHand())
                 return lambda: simulation.task is None
@@ -351,7 +354,7 @@ class RunDriver:
                 return lambda: simulation.by_hand is None
             case asked.CancelMission():
                 simulation.handle(Cancel())
-                return lambda: simulation.over
+                return lambda: simulation.ended
             case asked.EndRun():
                 simulation.handle(StopRun())
             case asked.TellEvent(event=event, detail=detail):

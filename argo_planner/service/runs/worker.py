@@ -165,7 +165,7 @@ class _Segments:
 
     def _new_journal(self, spec: RunSpec, stack: ExitStack) -> Journal:
         name = f"run-{len(journals(self._folder)) + 1:04d}.journal"
-        journal = create_journal(self._folder / name, Header.of(self._site, spec))
+        journal = create_journal(self._folder / name, Header.from_run(self._site, spec))
         return stack.enter_context(journal)
 
     def _begin(

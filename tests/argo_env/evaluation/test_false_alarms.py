@@ -91,7 +91,7 @@ def test_findings_and_causes_as_another_reading_of_the_documentation_has_them():
         causes = [
             causes_of(finding, record.faults, opened.site)
             for finding in record.findings
-            if not finding.is_told
+            if not finding.is_reported
         ]
         assert false_alarms(record, spec, opened.site) == sum(not own for own in causes), number
         seen += len(causes)

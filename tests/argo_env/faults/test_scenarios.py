@@ -10,7 +10,7 @@ from argo_compiler.il import EventKind
 from argo_env.faults.kinds import KINDS
 from argo_env.faults.reading import read_faults
 from argo_env.files import resources
-from argo_env.run.spec import logged
+from argo_env.run.spec import logged_events
 from tests.campaigns.faults import random_mission
 from tests.conftest import seeds
 from tests.yard import Watching, simulated
@@ -108,7 +108,7 @@ def test_without_a_fault_nothing_is_reported(clean, name):
 @pytest.mark.parametrize("kind", KINDS)
 def test_found_and_answered(missions, navigator, clean, kind):
     answer = ANSWERS[kind]
-    events = () if answer.operator is None else logged((answer.operator, Resume()))
+    events = () if answer.operator is None else logged_events((answer.operator, Resume()))
     faults = read_faults(FOLDER / f"{kind}.yaml")
     told = []
     record = simulated(

@@ -9,7 +9,7 @@ from argo_compiler.il import EventKind, Group
 from argo_env.recording.files import recording_to
 from argo_env.recording.reader import read_recording
 from argo_env.run.session import simulate
-from argo_env.run.spec import RunSpec, logged
+from argo_env.run.spec import RunSpec, logged_events
 from tests.yard import measure, mission, opened, shelter, waypoint
 
 PLAN = mission(
@@ -26,7 +26,7 @@ SPEC = RunSpec(
     site="yard",
     seed=3,
     values={2: 7.25},
-    events=logged(
+    events=logged_events(
         (22.0, Occurred(EventKind.GAS_LEAK, "by hand")),
         (35.0, Occurred(EventKind.ALL_CLEAR)),
         (50.0, Pause()),

@@ -69,7 +69,7 @@ def test_who_looks_on_sees_the_run(site) -> None:
         with observed(simulation_of(SPEC, site), recorder) as simulation, looking(port) as socket:
             viewer = Viewer(socket)
             viewer.look(3)
-            while not simulation.over:
+            while not simulation.ended:
                 simulation.step()
             viewer.look(15)
         topics = {topic for topic, _, _ in viewer.messages}

@@ -116,11 +116,11 @@ class TestConnection:
         there.wires.broken = True
         simulation.handle(Cancel())
         steps(simulation, 3)
-        assert not simulation.over
+        assert not simulation.ended
         there.robot.TICKS = 1000
         there.robot.doing = (there.robot.doing[0], 1000)
         steps(simulation, 30)
-        assert not simulation.over
+        assert not simulation.ended
         there.wires.broken = False
         record = simulation.run()
         assert record.result.outcome is Outcome.CANCELLED
@@ -199,8 +199,8 @@ class TestArgoThatBeganAnew:
                 simulation.step()
             simulation.handle(GiveBack(simulation.done_by_hand))
             record = simulation.run()
-        assert record.result.verdict == "the plan was carried out; done by hand: A"
-        assert [t.how for t in record.tasks[:3]] == [
+        assert record.result.verdict == "the mission was completed; done by hand: A"
+        assert [t.outcome_in_words for t in record.tasks[:3]] == [
             "interrupted", "interrupted by hand", "done by hand",
         ]  # fmt: skip
 

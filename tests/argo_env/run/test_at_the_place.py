@@ -103,7 +103,7 @@ class TestReadingLimit:
         assert (failed.kind, failed.unreadable) == ("failed", True)
         run = record.tasks[0]
         assert run.reason == "not read within 1 s"
-        assert run.measured_for == pytest.approx(2.0, abs=0.2), "the arm is stowed again"
+        assert run.measuring_duration == pytest.approx(2.0, abs=0.2), "the arm is stowed again"
 
     def test_the_robot_looks_from_elsewhere_as_long_as_there_is_time(self, yard):
         (patient,), slow = ends(mission(measure(1)), foggy(yard, 1, PoorViewError))

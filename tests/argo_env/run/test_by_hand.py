@@ -9,7 +9,7 @@ from argo_env.faults.checkpoints import AbnormalValue
 from argo_env.run.journal import open_journal
 from argo_env.run.run_commands import DoByHand, StopByHand
 from argo_env.run.session import resume
-from argo_env.run.spec import RunSpec, logged
+from argo_env.run.spec import RunSpec, logged_events
 from tests.yard import (
     journaled,
     measure,
@@ -55,17 +55,17 @@ class TestDoing:
         assert simulation.done_by_hand == ()
         record = simulation.run()
         assert record.result.outcome is Outcome.COMPLETED
-        assert [(t.task, t.how) for t in record.tasks] == [
+        assert [(t.task, t.outcome_in_words) for t in record.tasks] == [
             ("MEASURE 1", "interrupted"), ("MEASURE 2", "done by hand"), ("there", "done by hand"),
             ("MEASURE 1", "done"), ("A", "done"),
         ]  # fmt: skip
-        assert record.result.verdict == "the plan was carried out; done by hand: MEASURE 2"
+        assert record.result.verdict == "the mission was completed; done by hand: MEASURE 2"
 
     def test_what_is_not_given_is_done_again(self, simulation):
         let(simulation, FIRST)
         simulation.handle(Resume())
         record = simulation.run()
-        assert [t.how for t in record.tasks if t.task == "MEASURE 1"] == [
+        assert [t.outcome_in_words for t in record.tasks if t.task == "MEASURE 1"] == [
             "interrupted", "done by hand", "done",
         ]  # fmt: skip
         assert record.result.verdict == "everything was done as planned"
@@ -75,7 +75,7 @@ class TestDoing:
         skipped = ByHand(task="MEASURE 2", skipped=True)
         simulation.handle(GiveBack((*simulation.done_by_hand, skipped)))
         assert simulation.run().result.verdict == (
-            "the plan was carried out; done by hand: MEASURE 1; skipped by a person: MEASURE 2"
+            "the mission was completed; done by hand: MEASURE 1; skipped by a person: MEASURE 2"
         )
 
     @pytest.mark.rule("C3", "C8")
@@ -109,7 +109,7 @@ class TestDoing:
 
     def test_what_fails_by_hand_is_no_failure_of_the_mission(self, simulation):
         let(simulation, waypoint("off the slab", 50.0, 50.0))
-        assert simulation.record().tasks[-1].how == "failed by hand"
+        assert simulation.record().tasks[-1].outcome_in_words == "failed by hand"
         assert simulation.done_by_hand == ()
         simulation.handle(GiveBack())
         assert simulation.run().result.verdict == "everything was done as planned"
@@ -117,7 +117,7 @@ class TestDoing:
     def test_a_run_does_not_end_as_the_robot_acts(self, simulation):
         simulation.handle(DoByHand(SECOND))
         record = simulation.run()
-        assert [t.how for t in record.tasks] == ["interrupted", "done by hand"]
+        assert [t.outcome_in_words for t in record.tasks] == ["interrupted", "done by hand"]
         assert "paused" in record.result.verdict
 
 
@@ -129,7 +129,7 @@ class TestStopping:
         simulation.handle(StopByHand())
         to_rest(simulation)
         run = simulation.record().tasks[-1]
-        assert (run.how, run.reason) == ("cancelled by hand", "a person stopped it")
+        assert (run.outcome_in_words, run.reason) == ("cancelled by hand", "a person stopped it")
         assert simulation.by_hand is None
         assert simulation.done_by_hand == ()
         let(simulation, SECOND)
@@ -145,7 +145,7 @@ class TestStopping:
         simulation.handle(Cancel())
         record = simulation.record()
         assert record.result.outcome is Outcome.CANCELLED
-        assert record.tasks[-1].how == "cancelled by hand"
+        assert record.tasks[-1].outcome_in_words == "cancelled by hand"
 
 
 class TestRefusals:
@@ -192,7 +192,7 @@ class TestRefusals:
         assert simulation.record() == before
 
     def test_a_resume_given_beforehand_waits_for_its_end(self, site):
-        spec = SPEC.model_copy(update={"events": logged((4.0, Resume()))})
+        spec = SPEC.model_copy(update={"events": logged_events((4.0, Resume()))})
         with simulation_of(spec, site) as simulation:
             take_over(simulation, after=20)
             simulation.handle(DoByHand(SECOND))
@@ -244,7 +244,7 @@ class TestJournal:
                 let(simulation, FIRST)
                 simulation.handle(GiveBack(simulation.done_by_hand))
                 record = simulation.run()
-        hows = [(t.task, t.how) for t in record.tasks]
+        hows = [(t.task, t.outcome_in_words) for t in record.tasks]
         if killed == "acting":
             assert hows[1] == ("MEASURE 2", "interrupted by hand")
             assert hows[-1] == ("MEASURE 2", "done")

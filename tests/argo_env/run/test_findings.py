@@ -8,7 +8,7 @@ from argo_compiler.hfsm import Occurred, Pause
 from argo_compiler.il import EventKind, Reaction, Response
 from argo_env.drives.drive import Trouble
 from argo_env.run.record import Anomaly, Contact, Mishap, RunRecord
-from argo_env.run.spec import RunSpec, logged
+from argo_env.run.spec import RunSpec, logged_events
 from argo_env.run.verdict_line import Tone
 from tests.yard import (
     Entries,
@@ -61,7 +61,7 @@ class TestEventsFromOutside:
         record = run(yard, PLAN, (3.0, LEAK))
         (finding,) = record.findings
         assert (finding.t, finding.kind, finding.detail) == (3.0, EventKind.GAS_LEAK, "a hiss")
-        assert (finding.is_told, finding.answered, finding.floor) == (True, False, 1)
+        assert (finding.is_reported, finding.answered, finding.floor) == (True, False, 1)
         (sample,) = [s for s in record.path if s.t == 3.0]
         assert finding.noticed_from == (sample.x, sample.y, sample.z)
         assert "told while the robot was on floor 1 at (" in finding.whereabouts
@@ -91,7 +91,7 @@ class TestEventsFromOutside:
         assert "nothing more occurs. 1 finding: gas leak at 00:04" in record.headline.text
 
     def test_what_was_written_down_gives_the_same(self, yard):
-        kept, events = Entries(), logged((3.0, LEAK), (5.0, CLEAR))
+        kept, events = Entries(), logged_events((3.0, LEAK), (5.0, CLEAR))
         plan = answering()
         record = run_with(plan, fast_setup(yard, {1: 9.0}), events=events, observers=[kept])
         spec = RunSpec(mission=plan, site="yard", events=events)
@@ -169,12 +169,12 @@ class TestHeadline:
 
     def test_what_else_the_verdict_says_stays(self, quiet):
         result = quiet.result.model_copy(
-            update={"verdict": "the plan was carried out; it led past A"}
+            update={"verdict": "the mission was completed; passed over: A"}
         )
         record = quiet.model_copy(update={"result": result})
-        assert str(record.headline) == "Success: the plan was carried out; it led past A."
+        assert str(record.headline) == "Success: the mission was completed; passed over: A."
         touched = record.model_copy(update={"contacts": (self.CONTACT,)})
-        assert touched.headline.text.endswith("00:12. The plan was carried out; it led past A")
+        assert touched.headline.text.endswith("00:12. The mission was completed; passed over: A")
 
     def test_a_run_that_was_interrupted_is_not_called_a_failure(self, quiet):
         result = quiet.result.model_copy(
@@ -200,7 +200,7 @@ class TestAsData:
         old = RunRecord.model_validate(data)
         assert old.headline == record.headline
         assert {task.measuring for task in old.tasks} == {None}
-        assert [task.measured_for for task in old.tasks] == [0.0] * len(old.tasks)
+        assert [task.measuring_duration for task in old.tasks] == [0.0] * len(old.tasks)
 
 
 class TestMeasuring:
@@ -209,7 +209,7 @@ class TestMeasuring:
         takes = yard.robot.sensor.measuring_time
         (span,) = measured.measuring
         assert span == (pytest.approx(measured.end - takes), measured.end)
-        assert measured.measured_for == pytest.approx(takes)
+        assert measured.measuring_duration == pytest.approx(takes)
         assert drive.measuring == ()
 
     def test_one_that_is_broken_off_ends_with_its_task(self, yard, quiet):

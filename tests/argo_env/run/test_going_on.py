@@ -43,7 +43,7 @@ def handed_over(site, plan, reached, **fields):
     """A simulation that was stopped there and closed, and the spec of how its plan goes on."""
     with simulation_of(spec_of(plan, **fields), site) as first:
         stopped_after(first, reached)
-        return first, first.going_on(plan)
+        return first, first.continuation_spec(plan)
 
 
 def ended(progress):
@@ -77,11 +77,11 @@ def test_before_by_hand_and_after_are_the_whole_mission(site, how, plan, at, dat
         edited = mission(*plan.tasks[1:], last, groups=plan.groups)
     with simulation_of(spec_of(plan), site) as first:
         for _ in range(at):
-            if not first.over:
+            if not first.ended:
                 first.step()
-        assume(not first.over)
+        assume(not first.ended)
         take_over(first)
-        assume(not first.over)
+        assume(not first.ended)
         done = done_and_skipped(data, plan, first)
         if how == "given back":
             first.handle(GiveBack(done))
@@ -89,7 +89,7 @@ def test_before_by_hand_and_after_are_the_whole_mission(site, how, plan, at, dat
             last = first.machine.progress()
         else:
             assume(first.machine.progress().active is not None)
-            spec = first.going_on(edited, done)
+            spec = first.continuation_spec(edited, done)
             assert spec.beginning.progress.elapsed == pytest.approx(first.now)
             with simulation_of(RunSpec.model_validate_json(spec.model_dump_json()), site) as rest:
                 assert (rest.pose, rest.now) == (first.pose, pytest.approx(first.now))
@@ -137,7 +137,7 @@ class TestRecord:
         record = simulate(spec, site)
         assert record.result.outcome is Outcome.COMPLETED
         assert record.result.verdict == (
-            "the plan was carried out; done before this run: MEASURE 1, A"
+            "the mission was completed; done before this run: MEASURE 1, A"
         )
         assert [t.task for t in record.tasks] == ["MEASURE 2", "B"]
         assert [tally.task for tally in record.before] == ["MEASURE 1", "A"]
@@ -150,8 +150,8 @@ class TestRecord:
         plan = mission(off, measure(1), measure(2))
         with simulation_of(spec_of(plan), site) as first:
             stopped_after(first, 1)
-            spec = first.going_on(plan)
-            edited = first.going_on(mission(measure(1), measure(2)))
+            spec = first.continuation_spec(plan)
+            edited = first.continuation_spec(mission(measure(1), measure(2)))
         for one in (spec, edited):
             record = simulate(one, site)
             assert record.result.outcome is Outcome.COMPLETED_WITH_FAILURES
@@ -185,9 +185,9 @@ class TestEdited:
             stopped_after(first, 1)
             # It stands at a task that the edit must keep.
             with pytest.raises(DiagnosticError, match="which the plan does not have"):
-                first.going_on(edited)
+                first.continuation_spec(edited)
             kept = mission(measure(1), waypoint("A", 4.05, 2.05), measure(3))
-            spec = first.going_on(kept)
+            spec = first.continuation_spec(kept)
         record = simulate(spec, site)
         assert [t.task for t in record.tasks] == ["A", "MEASURE 3"]
 
@@ -195,24 +195,24 @@ class TestEdited:
         early = mission(waypoint("EARLY", 2.05, 2.05), *PLAN.tasks[1:])
         with simulation_of(spec_of(PLAN), site) as first:
             stopped_after(first, 2)
-            spec = first.going_on(early)
+            spec = first.continuation_spec(early)
         assert simulate(spec, site).result.verdict == (
-            "the plan was carried out; done before this run: MEASURE 1, A; it led past EARLY"
+            "the mission was completed; done before this run: MEASURE 1, A; passed over: EARLY"
         )
 
     def test_nothing_is_left(self, site):
         short = mission(measure(1))
         with simulation_of(spec_of(short), site) as whole:
             steps = 0
-            while not whole.over:
+            while not whole.ended:
                 whole.step()
                 steps += 1
         # It has looked already, and the value counts though a person takes over.
         with simulation_of(spec_of(short), site) as first:
             take_over(first, after=steps - 1)
-            assert not first.over
+            assert not first.ended
             with pytest.raises(Conflict, match="nothing is left"):
-                first.going_on(mission(measure(1), measure(2)))
+                first.continuation_spec(mission(measure(1), measure(2)))
             first.handle(GiveBack())
             assert first.run().result.success
 
@@ -220,7 +220,7 @@ class TestEdited:
         with simulation_of(spec_of(PLAN), site) as first:
             stopped_after(first, 1)
             shorter = mission(measure(1), waypoint("A", 4.05, 2.05))
-            spec = first.going_on(shorter, [ByHand(task="MEASURE 2", value=3.0)])
+            spec = first.continuation_spec(shorter, [ByHand(task="MEASURE 2", value=3.0)])
         assert [d.code for d in spec.diagnostics] == ["handover.by-hand-gone"]
         assert simulate(spec, site).diagnostics == spec.diagnostics
 
@@ -237,7 +237,7 @@ def test_what_was_found_before_is_known(site):
     with simulation_of(spec.model_copy(update={"beginning": beginning}), site) as rest:
         (closed,) = rest.setup.navigator.blockages
         stopped_after(rest, 1)
-        assert rest.going_on(PLAN).beginning.known[:2] == more
+        assert rest.continuation_spec(PLAN).beginning.known[:2] == more
     assert closed.rect[0] < 2.9 < 3.1 < closed.rect[2]
 
 
@@ -246,27 +246,27 @@ class TestRefusals:
         with simulation_of(spec_of(PLAN), site) as first:
             first.step()
             with pytest.raises(Conflict, match="take the robot over"):
-                first.going_on(PLAN)
+                first.continuation_spec(PLAN)
             first.handle(TakeOver())
             with pytest.raises(Conflict, match="take the robot over"):
-                first.going_on(PLAN)
+                first.continuation_spec(PLAN)
             to_rest(first)
             first.handle(DoByHand(PLAN.task("A")))
             with pytest.raises(Conflict, match="'A' by hand"):
-                first.going_on(PLAN)
+                first.continuation_spec(PLAN)
 
     def test_what_nobody_did(self, site):
         with simulation_of(spec_of(PLAN), site) as first:
             stopped_after(first, 1)
             with pytest.raises(Invalid, match="MEASURE 9"):
-                first.going_on(PLAN, [ByHand(task="MEASURE 9")])
+                first.continuation_spec(PLAN, [ByHand(task="MEASURE 9")])
 
     def test_another_machine(self, site):
         _, spec = handed_over(site, PLAN, 1)
         with pytest.raises(Conflict, match="machine"):
             Simulation(Executor(lower(PLAN)), site, spec)
         machine = Executor(lower(PLAN, spec.beginning.progress))
-        with pytest.raises(Conflict, match="does not stand where the run begins"):
+        with pytest.raises(Conflict, match="is not in the state in which the run begins"):
             Simulation(machine, site, spec)
 
 

@@ -16,7 +16,7 @@ from argo_env.formatting import clock
 from argo_env.report import write_report
 from argo_env.report.rounds import waits
 from argo_env.run.record import RunRecord
-from argo_env.run.spec import logged
+from argo_env.run.spec import logged_events
 from argo_env.run.verdict_line import Tone
 from tests.argo_env.run.test_at_the_place import foggy
 from tests.conftest import examples
@@ -78,7 +78,7 @@ class TestCleanUp:
         )
         setup = fast_setup(yard)
         events = ((arrival + 4.0, Occurred(EventKind.GAS_LEAK)),)
-        record = run_with(plan, setup, events=logged(*events))
+        record = run_with(plan, setup, events=logged_events(*events))
         first, second = record.tasks
         assert first.outcome == "interrupted"
         assert second.start == first.end
@@ -231,7 +231,7 @@ class TestReactions:
         a, b = waypoint("A", 3.05, 2.05, velocity=0.2), waypoint("B", 4.55, 2.05, velocity=0.3)
         plan = mission(a, b, waypoint("C", 2.05, 2.05), reactions=(shelter,))
         setup = fast_setup(yard)
-        run_with(plan, setup, events=logged((16.0, Occurred(EventKind.GAS_LEAK))))
+        run_with(plan, setup, events=logged_events((16.0, Occurred(EventKind.GAS_LEAK))))
         assert setup.drive.velocities == [0.2, None, 0.2, 0.3, None]
 
 
@@ -306,11 +306,11 @@ def reactions(draw):
 def check_findings(record, plan, events):
     """All that occurred is found or over, each thing once, and only then the headline is amber."""
     occurred = [(t, e.event) for t, e in events if isinstance(e, Occurred)]
-    told = [(a.t, a.kind) for a in record.anomalies if a.is_told]
+    told = [(a.t, a.kind) for a in record.anomalies if a.is_reported]
     assert not Counter(kind for _, kind in told) - Counter(kind for _, kind in occurred)
     assert all(kind in [k for _, k in told] for t, kind in occurred if t < record.result.duration)
     abnormal = [r for r in record.readings if not r.normal]
-    overs = [a for a in record.anomalies if a.over]
+    overs = [a for a in record.anomalies if a.is_end]
     assert len(record.findings) == len(told) - len(overs) + len(abnormal)
     answerable = {reaction.event for reaction in plan.reactions}
     assert not [f for f in record.findings if f.answered and f.kind not in answerable]
@@ -356,7 +356,7 @@ def test_in_the_world(yard):
     plan = mission(
         measure(1), dock=DOCK, reactions=(react(EventKind.LOW_BATTERY, Response.RETURN),)
     )
-    events = logged((8.0, Occurred(EventKind.LOW_BATTERY)))
+    events = logged_events((8.0, Occurred(EventKind.LOW_BATTERY)))
     record = simulated(plan, yard, events=events)
     assert names(record) == [("MEASURE 1", "interrupted"), ("react to low_battery", "done")]
     assert record.result.outcome is Outcome.RETURNED

@@ -36,7 +36,7 @@ from argo_env.run.log import LoggedEvent
 from argo_env.run.observer import Observer
 from argo_env.run.session import resume
 from argo_env.run.simulation import SAMPLE_PERIOD
-from argo_env.run.spec import RunSpec, logged
+from argo_env.run.spec import RunSpec, logged_events
 from argo_env.world.world import Touch
 from tests.conftest import examples, sample
 from tests.yard import (
@@ -75,15 +75,15 @@ EVENTS = (
 
 
 def header(yard, plan=PLAN, events=EVENTS, source=None):
-    spec = RunSpec(mission=plan, site="yard", seed=1, events=logged(*events), source=source)
-    return Header.of(opened(yard), spec)
+    spec = RunSpec(mission=plan, site="yard", seed=1, events=logged_events(*events), source=source)
+    return Header.from_run(opened(yard), spec)
 
 
 def go_on(yard, journal, plan=PLAN, events=EVENTS, observe=None, announce=None, **options):
     """The record of a run from where the journal ends."""
     return run_with(
         plan, fast_setup(yard, {2: 5.5}), journal=journal, observers=[Watching(observe, announce)],
-        seed=1, events=logged(*events), **options,
+        seed=1, events=logged_events(*events), **options,
     )  # fmt: skip
 
 
@@ -206,7 +206,7 @@ def test_interrupted_after_any_step(yard, whole, path):
             record = go_on(yard, journal, interrupted=lambda: next(looks) >= n)  # noqa: B023
         assert not record.result.ended
         assert not record.result.success
-        assert record.result.verdict == f"the mission is not at its end after {n / 10:.0f} s"
+        assert record.result.verdict == f"the mission has not ended after {n / 10:.0f} s"
         assert record.result.duration == n / 10
         for name in ("tasks", "readings", "anomalies", "trace"):
             so_far = getattr(record, name)
@@ -249,7 +249,7 @@ def test_a_run_that_has_ended_can_be_told_nothing(yard, whole, path):
         open_journal(path) as journal,
         pytest.raises(Conflict, match=r"run\.journal: the run has ended, at") as caught,
     ):
-        resume(journal, opened(yard), events=logged((5.0, Pause())))
+        resume(journal, opened(yard), events=logged_events((5.0, Pause())))
     assert caught.value.remedies == (Remedy.RUN_ANEW,)
     assert path.read_bytes() == whole.content
 
@@ -392,8 +392,8 @@ def events():
 @settings(max_examples=examples(50), deadline=None)
 @given(events())
 def test_events_go_through_json(event):
-    text = LoggedEvent.of(event).model_dump_json()
-    assert LoggedEvent.model_validate_json(text).original() == event
+    text = LoggedEvent.from_event(event).model_dump_json()
+    assert LoggedEvent.model_validate_json(text).to_event() == event
 
 
 class TestRefusals:

@@ -21,7 +21,7 @@ from argo_env.faults.reading import decode_faults
 from argo_env.planning.opening import open_site
 from argo_env.run.observer import Observer
 from argo_env.run.session import simulate
-from argo_env.run.spec import RunConditions, RunSpec, logged
+from argo_env.run.spec import RunConditions, RunSpec, logged_events
 from tests.conftest import seeds
 from tests.yard import in_order
 
@@ -119,7 +119,7 @@ def spec_of(seed: int, drive: str = "route") -> RunSpec:
         drive=drive,
         seed=seed,
         faults=decode_faults(text.encode(), "test").faults,
-        events=logged(*sorted(events, key=lambda one: one[0])),
+        events=logged_events(*sorted(events, key=lambda one: one[0])),
         conditions=conditions,
     )
 

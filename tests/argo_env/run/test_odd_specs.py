@@ -23,7 +23,7 @@ from argo_env.faults.kinds import (
 from argo_env.planning.opening import open_site
 from argo_env.run.record import RunRecord
 from argo_env.run.session import run
-from argo_env.run.spec import RunSpec, logged
+from argo_env.run.spec import RunSpec, logged_events
 from tests.conftest import examples
 
 ONE = Mission(tasks=(Task(name="A", action="MEASURE", object_id="1"),))
@@ -47,7 +47,7 @@ SPEC = RunSpec(mission=ONE, site="darmstadt", drive="route")
         ("values", {"gauge": 1.0}),
         ("events", None),
         ("events", ((1.0, "pause"),)),
-        ("events", ((math.nan, logged((1.0, Pause()))[0][1]),)),
+        ("events", ((math.nan, logged_events((1.0, Pause()))[0][1]),)),
         ("faults", None),
         ("faults", ("fire",)),
         ("source", 3),
@@ -131,7 +131,7 @@ def test_a_run_of_any_spec_gives_a_record_or_is_refused(fields):
             fault["kind"](**{k: v for k, v in fault.items() if k != "kind"})
             for fault in fields.get("faults", ())
         )
-        events = logged(*fields.get("events", ()))
+        events = logged_events(*fields.get("events", ()))
         spec = RunSpec(
             **{"drive": "route"} | fields | {"faults": faults, "events": events},
             site="darmstadt",

@@ -16,11 +16,11 @@ from argo_env.navigation import Blockage
 from argo_env.robot.pose import BodyPose
 from argo_env.run.action import TURNS
 from argo_env.run.journal import open_journal
-from argo_env.run.perception import Perception, blockage
+from argo_env.run.perception import Perception, blockage_from_anomaly
 from argo_env.run.record import Anomaly
 from argo_env.run.run_setup import RunSetup
 from argo_env.run.session import resume
-from argo_env.run.spec import logged
+from argo_env.run.spec import logged_events
 from argo_env.run.termination import SETTLING
 from argo_env.sensing.sensor import Measurement, PoorViewError
 from argo_env.sensing.signals.terrain_watch import ObstacleDetection
@@ -64,7 +64,9 @@ class Scripted:
 def run(yard, plan, *watches, values=None, events=(), announce=None):
     setup = fast_setup(yard, values)
     setup = RunSetup(setup.world, setup.navigator, setup.drive, setup.sensor, watches)
-    return run_with(plan, setup, events=logged(*events), observers=[Watching(announce=announce)])
+    return run_with(
+        plan, setup, events=logged_events(*events), observers=[Watching(announce=announce)]
+    )
 
 
 def obstacle(x, y, half=0.15, kind=EventKind.POSITIVE_OBSTACLE):
@@ -80,7 +82,7 @@ class TestLooking:
         watches = [Scripted(period=p) for p in periods]
         perception = Perception(watches, yard.site, 0.1)
         for step in range(1, 121):
-            perception.look(step, round(0.1 * step, 6), BodyPose(0, 0, 0, 0))
+            perception.update(step, round(0.1 * step, 6), BodyPose(0, 0, 0, 0))
         for watch in watches:
             times = [now for now, _ in watch.looks]
             assert times[0] <= watch.period + 1e-9
@@ -188,7 +190,7 @@ class TestObstacles:
         (found,), (reading,) = record.anomalies, record.readings
         assert record.result.success
         assert len(looks) == reading.views == 2
-        aware = yard.avoiding([blockage(found)])
+        aware = yard.avoiding([blockage_from_anomaly(found)])
         unturned, turned = (aware.plan_to_view(watch._left[0], 1, t).end for t in TURNS[:2])
         assert math.dist((looks[1].x, looks[1].y), (turned.x, turned.y)) < 0.01
         assert math.dist((unturned.x, unturned.y), (turned.x, turned.y)) > 0.1
@@ -257,8 +259,8 @@ class TestResumed:
 
     def look(self, yard, told, finding, now):
         perception = Perception((Scripted((0.0, finding), period=0.1),), yard.site, 0.1)
-        perception.remember([(a, BodyPose(0, 0, 0, 0)) for a in told], 100.0)
-        return perception.look(round(now * 10), now, BodyPose(0, 0, 0, 0))
+        perception.restore_anomalies([(a, BodyPose(0, 0, 0, 0)) for a in told], 100.0)
+        return perception.update(round(now * 10), now, BodyPose(0, 0, 0, 0))
 
     def test_not_told_twice(self, yard):
         spot = Detection(EventKind.HOT_SPOT, "", (2.3, 2.2, 1.0))
@@ -286,9 +288,9 @@ class TestResumed:
         pose = BodyPose(1, 2, 3, 0)
         own = anomaly(EventKind.ALL_CLEAR, 90.0, (2.0, 2.0, 1.0))
         other = anomaly(EventKind.GAS_LEAK, 95.0, source="another watch")
-        perception.remember([(own, pose), (other, pose)], 100.0)
+        perception.restore_anomalies([(own, pose), (other, pose)], 100.0)
         assert watch.told == ([(EventKind.ALL_CLEAR, pose)], 100.0)
-        assert len(perception.look(1001, 100.1, pose)) == 1
+        assert len(perception.update(1001, 100.1, pose)) == 1
 
     def test_obstacles_are_known_by_their_place(self, yard):
         told = [anomaly(EventKind.POSITIVE_OBSTACLE, 90.0, (2.0, 2.0, 0.02))]
@@ -326,7 +328,9 @@ class TestResumed:
         path, _ = whole
         part = tmp_path / "cut.journal"
         cut(path, 1 / 3, part)
-        events = logged((2.0, Occurred(EventKind.HOT_SPOT)), (40.0, Occurred(EventKind.ALL_CLEAR)))
+        events = logged_events(
+            (2.0, Occurred(EventKind.HOT_SPOT)), (40.0, Occurred(EventKind.ALL_CLEAR))
+        )
         with open_journal(part) as journal:
             began = journal.entries[-1].t
             first = resume(journal, opened(yard), events=events)

@@ -38,7 +38,7 @@ from argo_env.run.record import RunRecord
 from argo_env.run.run_commands import InjectFault, StopRun
 from argo_env.run.session import resume, run, simulate
 from argo_env.run.simulation import Simulation
-from argo_env.run.spec import RunSpec, logged, read_spec
+from argo_env.run.spec import RunSpec, logged_events, read_spec
 from argo_env.run.validation import check_run
 from tests.conftest import examples
 from tests.yard import (
@@ -64,7 +64,9 @@ FAULTS = (
     DriveDysfunction(at=2.0, until=15.0, speed=0.4),
     ConnectionLoss(at=4.0, until=9.0),
 )
-EVENTS = logged((6.0, Pause()), (8.5, Resume()), (10.0, Occurred(EventKind.HOT_SPOT, "told")))
+EVENTS = logged_events(
+    (6.0, Pause()), (8.5, Resume()), (10.0, Occurred(EventKind.HOT_SPOT, "told"))
+)
 
 
 @pytest.fixture(params=["route", "kinematic", "tracked"])
@@ -87,7 +89,7 @@ class TestTheSameWhoeverSteps:
         whole, single = Entries(), Entries()
         record = simulate(spec, site, observers=[whole])
         with simulation_of(spec, site, observers=[single]) as simulation:
-            while not simulation.over:
+            while not simulation.ended:
                 simulation.step()
         assert single.all == whole.all
         assert simulation.record() == record
@@ -178,7 +180,7 @@ class TestRecordAtAnyMoment:
         with simulation_of(spec, site) as simulation:
             first = simulation.record()
             assert (first.result.duration, first.tasks) == (0.0, ())
-            while not simulation.over:
+            while not simulation.ended:
                 steps(simulation, 1)
                 if round(simulation.now * 10) % 7:
                     continue
@@ -187,7 +189,7 @@ class TestRecordAtAnyMoment:
                 for name in ("tasks", "readings", "anomalies", "trace"):
                     so_far = getattr(record, name)
                     assert so_far == getattr(reference, name)[: len(so_far)]
-                if not simulation.over:
+                if not simulation.ended:
                     assert "not at its end" in record.result.verdict
                     assert (record.result.success, record.result.outcome) == (False, None)
             assert simulation.record() == reference
@@ -301,7 +303,7 @@ class TestSteering:
             record = simulation.run()
         assert done[0]["task"] in {t.task for t in record.tasks if t.outcome == "interrupted"}
         assert record.result.success
-        assert record.result.verdict == f"the plan was carried out; {verdict}"
+        assert record.result.verdict == f"the mission was completed; {verdict}"
 
     def test_what_was_skipped_is_told_where_the_mission_is_no_success(self, simulation):
         take_over(simulation, after=40)
@@ -333,7 +335,7 @@ class TestSteering:
     def test_cancelling(self, simulation):
         steps(simulation, 25)
         simulation.handle(Cancel())
-        assert not simulation.over
+        assert not simulation.ended
         assert simulation.run().result.outcome is Outcome.CANCELLED
 
     def test_what_occurs_is_reacted_to(self, site):
@@ -349,19 +351,19 @@ class TestSteering:
         steps(simulation, 25)
         simulation.handle(Pause())
         steps(simulation, 3000)
-        assert not simulation.over
+        assert not simulation.ended
         assert "nothing more occurs" in simulation.run().result.verdict
 
     def test_tasks_are_not_given_to_a_mission(self, simulation):
         with pytest.raises(Conflict, match="are those of its mission"):
-            simulation.give(waypoint("B", 2.0, 2.0))
+            simulation.append_task(waypoint("B", 2.0, 2.0))
 
 
 class TestGivenEvents:
     @pytest.mark.parametrize("at", [4.0, 4.1, 8.0])
     def test_a_robot_is_given_back_once_it_has_come_to_rest(self, site, at):
         done = GiveBack((ByHand(task="MEASURE 1", value=3.0),))
-        events = logged((4.0, TakeOver()), (at, done), (9.0, Pause()), (9.5, Resume()))
+        events = logged_events((4.0, TakeOver()), (at, done), (9.0, Pause()), (9.5, Resume()))
         record = simulate(spec_of("route", events=events), site)
         assert record.result.outcome is Outcome.COMPLETED
         assert [r.task for r in record.readings] == ["MEASURE 2", "MEASURE 3"]
@@ -371,26 +373,35 @@ class TestGivenEvents:
         assert max(rest, at) <= taken.end < 9.0
 
     def test_a_spec_that_is_refused_leaves_no_journal(self, site, tmp_path):
-        spec = spec_of("route", events=logged((3.0, GiveBack((ByHand(task="zz"),)))))
+        spec = spec_of("route", events=logged_events((3.0, GiveBack((ByHand(task="zz"),)))))
         with pytest.raises(Invalid, match="give_back given at 3 s"):
             simulate(spec, site, journal=tmp_path / "run.journal")
         assert list(tmp_path.iterdir()) == []
 
     def test_a_robot_that_nobody_has_taken_over(self, site):
-        spec = spec_of("route", events=logged((4.0, GiveBack())))
+        spec = spec_of("route", events=logged_events((4.0, GiveBack())))
         with pytest.raises(Conflict, match=r"back by 4 s, and nobody .* 'MEASURE 1' runs"):
             simulate(spec, site)
 
     @pytest.mark.parametrize(
         ("given", "says"),
         [
-            (logged((3.0, GiveBack((ByHand(task="zz"),)))), "give_back given at 3 s: .*'zz'"),
-            (logged((-3.0, Pause())), "nothing occurs at -3 s"),
-            (logged((float("nan"), Pause())), "nothing occurs at nan s"),
-            (logged((3.0, Tick())), "tick given at 3 s: the robot itself tells"),
-            (logged((3.0, ActionSucceeded("zz"))), "the robot itself tells"),
-            (logged((3.0, Occurred(EventKind.TIME_UP))), "occurs by itself"),
-            ([(3.0, Pause())], "make it one with `logged`"),
+            (
+                logged_events((3.0, GiveBack((ByHand(task="zz"),)))),
+                "give_back given at 3 s: .*'zz'",
+            ),
+            (logged_events((-3.0, Pause())), "no event can occur at -3 s"),
+            (logged_events((float("nan"), Pause())), "no event can occur at nan s"),
+            (
+                logged_events((3.0, Tick())),
+                "tick given at 3 s: events of kind `tick` come from the run itself",
+            ),
+            (
+                logged_events((3.0, ActionSucceeded("zz"))),
+                "events of kind `succeeded` come from the run itself",
+            ),
+            (logged_events((3.0, Occurred(EventKind.TIME_UP))), "occurs by itself"),
+            ([(3.0, Pause())], "convert it with `logged_events`"),
         ],
     )
     def test_what_no_run_can_be_given(self, site, given, says):
@@ -402,7 +413,7 @@ class TestGivenEvents:
     )
     def test_what_is_no_event(self, event):
         with pytest.raises(Invalid):
-            logged((1.0, event))
+            logged_events((1.0, event))
 
 
 class TestOpenMachine:
@@ -411,13 +422,13 @@ class TestOpenMachine:
         machine = OpenMachine(spec.mission)
         with Simulation(machine, site, spec) as simulation:
             steps(simulation, 20)
-            assert (simulation.task, simulation.over) == (None, False)
-            simulation.give(measure(2))
+            assert (simulation.task, simulation.ended) == (None, False)
+            simulation.append_task(measure(2))
             with pytest.raises(Conflict, match="'MEASURE 2' is still under way"):
-                simulation.give(measure(3))
+                simulation.append_task(measure(3))
             until(simulation, lambda: simulation.task is None)
             simulation.handle(Pause())
-            simulation.give(measure(3))
+            simulation.append_task(measure(3))
             assert simulation.task is None
             simulation.handle(Resume())
             assert simulation.task.name == "MEASURE 3"
@@ -459,7 +470,7 @@ class TestJournalOfASteeredRun:
         with open_journal(path) as journal:
             told = journal.entries
             events = () if any(e.events and e.events[0].kind == "give_back" for e in told) else (
-                logged((0.0, GiveBack((ByHand(task="MEASURE 1", value=3.0),))))
+                logged_events((0.0, GiveBack((ByHand(task="MEASURE 1", value=3.0),))))
             )  # fmt: skip
             taken_over = any(e.events and e.events[0].kind == "take_over" for e in told)
             again = resume(journal, site, events=events if taken_over else ())

@@ -8,7 +8,7 @@ from argo_compiler.il import Condition, ConditionType, EventKind, Group, Mode, O
 from argo_env.report.rounds import waits, with_readings
 from argo_env.run.journal import open_journal
 from argo_env.run.record import RunRecord, WindowOutcome
-from argo_env.run.spec import logged
+from argo_env.run.spec import logged_events
 from argo_env.run.verdict_line import Tone
 from tests.mission_writing import above, wait, way
 from tests.yard import (
@@ -25,7 +25,7 @@ from tests.yard import (
 
 
 def run(yard, plan, *events, values=None):
-    record = run_with(plan, fast_setup(yard, values), events=logged(*events))
+    record = run_with(plan, fast_setup(yard, values), events=logged_events(*events))
     assert RunRecord.model_validate_json(record.model_dump_json()) == record
     return record
 
@@ -236,7 +236,7 @@ class TestFailures:
         record = run(yard, mission(waypoint("A", 30.0, 30.0, optional=True), THERE))
         assert record.result.outcome is Outcome.COMPLETED
         assert record.result.success
-        assert "failed, and optional: A" in record.result.verdict
+        assert "optional tasks that failed: A" in record.result.verdict
 
     @pytest.mark.rule("T8")
     def test_a_branch_after_a_failure(self, yard):
@@ -293,7 +293,7 @@ def test_what_a_person_read_is_abnormal_outside_the_nominal_range(yard):
     first = measure(1, transitions=(way("B", odd),))
     plan = mission(first, HERE, THERE)
     done = GiveBack((ByHand(task="MEASURE 1", value=9.0),))
-    events = logged((1.0, TakeOver()), (5.0, done))
+    events = logged_events((1.0, TakeOver()), (5.0, done))
     record = run_with(plan, fast_setup(yard), observers=[entries], events=events)
     assert [t.task for t in record.tasks if t.outcome == "done"] == ["B"]
 
@@ -311,7 +311,7 @@ def test_a_run_goes_on_in_a_wait_before_a_round_and_in_a_window(yard, tmp_path, 
         groups=(group,),
     )  # fmt: skip
     path = tmp_path / "run.journal"
-    events = logged((140.0, ReadingGiven("3", 9.0)))
+    events = logged_events((140.0, ReadingGiven("3", 9.0)))
     whole = simulated(plan, yard, drive="route", events=events, journal=path)
     with open_journal(path) as journal:
         kept = sum(entry.t <= until for entry in journal.entries)

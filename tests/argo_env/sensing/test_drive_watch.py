@@ -11,7 +11,7 @@ from argo_env.drives.powertrain import Powertrain
 from argo_env.drives.timed_drive import RouteDrive
 from argo_env.robot.pose import BodyPose
 from argo_env.run.journal import open_journal
-from argo_env.run.spec import logged
+from argo_env.run.spec import logged_events
 from argo_env.sensing.onboard import WINDOW, DriveWatch
 from tests.conftest import examples
 from tests.yard import cut_after, faults_of, mission, resumed, simulated, waypoint
@@ -95,7 +95,7 @@ def test_a_run_that_is_resumed_during_or_after_a_stop_reports_no_slow_drive(yard
 def test_the_shift_to_the_start_of_a_path_is_a_part_of_it(yard):
     # A very slow robot that was stopped beside the lattice needs seconds to return to it.
     plan = mission(waypoint("A", 2.05, 2.55, velocity=0.02))
-    events = logged((56.8, Pause()), (61.8, Resume()))
+    events = logged_events((56.8, Pause()), (61.8, Resume()))
     record = simulated(plan, yard, drive="route", events=events)
     assert [run.outcome for run in record.tasks] == ["interrupted", "done"]
     assert record.anomalies == ()

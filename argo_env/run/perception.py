@@ -52,7 +52,9 @@ class Perception:
         for watch, _, _ in self._turns:
             if isinstance(watch, RestorableWatch):
                 own = [
-                    ReportedDetection(a.kind, pose) for a, pose in reported if a.source == watch.name
+                    ReportedDetection(anomaly.kind, pose)
+                    for anomaly, pose in reported
+                    if anomaly.source == watch.name
                 ]
                 watch.restore(own, now)
 

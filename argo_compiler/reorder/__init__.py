@@ -1,1 +1,1 @@
-"""From a mission to its route problem, and back to the mission in another order."""
+"""Conversion of a mission to its route problem, and of a route to the reordered mission."""

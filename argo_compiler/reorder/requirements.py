@@ -1,4 +1,4 @@
-"""What is asked of an order beside what its mission says."""
+"""Requirements of an order that are not part of its mission."""
 
 import re
 from typing import Annotated
@@ -13,7 +13,7 @@ _SECONDS = {"h": 3600.0, "m": 60.0, "'": 60.0, "s": 1.0}
 
 
 def parse_seconds(text: str) -> float:
-    """Seconds of `20 min`, `1 h 30 min`, `90 s` or `90`. Raises ArgoError if it is no duration."""
+    """Parse a duration such as `20 min`, `1 h 30 min`, `90 s` or `90`, in s. Raises ArgoError."""
     total, at = 0.0, 0
     scale = 2 * _SECONDS["h"]
     text = text.strip()
@@ -40,34 +40,36 @@ def _seconds(value: object) -> object:
 
 
 Seconds = Annotated[float, BeforeValidator(_seconds), Field(ge=0.0, le=1e7)]
-"""s, up to 115 days: longer than any mission, and short enough to be reckoned in whole units"""
-What = Annotated[int, Field(strict=True, ge=1)] | Annotated[str, Field(min_length=1)]
-"""The number of a checkpoint, or the name of a task or group."""
+"""s, up to 115 days: longer than any mission, and short enough to be counted in whole units"""
+MissionPart = Annotated[int, Field(strict=True, ge=1)] | Annotated[str, Field(min_length=1)]
+"""number of a checkpoint, or name of a task or group"""
 
 
-def _distinct(sequence: tuple[What, ...]) -> tuple[What, ...]:
+def _distinct(sequence: tuple[MissionPart, ...]) -> tuple[MissionPart, ...]:
     if len(set(map(str, sequence))) < len(sequence):
         listed = ", ".join(map(str, sequence))
         raise ValueError(f"`{listed}` names something twice: nothing comes before itself")
     return sequence
 
 
-Sequence = Annotated[tuple[What, ...], Field(min_length=2), AfterValidator(_distinct)]
+Sequence = Annotated[tuple[MissionPart, ...], Field(min_length=2), AfterValidator(_distinct)]
 
 
 class Priority(Model):
-    """Something that may be left out."""
+    """Part of a mission that may be left out, with its priority."""
 
-    what: What
+    what: MissionPart
     priority: int = Field(default=1, ge=1, le=1_000_000)
-    """what it is worth, of a group each of its tasks: as much as possible is won in sum"""
+    """worth of the part, or of each task of a group; an order gets the largest possible sum"""
 
 
 class RequiredWindow(Model):
-    """When something is to be done, as a hard window of its task: counted from the mission's start,
-    begun at the place not before `earliest`, and ended by `latest`."""
+    """Hard time window of a part of a mission, in s from the mission's start.
 
-    what: What
+    Its action does not start before `earliest`, and has ended by `latest`.
+    """
+
+    what: MissionPart
     earliest: Seconds = 0.0
     latest: Annotated[Seconds, Field(gt=0.0)] | None = None
 
@@ -79,7 +81,7 @@ class RequiredWindow(Model):
 
 
 class Likelihood(Model):
-    """How likely it is that a task goes on to another one by its conditions."""
+    """Probability of a conditional transition from one task to another."""
 
     task: str
     target: str
@@ -87,21 +89,21 @@ class Likelihood(Model):
 
 
 class Requirements(Model):
-    """What an order has to keep to beside its mission."""
+    """Requirements that an order has to meet in addition to its mission."""
 
     budget: Seconds | None = Field(default=None, gt=0.0)
-    """s in which the mission has to be over. With it, all that is not `mandatory` may be left out,
-    with the priorities of the tasks"""
+    """s within which the mission has to end. With a budget, all parts that are not `mandatory` may
+    be left out, by the priorities of the tasks"""
     keep_order: bool = False
-    """whether nothing changes places, even if the mission allows any order"""
-    mandatory: tuple[What, ...] = ()
-    """not left out, whatever the mission says"""
+    """whether the written order is kept, even if the mission allows any order"""
+    mandatory: tuple[MissionPart, ...] = ()
+    """parts that must not be left out, even if the mission makes them optional"""
     optional: tuple[Priority, ...] = ()
-    """may be left out, whatever the mission says"""
+    """parts that may be left out, even if the mission makes them mandatory"""
     before: tuple[Sequence, ...] = ()
-    """sequences in which each comes before all that follow, whichever of them are left out"""
+    """sequences: each part comes before all later ones, even if some parts are left out"""
     windows: tuple[RequiredWindow, ...] = ()
-    """in the place of those that the mission's tasks have"""
+    """windows that replace those of the mission's tasks"""
     likelihoods: tuple[Likelihood, ...] = ()
-    """where all conditional ways of a task have one, its ways are reckoned on average, not in the
-    worst case"""
+    """probabilities of transitions; a task whose conditional transitions all have one counts with
+    its mean cost instead of the worst case"""

@@ -1,4 +1,4 @@
-"""The ways between the tasks and groups of a mission, and of one round of a group."""
+"""Graph of the transitions between the tasks and groups of a mission, and of a group's round."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -12,36 +12,39 @@ from argo_compiler.il import Action, Condition, Mission
 
 @dataclass(frozen=True)
 class Edge:
-    """From one child of a level to another, or to its end."""
+    """Transition from one child of a level to another child or to the end of the level."""
 
     source: int
     target: int
     leaf: int
-    """that the way leads from"""
+    """leaf that the transition starts from"""
     entry: int | None
-    """the leaf that it leads to; None: the end of the level"""
+    """leaf that it leads to; None for the end of the level"""
     tail: bool
     """whether it is the leaf's unconditional transition"""
     early: bool = False
-    """whether it may be one that ends the mission early"""
+    """whether it may end the mission early"""
 
 
 @dataclass
 class Level:
-    """The mission, or one round of a group: its tasks and groups, and the ways between them."""
+    """Tasks and groups of a mission or of a group's round, with their transitions. Mutable."""
 
     children: list[int]
-    """leaves, and groups as -1 - number"""
+    """leaves by number, and groups as -1 - number"""
     child_of: dict[int, int]
+    """position in `children` of each leaf, or of the group that contains it"""
     edges: list[Edge] = field(default_factory=list)
-    broken: str | None = None
-    """why it is no chain of units"""
+    chain_error: str | None = None
+    """why the level is not a chain of units; None if it is one"""
 
     @property
     def sink(self) -> int:
+        """Node of the end of the level."""
         return len(self.children)
 
     def successors(self, edges: Sequence[Edge]) -> list[list[int]]:
+        """Return the successors of each child and of the sink by these edges."""
         following: list[list[int]] = [[] for _ in range(len(self.children) + 1)]
         for edge in edges:
             following[edge.source].append(edge.target)
@@ -49,44 +52,49 @@ class Level:
 
 
 class TaskGraph:
-    """The levels of a mission. Collects what lies apart, and where the mission may end early."""
+    """Levels of a mission. Mutable: collects detached leaves and early exits of the mission."""
 
     def __init__(self, mission: Mission) -> None:
-        """Raises DiagnosticError if `check` finds errors in the mission."""
+        """Lower the mission. Raises DiagnosticError if `check` finds errors in it."""
         self.flow = flow = Flow.of(lower(mission), mission)
         names = {task.name for task in mission.tasks}
-        # `lower` may add the return to the dock, to which only failures lead.
-        self.own = [i for i, leaf in enumerate(flow.leaves) if leaf.name in names]
-        self._own = frozenset(self.own)
+        # `lower` may add a return to the dock, which is reached only after failures.
+        self.own_leaves = [i for i, leaf in enumerate(flow.leaves) if leaf.name in names]
+        self._own_leaf_set = frozenset(self.own_leaves)
         self.end = self._find_end(mission)
-        """the leaf that the mission always ends with: the way into the docking station"""
-        self.apart: set[int] = set()
-        """leaves from which the mission ends without the rest"""
-        self.gates: set[tuple[int, int]] = set()
-        """leaves after which the mission may end early, and the nodes that they lead to then"""
+        """leaf that always ends the mission, the drive into the docking station; None if none"""
+        self.detached: set[int] = set()
+        """leaves that lead only to an early end of the mission"""
+        self.early_exits: set[tuple[int, int]] = set()
+        """transitions that end the mission early: a leaf and the node that it leads to"""
 
     def _find_end(self, mission: Mission) -> int | None:
-        """The drive into the mission's docking station that ends it."""
-        for i in reversed(self.own):
+        """Return the leaf of the drive into the docking station that ends the mission, if any."""
+        for i in reversed(self.own_leaves):
             leaf = self.flow.leaves[i]
             task = leaf.leaf.task
             docks = task.action is Action.WAYPOINT and task.pose == mission.dock
-            branches = leaf.conditional or self.troubled(i)
+            branches = leaf.conditional or self.branch_targets(i)
             if docks and leaf.parent == NOWHERE and not branches:
                 return i if leaf.tail == self.flow.done else None
         return None
 
-    def troubled(self, leaf: int) -> tuple[int, ...]:
-        """The leaves that follow where a task fails for good or misses its window, as it says."""
-        found = self.flow.leaves[leaf]
-        return tuple(k for k in (found.failure, found.missed) if k is not None and k in self._own)
+    def branch_targets(self, leaf: int) -> tuple[int, ...]:
+        """Return the leaves that the task names for a final failure and for a missed window."""
+        flow = self.flow.leaves[leaf]
+        return tuple(
+            k for k in (flow.failure, flow.missed) if k is not None and k in self._own_leaf_set
+        )
 
-    def stands(self, leaf: int) -> bool:
-        """Whether the robot stands there where the task before has left it."""
+    def is_wait(self, leaf: int) -> bool:
+        """Return True if the task is a WAIT, for which the robot stays where it is."""
         return self.flow.leaves[leaf].leaf.task.action is Action.WAIT
 
-    def asked(self, leaf: int) -> Iterator[Condition]:
-        """What is looked at when a task ends: to go on, to wait on, and to begin another round."""
+    def conditions_after(self, leaf: int) -> Iterator[Condition]:
+        """Yield the conditions that are checked when a task ends.
+
+        They choose the next task, end a WAIT, or end the rounds of a group.
+        """
         flow = self.flow
         for conditions, _ in flow.leaves[leaf].conditional:
             yield from conditions
@@ -97,12 +105,12 @@ class TaskGraph:
                 yield from group.until
 
     def require_reachable(self) -> None:
-        """Raises ArgoError if a task can't be reached, or the end of the mission."""
+        """Raise ArgoError if a task or the end of the mission can't be reached."""
         flow = self.flow
         following: list[list[int]] = [[] for _ in range(flow.size)]
         for i, leaf in enumerate(flow.leaves):
             following[i] = [target for _, target in leaf.conditional] + [leaf.tail]
-            following[i] += self.troubled(i) if i in self._own else ()
+            following[i] += self.branch_targets(i) if i in self._own_leaf_set else ()
             if leaf.parent >= 0:
                 following[i].append(flow.time_up(leaf.parent))
         for g, group in enumerate(flow.groups):
@@ -114,25 +122,25 @@ class TaskGraph:
             if group.parent >= 0:
                 following[flow.time_up(g)].append(flow.time_up(group.parent))
         reached = reached_from(following, [flow.initial])
-        for i in self.own:
+        for i in self.own_leaves:
             if not reached[i]:
                 raise Invalid(
-                    f"no way leads to task '{flow.leaves[i].name}', so there is no place for it in "
-                    "an order: remove it, or lead a transition to it; a check says more",
+                    f"no transition leads to task '{flow.leaves[i].name}', so it can't be part of "
+                    "an order: remove it, or lead a transition to it; a check gives details",
                     remedies=(Remedy.CHECK_MISSION,),
                 )
         if not reached[flow.done]:
             raise Invalid(
-                "nothing leads to the end of this mission: a check says why",
+                "nothing leads to the end of this mission: a check states why",
                 remedies=(Remedy.CHECK_MISSION,),
             )
 
     def level(self, group: int) -> Level:
-        """The graph of the mission (NOWHERE) or of a round of a group."""
+        """Return the graph of the mission (NOWHERE) or of a group's round."""
         flow = self.flow
         children: list[int] = []
         child_of: dict[int, int] = {}
-        for i in self.own:
+        for i in self.own_leaves:
             child: int | None = i
             at = flow.leaves[i].parent
             while at not in (group, NOWHERE):
@@ -148,16 +156,16 @@ class TaskGraph:
             if leaf != self.end:
                 self._add_edges(level, group, leaf)
         for inner, within in enumerate(flow.groups):
-            # Groups come before those that lie in them.
+            # Outer groups have smaller numbers than their inner groups.
             if inner > group and within.may_end and within.last in child_of:
                 direct = inner if within.parent == group else None
                 number = child_of[within.last]
                 self._add_edge(level, group, number, within.last, within.onward, True, direct)
         level.edges = self._without_early_ends(level)
-        ends = leading_to(level.successors(level.edges), [level.sink])
-        if group != NOWHERE and not all(ends):
-            stuck = children[ends.index(False)]
-            level.broken = f"'{self.name(stuck)}' does not lead to the end of a round"
+        leads_to_end = leading_to(level.successors(level.edges), [level.sink])
+        if group != NOWHERE and not all(leads_to_end):
+            stuck = children[leads_to_end.index(False)]
+            level.chain_error = f"'{self.name(stuck)}' does not lead to the end of a round"
         return level
 
     def name(self, child: int) -> str:
@@ -168,11 +176,11 @@ class TaskGraph:
         number = level.child_of[leaf]
         for _, target in flow.leaves[leaf].conditional:
             self._add_edge(level, group, number, leaf, target, False, None)
-        for target in self.troubled(leaf):
+        for target in self.branch_targets(leaf):
             self._add_edge(level, group, number, leaf, target, False, None)
         tail = flow.leaves[leaf].tail
-        ended = flow.group_of_round_end(tail)
-        if ended is None or ended == group:
+        ended_group = flow.group_of_round_end(tail)
+        if ended_group is None or ended_group == group:
             self._add_edge(level, group, number, leaf, tail, True, None)
 
     def _add_edge(
@@ -185,61 +193,68 @@ class TaskGraph:
         tail: bool,
         through: int | None,
     ) -> None:
-        """A way from a leaf of a child to a node; `through`: by the end of that group."""
+        """Add the edge from a leaf of a child to a node, or record an early exit or a chain error.
+
+        `through` is the group whose end the transition passes, if any.
+        """
         flow = self.flow
         if target in level.child_of and target != self.end:
-            there = level.child_of[target]
-            inside = there == number and level.children[number] < 0 and through is None
+            target_child = level.child_of[target]
+            inside = target_child == number and level.children[number] < 0 and through is None
             if not inside:
-                level.edges.append(Edge(number, there, leaf, target, tail))
+                level.edges.append(Edge(number, target_child, leaf, target, tail))
         elif target == self.end:
             if group == NOWHERE:
                 level.edges.append(Edge(number, level.sink, leaf, None, tail, not tail))
             elif tail:
-                level.broken = f"'{flow.leaves[leaf].name}' leaves it"
+                level.chain_error = f"'{flow.leaves[leaf].name}' leaves it"
             else:
-                self.gates.add((leaf, target))
+                self.early_exits.add((leaf, target))
         elif target == flow.done:
-            branches = bool(flow.leaves[leaf].conditional or self.troubled(leaf))
+            branches = bool(flow.leaves[leaf].conditional or self.branch_targets(leaf))
             if group == NOWHERE and self.end is None:
                 level.edges.append(Edge(number, level.sink, leaf, None, tail, branches))
             else:
-                self.gates.add((leaf, target))
+                self.early_exits.add((leaf, target))
         elif group != NOWHERE and target == flow.round_end(group):
             level.edges.append(Edge(number, level.sink, leaf, None, tail))
         elif flow.group_of_round_end(target) is not None:
-            pass  # that of a group around, which has its own way on
-        elif target in self.apart:
-            self.gates.add((leaf, target))
+            pass  # the end of an outer group, whose own transition is added for that group
+        elif target in self.detached:
+            self.early_exits.add((leaf, target))
         else:
-            level.broken = f"'{flow.leaves[leaf].name}' leaves it"
+            level.chain_error = f"'{flow.leaves[leaf].name}' leaves it"
 
     def _without_early_ends(self, level: Level) -> list[Edge]:
-        """The edges without those that only end the mission early, if it goes on else."""
-        lasting = [edge for edge in level.edges if not edge.early]
-        goes_on = leading_to(level.successors(lasting), [level.sink])
-        kept = []
+        """Return the edges without early ends of children from which the usual end is reached."""
+        usual = [edge for edge in level.edges if not edge.early]
+        leads_to_end = leading_to(level.successors(usual), [level.sink])
+        remaining = []
         for edge in level.edges:
-            if edge.early and goes_on[edge.source]:
-                self.gates.add((edge.leaf, self.flow.done if self.end is None else self.end))
+            if edge.early and leads_to_end[edge.source]:
+                self.early_exits.add((edge.leaf, self.flow.done if self.end is None else self.end))
             else:
-                kept.append(edge)
-        return kept
+                remaining.append(edge)
+        return remaining
 
-    def set_apart(self, level: Level) -> None:
-        """Takes out of the mission's level what does not lead to its usual end."""
-        ends = leading_to(level.successors(level.edges), [level.sink])
+    def detach_early_ends(self, level: Level) -> None:
+        """Remove from the mission's level the children that do not lead to its usual end."""
+        leads_to_end = leading_to(level.successors(level.edges), [level.sink])
         last = None if self.end is None else level.child_of[self.end]
-        out = {k for k in range(len(level.children)) if not ends[k] and k != last}
-        self.apart = {leaf for leaf, k in level.child_of.items() if k in out}
-        self.gates = {(leaf, node) for leaf, node in self.gates if leaf not in self.apart}
+        out = {k for k in range(len(level.children)) if not leads_to_end[k] and k != last}
+        self.detached = {leaf for leaf, k in level.child_of.items() if k in out}
+        self.early_exits = {
+            (leaf, node) for leaf, node in self.early_exits if leaf not in self.detached
+        }
         for edge in level.edges:
             if edge.target in out and edge.source not in out and edge.entry is not None:
-                self.gates.add((edge.leaf, edge.entry))
+                self.early_exits.add((edge.leaf, edge.entry))
         if level.child_of[self.flow.initial] in out:
-            level.broken = "it does not always come to its docking station"
-        for leaf in self.apart:
-            if any(condition.max_age is not None for condition in self.asked(leaf)):
+            level.chain_error = "it does not always reach its docking station"
+        for leaf in self.detached:
+            if any(condition.max_age is not None for condition in self.conditions_after(leaf)):
                 name = self.flow.leaves[leaf].name
-                level.broken = f"'{name}', with which it may end early, asks how old a value is"
+                level.chain_error = (
+                    f"'{name}', with which it may end early, checks the age of a value"
+                )
         level.edges = [e for e in level.edges if e.source not in out and e.target not in out]

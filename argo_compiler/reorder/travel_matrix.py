@@ -1,4 +1,4 @@
-"""How long the ways of a mission take on a site: what a route problem is made from."""
+"""Travel times and energies of a mission on a site, the input of its route problem."""
 
 from dataclasses import dataclass
 
@@ -13,56 +13,56 @@ _ROUNDING = 1e-6  # of a unit, left by sums of floats
 
 @dataclass(frozen=True, eq=False)
 class TravelMatrix:
-    """Times and energies between the n tasks of a mission and c places where the robot can charge.
+    """Times and energies between the n tasks of a mission and c chargers.
 
-    A row is where the robot stands: after task i, row n where the mission starts, and from n + 1 at
-    the chargers. A column is where it goes, the action there included: to task j, and from n to the
-    chargers. The speed on a way is that of the task that it leads to.
+    A row is the robot's origin: row i after task i, row n the mission's start, rows from n + 1 the
+    chargers. A column is its destination, with the action there: column j task j, columns from n
+    the chargers. The speed of a drive is that of the task at its destination.
 
-    What is said of a WAIT counts for nothing: it takes its time where the robot stands.
+    The entries of a WAIT are ignored: it takes place where the robot is.
     """
 
     tasks: tuple[str, ...]
-    """the names of all tasks but START, in the mission's order"""
+    """names of all tasks but START, in the mission's order"""
     time: NDArray[np.float64]
-    """units, shape (n + 1 + c, n + c); inf: there is no way"""
+    """units, shape (n + 1 + c, n + c); inf if there is no path"""
     energy: NDArray[np.float64]
-    """Wh, likewise"""
+    """Wh, of the same shape"""
     work: NDArray[np.float64]
-    """units of `time` that the action takes even if the robot is there already, shape (n + c,)"""
+    """units of `time` that the action itself takes, without the drive; shape (n + c,)"""
     chargers: tuple[str, ...] = ()
-    """names"""
+    """names of the chargers"""
     battery: float | None = None
-    """Wh that may be used on one charge; None: not known"""
+    """Wh that may be used on one charge; None if unknown"""
     charging: float = 0.0
-    """W"""
+    """charging power in W"""
     unit: float = 0.1
-    """s"""
+    """length of a unit of time in s"""
 
     def __post_init__(self) -> None:
-        """Raises ArgoError if the shapes don't fit."""
+        """Check the shapes and the battery. Raises ArgoError."""
         columns = len(self.tasks) + len(self.chargers)
         shape = (columns + 1, columns)
         if self.time.shape != shape or self.energy.shape != shape or len(self.work) != columns:
-            raise Invalid(f"times, energies and work of {columns} places must be {shape}")
+            raise Invalid(f"times, energies and work of {columns} destinations must be {shape}")
         if self.chargers and (self.battery is None or self.charging <= 0.0):
-            raise Invalid("with chargers it must be known what battery they charge, and how fast")
+            raise Invalid("with chargers, the battery and the charging power must be given")
 
     def units_of_energy(self, watt_hours: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Energy (Wh) as the time that it takes to charge it, in units."""
+        """Return the time in units that it takes to charge an energy in Wh."""
         return watt_hours * 3600.0 / (self.charging * self.unit)
 
-    def up(self, seconds: float) -> int:
-        """Whole units that a time takes, the last one begun counted."""
+    def units_up(self, seconds: float) -> int:
+        """Return a time in whole units, rounded up."""
         return int(np.ceil(seconds / self.unit - _ROUNDING))
 
-    def down(self, seconds: float) -> int:
-        """Whole units that fit into a time."""
+    def units_down(self, seconds: float) -> int:
+        """Return a time in whole units, rounded down."""
         return int(np.floor(seconds / self.unit + _ROUNDING))
 
 
-def require_matrix_of(ways: TravelMatrix, mission: Mission) -> None:
-    """Raises ArgoError if the ways are those of another mission."""
+def require_matrix_for(matrix: TravelMatrix, mission: Mission) -> None:
+    """Raise ArgoError if the matrix belongs to another mission."""
     names = tuple(task.name for task in mission.tasks if task.action is not Action.START)
-    if names != ways.tasks:
-        raise Conflict("these are the ways of another mission: its tasks are others")
+    if names != matrix.tasks:
+        raise Conflict("these travel times belong to a mission with other tasks")

@@ -1,7 +1,7 @@
-"""What of a mission may change places: the tasks that every way through it passes.
+"""Units of a mission that an order may rearrange: the tasks that every execution path passes.
 
-A mission, and each round of a group, is a chain of units. Between two units lies nothing: what is
-done only in some cases belongs to the unit before it, and stays as it is written.
+A mission, and each round of a group, is a chain of units. Nothing lies between two units: tasks
+that are done only in some cases belong to the unit before them, and stay as they are written.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -16,108 +16,109 @@ from argo_compiler.reorder.task_graph import Level, TaskGraph
 
 @dataclass(frozen=True)
 class TaskUnit:
-    """A task, and with it all that may be done between it and the next unit. Leaves of the flow."""
+    """Task with all tasks that may be done between it and the next unit, as leaves of the flow."""
 
     entry: int
-    """the task that is always done first"""
+    """the leaf of the task that is always done first"""
     leaves: tuple[int, ...]
-    """in the order of the mission's list, but with the entry first and the last one last"""
+    """in the order of the mission's list, but with `entry` first and `final` last"""
     final: int | None
-    """the leaf after which the stop is always left, by no condition; None: there is none"""
+    """the only leaf from which the unit is left, and without a condition; None if there is none"""
     level: int
-    """the group that it lies in directly, or NOWHERE"""
+    """number of the innermost group around the unit, or NOWHERE"""
 
 
 @dataclass(frozen=True)
-class Circuit:
-    """A group that is entered at its start, and left at its end only."""
+class GroupUnit:
+    """Group that is entered only at its start, and left only at its end."""
 
     group: int
+    """number of the group in the flow"""
     inside: tuple["Unit", ...]
 
 
-Unit = TaskUnit | Circuit
+Unit = TaskUnit | GroupUnit
 
 
 @dataclass(frozen=True)
-class Spine:
-    """A mission as a chain of units, in the order in which it is written."""
+class UnitChain:
+    """Mission as a chain of units, in the written order."""
 
     flow: Flow
     units: tuple[Unit, ...]
     end: int | None
-    """the leaf that the mission always ends with: the way into the docking station"""
-    apart: frozenset[int]
-    """leaves from which the mission ends without the rest; they stay where they are"""
-    gates: frozenset[tuple[int, int]]
-    """leaves after which the mission may end early, and the nodes that they lead to then"""
+    """leaf that always ends the mission: the drive into the docking station; None if none"""
+    detached: frozenset[int]
+    """leaves that lead only to an early end of the mission; they keep their positions"""
+    early_exits: frozenset[tuple[int, int]]
+    """transitions that end the mission early: a leaf and the node that it leads to"""
     reasons: tuple[str, ...]
-    """why something stays as it is written"""
-    asked: Mapping[int, tuple[Condition, ...]]
-    """by leaf, what is looked at when it ends"""
+    """reasons why parts stay as they are written, for users"""
+    conditions_after: Mapping[int, tuple[Condition, ...]]
+    """by leaf, the conditions that are checked when it ends"""
     before: tuple[tuple[str, str], ...] = ()
-    """what the mission asks to come before what, by names"""
+    """pairs of task names: the first comes before the second, as the mission requires"""
 
     def name(self, leaf: int) -> str:
         return self.flow.leaves[leaf].name
 
 
-def find_spine(mission: Mission) -> Spine:
-    """The units of a mission.
+def find_unit_chain(mission: Mission) -> UnitChain:
+    """Return the units of a mission.
 
     Raises:
         DiagnosticError: `check` finds errors in the mission.
         ArgoError: a task can't be reached, or nothing leads to the mission's end.
     """
-    return _Finder(mission).spine()
+    return _Finder(mission).chain()
 
 
-def stops_of(units: Sequence[Unit]) -> Iterator[TaskUnit]:
-    """All stops, those in circuits included, in their order."""
+def task_units_in(units: Sequence[Unit]) -> Iterator[TaskUnit]:
+    """Yield all task units in order, including those in group units."""
     for unit in units:
         if isinstance(unit, TaskUnit):
             yield unit
         else:
-            yield from stops_of(unit.inside)
+            yield from task_units_in(unit.inside)
 
 
 class _Finder:
-    """Finds the units of one mission. Collects reasons."""
+    """Search for the units of one mission. Collects the reasons why parts stay as written."""
 
     def __init__(self, mission: Mission) -> None:
         self.before = mission.before
-        self.passages = TaskGraph(mission)
-        self.flow = self.passages.flow
+        self.graph = TaskGraph(mission)
+        self.flow = self.graph.flow
         self.reasons: list[str] = []
 
-    def spine(self) -> Spine:
-        passages = self.passages
-        passages.require_reachable()
+    def chain(self) -> UnitChain:
+        graph = self.graph
+        graph.require_reachable()
         units: tuple[Unit, ...] = ()
-        if passages.own and passages.end != self.flow.initial:
-            level = passages.level(NOWHERE)
-            passages.set_apart(level)
-            if level.broken:
-                raise Invalid(f"the order of this mission can't be changed: {level.broken}")
+        if graph.own_leaves and graph.end != self.flow.initial:
+            level = graph.level(NOWHERE)
+            graph.detach_early_ends(level)
+            if level.chain_error:
+                raise Invalid(f"the order of this mission can't be changed: {level.chain_error}")
             units = self._units(NOWHERE, level, self.flow.initial)
-        return Spine(
+        return UnitChain(
             self.flow,
             units,
-            passages.end,
-            frozenset(passages.apart),
-            frozenset(passages.gates),
+            graph.end,
+            frozenset(graph.detached),
+            frozenset(graph.early_exits),
             tuple(dict.fromkeys(self.reasons)),
-            {leaf: tuple(passages.asked(leaf)) for leaf in passages.own},
+            {leaf: tuple(graph.conditions_after(leaf)) for leaf in graph.own_leaves},
             self.before,
         )
 
     def _units(self, group: int, level: Level, entry: int) -> tuple[Unit, ...]:
-        """The chain of units. Each is entered at one leaf."""
+        """Return the units of a level in order. Each is entered at one leaf."""
         successors = level.successors(level.edges)
         reached = reached_from(successors, [level.child_of[entry]])
         parts = [part for part in reversed(components(successors)) if reached[part[0]]]
         position = {child: k for k, part in enumerate(parts) for child in part}
-        # No way leads past a part that all ways pass.
+        # A unit starts at each part that no edge passes over.
         farthest = list(range(len(parts)))
         for edge in level.edges:
             if edge.source in position:
@@ -134,7 +135,7 @@ class _Finder:
                 chains.append([])
             chains[-1] += part
             reach = max(reach, farthest[k])
-        chains = self._joined(level, group, chains)
+        chains = self._joined_chains(level, group, chains)
         units = []
         for number, chain in enumerate(chains):
             entries = self._entries(level, chain) if number else {entry}
@@ -142,14 +143,14 @@ class _Finder:
         return tuple(units)
 
     def _explain_loop(self, level: Level, part: Sequence[int]) -> None:
-        names = [f"'{self.passages.name(level.children[child])}'" for child in sorted(part)]
+        names = [f"'{self.graph.name(level.children[child])}'" for child in sorted(part)]
         what = names[0] if len(names) == 1 else f"{names[0]} to {names[-1]}"
         self.reasons.append(
-            f"{what} may be done again by a condition: kept as written, and reckoned once"
+            f"{what} may be done again by a condition: kept as written, and counted once"
         )
 
     def _entries(self, level: Level, chain: Sequence[int]) -> set[int]:
-        """The leaves at which a chain is entered from outside."""
+        """Return the leaves at which a chain is entered from outside."""
         inside = set(chain)
         return {
             edge.entry
@@ -157,20 +158,23 @@ class _Finder:
             if edge.target in inside and edge.source not in inside and edge.entry is not None
         }
 
-    def _joined(self, level: Level, group: int, chains: list[list[int]]) -> list[list[int]]:
-        """The chains, those made one that can't be apart: what is entered at several tasks, a WAIT
-        with what leads there, as it is done where that ends, and a condition that asks how old a
-        value is with what measures it."""
+    def _joined_chains(self, level: Level, group: int, chains: list[list[int]]) -> list[list[int]]:
+        """Return the chains, joined where two of them must stay together.
+
+        A chain with several entries joins the chain before it. So does a WAIT, which takes place
+        where the previous task ends. A condition on the age of a value is joined with the
+        measurement of that value and all chains between them.
+        """
         joined: list[list[int]] = []
         for chain in chains:
             entries = self._entries(level, chain)
-            stands = any(self.passages.stands(leaf) for leaf in entries)
-            if joined and (len(entries) != 1 or stands):
+            starts_with_wait = any(self.graph.is_wait(leaf) for leaf in entries)
+            if joined and (len(entries) != 1 or starts_with_wait):
                 joined[-1] += chain
             else:
                 joined.append(chain)
         number = {child: k for k, chain in enumerate(joined) for child in chain}
-        until = list(range(len(joined)))
+        joined_until = list(range(len(joined)))
         measured: dict[str, set[int]] = {}
         for leaf, child in level.child_of.items():
             measures = self.flow.leaves[leaf].measures
@@ -180,7 +184,7 @@ class _Finder:
             if child not in number:
                 continue
             here = number[child]
-            for condition in self.passages.asked(leaf):
+            for condition in self.graph.conditions_after(leaf):
                 if condition.max_age is None:
                     continue
                 if condition.object_id == self.flow.leaves[leaf].measures:
@@ -189,10 +193,10 @@ class _Finder:
                     if there == here or (group == NOWHERE and there > here):
                         continue
                     low, high = min(here, there), max(here, there)
-                    until[low] = max(until[low], high)
+                    joined_until[low] = max(joined_until[low], high)
                     self.reasons.append(
-                        f"'{self.flow.leaves[leaf].name}' asks how old the value of checkpoint "
-                        f"{condition.object_id} is: kept as written from its measurement on"
+                        f"'{self.flow.leaves[leaf].name}' checks the age of the value of "
+                        f"checkpoint {condition.object_id}: kept as written from its measurement on"
                     )
         result: list[list[int]] = []
         reach = -1
@@ -201,23 +205,25 @@ class _Finder:
                 result[-1] += chain
             else:
                 result.append(list(chain))
-            reach = max(reach, until[k])
+            reach = max(reach, joined_until[k])
         return result
 
     def _unit(self, group: int, level: Level, chain: list[int], entry: int) -> Unit:
-        """The unit of these children, which is entered at a leaf."""
+        """Return the unit of these children, which is entered at the leaf `entry`."""
         flow = self.flow
         if len(chain) == 1 and level.children[chain[0]] < 0:
             inner = -1 - level.children[chain[0]]
-            found = self._circuit(inner, level, chain[0], entry)
-            if isinstance(found, Circuit):
-                return found
+            unit_or_reason = self._group_unit(inner, level, chain[0], entry)
+            if isinstance(unit_or_reason, GroupUnit):
+                return unit_or_reason
             name = flow.groups[inner].name
-            self.reasons.append(f"group '{name}' is kept as written: {found}")
+            self.reasons.append(f"group '{name}' is kept as written: {unit_or_reason}")
         inside = set(chain)
         exits = [e for e in level.edges if e.source in inside and e.target not in inside]
         final = exits[0].leaf if len(exits) == 1 and exits[0].tail else None
-        if final is not None and (flow.leaves[final].conditional or self.passages.troubled(final)):
+        if final is not None and (
+            flow.leaves[final].conditional or self.graph.branch_targets(final)
+        ):
             final = None
         ends = [level.child_of[entry]]
         if final is not None and level.child_of[final] not in ends:
@@ -229,19 +235,19 @@ class _Finder:
         leaves = [leaf for child in order for leaf in by_child[child]]
         return TaskUnit(entry, tuple(leaves), final, group)
 
-    def _circuit(self, group: int, around: Level, child: int, entry: int) -> Circuit | str:
-        """The group as a circuit, or why it is none."""
+    def _group_unit(self, group: int, around: Level, child: int, entry: int) -> GroupUnit | str:
+        """Return the group as a group unit, or the reason why it is none."""
         flow = self.flow.groups[group]
         if not flow.limited:
             return "only a condition or the time of a group around it ends it"
-        if self.passages.stands(flow.start):
-            return f"it begins with '{self.flow.leaves[flow.start].name}', which is done anywhere"
+        if self.graph.is_wait(flow.start):
+            return f"it starts with '{self.flow.leaves[flow.start].name}', which is done anywhere"
         if entry != flow.start:
             return f"it is entered at '{self.flow.leaves[entry].name}', not at its start"
         if any(edge.source == edge.target == child for edge in around.edges):
             return "it is entered again by its own end"
         if any(condition.max_age is not None for condition in flow.until):
-            return "its `until` asks how old a value is"
+            return "its `until` checks the age of a value"
         leaving = [
             edge.leaf
             for edge in around.edges
@@ -249,11 +255,11 @@ class _Finder:
         ]
         if leaving:
             return f"'{self.flow.leaves[leaving[0]].name}' may leave it"
-        before = set(self.passages.gates), list(self.reasons)
-        level = self.passages.level(group)
-        if level.broken is None:
+        backup = set(self.graph.early_exits), list(self.reasons)
+        level = self.graph.level(group)
+        if level.chain_error is None:
             reached = reached_from(level.successors(level.edges), [level.child_of[flow.start]])
             if all(reached):
-                return Circuit(group, self._units(group, level, flow.start))
-        self.passages.gates, self.reasons = before
-        return level.broken or "not all of it can be reached from its start"
+                return GroupUnit(group, self._units(group, level, flow.start))
+        self.graph.early_exits, self.reasons = backup
+        return level.chain_error or "not all of it can be reached from its start"

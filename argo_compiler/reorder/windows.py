@@ -1,4 +1,4 @@
-"""Time windows of tasks, as the route problem has them."""
+"""Time windows of tasks, in the form that the route problem needs."""
 
 from argo_compiler.analysis.quantities import time_words
 from argo_compiler.base.errors import Invalid
@@ -7,33 +7,33 @@ from argo_compiler.reorder.travel_matrix import TravelMatrix
 from argo_compiler.reorder.visits import Visits
 
 
-def require_reckonable(visits: Visits) -> None:
-    """Raises Invalid where it can't be reckoned when something is done."""
-    flow = visits.spine.flow
+def require_computable_times(visits: Visits) -> None:
+    """Raise Invalid if the time of some task or the effect of its window can't be computed."""
+    flow = visits.chain.flow
     for group in flow.groups:
         if group.every:
             raise Invalid(
-                f"group '{group.name}' begins its rounds at set times: Argo can't reckon orders of "
-                "missions with planned rounds yet"
+                f"group '{group.name}' starts its rounds at set times: Argo can't compute orders "
+                "of missions with planned rounds yet"
             )
-    for leaf in visits.spine.asked:
+    for leaf in visits.chain.conditions_after:
         task = flow.leaves[leaf].leaf.task
         if task.wait is not None and task.wait.duration is None and task.wait.limit is None:
-            raise Invalid(f"how long '{task.name}' waits can't be reckoned: give it a limit")
-    inside = {leaf for _, members in visits.circuits for k in members
-              for leaf in visits.stops[k].leaves}  # fmt: skip
-    entries = {stop.entry for stop in visits.stops} - inside
-    for leaf in visits.spine.asked:
-        window = _binding(flow.leaves[leaf].leaf.task.window)
-        waits = flow.leaves[leaf].leaf.task.action is Action.WAIT
-        if window is None or (leaf in entries and not waits):
+            raise Invalid(f"how long '{task.name}' waits can't be computed: give it a limit")
+    inside = {leaf for _, members in visits.group_units for k in members
+              for leaf in visits.task_units[k].leaves}  # fmt: skip
+    entries = {unit.entry for unit in visits.task_units} - inside
+    for leaf in visits.chain.conditions_after:
+        window = _binding_window(flow.leaves[leaf].leaf.task.window)
+        is_wait = flow.leaves[leaf].leaf.task.action is Action.WAIT
+        if window is None or (leaf in entries and not is_wait):
             continue
         name = flow.leaves[leaf].name
-        if waits:
+        if is_wait:
             why = "it is a wait"
         elif leaf in inside:
-            why = "it lies in a group, and a window does not say in which round"
-        elif leaf != visits.spine.end:
+            why = "it is in a group, and a window does not state in which round"
+        elif leaf != visits.chain.end:
             why = "it is not done in all cases, or right after another task"
         elif window.earliest:
             why = "it ends the mission, and would have to wait at the place"
@@ -43,41 +43,44 @@ def require_reckonable(visits: Visits) -> None:
 
 
 class Windows:
-    """What of the windows binds an order: `earliest`, and `latest` of hard ones."""
+    """Limits that time windows set for an order: `earliest`, and the `latest` of hard windows."""
 
-    def __init__(self, visits: Visits, ways: TravelMatrix) -> None:
-        self._visits, self._ways = visits, ways
+    def __init__(self, visits: Visits, matrix: TravelMatrix) -> None:
+        self._visits, self._matrix = visits, matrix
 
-    def of_visit(self, visit: int) -> tuple[int, int | None]:
-        """When it may begin, and when it must have begun (units): in time to end by `latest`."""
-        entry = self._visits.stops[visit].entry
-        window = _binding(self._visits.task(entry).window)
+    def start_limits(self, visit: int) -> tuple[int, int | None]:
+        """Return the earliest and latest start of a visit in units, for an end by `latest`.
+
+        The latest start is None if there is no limit.
+        """
+        entry = self._visits.task_units[visit].entry
+        window = _binding_window(self._visits.task(entry).window)
         if window is None:
             return 0, None
         latest = None
         if window.hard and window.latest is not None:
-            latest = max(-1, self._ways.down(window.latest) - int(self._ways.work[entry]))
-        return self._ways.up(window.earliest), latest
+            latest = max(-1, self._matrix.units_down(window.latest) - int(self._matrix.work[entry]))
+        return self._matrix.units_up(window.earliest), latest
 
-    def words(self, visit: int) -> str | None:
-        """What the mission says of it, if it has to have ended by a time."""
-        window = _binding(self._visits.task(self._visits.stops[visit].entry).window)
+    def description(self, visit: int) -> str | None:
+        """Return the visit's window in words, or None if it sets no latest end."""
+        window = _binding_window(self._visits.task(self._visits.task_units[visit].entry).window)
         if window is None or not window.hard or window.latest is None:
             return None
-        begin = f"begun from {time_words(window.earliest)} on and " if window.earliest else ""
-        return f"{self._visits.names[visit]} {begin}done by {time_words(window.latest)}"
+        start = f"begun from {time_words(window.earliest)} on and " if window.earliest else ""
+        return f"{self._visits.names[visit]} {start}done by {time_words(window.latest)}"
 
-    def of_the_end(self) -> tuple[float, str] | None:
-        """By when the task that ends the mission has to have ended (s), and how that is said."""
-        end = self._visits.spine.end
-        window = None if end is None else _binding(self._visits.task(end).window)
+    def end_limit(self) -> tuple[float, str] | None:
+        """Return the latest end (s) of the mission's last task and its description, or None."""
+        end = self._visits.chain.end
+        window = None if end is None else _binding_window(self._visits.task(end).window)
         if end is None or window is None or window.latest is None:
             return None
-        return window.latest, f"time window of '{self._visits.spine.name(end)}'"
+        return window.latest, f"time window of '{self._visits.chain.name(end)}'"
 
 
-def _binding(window: TimeWindow | None) -> TimeWindow | None:
-    """The window, if it binds an order."""
+def _binding_window(window: TimeWindow | None) -> TimeWindow | None:
+    """Return the window if it limits an order, else None."""
     if window is None or not (window.earliest or (window.hard and window.latest is not None)):
         return None
     return window

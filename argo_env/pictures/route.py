@@ -11,7 +11,7 @@ from PIL import Image, ImageDraw
 from argo_compiler.base.model import Pose
 from argo_compiler.files.atomic_write import write_folder
 from argo_compiler.il import Action, Task
-from argo_compiler.reorder.mission import MissionRoute
+from argo_compiler.reorder.mission_problem import MissionProblem
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.problem import Tour
 from argo_env.files.folders import ANOTHER_PLACE, writing
@@ -49,7 +49,7 @@ def picture_names(site: Site) -> tuple[str, ...]:
 
 
 def write_route(
-    planned: MissionRoute,
+    planned: MissionProblem,
     route: Tour,
     navigator: Navigator,
     travel: SiteTravel,
@@ -91,7 +91,7 @@ def _name(floor: int) -> str:
 
 
 def _way(
-    planned: MissionRoute, route: Tour, navigator: Navigator, travel: SiteTravel
+    planned: MissionProblem, route: Tour, navigator: Navigator, travel: SiteTravel
 ) -> list[Moment]:
     """Where the robot is when, from its start to the mission's end."""
     here = travel.start(planned.mission)
@@ -112,19 +112,19 @@ def _way(
     return moments
 
 
-def _tasks(planned: MissionRoute, route: Tour) -> Iterator[Task]:
+def _tasks(planned: MissionProblem, route: Tour) -> Iterator[Task]:
     """The tasks that are always done, with the way into the docking station at the end."""
     visits = planned.visits
     for visit in route.order:
-        yield visits.task(visits.stops[visit].entry)
-    if visits.spine.end is not None:
-        yield visits.task(visits.spine.end)
+        yield visits.task(visits.task_units[visit].entry)
+    if visits.chain.end is not None:
+        yield visits.task(visits.chain.end)
 
 
 def _draw(
     sheet: FloorSheet,
     floor: int,
-    planned: MissionRoute,
+    planned: MissionProblem,
     route: Tour,
     old: Sequence[Moment],
     new: Sequence[Moment],
@@ -175,11 +175,11 @@ def _draw(
 
 
 def _stations(
-    planned: MissionRoute, travel: SiteTravel, site: Site
+    planned: MissionProblem, travel: SiteTravel, site: Site
 ) -> list[tuple[float, float, int, str]]:
     """Where the mission starts and ends: x, y (m), floor and name."""
     start = travel.start(planned.mission)
-    end = planned.visits.spine.end
+    end = planned.visits.chain.end
     dock = None if end is None else planned.visits.task(end).pose
     first = (start.x, start.y, site.floor_at(start.z))
     if dock is None:
@@ -189,9 +189,9 @@ def _stations(
     return [(*first, "start"), (dock.x, dock.y, site.floor_at(dock.z), "end")]
 
 
-def _place(planned: MissionRoute, visit: int, site: Site) -> tuple[float, float, int]:
+def _place(planned: MissionProblem, visit: int, site: Site) -> tuple[float, float, int]:
     """Where a visit's task is: x, y (m) and floor."""
-    task = planned.visits.task(planned.visits.stops[visit].entry)
+    task = planned.visits.task(planned.visits.task_units[visit].entry)
     if task.action is Action.MEASURE:
         checkpoint = site.measured_by(task.object_id)
         return checkpoint.position[0], checkpoint.position[1], checkpoint.floor

@@ -11,7 +11,7 @@ from argo_compiler.base.errors import Unreachable
 from argo_compiler.base.model import Pose
 from argo_compiler.base.stages import each
 from argo_compiler.il import Action, Mission, Task
-from argo_compiler.reorder.mission import MissionRoute, route_problem
+from argo_compiler.reorder.mission_problem import MissionProblem, route_problem
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.travel_matrix import TravelMatrix
 from argo_env.navigation import Navigator
@@ -31,7 +31,7 @@ def plan_mission(
     navigator: Navigator,
     requirements: Requirements,
     travel: SiteTravel | None = None,
-) -> MissionRoute:
+) -> MissionProblem:
     """The route problem of a mission on a site.
 
     Raises:

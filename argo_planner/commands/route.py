@@ -12,7 +12,7 @@ from argo_compiler.base.errors import Conflict, Invalid
 from argo_compiler.base.stages import stage
 from argo_compiler.files.loading import read_bytes
 from argo_compiler.files.mission_file import write_mission
-from argo_compiler.reorder.requirements import Requirements, What
+from argo_compiler.reorder.requirements import MissionPart, Requirements
 from argo_compiler.route.robust_spread import CAUTIOUS, SIMULATED
 from argo_env.files.folders import make_folder
 from argo_env.files.yaml_messages import message_of
@@ -191,7 +191,7 @@ def _checked(name: str, option: str, value: object) -> Requirements:
         raise Invalid(f"--{name} {option}: {message_of(fault, ())}") from None
 
 
-def _sequence(option: str) -> tuple[What, ...]:
+def _sequence(option: str) -> tuple[MissionPart, ...]:
     parts = [part.strip().removeprefix("#") for part in option.split(",")]
     if len(parts) < 2 or not all(parts):
         raise Invalid(f'--before {option}: name at least two, such as --before "8, 4"')

@@ -10,7 +10,7 @@ from rich.table import Table
 
 from argo_compiler.analysis.quantities import time_words
 from argo_compiler.il import Mission, Order
-from argo_compiler.reorder.mission import late_visits
+from argo_compiler.reorder.mission_problem import late_visits
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.robust_spread import TravelSpread
 from argo_compiler.route.tour_pauses import TourPause, pauses
@@ -75,7 +75,7 @@ def _table(found: Suggested) -> Table:
             str(written[visit] + 1),
             clock(found.seconds(before[written[visit]])),
         )
-        if along := planned.visits.along(visit):
+        if along := planned.visits.other_tasks(visit):
             table.add_row("", f"[italic]then {escape(', '.join(along))}[/]", "", "", "")
     for pause in stops.get(len(route.order), ()):
         table.add_row("", f"[italic]{escape(_pause(found, pause))}[/]", "", "", "")

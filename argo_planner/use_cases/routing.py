@@ -9,7 +9,7 @@ from argo_compiler.base.stages import stage
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.files.loading import decode_text, require_size
 from argo_compiler.il import Mission
-from argo_compiler.reorder.mission import MissionRoute, require_known
+from argo_compiler.reorder.mission_problem import MissionProblem, require_known
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.rewriting import apply_route
 from argo_compiler.route.certificate import Certificate, certify
@@ -44,7 +44,7 @@ _SAMPLES = 10_000  # of a mission, to tell how probable it is that it is in time
 class Suggested:
     """What was found for a mission on a site."""
 
-    planned: MissionRoute
+    planned: MissionProblem
     suggestion: RouteSuggestion
     travel: SiteTravel
 
@@ -69,7 +69,7 @@ class Suggested:
     def reordering(self) -> Reordering:
         """For the record of a run. Raises ArgoError if there is no order."""
         visits, route, problem = self.planned.visits, self.route, self.planned.problem
-        tasks = [visits.spine.name(stop.entry) for stop in visits.stops]
+        tasks = [visits.chain.name(stop.entry) for stop in visits.task_units]
         return Reordering(
             written=tuple(tasks),
             order=tuple(tasks[visit] for visit in route.order),

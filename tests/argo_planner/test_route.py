@@ -174,7 +174,7 @@ def test_a_refusal_says_that_waits_are_reckoned_with_their_limits(argo, tmp_path
     write_mission(waiting, tmp_path / "waiting.json")
     said = argo("route", tmp_path / "waiting.json", "--verify", status=2)
     assert "no order meets all of this if each WAIT takes its whole limit, though" in said
-    assert "Note: 'W' is reckoned with all of its limit" in said
+    assert "Note: 'W' is assumed to take its whole limit" in said
     verified = "Verified: no order meets all that is asked for if each WAIT takes its whole limit ("
     assert verified in said
 

@@ -59,7 +59,7 @@ def search_order(
     ordered = found.mission
     dropped = found.planned.visits
     left_out = tuple(
-        dropped.spine.name(dropped.stops[visit].entry) for visit in found.suggestion.dropped
+        dropped.chain.name(dropped.task_units[visit].entry) for visit in found.suggestion.dropped
     )
     return OrderFound(
         reordering=found.reordering,

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Model
-from argo_compiler.reorder.mission import require_known
+from argo_compiler.reorder.mission_problem import require_known
 from argo_compiler.reorder.requirements import Requirements
 from argo_planner.service.core.commands import CommandId, ReplacePlan
 from argo_planner.service.jobs.job import JOB_ID, AnyJob, OrderJob

@@ -1,4 +1,4 @@
-"""Random missions as people write them: tasks in a row, detours, loops, ways home, and groups."""
+"""Random missions as people write them: sequences, detours, loops, early ends, and groups."""
 
 from dataclasses import dataclass
 from itertools import count, cycle
@@ -27,21 +27,21 @@ from argo_compiler.route import Tour, evaluate
 from tests.argo_compiler.hfsm import play
 from tests.mission_writing import drive, measure
 
-HERE, DOCK = Pose(x=0, y=0, z=0), Pose(x=9, y=9, z=0)
+START_POSE, DOCK = Pose(x=0, y=0, z=0), Pose(x=9, y=9, z=0)
 OBJECTS = ("1", "2", "3", "4")
 NEVER_ABOVE = 100.0
-COUNTS = st.integers(0, 4)
-"""of rounds; 0: no limit but the time"""
+ROUND_COUNTS = st.integers(0, 4)
+"""numbers of rounds; 0 means no limit but the duration"""
 
 
 @dataclass
 class Item:
-    """A part of a mission: the tasks, or the parts of a group."""
+    """Part of a mission: some tasks, or a group with its parts."""
 
     kind: str
     name: str
     parts: tuple
-    """names of the tasks, or items"""
+    """names of the tasks; the items of a group"""
     condition: Condition | None = None
     count: int = 1
     duration: float = 0.0
@@ -58,7 +58,7 @@ def new_name(draw, numbers):
 
 
 def conditions(rising):
-    """`rising`: the value has to be higher than any that is ever measured."""
+    """Return a strategy for conditions; with `rising`, those that no measured value satisfies."""
     return st.builds(
         Condition,
         type=st.sampled_from([ConditionType.LESS, ConditionType.GREATER])
@@ -70,9 +70,9 @@ def conditions(rising):
 
 
 @st.composite
-def items(draw, numbers, kinds, depth, most, docked, calm):
-    """A row of items; the last one is a task or group."""
-    found = []
+def item_lists(draw, numbers, kinds, depth, most, docked, calm):
+    """Draw a sequence of items whose last one is a task or group."""
+    result = []
     for _ in range(draw(st.integers(1, most))):
         kind = draw(st.sampled_from(kinds))
         if kind == "home" and not docked:
@@ -80,8 +80,8 @@ def items(draw, numbers, kinds, depth, most, docked, calm):
         if kind == "group":
             if depth == 0:
                 continue
-            inside = tuple(draw(items(numbers, kinds, depth - 1, 3, docked, calm)))
-            found.append(
+            inside = tuple(draw(item_lists(numbers, kinds, depth - 1, 3, docked, calm)))
+            result.append(
                 Item(
                     "group",
                     f"G{new_name(draw, numbers)[1:]}".replace(" ", "-"),
@@ -93,11 +93,11 @@ def items(draw, numbers, kinds, depth, most, docked, calm):
         size = {"task": 1, "home": 1, "again": 1, "detour": 2, "skip": 2, "back": 2}[kind]
         parts = tuple(new_name(draw, numbers) for _ in range(size))
         rising = calm and kind in {"again", "back", "home"}
-        found.append(Item(kind, parts[0], parts, draw(conditions(rising))))
-    if not found or found[-1].kind not in {"task", "group"}:
+        result.append(Item(kind, parts[0], parts, draw(conditions(rising))))
+    if not result or result[-1].kind not in {"task", "group"}:
         name = new_name(draw, numbers)
-        found.append(Item("task", name, (name,)))
-    return found
+        result.append(Item("task", name, (name,)))
+    return result
 
 
 def _task(name, *ways):
@@ -105,18 +105,18 @@ def _task(name, *ways):
     return measure(name, *ways, object_id=name[1]) if name[0] == "M" else drive(name, *ways)
 
 
-def _lay_out(row, after, around, tasks, groups):
+def _add_tasks(row, after, outer, tasks, groups):
     for k, item in enumerate(row):
         following = row[k + 1].entry if k + 1 < len(row) else after
         onward = None if following is None else Transition(target=following)
         if item.kind == "group":
-            name = f"{around}/{item.name}" if around else item.name
-            begun = len(tasks)
-            _lay_out(item.parts, following, name, tasks, groups)
+            name = f"{outer}/{item.name}" if outer else item.name
+            first_index = len(tasks)
+            _add_tasks(item.parts, following, name, tasks, groups)
             groups.append(
                 Group(
                     name=name,
-                    start=tasks[begun].name,
+                    start=tasks[first_index].name,
                     end=tasks[-1].name,
                     max_repeat_count=item.count,
                     max_repeat_duration=item.duration,
@@ -125,22 +125,22 @@ def _lay_out(row, after, around, tasks, groups):
             )
             continue
         first, *rest = item.parts
-        held = (item.condition,)
+        guard = (item.condition,)
         inner = Transition(target=rest[0]) if rest else None
         if item.kind == "task":
             tasks.append(_task(first, onward))
         elif item.kind == "home":
-            tasks.append(_task(first, Transition(target="DOCK", conditions=held), onward))
+            tasks.append(_task(first, Transition(target="DOCK", conditions=guard), onward))
         elif item.kind == "again":
-            tasks.append(_task(first, Transition(target=first, conditions=held), onward))
+            tasks.append(_task(first, Transition(target=first, conditions=guard), onward))
         elif item.kind == "detour":
-            way = Transition(target=rest[0], conditions=held)
+            way = Transition(target=rest[0], conditions=guard)
             tasks += [_task(first, way, onward), _task(rest[0], onward)]
         elif item.kind == "skip":
-            skip = Transition(target=following, conditions=held)
+            skip = Transition(target=following, conditions=guard)
             tasks += [_task(first, inner, skip), _task(rest[0], onward)]
         else:
-            back = Transition(target=first, conditions=held)
+            back = Transition(target=first, conditions=guard)
             tasks += [_task(first, inner), _task(rest[0], onward, back)]
 
 
@@ -149,26 +149,29 @@ ALL = ("task", "task", "task", "detour", "skip", "again", "back", "home", "group
 
 @st.composite
 def missions(draw, kinds=ALL, most=5, calm=False, lasting=False):
-    """Any order. `calm`: what leads back or home never holds. `lasting`: with groups that last for
-    a time and end with a whole round."""
+    """Draw a mission in any order.
+
+    With `calm`, the conditions of loops and early ends are never satisfied. With `lasting`, some
+    groups have a duration and end with a whole round.
+    """
     docked = draw(st.booleans())
-    row = draw(items(count(1), kinds, 2, most, docked, calm))
+    row = draw(item_lists(count(1), kinds, 2, most, docked, calm))
     if lasting:
         for item in row:
             if item.kind == "group" and draw(st.booleans()):
-                item.duration, item.count = draw(st.integers(1, 90).map(float)), draw(COUNTS)
+                item.duration, item.count = draw(st.integers(1, 90).map(float)), draw(ROUND_COUNTS)
     tasks, groups = [], []
-    _lay_out(row, "DOCK" if docked else None, "", tasks, groups)
+    _add_tasks(row, "DOCK" if docked else None, "", tasks, groups)
     if draw(st.booleans()):
         ways = (Transition(target=row[0].entry),)
-        tasks.insert(0, Task(name="START", action=Action.START, pose=HERE, transitions=ways))
+        tasks.insert(0, Task(name="START", action=Action.START, pose=START_POSE, transitions=ways))
     if docked:
         tasks.append(Task(name="DOCK", action=Action.WAYPOINT, pose=DOCK))
     return Mission(order=Order.ANY, tasks=tuple(tasks), groups=tuple(groups), dock=DOCK)
 
 
-def random_ways(mission, rng, most=20):
-    """Made-up times between the tasks, no two alike on the way out and back."""
+def random_matrix(mission, rng, most=20):
+    """Return random times between the tasks, which differ by direction."""
     names = tuple(t.name for t in mission.tasks if t.action is not Action.START)
     n = len(names)
     work = np.array([float(rng.integers(0, 3)) if name.startswith("M") else 0.0 for name in names])
@@ -178,7 +181,7 @@ def random_ways(mission, rng, most=20):
 
 @st.composite
 def with_waits(draw, mission):
-    """The mission with WAITs after some of its tasks."""
+    """Draw the mission with WAITs after some of its tasks."""
     tasks, groups = [], list(mission.groups)
     for task in mission.tasks:
         if task.action is Action.START or task.name == "DOCK" or draw(st.booleans()):
@@ -196,7 +199,7 @@ def with_waits(draw, mission):
 
 @st.composite
 def with_branches(draw, mission):
-    """The mission with failures that lead to later tasks."""
+    """Draw the mission with failures that lead to later tasks."""
     names = [task.name for task in mission.tasks if task.action is not Action.START]
     tasks = []
     for task in mission.tasks:
@@ -211,14 +214,14 @@ def with_branches(draw, mission):
 
 @st.composite
 def with_windows(draw, mission):
-    """The mission with hard windows of tasks outside of groups, wide enough for some orders."""
-    inside, around = set(), None
+    """Draw the mission with hard windows outside of groups, wide enough for some orders."""
+    inside, outer = set(), None
     ends = {g.start: g.end for g in mission.groups if "/" not in g.name}
     tasks = []
     for task in mission.tasks:
-        around = around or ends.get(task.name)
-        inside |= {task.name} if around else set()
-        around = None if around == task.name else around
+        outer = outer or ends.get(task.name)
+        inside |= {task.name} if outer else set()
+        outer = None if outer == task.name else outer
         plain = task.action in (Action.MEASURE, Action.WAYPOINT) and task.name != "DOCK"
         if plain and task.name not in inside and draw(st.booleans()):
             earliest = draw(st.sampled_from([0, 0, 20, 70]))
@@ -230,8 +233,8 @@ def with_windows(draw, mission):
 
 
 @dataclass
-class Done:
-    """What a run did."""
+class Run:
+    """Result of a run: tasks in the order of execution, and the time of its end."""
 
     tasks: list
     time: float
@@ -239,46 +242,45 @@ class Done:
     outcome: object = None
 
 
-def carry_out(mission, ways, values, steps=400, fails=frozenset()):
-    """Runs a mission with a robot that takes the ways' times, and waits at the place as it is told.
+def run_mission(mission, matrix, values, steps=400, fails=frozenset()):
+    """Execute a mission with a robot that takes the times of the matrix and keeps windows.
 
-    `values`: for each checkpoint what its measurements show, one after the other and then again
-    from the first. `fails`: names of tasks whose actions fail.
+    `values` are the measured values of each checkpoint, used in turn and then again from the first.
+    `fails` are the names of tasks whose actions fail.
     """
-    number = {name: k for k, name in enumerate(ways.tasks)}
-    shown = {object_id: cycle(found) for object_id, found in values.items()}
-    done = []
+    number = {name: k for k, name in enumerate(matrix.tasks)}
+    readings = {object_id: cycle(sequence) for object_id, sequence in values.items()}
+    visited = []
 
-    def doing(command, now):
+    def execute_action(command, now):
         task, to = command.task, number[command.task.name]
-        place = number[done[-1]] if done else len(ways.tasks)
-        work = ways.work[to]
-        there = now + (ways.time[place, to] - work) * ways.unit
+        origin = number[visited[-1]] if visited else len(matrix.tasks)
+        work = matrix.work[to]
+        arrival = now + (matrix.time[origin, to] - work) * matrix.unit
 
-        def told():
-            done.append(task.name)
+        def action_event():
+            visited.append(task.name)
             if task.name in fails:
                 return ActionFailed(task.name, "failed")
             measures = task.action is Action.MEASURE
             return ActionSucceeded(
-                task.name, float(next(shown[task.object_id])) if measures else None
+                task.name, float(next(readings[task.object_id])) if measures else None
             )
 
-        return max(there, command.not_before or 0.0) + work * ways.unit, told
+        return max(arrival, command.not_before or 0.0) + work * matrix.unit, action_event
 
-    executor, _, now = play.carry_out(mission, doing, steps)
-    return Done(done, now, executor.finished, executor.outcome)
+    executor, _, now = play.carry_out(mission, execute_action, steps)
+    return Run(visited, now, executor.finished, executor.outcome)
 
 
-def shuffled(planned, rng, swaps=30):
-    """A feasible order that differs from the written one: neighbours are exchanged, all the time
-    within what the problem asks for, limits of time apart."""
+def random_order(planned, rng, swaps=30):
+    """Return a random feasible order, made from the written one by feasible exchanges of units."""
     order = list(planned.written.order)
-    levels = [planned.visits.spine.units, *(c.inside for c, _ in planned.visits.circuits)]
+    levels = [planned.visits.chain.units, *(c.inside for c, _ in planned.visits.group_units)]
     levels = [level for level in levels if len(level) > 1]
     for _ in range(swaps if levels else 0):
         level = levels[rng.integers(len(levels))]
-        blocks = [sorted(order.index(k) for k in planned.visits.numbers((u,))) for u in level]
+        blocks = [sorted(order.index(k) for k in planned.visits.visits_in((u,))) for u in level]
         blocks.sort()
         k = int(rng.integers(len(blocks) - 1))
         a, b = blocks[k], blocks[k + 1]

@@ -1,0 +1,62 @@
+"""Assumptions about a run that the times of an order are computed with."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from argo_compiler.analysis.quantities import time_words
+from argo_compiler.il import Action
+from argo_compiler.reorder.travel_matrix import TravelMatrix
+from argo_compiler.reorder.visits import Visits
+
+
+def assumption_notes(visits: Visits, matrix: TravelMatrix) -> Iterator[str]:
+    """Yield the notes for users about assumptions on single tasks and groups.
+
+    They concern rounds and WAITs that may end earlier, rounds that may end in the middle, and
+    actions that may not end within their time limits.
+    """
+    for leaf in _waits_of_unknown_length(visits):
+        yield f"'{visits.task(leaf).name}' is assumed to take its whole limit"
+    for leaf in _leaves_beyond_limit(visits, matrix):
+        limit = time_words(visits.task(leaf).time_limit or 0.0)
+        yield (
+            f"'{visits.task(leaf).name}' may take longer than its time limit, {limit}, depending "
+            "on where the robot comes from: computed as if it had none"
+        )
+    for group_unit, _ in visits.group_units:
+        group = visits.chain.flow.groups[group_unit.group]
+        if group.hard:
+            yield f"'{group.name}' is left where its time is up: computed from its farthest task"
+        if group.until:
+            yield f"'{group.name}' is assumed to have as many rounds as it may have"
+
+
+def assumptions(visits: Visits, matrix: TravelMatrix) -> Iterator[str]:
+    """Yield, in words, the conditions under which a run takes the computed time of its order."""
+    if _waits_of_unknown_length(visits):
+        yield "each WAIT takes its whole limit"
+    if _leaves_beyond_limit(visits, matrix):
+        yield "no time limit ends an action"
+    if any(
+        visits.chain.flow.groups[group_unit.group].until for group_unit, _ in visits.group_units
+    ):
+        yield "each group has as many rounds as it may have"
+
+
+def _waits_of_unknown_length(visits: Visits) -> list[int]:
+    """Return the leaves of WAITs that may end before their limit."""
+    waits = ((leaf, visits.task(leaf).wait) for leaf in visits.visit_of_leaf)
+    return [leaf for leaf, wait in waits if wait is not None and wait.duration is None]
+
+
+def _leaves_beyond_limit(visits: Visits, matrix: TravelMatrix) -> list[int]:
+    """Return the leaves that take longer than their time limits from some pose."""
+    longest = np.max(matrix.time, axis=0, where=np.isfinite(matrix.time), initial=0.0)
+    leaves = []
+    for leaf in range(len(matrix.tasks)):
+        task = visits.task(leaf)
+        limit = None if task.action is Action.WAIT else task.time_limit
+        if limit is not None and longest[leaf] > matrix.units_down(limit):
+            leaves.append(leaf)
+    return leaves

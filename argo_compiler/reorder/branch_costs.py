@@ -1,0 +1,205 @@
+"""Costs of the conditional tasks between a task that is always done and the next such task.
+
+The costs are those of the worst case, or the mean where the probability of each transition is
+known. Transitions that lead back are ignored: tasks in a conditional loop count once.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_compiler.reorder.units import TaskUnit, UnitChain
+
+Costs = NDArray[np.float64]
+"""indexed by the leaf that the robot comes from and the destination; leaves come first"""
+Row = NDArray[np.float64]
+"""indexed by destination"""
+Probabilities = Mapping[tuple[int, int], float]
+"""probability of each conditional transition, by the leaves that it connects"""
+
+
+@dataclass(frozen=True)
+class _Exit:
+    """Transition from a leaf of a unit."""
+
+    target: int | None
+    """next leaf in the same unit; None if the transition leaves the unit"""
+    extra: float
+    """cost of the further rounds of groups that end here"""
+    probability: float | None
+    """None if unknown"""
+
+
+class BranchCosts:
+    """Computation of the costs of a chain's units. Caches the numbers of rounds of its groups."""
+
+    def __init__(
+        self,
+        chain: UnitChain,
+        time: Costs,
+        energy: Costs,
+        seconds: float,
+        probabilities: Probabilities,
+    ):
+        """Store the costs: `time` in units of `seconds` each, `energy` in any unit."""
+        self._chain, self._time, self._energy = chain, time, energy
+        self._seconds, self._probabilities = seconds, probabilities
+        self._rounds: dict[int, float] = {}
+
+    def time(self, unit: TaskUnit) -> Row:
+        """Return the times from the end of a unit's first task to the end of each destination."""
+        return self._row(unit, self._time, self._probabilities)
+
+    def inner_time(self, unit: TaskUnit) -> float:
+        """Return the time from the end of a unit's first task to the end of its last one."""
+        if len(unit.leaves) == 1:
+            return 0.0
+        inside, costs = frozenset(unit.leaves), self._time
+        rows = self._after(
+            unit.entry, inside, unit.level, costs, self._probabilities, lambda _: np.zeros(1)
+        )
+        return float(rows[0])
+
+    def energy(self, unit: TaskUnit) -> Row:
+        """Return the energies for the same part as `time`, always in the worst case."""
+        return self._row(unit, self._energy, {})
+
+    def _row(self, unit: TaskUnit, costs: Costs, probabilities: Probabilities) -> Row:
+        if len(unit.leaves) == 1 and not self._chain.flow.leaves[unit.entry].conditional:
+            row: Row = costs[unit.entry]
+            return row
+        return self._after(
+            unit.entry,
+            frozenset(unit.leaves),
+            unit.level,
+            costs,
+            probabilities,
+            lambda leaf: costs[leaf],
+        )
+
+    def _after(
+        self,
+        entry: int,
+        inside: frozenset[int],
+        level: int,
+        costs: Costs,
+        probabilities: Probabilities,
+        leaving: Callable[[int], Row],
+    ) -> Row:
+        """Return the costs after the end of the entry; `leaving` gives those from the last leaf."""
+        exits = {leaf: self._exits(leaf, inside, level, costs, probabilities) for leaf in inside}
+        order, back = _depth_first(entry, {k: [o.target for o in v] for k, v in exits.items()})
+        values: dict[int, Row] = {}
+        for leaf in order:
+            options: list[tuple[Row, float | None]] = []
+            for exit_ in exits[leaf]:
+                if exit_.target is None:
+                    options.append((exit_.extra + leaving(leaf), exit_.probability))
+                elif (leaf, exit_.target) not in back:
+                    step = costs[leaf, exit_.target] + exit_.extra
+                    options.append((step + values[exit_.target], exit_.probability))
+            values[leaf] = _combined(options, np.full_like(leaving(leaf), -np.inf))
+        return values[entry]
+
+    def _exits(
+        self,
+        leaf: int,
+        inside: frozenset[int],
+        level: int,
+        costs: Costs,
+        probabilities: Probabilities,
+    ) -> list[_Exit]:
+        gates = self._chain.early_exits
+        by_target: dict[int, float | None] = {
+            target: probabilities.get((leaf, target))
+            for _, target in self._chain.flow.leaves[leaf].conditional
+            if (leaf, target) not in gates
+        }
+        exits = [
+            _Exit(t if t in inside else None, 0.0, probability)
+            for t, probability in by_target.items()
+        ]
+        node, extra = self._tail(leaf, level, costs)
+        if node is not None and (leaf, node) not in gates:
+            known = [p for p in by_target.values() if p is not None]
+            rest = max(0.0, 1.0 - sum(known)) if len(known) == len(by_target) else None
+            exits.append(_Exit(node if node in inside else None, extra, rest))
+        return exits
+
+    def _tail(self, leaf: int, level: int, costs: Costs) -> tuple[int | None, float]:
+        """Return the unconditional target after all groups that end here, and their extra cost.
+
+        The groups are those below `level`; the extra cost is that of their further rounds. The
+        target is None if one of them is endless.
+        """
+        flow = self._chain.flow
+        node, extra = flow.leaves[leaf].tail, 0.0
+        group = flow.group_of_round_end(node)
+        while group is not None and group != level:
+            if not flow.groups[group].may_end:
+                return None, 0.0
+            extra += self._further_rounds(group, costs)
+            node = flow.groups[group].onward
+            group = flow.group_of_round_end(node)
+        return node, extra
+
+    def _further_rounds(self, number: int, costs: Costs) -> float:
+        """Return the cost of a group's rounds after the first one."""
+        group = self._chain.flow.groups[number]
+        round_ = self._after(
+            group.start,
+            frozenset(range(group.first, group.last + 1)),
+            number,
+            costs,
+            {},
+            lambda leaf: np.array([0.0 if leaf == group.last else -np.inf]),
+        )
+        period = float(costs[group.last, group.start] + round_[0])
+        if number not in self._rounds:  # first set for times, and then used for energies as well
+            rounds = group.count or np.inf
+            if group.duration and period > 0.0:
+                rounds = min(rounds, 1 + np.ceil(group.duration / self._seconds / period))
+            self._rounds[number] = rounds if np.isfinite(rounds) else 1.0
+        return max(0.0, (self._rounds[number] - 1) * period)
+
+
+def _combined(options: list[tuple[Row, float | None]], default: Row) -> Row:
+    """Return the mean of the options if all probabilities are known, else the worst."""
+    if not options:
+        return default
+    known = [p for _, p in options if p is not None]
+    if len(known) == len(options) and sum(known) > 0.0:
+        # 0 times inf is not a number, and an option that is never taken is not part of the mean.
+        parts = [p * row for (row, _), p in zip(options, known, strict=True) if p > 0.0]
+        return np.asarray(np.sum(parts, axis=0) / sum(known))
+    return np.asarray(np.max([row for row, _ in options], axis=0))
+
+
+def _depth_first(
+    entry: int, following: Mapping[int, list[int | None]]
+) -> tuple[list[int], set[tuple[int, int]]]:
+    """Return the nodes reached, each after its successors, and the edges that lead back."""
+    order: list[int] = []
+    back: set[tuple[int, int]] = set()
+    is_done = {entry: False}
+    stack = [(entry, 0)]
+    while stack:
+        node, at = stack.pop()
+        targets = following[node]
+        while at < len(targets):
+            target = targets[at]
+            at += 1
+            if target is None or is_done.get(target):
+                continue
+            if target in is_done:
+                back.add((node, target))
+                continue
+            is_done[target] = False
+            stack += [(node, at), (target, 0)]
+            break
+        else:
+            is_done[node] = True
+            order.append(node)
+    return order, back

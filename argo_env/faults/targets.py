@@ -7,7 +7,7 @@ from argo_env.drives.powertrain import Powertrain
 from argo_env.sensing.onboard import OnboardSensor
 from argo_env.surroundings import Surroundings
 from argo_env.surroundings.surroundings import RadioNetwork
-from argo_env.world.paper_world import AnyWorld
+from argo_env.world.without_physics import AnyWorld
 
 
 @dataclass(frozen=True)

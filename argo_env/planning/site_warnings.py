@@ -41,10 +41,10 @@ def _why_unseen(task: Task, pose: Pose, navigator: "Navigator") -> str | None:
     from argo_env.robot.pose import BodyPose
     from argo_env.sensing.ideal import IdealSensor
     from argo_env.sensing.sensor import MeasurementError
-    from argo_env.world.paper_world import PaperWorld
+    from argo_env.world.without_physics import WorldWithoutPhysics
 
     checkpoint = navigator.site.measured_by(task.object_id)
-    world = PaperWorld(navigator.site, navigator.robot)
+    world = WorldWithoutPhysics(navigator.site, navigator.robot)
     sensor = IdealSensor(world, navigator.robot, {checkpoint.id: checkpoint.nominal.low})
     try:
         place = navigator.snap(pose)

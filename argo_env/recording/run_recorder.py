@@ -269,7 +269,7 @@ class RunRecorder(Observer):
         """The checkpoints where they really are."""
         assert self._setup is not None
         world = self._setup.world
-        return [world.in_place(c.id) for c in world.site.checkpoints]
+        return [world.actual_checkpoint(c.id) for c in world.site.checkpoints]
 
     def _draw_checkpoints(self, now: float) -> None:
         self._drawn = self._checkpoints()

@@ -33,7 +33,7 @@ from argo_env.run.robot import ActionEnd, RobotAction, Sensed
 from argo_env.run.run_setup import RunSetup
 from argo_env.sensing.sensor import Measurement, MeasurementError
 from argo_env.site import Site
-from argo_env.world.paper_world import PaperWorld
+from argo_env.world.without_physics import WorldWithoutPhysics
 
 _log = logging.getLogger(__name__)
 
@@ -222,7 +222,9 @@ class RemoteRobot:
         self._channel, self._run, self._clock, self._sleep = channel, run, clock, sleep
         site, robot = navigator.site, navigator.robot
         self._drive = ToldDrive(time_step, BodyPose(0.0, 0.0, 0.0, 0.0))
-        self.setup = RunSetup(PaperWorld(site, robot), navigator, self._drive, ToldSensor())
+        self.setup = RunSetup(
+            WorldWithoutPhysics(site, robot), navigator, self._drive, ToldSensor()
+        )
         self.odometry = Odometry(site)
         self.supply = ToldPower()
         self._offset = 0.0  # of the clock from the run's time

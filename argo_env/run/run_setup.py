@@ -29,7 +29,7 @@ from argo_env.sensing.watch import Watch
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.surroundings import Surroundings
 from argo_env.surroundings.surroundings import RadioNetwork
-from argo_env.world.paper_world import AnyWorld, PaperWorld
+from argo_env.world.without_physics import AnyWorld, WorldWithoutPhysics
 from argo_env.world.world import World
 
 
@@ -122,7 +122,7 @@ def make_run_setup(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitSt
     if spec.drive == ROUTE:
         if gui:
             raise Invalid(f"the drive `{spec.drive}` has no world to show in a window")
-        world = PaperWorld(site, robot)
+        world = WorldWithoutPhysics(site, robot)
         inner: Drive = RouteDrive(robot)
         camera: Sensor = IdealSensor(world, robot, truth)
     else:

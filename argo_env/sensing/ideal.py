@@ -10,7 +10,7 @@ from argo_env.robot.spec import RobotSpec
 from argo_env.seeding import draw
 from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError
 from argo_env.site import Site
-from argo_env.world.paper_world import AnyWorld
+from argo_env.world.without_physics import AnyWorld
 
 
 class IdealSensor:
@@ -28,7 +28,7 @@ class IdealSensor:
 
         Raises MeasurementError if the camera can't see the face from this pose.
         """
-        checkpoint = self._world.in_place(checkpoint_id)
+        checkpoint = self._world.actual_checkpoint(checkpoint_id)
         sensor = self._robot.sensor
         camera = camera_positions(np.array([[pose.x, pose.y, pose.z, pose.yaw]]), self._robot)[0]
         target = sight_target(checkpoint)

@@ -1,1 +1,1 @@
-"""What the robot touches, sees and stands on: the PyBullet world, and the one on paper."""
+"""Simulated worlds: one in PyBullet, and one without physics."""

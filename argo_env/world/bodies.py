@@ -1,4 +1,4 @@
-"""The bodies of a site, its checkpoints and the robot in PyBullet: what is where, by name."""
+"""Bodies of a site, its checkpoints and the robot in PyBullet, with their names and poses."""
 
 import math
 import tempfile
@@ -20,26 +20,25 @@ from argo_env.site.index import ElementIndex
 from argo_env.site.shapes import WALKING_ROLES, Box, Element, Solid, Vector, half_extents
 from argo_env.site.urdf import to_urdf
 from argo_env.world.clearance import Clearance, SolidBounds
-from argo_env.world.placement import AS_PLANNED, Placement, displaced
+from argo_env.world.placement import AS_PLANNED, Placement, displaced_checkpoint
 from argo_env.world.pybullet_client import Connection, pybullet
 
-_RAY_BIT, _ROBOT_BIT = 1, 2  # PyBullet's rays are of the first group, whatever they look for
+_RAY_BIT, _ROBOT_BIT = 1, 2  # PyBullet's rays are in the first group, whatever their mask
 SITE_BIT = 4
 """collision filter group of all but the robot"""
-_HIT_BY = _RAY_BIT | _ROBOT_BIT  # not by its like: nothing of the site moves, and it takes long
-STANDING = ("_track", "_flipper")
-"""how the names of the links end that the robot stands on"""
-_INDICATOR = 0.15  # m that a needle or lever reaches beyond where it is now, at most
-_BESIDE = np.array([0.25, 0.25, 0.0])  # m around a checkpoint that count as near it
-_SITES = 4  # whose solids' bounds are remembered
+_SITE_MASK = _RAY_BIT | _ROBOT_BIT  # the site does not move, so it need not collide with itself
+STANDING_LINKS = ("_track", "_flipper")
+"""endings of the names of the links that the robot stands on"""
+_INDICATOR = 0.15  # m by which a needle or lever may extend the box around a checkpoint, at most
+_NEAR_CHECKPOINT = np.array([0.25, 0.25, 0.0])  # m around a checkpoint that count as near it
+_CACHED_SITES = 4  # whose solids' bounds are cached
 
 
 class Bodies(Connection):
-    """A site with its checkpoints and a robot. Holds a connection, and where everything is.
+    """Site with its checkpoints and a robot, as bodies in PyBullet. It holds all poses.
 
-    Nothing moves by itself here: everything is put where it is to be. PyBullet is told where the
-    robot is when it is asked about it: a robot that drives in the open is put to many places about
-    which nobody asks.
+    Nothing moves by itself: callers set all poses. PyBullet receives the robot's pose and joints
+    only before a query, since most poses of a robot that drives in the open are never queried.
     """
 
     def __init__(
@@ -50,8 +49,15 @@ class Bodies(Connection):
         elements: tuple[Element, ...],
         drawn: bool,
     ) -> None:
-        """`elements`: the solids that are really there; `drawn`: whether pictures show anything of
-        all this, which takes twice as long to load."""
+        """Load all bodies.
+
+        Args:
+            site: site as planned.
+            robot: description of the robot.
+            gui: True to open a window.
+            elements: actual solids of the site.
+            drawn: True to load what pictures show; without it, loading takes half the time.
+        """
         super().__init__(gui)
         self._gui = gui
         self._drawn = gui or drawn
@@ -61,62 +67,65 @@ class Bodies(Connection):
         self._placements: dict[int, Placement] = {}
         self._pose = BodyPose(0.0, 0.0, 0.0, 0.0)
         self._posture: dict[str, float] = {}
-        self._untold: dict[str, float] = {}  # joints that PyBullet has elsewhere, or may have
-        self._astray = False  # whether PyBullet has the robot elsewhere, or may have
-        self._envelope: tuple[SolidBounds, SolidBounds] | None = None  # in this posture
-        self._clearance: Clearance | None = None  # of what stands where it stands now
-        self._objects: SolidBounds | None = None  # around each checkpoint where it stands now
-        self._moved = True  # whether anything but the robot has, since collisions were looked for
+        self._unsynced_joints: dict[str, float] = {}  # positions that PyBullet may not have yet
+        self._pose_unsynced = False  # True if PyBullet may not have the robot's pose yet
+        # Caches; None if joints or checkpoints were moved since they were computed.
+        self._robot_bounds: tuple[SolidBounds, SolidBounds] | None = None
+        self._clearance: Clearance | None = None
+        self._checkpoint_bounds: SolidBounds | None = None  # one box for each checkpoint
+        self._scene_changed = True  # True if other bodies moved since the last collision detection
         self._screens: dict[int, str] = {}
         with tempfile.TemporaryDirectory() as folder:
-            made = Path(folder)
-            self._site_body = self._load_site(made)
-            self._checkpoints = {c.id: self._load_checkpoint(c, made) for c in site.checkpoints}
-            robot_file = self._as_drawn(robot_folder() / robot.urdf, made)
+            temporary = Path(folder)
+            self._site_body = self._load_site(temporary)
+            self._checkpoints = {
+                c.id: self._load_checkpoint(c, temporary) for c in site.checkpoints
+            }
+            robot_file = self._body_file(robot_folder() / robot.urdf, temporary)
             self._robot_body = self._load(robot_file, fixed=False)
         self._site_links = self._links(self._site_body)
         self._robot_links = self._links(self._robot_body)
         self._joints = self._joint_indices(self._robot_body)
-        self._walking = {e.material for e in elements if e.role in WALKING_ROLES}
+        self._walkable_materials = {e.material for e in elements if e.role in WALKING_ROLES}
         self._filter(self._robot_body, _ROBOT_BIT, SITE_BIT)
         for body in (self._site_body, *self._checkpoints.values()):
-            self._filter(body, SITE_BIT, _HIT_BY)
+            self._filter(body, SITE_BIT, _SITE_MASK)
         self.move_arm(robot.arm_stowed)
 
     @property
     def solids(self) -> tuple[Element, ...]:
-        """The solids that are really there, checkpoints apart."""
+        """Actual solids of the site, without its checkpoints."""
         return self._solids
 
     def place_robot(self, pose: BodyPose) -> None:
-        """Puts the robot there, whatever is in the way."""
-        self._pose, self._astray = pose, True
+        """Set the robot's pose, without regard to obstacles."""
+        self._pose, self._pose_unsynced = pose, True
         if self._gui:
-            self._tell()
+            self._sync_robot()
 
     def set_joints(self, positions: Mapping[str, float]) -> None:
-        """Puts joints of the robot to positions (rad), by name."""
+        """Set joints of the robot to positions (rad), by name."""
         for name, position in positions.items():
             if self._posture.get(name) != position:
-                self._posture[name], self._envelope = position, None
-            self._untold[name] = position
+                self._posture[name], self._robot_bounds = position, None
+            self._unsynced_joints[name] = position
         if self._gui:
-            self._tell()
+            self._sync_robot()
 
     def joint_positions(self, names: Sequence[str]) -> list[float]:
-        """Positions (rad) of joints of the robot, by name."""
-        self._tell()
+        """Return the positions (rad) of joints of the robot, in the order of their names."""
+        self._sync_robot()
         states = pybullet.getJointStates(
             self._robot_body, [self._joints[n] for n in names], physicsClientId=self._client
         )
         return [state[0] for state in states]
 
     def move_arm(self, joints: Mapping[str, float]) -> None:
-        """Puts the arm's joints to positions in degrees, such as the robot's `arm_stowed`."""
+        """Set the arm's joints to positions in degrees, such as the robot's `arm_stowed`."""
         self.set_joints({name: math.radians(angle) for name, angle in joints.items()})
 
     def show_value(self, checkpoint_id: int, value: float) -> None:
-        """Moves the needle, float or lever of a checkpoint to a value in its unit."""
+        """Move the needle, float or lever of a checkpoint to a value in its unit."""
         checkpoint = self.site.checkpoint(checkpoint_id)
         share = (value - checkpoint.range.low) / (checkpoint.range.high - checkpoint.range.low)
         position = {
@@ -127,29 +136,39 @@ class Bodies(Connection):
         body = self._checkpoints[checkpoint_id]
         joint = self._joint_indices(body)["indicator"]
         pybullet.resetJointState(body, joint, position, physicsClientId=self._client)
-        self._moved = True
+        self._scene_changed = True
 
     def displace(self, checkpoint_id: int, placement: Placement) -> None:
-        """Puts a checkpoint elsewhere than planned; NotFound if there is no such checkpoint."""
+        """Move a checkpoint away from its planned pose.
+
+        Raises NotFound if there is no such checkpoint.
+        """
         planned = self.site.checkpoint(checkpoint_id)
         self._placements[checkpoint_id] = placement
-        actual = self.in_place(checkpoint_id)
+        actual = self.actual_checkpoint(checkpoint_id)
         rpy = (placement.roll, 0.0, planned.yaw + placement.turn)
         self._place(self._checkpoints[checkpoint_id], actual.position, rpy)
-        self._moved, self._clearance, self._objects = True, None, None
+        self._scene_changed, self._clearance, self._checkpoint_bounds = True, None, None
         self._detect()
 
     def placement(self, checkpoint_id: int) -> Placement:
-        """How a checkpoint stands against the plan."""
+        """Return the displacement of a checkpoint from its planned pose."""
         return self._placements.get(checkpoint_id, AS_PLANNED)
 
-    def in_place(self, checkpoint_id: int) -> SiteCheckpoint:
-        """The checkpoint where it really is; NotFound if there is no such checkpoint."""
-        return displaced(self.site.checkpoint(checkpoint_id), self.placement(checkpoint_id))
+    def actual_checkpoint(self, checkpoint_id: int) -> SiteCheckpoint:
+        """Return the checkpoint with its actual pose.
+
+        Raises NotFound if there is no such checkpoint.
+        """
+        return displaced_checkpoint(
+            self.site.checkpoint(checkpoint_id), self.placement(checkpoint_id)
+        )
 
     def add_screen(self, name: str, solid: Solid, colour: Vector) -> int:
-        """Puts something in the way of sight, of a colour (red, green and blue from 0 to 1).
-        Returns its number."""
+        """Add a solid that blocks lines of sight, and return its number.
+
+        `colour` is red, green and blue from 0 to 1.
+        """
         client = self._client
         shape: dict[str, Any]
         drawn: dict[str, Any]
@@ -170,83 +189,85 @@ class Bodies(Connection):
             pybullet.getQuaternionFromEuler(solid.rpy),
             physicsClientId=client,
         )
-        self._filter(body, SITE_BIT, _HIT_BY)
+        self._filter(body, SITE_BIT, _SITE_MASK)
         self._screens[body] = name
         self._detect()
         return body
 
     def remove_screen(self, number: int) -> None:
-        """Takes away what `add_screen` has put there; KeyError if it is not there."""
+        """Remove a solid that `add_screen` has added; raise KeyError if there is none."""
         del self._screens[number]
         pybullet.removeBody(number, physicsClientId=self._client)
         self._detect()
 
-    def only_solids_between(self, low: Vector, high: Vector) -> bool:
-        """Whether no checkpoint is near a box (m), and nothing else moves."""
-        box = SolidBounds(np.array(low) - _BESIDE, np.array(high) + _BESIDE)
-        return not self._screens and not self._around_checkpoints().overlapping(box).any()
+    def has_only_solids_between(self, low: Vector, high: Vector) -> bool:
+        """Return True if a box (m) has no checkpoint near it, and there are no screens."""
+        box = SolidBounds(np.array(low) - _NEAR_CHECKPOINT, np.array(high) + _NEAR_CHECKPOINT)
+        return not self._screens and not self._bounds_of_checkpoints().overlapping(box).any()
 
-    def _around_checkpoints(self) -> SolidBounds:
-        """The boxes in which the checkpoints are, wherever their indicators."""
-        if self._objects is None:
+    def _bounds_of_checkpoints(self) -> SolidBounds:
+        """Return one box around each checkpoint, for any position of its indicator."""
+        if self._checkpoint_bounds is None:
             boxes = [self._box(b, self._links(b)) for b in self._checkpoints.values()]
             low = np.array([box.low for box in boxes]).reshape(-1, 3)
             high = np.array([box.high for box in boxes]).reshape(-1, 3)
-            self._objects = SolidBounds(low - _INDICATOR, high + _INDICATOR)
-        return self._objects
+            self._checkpoint_bounds = SolidBounds(low - _INDICATOR, high + _INDICATOR)
+        return self._checkpoint_bounds
 
     def _is_clear(self) -> bool:
-        """Whether the robot surely has no contact with anything that it must not touch."""
+        """Return True if the robot surely has no contact with anything that it must not touch."""
         return self._is_clear_at(self._pose)
 
     def _is_clear_at(self, pose: BodyPose) -> bool:
-        """Whether it would surely have none there."""
-        if self._moved or self._screens:
+        """Return True if the robot would surely have no such contact at `pose`."""
+        if self._scene_changed or self._screens:
             return False
         if self._clearance is None:
-            solids, walking = _bounds_of(self._solids)
-            objects = self._around_checkpoints()
+            solids, are_walkable = _bounds_of(self._solids)
+            checkpoints = self._bounds_of_checkpoints()
             self._clearance = Clearance(
                 SolidBounds(
-                    np.concatenate([solids.low, objects.low]),
-                    np.concatenate([solids.high, objects.high]),
+                    np.concatenate([solids.low, checkpoints.low]),
+                    np.concatenate([solids.high, checkpoints.high]),
                 ),
-                np.concatenate([walking, np.zeros(len(objects.low), dtype=bool)]),
+                np.concatenate([are_walkable, np.zeros(len(checkpoints.low), dtype=bool)]),
             )
-        if self._envelope is None:
-            self._tell()
+        if self._robot_bounds is None:
+            self._sync_robot()
             self._place(self._robot_body, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-            self._astray = True
-            upper = [k for k, name in self._robot_links.items() if not name.endswith(STANDING)]
+            self._pose_unsynced = True
+            upper = [
+                k for k, name in self._robot_links.items() if not name.endswith(STANDING_LINKS)
+            ]
             body = self._robot_body
-            self._envelope = self._box(body, self._robot_links), self._box(body, upper)
-        return self._clearance.is_clear(pose, *self._envelope, self.contact_breaking)
+            self._robot_bounds = self._box(body, self._robot_links), self._box(body, upper)
+        return self._clearance.is_clear(pose, *self._robot_bounds, self.contact_breaking)
 
     def _detect(self) -> None:
-        self._tell()
+        self._sync_robot()
         super()._detect()
 
-    def _tell(self) -> None:
-        """Tells PyBullet where the robot and its joints are."""
-        for name, position in self._untold.items():
+    def _sync_robot(self) -> None:
+        """Pass the robot's pose and joint positions to PyBullet, if they changed."""
+        for name, position in self._unsynced_joints.items():
             pybullet.resetJointState(
                 self._robot_body, self._joints[name], position, physicsClientId=self._client
             )
-        self._untold.clear()
-        if self._astray:
+        self._unsynced_joints.clear()
+        if self._pose_unsynced:
             at = self._pose
             self._place(self._robot_body, (at.x, at.y, at.z), (at.roll, at.pitch, at.yaw))
-            self._astray = False
+            self._pose_unsynced = False
 
     def _box(self, body: int, links: Iterable[int]) -> SolidBounds:
-        """The upright box around links of a body."""
+        """Return the upright box around links of a body."""
         boxes = [pybullet.getAABB(body, link, physicsClientId=self._client) for link in links]
-        return SolidBounds.around(
+        return SolidBounds.enclosing(
             [SolidBounds(np.array(low), np.array(high)) for low, high in boxes]
         )
 
-    def _name(self, body: int, link: int, point: Vector) -> str:
-        """What a link of a body is called, at a point of it (m)."""
+    def _name_at(self, body: int, link: int, point: Vector) -> str:
+        """Return the name of the checkpoint, screen or element at a point (m) of a body's link."""
         for id, checkpoint_body in self._checkpoints.items():
             if body == checkpoint_body:
                 return self.site.checkpoint(id).name
@@ -266,20 +287,20 @@ class Bodies(Connection):
     def _load_checkpoint(self, checkpoint: SiteCheckpoint, folder: Path) -> int:
         name = checkpoint.kind.value.replace(" ", "_")
         path = resources.urdf() / "checkpoints" / f"{name}.urdf"
-        body = self._load(self._as_drawn(path, folder), fixed=True)
+        body = self._load(self._body_file(path, folder), fixed=True)
         self._place(body, checkpoint.position, (0.0, 0.0, checkpoint.yaw))
         return body
 
-    def _as_drawn(self, path: Path, folder: Path) -> Path:
-        """The file of a body, or one in the folder without what only pictures show."""
+    def _body_file(self, path: Path, folder: Path) -> Path:
+        """Return the file of a body, or a copy in `folder` without visuals if there are none."""
         if self._drawn:
             return path
         bare = folder / path.name
-        bare.write_text(_undrawn(path), encoding="utf-8")
+        bare.write_text(_without_visuals(path), encoding="utf-8")
         return bare
 
     def _filter(self, body: int, group: int, mask: int) -> None:
-        """What all links of a body are, and what they collide with."""
+        """Set the collision group and mask of all links of a body."""
         for link in self._links(body):
             pybullet.setCollisionFilterGroupMask(
                 body, link, group, mask, physicsClientId=self._client
@@ -293,9 +314,9 @@ class Bodies(Connection):
         return {joint: k for k, (joint, _) in self._parts(body).items()}
 
 
-@lru_cache(maxsize=8)  # of the robot and of each kind of checkpoint
-def _undrawn(path: Path) -> str:
-    """A URDF file without what only pictures show."""
+@lru_cache(maxsize=8)  # for the robot and each kind of checkpoint
+def _without_visuals(path: Path) -> str:
+    """Return the content of a URDF file without its visuals."""
     robot = ElementTree.parse(path).getroot()
     for link in robot.iter("link"):
         for visual in link.findall("visual"):
@@ -303,13 +324,15 @@ def _undrawn(path: Path) -> str:
     return ElementTree.tostring(robot, encoding="unicode")
 
 
-@lru_cache(maxsize=_SITES)
+@lru_cache(maxsize=_CACHED_SITES)
 def _bounds_of(elements: tuple[Element, ...]) -> tuple[SolidBounds, NDArray[np.bool_]]:
-    """The upright boxes around all solids, and on which of them wheels and tracks may stand: as in
-    PyBullet, all of a material on which anything is walked."""
+    """Return the upright boxes around all solids, and which solids wheels and tracks may stand on.
+
+    As in PyBullet, a solid is walkable if its material is that of any walkable element.
+    """
     parts = [(e.material, s) for e in elements for s in e.solids]
     half = np.array([half_extents(solid) for _, solid in parts])
     center = np.array([solid.center for _, solid in parts])
-    walked = {e.material for e in elements if e.role in WALKING_ROLES}
-    walking = np.array([material in walked for material, _ in parts])
-    return SolidBounds(center - half, center + half), walking
+    walkable = {e.material for e in elements if e.role in WALKING_ROLES}
+    are_walkable = np.array([material in walkable for material, _ in parts])
+    return SolidBounds(center - half, center + half), are_walkable

@@ -1,7 +1,7 @@
-"""Whether the robot is clear of all that it must not touch, told by boxes alone.
+"""Fast check that the robot is clear of all that it must not touch, by bounding boxes alone.
 
-To look for contacts takes PyBullet a tenth of a millisecond. Most of the time nothing is anywhere
-near, and boxes around the solids and around the robot tell that in a fraction of it.
+A search for contacts takes PyBullet a tenth of a millisecond. Most of the time nothing is near, and
+boxes around the solids and around the robot show that in a fraction of this time.
 """
 
 import math
@@ -15,17 +15,19 @@ from argo_env.navigation.path import wrap
 from argo_env.robot.pose import BodyPose
 
 TILT = 0.002  # rad of pitch and roll up to which the robot counts as level
-_SPARE = 0.01  # m around all that is compared: more than the tilt makes of the robot's length
-_AROUND = 1.0  # m that the robot may go until the solids near it are gathered anew
-_PARTED = 0.05  # m up or down from which that is what parts two boxes
+_MARGIN = 0.01  # m added to distances: more than the error from treating a tilt up to TILT as level
+_GATHER_RANGE = 1.0  # m that the robot may move until the solids near it are gathered anew
+_MIN_VERTICAL_GAP = 0.05  # m: boxes with a larger vertical gap need no horizontal gap
 
 
 @dataclass(frozen=True, eq=False)
 class SolidBounds:
-    """A box, or many: lowest and highest corner (m), shape (3,) or (n, 3)."""
+    """One upright bounding box, or many: arrays have the shape (3,) or (n, 3)."""
 
     low: NDArray[np.float64]
+    """m, lowest corner"""
     high: NDArray[np.float64]
+    """m, highest corner"""
 
     @cached_property
     def middle(self) -> NDArray[np.float64]:
@@ -33,105 +35,115 @@ class SolidBounds:
 
     @cached_property
     def half(self) -> NDArray[np.float64]:
-        """Half of the edges (m)."""
+        """Half the lengths of the edges (m)."""
         return np.asarray((self.high - self.low) / 2)
 
     @staticmethod
-    def around(boxes: "list[SolidBounds]") -> "SolidBounds":
-        """The box around boxes."""
+    def enclosing(boxes: "list[SolidBounds]") -> "SolidBounds":
+        """Return the box around boxes."""
         low, high = [box.low for box in boxes], [box.high for box in boxes]
         return SolidBounds(np.min(low, axis=0), np.max(high, axis=0))
 
     def overlapping(self, box: "SolidBounds") -> NDArray[np.bool_]:
-        """Which of many boxes overlap with one."""
+        """Return which of these boxes overlap with one box."""
         return np.asarray(((self.low <= box.high) & (self.high >= box.low)).all(axis=-1))
 
-    def chosen(self, which: NDArray[np.bool_]) -> "SolidBounds":
-        """Some of many boxes."""
-        return SolidBounds(self.low[which], self.high[which])
+    def select(self, mask: NDArray[np.bool_]) -> "SolidBounds":
+        """Return the boxes that the mask selects."""
+        return SolidBounds(self.low[mask], self.high[mask])
 
 
 @dataclass(frozen=True)
-class _Found:
-    """How far the robot may go from where it was found clear, and with which boxes that was."""
+class _ClearPose:
+    """Pose at which the robot was clear, and how far it may move from there and stay clear."""
 
     pose: BodyPose
-    whole: SolidBounds
+    full: SolidBounds
+    """box around the whole robot in its own frame"""
     upper: SolidBounds
+    """box around the robot without the parts that it stands on, in its own frame"""
     level: bool
-    """whether it was level, and has to be: then what it may move in the plane and upwards are told
-    apart"""
+    """True if it was level; then it must stay level, and horizontal and vertical motion are limited
+    separately"""
     sideways: float
-    """m that all of it may move in the plane; unless level, in all"""
+    """m that any point of the robot may move horizontally; unless level, in any direction"""
     upwards: float
-    """m up or down"""
+    """m that any point of the robot may move up or down"""
 
-    def holds(self, pose: BodyPose, whole: SolidBounds, upper: SolidBounds) -> bool:
-        """Whether the robot can't have met anything since."""
-        if self.whole is not whole or self.upper is not upper:
+    def covers(self, pose: BodyPose, full: SolidBounds, upper: SolidBounds) -> bool:
+        """Return True if a robot with these boxes is surely clear at `pose` too."""
+        if self.full is not full or self.upper is not upper:
             return False
-        before = self.pose
-        turned = abs(wrap(pose.yaw - before.yaw))
-        gone, risen = math.hypot(pose.x - before.x, pose.y - before.y), abs(pose.z - before.z)
+        clear_pose = self.pose
+        turned = abs(wrap(pose.yaw - clear_pose.yaw))
+        moved, risen = (
+            math.hypot(pose.x - clear_pose.x, pose.y - clear_pose.y),
+            abs(pose.z - clear_pose.z),
+        )
         if self.level:
-            near = gone + turned * self._radius < self.sideways and risen < self.upwards
+            near = moved + turned * self._radius < self.sideways and risen < self.upwards
             return near and _is_level(pose)
-        tipped = abs(pose.pitch - before.pitch) + abs(pose.roll - before.roll)
-        return gone + risen + (turned + tipped) * self._reach < self.sideways
+        tilted = abs(pose.pitch - clear_pose.pitch) + abs(pose.roll - clear_pose.roll)
+        return moved + risen + (turned + tilted) * self._reach < self.sideways
 
     @cached_property
     def _radius(self) -> float:
-        return _radius(self.whole)
+        return _radius(self.full)
 
     @cached_property
     def _reach(self) -> float:
-        """m from the robot's origin to the farthest corner of its box."""
-        corner = np.maximum(np.abs(self.whole.low), np.abs(self.whole.high))
+        """Distance in m from the robot's origin to the farthest corner of its box."""
+        corner = np.maximum(np.abs(self.full.low), np.abs(self.full.high))
         return math.hypot(*corner.tolist())
 
 
 class Clearance:
-    """Knows the boxes around all solids. Holds those near the robot, and how far it may go on."""
+    """Check by bounding boxes; it caches the solids near the robot and the last clear pose."""
 
-    def __init__(self, solids: SolidBounds, walking: NDArray[np.bool_]) -> None:
-        """`walking`: which of the solids wheels and tracks may stand on."""
+    def __init__(self, solids: SolidBounds, are_walkable: NDArray[np.bool_]) -> None:
+        """`are_walkable`: which of the solids wheels and tracks may stand on."""
         self._solids = solids
-        self._walking = walking
-        self._gathered: SolidBounds | None = None  # where the robot may be until that is done anew
-        self._found: _Found | None = None
+        self._are_walkable = are_walkable
+        self._gathered_around: SolidBounds | None = None  # positions for which the cache is valid
+        self._last_clear: _ClearPose | None = None
 
     def is_clear(
-        self, pose: BodyPose, whole: SolidBounds, upper: SolidBounds, distance: float
+        self, pose: BodyPose, full: SolidBounds, upper: SolidBounds, distance: float
     ) -> bool:
-        """Whether the robot is surely farther than `distance` (m) from all that it must not touch.
+        """Return True if the robot is surely farther than `distance` (m) from any contact.
 
-        `whole` is the box around all of it in its own frame, `upper` that without what it stands
-        on, which must not touch what is walked on either. False may be wrong.
+        The check is conservative: False does not mean that there is a contact.
+
+        Args:
+            pose: pose of the robot.
+            full: box around the whole robot in its own frame; it must not touch other solids.
+            upper: box without the parts that it stands on; it must not touch walkable solids.
+            distance: m.
         """
-        if self._found and self._found.holds(pose, whole, upper):
+        if self._last_clear and self._last_clear.covers(pose, full, upper):
             return True
-        self._gather(pose, whole)
-        self._found = None
-        margin, gaps, level = distance + _SPARE, [], _is_level(pose)
-        for solids, box in ((self._others, whole), (self._floors, upper)):
+        self._gather_solids(pose, full)
+        self._last_clear = None
+        margin, gaps, level = distance + _MARGIN, [], _is_level(pose)
+        for solids, box in ((self._other_solids, full), (self._walkable_solids, upper)):
             gaps.append(_gaps(solids, pose, box) if level else _gaps_tilted(solids, pose, box))
             if min(gaps[-1]) <= margin:
                 return False
         sideways, upwards = (min(pair) - margin for pair in zip(*gaps, strict=True))
-        self._found = _Found(pose, whole, upper, level, sideways, upwards)
+        self._last_clear = _ClearPose(pose, full, upper, level, sideways, upwards)
         return True
 
-    def _gather(self, pose: BodyPose, whole: SolidBounds) -> None:
-        """Gathers the solids near the robot, unless it is still where that was done before."""
+    def _gather_solids(self, pose: BodyPose, full: SolidBounds) -> None:
+        """Gather the solids near the robot, unless it is still near where this was done last."""
         here = np.array([pose.x, pose.y, pose.z])
-        place = SolidBounds(here, here)
-        if self._gathered is not None and bool(self._gathered.overlapping(place)):
+        point = SolidBounds(here, here)
+        if self._gathered_around is not None and bool(self._gathered_around.overlapping(point)):
             return
-        self._gathered = SolidBounds(here - _AROUND, here + _AROUND)
-        reach = _radius(whole) + whole.high[2] + 2 * _AROUND
+        self._gathered_around = SolidBounds(here - _GATHER_RANGE, here + _GATHER_RANGE)
+        reach = _radius(full) + full.high[2] + 2 * _GATHER_RANGE
         near = self._solids.overlapping(SolidBounds(here - reach, here + reach))
-        self._floors = self._solids.chosen(near & self._walking)
-        self._others = self._solids.chosen(near & ~self._walking)
+        self._walkable_solids = self._solids.select(near & self._are_walkable)
+        self._other_solids = self._solids.select(near & ~self._are_walkable)
 
 
 def _is_level(pose: BodyPose) -> bool:
@@ -139,46 +151,54 @@ def _is_level(pose: BodyPose) -> bool:
 
 
 def _radius(box: SolidBounds) -> float:
-    """m from the robot's origin to the farthest corner of its box, in the plane."""
+    """Return the horizontal distance (m) from the robot's origin to its box's farthest corner."""
     return math.hypot(*np.maximum(np.abs(box.low), np.abs(box.high))[:2].tolist())
 
 
 def _gaps(solids: SolidBounds, pose: BodyPose, box: SolidBounds) -> tuple[float, float]:
-    """The least gaps (m) that part a level robot's box, turned by its yaw, from upright boxes: in
-    the plane, less than 0 if one is met; and up or down, where there is one that is large
-    enough."""
+    """Return the least horizontal and vertical gaps (m) of a level robot's box to upright boxes.
+
+    Upright boxes with a large enough vertical gap count for the vertical one, all others for the
+    horizontal one, which is less than 0 if boxes overlap.
+    """
     low, high = solids.low[:, 2], solids.high[:, 2]
     up = np.maximum(low - (pose.z + box.high[2]), (pose.z + box.low[2]) - high)
-    beside = up < _PARTED
-    upwards = float(up[~beside].min(initial=_AROUND))
+    beside = up < _MIN_VERTICAL_GAP
+    upwards = float(up[~beside].min(initial=_GATHER_RANGE))
     cos, sin = math.cos(pose.yaw), math.sin(pose.yaw)
     (mx, my), (hx, hy) = box.middle[:2].tolist(), box.half[:2].tolist()
     half = solids.half[beside, :2]
-    away = solids.middle[beside, :2] - (pose.x + cos * mx - sin * my, pose.y + sin * mx + cos * my)
+    offset = solids.middle[beside, :2] - (
+        pose.x + cos * mx - sin * my,
+        pose.y + sin * mx + cos * my,
+    )
     turn = np.array([[cos, -sin], [sin, cos]])
-    # The axes of the boxes, then those of the robot: the widest of four gaps is no more than the
-    # distance.
-    upright = np.abs(away) - half - (abs(cos) * hx + abs(sin) * hy, abs(sin) * hx + abs(cos) * hy)
-    own = np.abs(away @ turn) - half @ np.abs(turn) - (hx, hy)
+    # Gaps along the axes of the boxes, then along those of the robot: the largest of the four is a
+    # lower bound of the distance.
+    upright = np.abs(offset) - half - (abs(cos) * hx + abs(sin) * hy, abs(sin) * hx + abs(cos) * hy)
+    own = np.abs(offset @ turn) - half @ np.abs(turn) - (hx, hy)
     sideways = np.maximum(upright, own).max(axis=1)
-    return float(sideways.min(initial=_AROUND)), upwards
+    return float(sideways.min(initial=_GATHER_RANGE)), upwards
 
 
 def _gaps_tilted(solids: SolidBounds, pose: BodyPose, box: SolidBounds) -> tuple[float, float]:
-    """The least gap (m) that parts the robot's box, turned as it is, from upright boxes, less than
-    0 if one is met; twice, as it is one in all directions."""
+    """Return the least gap (m) between a tilted robot's box and upright boxes, twice.
+
+    It is less than 0 if boxes overlap. The gap is one in any direction, so it stands for the
+    horizontal and the vertical one of `_gaps`.
+    """
     turn = _rotation(pose)
-    away = solids.middle - (np.array([pose.x, pose.y, pose.z]) + turn @ box.middle)
-    # Along the axes of the boxes, then along those of the robot: the widest of six gaps is no more
-    # than the distance.
-    upright = np.abs(away) - solids.half - np.abs(turn) @ box.half
-    own = np.abs(away @ turn) - solids.half @ np.abs(turn) - box.half
-    gap = float(np.maximum(upright, own).max(axis=1).min(initial=_AROUND))
+    offset = solids.middle - (np.array([pose.x, pose.y, pose.z]) + turn @ box.middle)
+    # Gaps along the axes of the boxes, then along those of the robot: the largest of the six is a
+    # lower bound of the distance.
+    upright = np.abs(offset) - solids.half - np.abs(turn) @ box.half
+    own = np.abs(offset @ turn) - solids.half @ np.abs(turn) - box.half
+    gap = float(np.maximum(upright, own).max(axis=1).min(initial=_GATHER_RANGE))
     return gap, gap
 
 
 def _rotation(pose: BodyPose) -> NDArray[np.float64]:
-    """Columns are the axes of the robot's frame on the site, shape (3, 3)."""
+    """Return the robot's rotation, shape (3, 3): columns are the axes of its frame on the site."""
     c, s = math.cos(pose.yaw), math.sin(pose.yaw)
     down, level = math.sin(pose.pitch), math.cos(pose.pitch)
     right, upright = math.sin(pose.roll), math.cos(pose.roll)

@@ -1,4 +1,4 @@
-"""Where a checkpoint really is, against the plan."""
+"""Placements: displacements of checkpoints from their planned poses."""
 
 import math
 from dataclasses import dataclass, replace
@@ -14,28 +14,31 @@ MAX_TURN = math.pi / 2  # rad, either way (thesis, 1.2)
 
 @dataclass(frozen=True)
 class Placement:
-    """How a checkpoint stands against the plan."""
+    """Displacement of a checkpoint from its planned pose."""
 
     offset: Vector = (0.0, 0.0, 0.0)
     """m, along the site's axes"""
     turn: float = 0.0
     """rad about the vertical"""
     roll: float = 0.0
-    """rad about the normal of its face, clockwise as one sees it from the front, after the turn"""
+    """rad about the normal of its face after the turn, clockwise seen from the front"""
 
 
 AS_PLANNED = Placement()
 
 
-def displaced(checkpoint: SiteCheckpoint, placement: Placement) -> SiteCheckpoint:
-    """The checkpoint, planned there, where it really is."""
+def displaced_checkpoint(checkpoint: SiteCheckpoint, placement: Placement) -> SiteCheckpoint:
+    """Return the planned checkpoint with its position and yaw after the displacement."""
     x, y, z = (p + d for p, d in zip(checkpoint.position, placement.offset, strict=True))
     return replace(checkpoint, position=(x, y, z), yaw=checkpoint.yaw + placement.turn)
 
 
 def draw_placement(rng: np.random.Generator, upright: bool = False) -> Placement:
-    """A placement as the rules of the challenge allow: somewhere in the sphere, turned and rolled
-    by up to ±90°, all uniform. Level gauges are `upright`, not rolled: they show nothing else."""
+    """Return a random placement within the rules of the challenge.
+
+    The offset is uniform in a sphere, turn and roll are uniform up to ±90°. Level gauges are
+    `upright`: they have no roll, since they work only when upright.
+    """
     direction = rng.normal(size=3)
     direction *= MAX_OFFSET * rng.uniform() ** (1 / 3) / np.linalg.norm(direction)
     turn, roll = rng.uniform(-MAX_TURN, MAX_TURN, size=2)

@@ -1,4 +1,4 @@
-"""PyBullet without its chatter: the only place that imports it, and what its users share."""
+"""Connections to PyBullet, without its messages on the console; only this module imports it."""
 
 import ctypes
 import os
@@ -16,19 +16,20 @@ from argo_compiler.base.errors import Unavailable
 from argo_env.closing import Closing
 from argo_env.site.shapes import Vector
 
-_one = threading.Lock()
-"""held by whoever sets what PyBullet has once only, for all connections and threads"""
-_breaking: float | None = None
-"""the `contact_breaking` (m) that was set last; None: PyBullet's own, or it may be"""
+_lock = threading.Lock()
+"""protects what PyBullet has only once for all connections and threads"""
+_applied_breaking: float | None = None
+"""the `contact_breaking` (m) that was set last; None: unknown, perhaps PyBullet's default"""
 
 
 @contextmanager
-def _unheard() -> Iterator[None]:
-    """What native code prints by C's streams is not heard. File descriptors stay as they are, so
-    nothing is lost of what Python prints meanwhile, in whatever thread.
+def _silenced_native_output() -> Iterator[None]:
+    """Discard what native code prints to C's stdout and stderr in this context.
 
-    For the greeting of PyBullet when it is imported, on stderr, and those of its window. Without a
-    window it prints nothing: what it loads lacks nothing that it would warn about.
+    File descriptors are not changed, so Python's own output is not lost, in any thread.
+
+    PyBullet prints messages to stderr when it is imported, and when it opens a window. Without a
+    window it prints nothing, since the files that it loads cause no warnings.
     """
     if not sys.platform.startswith("linux"):
         yield
@@ -36,89 +37,100 @@ def _unheard() -> Iterator[None]:
     libc = ctypes.CDLL(None)
     libc.fopen.restype = ctypes.c_void_p
     streams = [ctypes.c_void_p.in_dll(libc, name) for name in ("stdout", "stderr")]
-    with _one:
-        kept = [stream.value for stream in streams]
-        # Never closed: another thread may still be writing to it.
-        nowhere = libc.fopen(os.fsencode(os.devnull), b"we")
+    with _lock:
+        originals = [stream.value for stream in streams]
+        # Never closed, since another thread may still write to it.
+        null_file = libc.fopen(os.fsencode(os.devnull), b"we")
         try:
             for stream in streams:
-                stream.value = nowhere or stream.value
+                stream.value = null_file or stream.value
             yield
         finally:
-            for stream, value in zip(streams, kept, strict=True):
+            for stream, value in zip(streams, originals, strict=True):
                 stream.value = value
 
 
-with _unheard():
+with _silenced_native_output():
     import pybullet
 
 __all__ = ["SUN", "Connection", "pybullet"]
 
 SUN: Vector = (0.55, -0.75, 1.25)
-"""direction towards the light of all pictures"""
+"""direction towards the light in all pictures"""
 
 
 class Connection(Closing):
-    """A world of bodies in PyBullet. Holds a connection; close it, or use it as a context.
+    """Connection to a physics client of PyBullet; close it, or use it as a context.
 
-    Connections do not disturb each other, in one thread or several.
+    Each connection has bodies of its own. Connections do not affect each other, in one thread or in
+    several.
     """
 
     contact_breaking = 0.02
-    """m between two bodies from where on PyBullet keeps no contact of theirs"""
+    """m between two bodies beyond which PyBullet stores no contact points of them"""
 
     def __init__(self, gui: bool = False) -> None:
-        global _breaking
+        global _applied_breaking
         if gui:
-            with _unheard():
+            with _silenced_native_output():
                 self._client: int = pybullet.connect(pybullet.GUI)
         else:
             self._client = pybullet.connect(pybullet.DIRECT)
-        with _one:
-            _breaking = None
+        with _lock:
+            _applied_breaking = None
         if self._client < 0:
-            raise Unavailable("PyBullet gives no connection: it has 1,024 at most")
-        # There are no more than 1,024 connections, and not all that holds one gets closed.
-        self._end = weakref.finalize(self, _disconnect, self._client)
+            raise Unavailable("PyBullet opens no connection: it allows 1,024 at the same time")
+        # PyBullet has 1,024 connections at most, and owners may forget to close theirs.
+        self._finalizer = weakref.finalize(self, _disconnect, self._client)
 
     def close(self) -> None:
-        """Ends the connection; the object is of no use afterwards."""
-        self._end()
+        """End the connection; the object can't be used afterwards."""
+        self._finalizer()
 
     @contextmanager
-    def _in_contact(self) -> Iterator[None]:
-        """For all that looks for contacts: PyBullet has one `contact_breaking` for all connections,
-        so it is set where another had its own, and no other thread gets in between."""
-        with _one:
-            self._set_breaking()
+    def _contact_breaking_applied(self) -> Iterator[None]:
+        """Apply this connection's `contact_breaking`, and lock out other threads in this context.
+
+        PyBullet has one value for all connections, so each search for contacts must set its own.
+        """
+        with _lock:
+            self._apply_contact_breaking()
             yield
 
-    def _set_breaking(self) -> None:
-        global _breaking
-        if _breaking != self.contact_breaking:
-            _breaking = self.contact_breaking
+    def _apply_contact_breaking(self) -> None:
+        global _applied_breaking
+        if _applied_breaking != self.contact_breaking:
+            _applied_breaking = self.contact_breaking
             pybullet.setPhysicsEngineParameter(
-                contactBreakingThreshold=_breaking, physicsClientId=self._client
+                contactBreakingThreshold=_applied_breaking, physicsClientId=self._client
             )
 
     def _detect(self) -> None:
-        """Looks for collisions; rays are tested against where bodies were at the last time."""
-        with _one:  # not `_in_contact`, as it runs in each time step
-            self._set_breaking()
+        """Detect collisions; rays are tested against the poses of bodies at the last detection."""
+        with _lock:  # not `_contact_breaking_applied`, which is too slow for each time step
+            self._apply_contact_breaking()
             pybullet.performCollisionDetection(physicsClientId=self._client)
 
     def _simulate(self) -> None:
-        """One step of the physics."""
-        with _one:  # likewise
-            self._set_breaking()
+        """Simulate one time step of the physics."""
+        with _lock:  # as in `_detect`
+            self._apply_contact_breaking()
             pybullet.stepSimulation(physicsClientId=self._client)
 
     def _render(
         self, view: Sequence[float], projection: Sequence[float], size: tuple[int, int]
     ) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
-        """What a camera sees in daylight, without shadows: red, green and blue, shape (height,
-        width, 3), and OpenGL's depth buffer, shape (height, width). The matrices are OpenGL's,
-        column by column; `size` is width and height in px."""
+        """Render a camera's picture in daylight, without shadows.
+
+        Args:
+            view: OpenGL's view matrix, column by column.
+            projection: OpenGL's projection matrix, column by column.
+            size: width and height in px.
+
+        Returns:
+            Red, green and blue, shape (height, width, 3), and OpenGL's depth buffer, shape (height,
+            width).
+        """
         width, height = size
         image = pybullet.getCameraImage(
             width,
@@ -142,7 +154,7 @@ class Connection(Closing):
         return body
 
     def _place(self, body: int, origin: Vector, rpy: Vector) -> None:
-        # PyBullet places the centre of mass of the base; we speak of the frame of its link.
+        # PyBullet sets the pose of the base's centre of mass; `origin` and `rpy` are of its link.
         info = pybullet.getDynamicsInfo(body, -1, physicsClientId=self._client)
         position, orientation = pybullet.multiplyTransforms(
             origin, pybullet.getQuaternionFromEuler(rpy), info[3], info[4]
@@ -152,7 +164,7 @@ class Connection(Closing):
         )
 
     def _parts(self, body: int) -> dict[int, tuple[str, str]]:
-        """Number of each joint, its name and the name of the link that it carries."""
+        """Return names of each joint and of the link that it carries, by the joint's number."""
         count = pybullet.getNumJoints(body, physicsClientId=self._client)
         infos = [pybullet.getJointInfo(body, k, physicsClientId=self._client) for k in range(count)]
         return {k: (info[1].decode(), info[12].decode()) for k, info in enumerate(infos)}

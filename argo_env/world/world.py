@@ -1,4 +1,4 @@
-"""The PyBullet world: what the robot touches, sees and stands on among the bodies of a site."""
+"""World in PyBullet: contacts, lines of sight, heights and pictures among the bodies of a site."""
 
 import math
 import os
@@ -14,29 +14,29 @@ from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
 from argo_env.site import Site
 from argo_env.site.shapes import Element, Vector
-from argo_env.world.bodies import SITE_BIT, STANDING, Bodies
+from argo_env.world.bodies import SITE_BIT, STANDING_LINKS, Bodies
 from argo_env.world.pybullet_client import pybullet
 
-_MAX_RAYS = 256  # in a batch: what few give is freed before Python looks for garbage in it
+_MAX_RAYS = 256  # in a batch: small results are freed before Python's collector examines them
 _TOUCH_DEPTH = 0.001  # m of overlap from which a touch counts
 _HULL = ("base_link", "left_track", "right_track", "left_flipper", "right_flipper")
-_ARM = {  # links of the arm, and what of the robot each could hit
+_ARM = {  # links of the arm, and the links of the robot that each could touch
     "upper_arm": _HULL,
     "forearm": (*_HULL, "arm_base"),
     "sensor_head": (*_HULL, "arm_base", "upper_arm"),
     "camera": (*_HULL, "arm_base", "upper_arm"),
 }
-_ARM_REACH = 2.5  # m from the robot's middle, in which all is that the arm may touch
+_ARM_REACH = 2.5  # m from the robot's middle: checkpoints farther away can't be touched by the arm
 
 
 @dataclass(frozen=True, eq=False)
 class Shot:
-    """A picture that a camera has taken, and where the camera was."""
+    """Picture that a camera has taken, with the pose of the camera."""
 
     pixels: NDArray[np.uint8]
     """red, green and blue, shape (height, width, 3)"""
     focal: float
-    """px, of the pinhole camera with its centre in the middle of the picture"""
+    """px, focal length of the pinhole camera, whose centre is in the middle of the picture"""
     position: NDArray[np.float64]
     """m, in the site's frame"""
     rotation: NDArray[np.float64]
@@ -45,19 +45,22 @@ class Shot:
 
 @dataclass(frozen=True)
 class Touch:
-    """One overlap of the robot with the site at the present moment."""
+    """Contact of the robot with the site at one moment."""
 
     link: str
+    """name of the robot's link"""
     element: str
+    """name of the site's element, checkpoint or screen"""
     point: Vector
-    depth: float
     """m"""
+    depth: float
+    """m of overlap"""
 
 
 class World(Bodies):
-    """The simulated world. Holds a PyBullet connection; close it, or use it as a context.
+    """Simulated world. It holds a connection to PyBullet; close it, or use it as a context.
 
-    Nothing moves by itself here: a drive places the robot, and collisions are looked up.
+    Nothing moves by itself: a drive sets the robot's pose, and contacts are computed on request.
     """
 
     def __init__(
@@ -68,10 +71,17 @@ class World(Bodies):
         elements: tuple[Element, ...] | None = None,
         drawn: bool = True,
     ) -> None:
-        """`elements`: the solids that are really there, if they differ from those of the site.
-        Unless `drawn` there are no pictures of it, and it loads in half the time.
+        """Load the world.
 
-        Raises ArgoError if a window is asked for where there is no display.
+        Args:
+            site: site as planned.
+            robot: description of the robot.
+            gui: True to open a window.
+            elements: actual solids, if they differ from those of the site.
+            drawn: False for a world without pictures, which loads in half the time.
+
+        Raises:
+            Unavailable: a window needs a display, and there is none.
         """
         if gui and not os.environ.get("DISPLAY"):
             raise Unavailable(
@@ -81,103 +91,123 @@ class World(Bodies):
         solids = site.elements if elements is None else elements
         super().__init__(site, robot, gui, solids, drawn)
         self.light = 1.0
-        """how bright it is, from 0 to 1: full daylight"""
+        """brightness, from 0 to 1: full daylight"""
         self.on_shot: Callable[[Shot], None] | None = None
-        """told each picture that a camera of the robot takes"""
-        self._felt: tuple[Touch, ...] | None = None
+        """called with each picture that a camera of the robot takes"""
+        self._drive_touches: tuple[Touch, ...] | None = None
         self._was_clear = False
         if gui:
             self._look_at_site()
 
-    def feel(self, touches: tuple[Touch, ...]) -> None:
-        """Takes what a drive with forces has pressed against since the last call: `touches` then
-        tells that, and overlaps of the arm only."""
-        self._felt = touches
+    def set_drive_touches(self, touches: tuple[Touch, ...]) -> None:
+        """Set the contacts that a drive with forces has had since the last call.
+
+        From then on `touches` returns these contacts once, and apart from them only overlaps of the
+        arm.
+        """
+        self._drive_touches = touches
 
     def touches(self) -> tuple[Touch, ...]:
-        """Where the robot touches what it must not: all but tracks and flippers on the ground."""
-        found = []
+        """Return the robot's contacts, except of its tracks and flippers with walkable ground."""
+        touches = []
         for contact in self._contacts():
             body, link_a, link_b, point, distance = (
                 contact[2], contact[3], contact[4], contact[6], contact[8],
             )  # fmt: skip
             link = self._robot_links[link_a]
-            stands = (
+            is_standing = (
                 body == self._site_body
-                and link.endswith(STANDING)
-                and self._site_links[link_b] in self._walking
+                and link.endswith(STANDING_LINKS)
+                and self._site_links[link_b] in self._walkable_materials
             )
-            if self._felt is not None and link not in _ARM:
+            if self._drive_touches is not None and link not in _ARM:
                 continue
-            if not stands and distance <= -_TOUCH_DEPTH:
-                found.append(Touch(link, self._name(body, link_b, point), point, -distance))
-        felt, self._felt = self._felt, None if self._felt is None else ()
-        return (*(felt or ()), *found)
+            if not is_standing and distance <= -_TOUCH_DEPTH:
+                touches.append(Touch(link, self._name_at(body, link_b, point), point, -distance))
+        drive_touches, self._drive_touches = (
+            self._drive_touches,
+            None if self._drive_touches is None else (),
+        )
+        return (*(drive_touches or ()), *touches)
 
     def stays_clear(self, pose: BodyPose) -> bool:
-        """Whether `touches` would find nothing with the robot there either, and PyBullet need not
-        be asked. Not where someone watches."""
-        return self._was_clear and self._felt is None and not self._gui and self._is_clear_at(pose)
+        """Return True if `touches` would surely be empty with the robot at `pose` too.
+
+        PyBullet is not asked. Always False in a world with a window, or if the last call of
+        `touches` did not find the robot clear by its bounding boxes.
+        """
+        return (
+            self._was_clear
+            and self._drive_touches is None
+            and not self._gui
+            and self._is_clear_at(pose)
+        )
 
     def _contacts(self) -> Sequence[tuple[Any, ...]]:
-        """PyBullet's contacts of the robot; none where it is clear of all that it must not touch,
-        as it was the last time. That once more makes PyBullet forget the contacts from before."""
+        """Return PyBullet's contacts of the robot; none if it is clear, as it was the last time.
+
+        A robot that has just become clear is checked once more, so that PyBullet discards its
+        earlier contacts.
+        """
         clear, before = self._is_clear(), self._was_clear
         self._was_clear = clear
         if clear and before:
             return ()
         self._detect()
-        self._moved = False
+        self._scene_changed = False
         contacts: Sequence[tuple[Any, ...]] = pybullet.getContactPoints(
             bodyA=self._robot_body, physicsClientId=self._client
         )
         return contacts
 
     def arm_obstacle(self, positions: Mapping[str, float], clearance: float) -> str | None:
-        """What the arm would come nearer to than `clearance` (m) with its joints at `positions`
-        (rad): a thing of the site or a link of the robot; None if nothing. Moves no joint."""
+        """Return the name of an obstacle nearer to the arm than `clearance` (m), or None.
+
+        The arm's joints are taken to be at `positions` (rad); in the end no joint has moved. The
+        obstacle is an element, a checkpoint or a screen, or a link of the robot.
+        """
         names = list(positions)
         before = dict(zip(names, self.joint_positions(names), strict=True))
         self.set_joints(positions)
         try:
-            return self._near_arm(clearance)
+            return self._obstacle_near_arm(clearance)
         finally:
             self.set_joints(before)
 
-    def _near_arm(self, clearance: float) -> str | None:
-        self._tell()
+    def _obstacle_near_arm(self, clearance: float) -> str | None:
+        self._sync_robot()
         links = {name: number for number, name in self._robot_links.items()}
-        bodies = (self._site_body, *self._checkpoints_near(), *self._screens)
+        bodies = (self._site_body, *self._reachable_checkpoints(), *self._screens)
         for name, hull in _ARM.items():
             for part in hull:
                 if self._closest(links[name], self._robot_body, clearance, linkIndexB=links[part]):
                     return part
             for body in bodies:
                 for contact in self._closest(links[name], body, clearance):
-                    return self._name(body, contact[4], contact[6])
+                    return self._name_at(body, contact[4], contact[6])
         return None
 
-    def _checkpoints_near(self) -> list[int]:
-        """The bodies of checkpoints that the arm may reach: to ask about all takes long."""
-        here = self._middle(self._robot_body)
+    def _reachable_checkpoints(self) -> list[int]:
+        """Return the bodies of checkpoints that the arm may reach; to check all would be slow."""
+        here = self._centre_of_mass(self._robot_body)
         return [
             body
             for body in self._checkpoints.values()
-            if math.dist(self._middle(body), here) < _ARM_REACH
+            if math.dist(self._centre_of_mass(body), here) < _ARM_REACH
         ]
 
-    def _middle(self, body: int) -> Vector:
-        """Where the centre of mass of a body's base is (m)."""
+    def _centre_of_mass(self, body: int) -> Vector:
+        """Return the position of the centre of mass of a body's base (m)."""
         client = self._client
-        place: Vector = pybullet.getBasePositionAndOrientation(body, physicsClientId=client)[0]
-        return place
+        position: Vector = pybullet.getBasePositionAndOrientation(body, physicsClientId=client)[0]
+        return position
 
     def _closest(
         self, link: int, body: int, distance: float, **options: int
     ) -> list[tuple[Any, ...]]:
-        """Where a link of the robot is nearer to a body than `distance` (m)."""
-        with self._in_contact():
-            found: list[tuple[Any, ...]] = pybullet.getClosestPoints(
+        """Return points at which a robot's link is nearer to a body than `distance` (m)."""
+        with self._contact_breaking_applied():
+            contacts: list[tuple[Any, ...]] = pybullet.getClosestPoints(
                 self._robot_body,
                 body,
                 distance,
@@ -185,14 +215,16 @@ class World(Bodies):
                 physicsClientId=self._client,
                 **options,
             )
-        return found
+        return contacts
 
     def heights(
         self, points: NDArray[np.float64], below: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Height of the first thing under each of `points`, shape (n, 2), looking down from the
-        heights `below`, shape (n,). Where there is nothing within 2 m, as in the seam between two
-        plates, it is that depth."""
+        """Return the height (m) of the first solid under each of `points`, shape (n, 2).
+
+        Rays go down from the heights `below` (m), shape (n,). Where there is nothing within 2 m, as
+        in the seam between two plates, the result is 2 m less than `below`.
+        """
         depth = below - 2.0
         hits = self._rays(np.column_stack([points, below]), np.column_stack([points, depth]))
         return np.array(
@@ -200,16 +232,21 @@ class World(Bodies):
         )
 
     def ranges(self, origin: Vector, ends: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How far (m) the first thing is from `origin` on the way to each of `ends`, shape (n, 3),
-        the robot left out; inf where there is nothing."""
+        """Return the distance (m) from `origin` to the first solid towards each of `ends` (n, 3).
+
+        Rays pass through the robot. The distance is inf where there is nothing up to the end.
+        """
         shares = [hit[2] if hit[0] >= 0 else math.inf for hit in self._rays(origin, ends)]
         return np.asarray(np.array(shares) * np.linalg.norm(ends - np.array(origin), axis=1))
 
     def surfaces(
         self, origin: Vector, ends: NDArray[np.float64]
     ) -> tuple[list[str | None], NDArray[np.float64]]:
-        """What is seen from `origin` on the way to each of `ends`, shape (n, 3): the material, None
-        where there is nothing and "" where it is no part of the site, and the outward normal."""
+        """Return materials and outward normals of the surfaces seen from `origin` towards `ends`.
+
+        The shapes of `ends` and of the normals are (n, 3). The material is None where there is
+        nothing, and "" for checkpoints and screens.
+        """
         hits = self._rays(origin, ends)
         site = self._site_body
         seen = [
@@ -221,8 +258,10 @@ class World(Bodies):
     def _rays(
         self, starts: Vector | NDArray[np.float64], ends: NDArray[np.float64]
     ) -> list[tuple[Any, ...]]:
-        """PyBullet's answers: body, link, share of the way, point and normal of the first hit on
-        the way from each start, or from the one that there is, to each end."""
+        """Return PyBullet's first hit on the line from each start, or the only one, to each end.
+
+        A hit is body, link, share of the line, point and normal.
+        """
         starts = np.broadcast_to(starts, ends.shape)
         hits: list[tuple[Any, ...]] = []
         for first in range(0, len(ends), _MAX_RAYS):
@@ -236,25 +275,30 @@ class World(Bodies):
         return hits
 
     def obstacle_between(self, origin: Vector, target: Vector) -> str | None:
-        """The name of the first thing on the straight line, the robot left out; None if clear."""
+        """Return the name of the first obstacle on a straight line, except the robot, or None."""
         body, link, _, point, _ = pybullet.rayTest(
             origin, target, collisionFilterMask=SITE_BIT, physicsClientId=self._client
         )[0]
         if body < 0:
             return None
-        return self._name(body, link, point)
+        return self._name_at(body, link, point)
 
     def picture(
         self, view: Sequence[float], projection: Sequence[float], size: tuple[int, int]
     ) -> NDArray[np.uint8]:
-        """What a camera sees in daylight, red, green and blue, shape (height, width, 3). The
-        matrices are OpenGL's, column by column; `size` is width and height in px."""
-        assert self._drawn, "of a world that is not drawn there are no pictures"
-        self._tell()
+        """Return a camera's picture in daylight: red, green and blue, shape (height, width, 3).
+
+        Args:
+            view: OpenGL's view matrix, column by column.
+            projection: OpenGL's projection matrix, column by column.
+            size: width and height in px.
+        """
+        assert self._drawn, "a world that was loaded with drawn=False has no pictures"
+        self._sync_robot()
         return self._render(view, projection, size)[0]
 
     def _look_at_site(self) -> None:
-        """Sets the window's camera so that the whole site is in view, from the south-west."""
+        """Set the window's camera so that the whole site is in view, from the south-west."""
         x0, y0, x1, y1 = self.site.spec.ground
         top = self.site.spec.floors[-1].z
         pybullet.configureDebugVisualizer(pybullet.COV_ENABLE_GUI, 0, physicsClientId=self._client)

@@ -106,10 +106,10 @@ class Setting:
         world.show_value(planned.id, scale.low + share * (scale.high - scale.low))
         screen = None
         if rng.uniform() < 1 / 3:
-            actual = np.array(world.in_place(planned.id).position)
+            actual = np.array(world.actual_checkpoint(planned.id).position)
             screen = world.add_screen("screen", draw_screen(rng, pose, actual), (0.4, 0.42, 0.45))
         try:
-            actual_face = world.in_place(planned.id)
+            actual_face = world.actual_checkpoint(planned.id)
             face = FacePose(*actual_face.position, actual_face.yaw, placement.roll)
             readable = self._readable(face, instrument, pose, share)
             began = time.perf_counter()

@@ -176,7 +176,7 @@ class TrackedDrive(NonCopyable):
         self.incidents.clear()
         self._flippers = Flippers()
         self.body.reset(pose, self._flippers.angle)
-        self._world.feel(())
+        self._world.set_drive_touches(())
 
     def begin(self, path: Path, velocity: float | None) -> None:
         """Sets off along `path` at `velocity` (m/s) on the flat, or at the robot's own speeds."""
@@ -196,7 +196,7 @@ class TrackedDrive(NonCopyable):
             self._control()
             self.body.advance(round(_CONTROL / TIME_STEP))
         touches = self.body.touches()
-        self._world.feel(touches)
+        self._world.set_drive_touches(touches)
         if self._follower is not None and self._failure is None:
             self._look(touches)
         if self._failure is not None and self._follower is not None:

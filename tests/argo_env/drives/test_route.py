@@ -19,7 +19,7 @@ from argo_env.navigation.views import in_sight
 from argo_env.planning.travel import SiteTravel
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import Calibration, MotionPace, load_robot
-from argo_env.world.paper_world import PaperWorld
+from argo_env.world.without_physics import WorldWithoutPhysics
 from benchmarks.drives import random_mission
 from tests.conftest import examples
 from tests.yard import measure, simulated, waypoint
@@ -160,7 +160,7 @@ def test_there_is_nothing_to_show_or_to_photograph(yard):
 
 def test_lines_of_sight_are_those_of_the_world(umad, robot, simulation):
     """Against the geometry that views are planned with, and against rays in PyBullet."""
-    paper, rng = PaperWorld(umad, robot), np.random.default_rng(4)
+    paper, rng = WorldWithoutPhysics(umad, robot), np.random.default_rng(4)
     low, high = (0.0, 0.0, 0.1), (15.0, 10.0, 12.0)
     names = {e.name for e in umad.elements}
     same = seen = 0

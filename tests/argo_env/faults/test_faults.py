@@ -33,7 +33,7 @@ from argo_env.sensing.onboard import OnboardSensor
 from argo_env.site.shapes import Box, Role
 from argo_env.surroundings import Surroundings
 from argo_env.surroundings.surroundings import RadioNetwork
-from argo_env.world.paper_world import PaperWorld
+from argo_env.world.without_physics import WorldWithoutPhysics
 from argo_env.world.world import World
 from tests.conftest import examples
 from tests.yard import faults_of, gauged, measure, mission, site_of
@@ -335,7 +335,7 @@ POSE = BodyPose(5.0, 2.5, 0.0, 0.0)
 
 @pytest.fixture
 def stage(umad, robot):
-    world, truth = PaperWorld(umad, robot), {c.id: 0.0 for c in umad.checkpoints}
+    world, truth = WorldWithoutPhysics(umad, robot), {c.id: 0.0 for c in umad.checkpoints}
     sensor = OnboardSensor(IdealSensor(world, robot, truth), umad, 0)
     drive = Powertrain(RouteDrive(robot))
     return FaultTargets(
@@ -413,7 +413,7 @@ def test_a_checkpoint_that_was_moved_twice_goes_back_in_two_steps(stage):
 
     def aside(stage):
         at = stage.world.site.checkpoint(1).position
-        return round(stage.world.in_place(1).position[2] - at[2], 6)
+        return round(stage.world.actual_checkpoint(1).position[2] - at[2], 6)
 
     faults = (
         fault("displaced_checkpoint", 0, 30, **way([0, 0, 0.1])),

@@ -1,4 +1,4 @@
-"""Where boxes tell that nothing is near, PyBullet finds no touch: as if it were asked each time."""
+"""Skipping PyBullet where bounding boxes show that nothing is near does not change the contacts."""
 
 import math
 
@@ -17,23 +17,23 @@ WALKS, STEPS = examples(12), 120
 
 @pytest.fixture(scope="module")
 def worlds(umad, robot):
-    """Two equal worlds: one as it is, one that always looks."""
+    """Two equal worlds, of which the second one always asks PyBullet."""
     with World(umad, robot) as usual, World(umad, robot) as always:
         always._is_clear = lambda: False
         yield usual, always
 
 
-def found(world):
-    """What is touched, apart from the order."""
+def sorted_touches(world):
+    """Return the contacts in a defined order."""
     return sorted((t.link, t.element, t.point, t.depth) for t in world.touches())
 
 
-def do(worlds, name, *arguments):
+def call_both(worlds, name, *arguments):
     return [getattr(world, name)(*arguments) for world in worlds]
 
 
 def walk(rng, floors):
-    """Poses of a robot that drives about, now and then jumps, and is sometimes tilted a little."""
+    """Yield poses of a robot that drives about; sometimes it jumps or is slightly tilted."""
     floor = floors[int(rng.integers(len(floors)))]
     x, y, yaw = rng.uniform(0.0, 12.0), rng.uniform(0.0, 9.0), rng.uniform(-math.pi, math.pi)
     speed, turn = rng.uniform(-0.06, 0.06), rng.uniform(-0.08, 0.08)
@@ -49,9 +49,11 @@ def walk(rng, floors):
 
 
 def flight(rng, floors):
-    """Poses of a robot that is tilted in any way and goes about in the air, as if on stairs."""
+    """Yield poses of a robot that moves through the air with any tilt, as if on stairs."""
     floor = floors[int(rng.integers(len(floors)))]
-    place = np.array([rng.uniform(0.0, 12.0), rng.uniform(0.0, 9.0), floor.z + rng.uniform(0, 2)])
+    position = np.array(
+        [rng.uniform(0.0, 12.0), rng.uniform(0.0, 9.0), floor.z + rng.uniform(0, 2)]
+    )
     yaw, pitch, roll = rng.uniform(-math.pi, math.pi), *rng.uniform(-0.7, 0.7, 2)
     for k in range(STEPS):
         if k % 20 == 0:
@@ -59,80 +61,84 @@ def flight(rng, floors):
             turns *= rng.random(3) < 0.5
             roll *= rng.random() < 0.5
         if rng.random() < 0.02:
-            place[:2] += rng.uniform(-2.0, 2.0, 2)
-        place += speed
+            position[:2] += rng.uniform(-2.0, 2.0, 2)
+        position += speed
         yaw, pitch, roll = np.add((yaw, pitch, roll), turns).tolist()
-        yield BodyPose(*place.tolist(), yaw, pitch, roll)
+        yield BodyPose(*position.tolist(), yaw, pitch, roll)
 
 
-@pytest.mark.parametrize("way", [walk, flight])
+@pytest.mark.parametrize("make_poses", [walk, flight])
 @pytest.mark.parametrize("seed", range(WALKS))
-def test_touches_are_those_of_looking_each_time(worlds, umad, robot, seed, way, monkeypatch):
+def test_touches_equal_those_of_asking_pybullet_each_time(
+    worlds, umad, robot, seed, make_poses, monkeypatch
+):
     rng, usual = np.random.default_rng(seed), worlds[0]
-    looks = []
+    detections = []
     detect = usual._detect
-    monkeypatch.setattr(usual, "_detect", lambda: (looks.append(1), detect()))
+    monkeypatch.setattr(usual, "_detect", lambda: (detections.append(1), detect()))
     touched = 0
-    for k, pose in enumerate(way(rng, umad.spec.floors)):
-        do(worlds, "place_robot", pose)
+    for k, pose in enumerate(make_poses(rng, umad.spec.floors)):
+        call_both(worlds, "place_robot", pose)
         if k % 20 == 0:
             joints = {
                 name: angle * rng.uniform(-1.0, 1.0) for name, angle in robot.arm_stowed.items()
             }
-            do(worlds, "move_arm", joints if rng.random() < 0.3 else robot.arm_stowed)
+            call_both(worlds, "move_arm", joints if rng.random() < 0.3 else robot.arm_stowed)
         if k % 7 == 0:
             angle = float(rng.choice([0.0, math.radians(30.0), math.radians(-20.0)]))
             flippers = dict.fromkeys(("left_flipper_joint", "right_flipper_joint"), angle)
-            do(worlds, "set_joints", flippers)
-        one, other = (found(world) for world in worlds)
-        assert one == other, pose
-        touched += bool(one)
-    assert len(looks) < STEPS or touched > STEPS / 2
-    do(worlds, "move_arm", robot.arm_stowed)
+            call_both(worlds, "set_joints", flippers)
+        usual_touches, all_touches = (sorted_touches(world) for world in worlds)
+        assert usual_touches == all_touches, pose
+        touched += bool(usual_touches)
+    assert len(detections) < STEPS or touched > STEPS / 2
+    call_both(worlds, "move_arm", robot.arm_stowed)
 
 
-def test_most_looks_are_spared_in_the_open(worlds, umad, monkeypatch):
-    usual, looks = worlds[0], []
+def test_most_detections_are_skipped_in_the_open(worlds, umad, monkeypatch):
+    usual, detections = worlds[0], []
     dock = umad.docks[1]
     usual.place_robot(BodyPose(dock.x, dock.y, dock.z, dock.yaw))
     usual.touches()
-    monkeypatch.setattr(usual, "_detect", lambda: looks.append(1))
+    monkeypatch.setattr(usual, "_detect", lambda: detections.append(1))
     for k in range(100):
         usual.place_robot(BodyPose(8.0 + 0.01 * k, 1.6, 12.5, 0.0))
         assert usual.touches() == ()
-    assert len(looks) < 5
+    assert len(detections) < 5
 
 
 @pytest.mark.parametrize("ends", [(1, 2), (2, 1)])
-def test_most_looks_are_spared_on_stairs(worlds, robot, navigator, catalog, ends, monkeypatch):
+def test_most_detections_are_skipped_on_stairs(
+    worlds, robot, navigator, catalog, ends, monkeypatch
+):
     start, end = (catalog.floor(number).patrol[0] for number in ends)
     path = navigator.plan(start, end)
     usual, always = worlds
-    looks, detect = [], usual._detect
-    monkeypatch.setattr(usual, "_detect", lambda: (looks.append(1), detect()))
+    detections, detect = [], usual._detect
+    monkeypatch.setattr(usual, "_detect", lambda: (detections.append(1), detect()))
     drive = KinematicDrive(usual, robot)
     drive.place(BodyPose(start.x, start.y, start.z, start.yaw))
     drive.begin(path, None)
-    steep = asked = 0
+    steep = steep_detections = 0
     while drive.step() is DriveStatus.MOVING:
-        before = len(looks)
+        before = len(detections)
         always.place_robot(drive.pose)
         always.set_joints(usual._posture)
-        assert found(usual) == found(always) == []
+        assert sorted_touches(usual) == sorted_touches(always) == []
         if abs(drive.pose.pitch) > 0.3:
-            steep, asked = steep + 1, asked + len(looks) - before
-    assert asked < steep / 10 > 10
+            steep, steep_detections = steep + 1, steep_detections + len(detections) - before
+    assert steep_detections < steep / 10 > 10
 
 
-def test_a_checkpoint_that_is_put_in_the_way_is_found(worlds, umad):
-    """At a robot that stands still where nothing was near."""
-    do(worlds, "place_robot", BodyPose(8.0, 1.6, 12.5, 0.0))
+def test_a_checkpoint_that_is_moved_to_the_robot_is_touched(worlds, umad):
+    """The robot stands still, and nothing was near it."""
+    call_both(worlds, "place_robot", BodyPose(8.0, 1.6, 12.5, 0.0))
     for _ in range(2):
-        assert [found(world) for world in worlds] == [[], []]
+        assert [sorted_touches(world) for world in worlds] == [[], []]
     checkpoint = umad.checkpoints[0]
     x, y, z = checkpoint.position
-    do(worlds, "displace", checkpoint.id, Placement((8.35 - x, 1.6 - y, 12.7 - z)))
-    one, other = (found(world) for world in worlds)
-    assert one == other != []
-    do(worlds, "displace", checkpoint.id, Placement())
-    assert [found(world) for world in worlds] == [[], []]
+    call_both(worlds, "displace", checkpoint.id, Placement((8.35 - x, 1.6 - y, 12.7 - z)))
+    usual_touches, all_touches = (sorted_touches(world) for world in worlds)
+    assert usual_touches == all_touches != []
+    call_both(worlds, "displace", checkpoint.id, Placement())
+    assert [sorted_touches(world) for world in worlds] == [[], []]

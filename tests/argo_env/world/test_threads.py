@@ -1,4 +1,4 @@
-"""Simulations beside each other: each is as it is alone, and the process is left as it was."""
+"""Simulations in several threads give the same results as alone, and don't change the process."""
 
 import gc
 import math
@@ -36,7 +36,7 @@ If the battery is low, return to the docking station.
 
 
 def run(file: str, k: int) -> RunRecord:
-    """The record of the k-th mission: from the script on."""
+    """Return the record of the k-th mission, compiled from its script."""
     opened = open_site(file)
     first, second, third = (1 + (k + part) % 3 for part in range(3))
     script = SCRIPT.format(k=k, first=first, second=second, third=third)
@@ -62,7 +62,7 @@ def site(tmp_path):
 
 @pytest.fixture
 def hasty():
-    """Threads take turns a hundred times as often as they do otherwise."""
+    """Threads switch a hundred times as often as usual."""
     before = sys.getswitchinterval()
     sys.setswitchinterval(5e-5)
     yield
@@ -78,8 +78,8 @@ def test_eight_threads_give_the_records_that_they_give_alone(site):
     assert gc.isenabled()
 
 
-def near(world, x, y):
-    """The contacts that PyBullet keeps where the robot stands, those that are still apart too."""
+def contacts_at(world, x, y):
+    """Return PyBullet's contacts of the robot at this position, also those with a gap."""
     world.place_robot(BodyPose(x, y, 0.02, math.radians(-90)))
     world.touches()
     client = world._client
@@ -93,16 +93,16 @@ def near(world, x, y):
 
 
 def test_a_tracked_body_changes_nothing_for_other_worlds(site):
-    """PyBullet has one threshold of contacts for all of its connections."""
+    """PyBullet has only one contact threshold for all of its connections."""
     opened = open_site(site)
-    places = [(1.0 + 0.2 * k, 0.9 + 0.01 * k) for k in range(12)]
+    positions = [(1.0 + 0.2 * k, 0.9 + 0.01 * k) for k in range(12)]
     with World(opened.site, opened.robot) as world, World(opened.site, opened.robot) as other:
-        before = [near(world, *place) for place in places]
+        before = [contacts_at(world, *position) for position in positions]
         with TrackedBody(other, opened.robot) as body:
             body.reset(BodyPose(2.0, 2.0, 0.02, 0.0))
-            assert [near(world, *place) for place in places] == before
+            assert [contacts_at(world, *position) for position in positions] == before
             body.advance(5)
-            assert [near(world, *place) for place in places] == before
+            assert [contacts_at(world, *position) for position in positions] == before
 
 
 _BESIDE = """
@@ -145,17 +145,17 @@ print(written, flush=True)
 """
 
 
-def test_what_others_print_meanwhile_is_not_lost(site):
-    """From the first import on; and nothing is printed besides."""
-    done = run_python("-c", _BESIDE, site)
-    *lines, from_c, count = done.stdout.splitlines()
+def test_the_output_of_other_threads_is_not_lost(site):
+    """Nothing is lost from the first import on, and PyBullet prints nothing."""
+    completed = run_python("-c", _BESIDE, site)
+    *lines, from_c, count = completed.stdout.splitlines()
     assert from_c == "from C"
     assert lines == ["out"] * int(count)
-    assert done.stderr.splitlines() == ["err"] * int(count)
+    assert completed.stderr.splitlines() == ["err"] * int(count)
 
 
 def test_the_collector_comes_back():
-    """However the threads that hold it off overlap."""
+    """It is enabled again after any overlap of the threads that disable it."""
     meet, part = threading.Barrier(4), threading.Barrier(4)
     seen = []
 
@@ -169,8 +169,8 @@ def test_the_collector_comes_back():
                 raise AssertionError("the collector is still off")
 
     with ThreadPoolExecutor(4) as pool:
-        for done in [pool.submit(hold) for _ in range(4)]:
-            done.result()
+        for future in [pool.submit(hold) for _ in range(4)]:
+            future.result()
     assert False in seen
     gc.disable()
     try:

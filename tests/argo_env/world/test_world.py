@@ -1,4 +1,4 @@
-"""The simulated world: what the robot touches, what stands in the way, what checkpoints show."""
+"""The simulated world reports contacts, obstacles and heights, and moves indicators."""
 
 import math
 
@@ -25,7 +25,7 @@ def test_touches_nothing_in_a_docking_station(simulation, umad, area):
 @pytest.mark.parametrize(
     ("x", "y", "z", "degrees"), [(1.9, 6.0, 2.5, 90), (8.0, 1.6, 12.5, 0), (8.0, 1.6, 0.0, 33)]
 )
-def test_standing_is_no_touch(simulation, x, y, z, degrees):
+def test_standing_on_the_ground_is_no_contact(simulation, x, y, z, degrees):
     assert touched(simulation, x, y, z, degrees) == set()
 
 
@@ -46,12 +46,12 @@ def test_touch_names_the_element(simulation, x, y, z, element):
     assert element in touched(simulation, x, y, z)
 
 
-def test_touch_says_where_and_how_deep(simulation):
+def test_a_touch_has_its_point_and_depth(simulation):
     # The hull reaches 0.35 m ahead of the origin; the fence's rails are 4 cm thick.
     simulation.place_robot(BodyPose(4.0, 0.42, 0.0, math.radians(-90)))
     touches = [t for t in simulation.touches() if t.link == "base_link"]
     assert {t.element for t in touches} == {"floor 1 fence south-west"}
-    # Out by 5 cm back, or by 3 cm down from the knee rail.
+    # The shortest way out is 5 cm back, or 3 cm down from the knee rail.
     assert 0.025 <= max(t.depth for t in touches) <= 0.055
     for touch in touches:
         assert touch.point[1] == pytest.approx(0.1, abs=0.06)
@@ -61,7 +61,7 @@ def test_touch_says_where_and_how_deep(simulation):
 
 
 def test_tracks_stand_where_the_body_must_not(simulation):
-    """A robot that is sunk into the slab touches it with its belly."""
+    """A robot that is sunk into the slab touches it with its base."""
     assert touched(simulation, 8.0, 1.6, -0.1) == set()
     assert touched(simulation, 8.0, 1.6, -0.15) == {"floor 1 slab"}
 
@@ -126,7 +126,7 @@ def test_heights_look_through_the_robot(simulation):
 
 @pytest.fixture
 def clients(monkeypatch):
-    """The connections that worlds open during the test."""
+    """Return the list of connections that worlds open during the test."""
     opened, connect = [], argo_env.world.world.pybullet.connect
 
     def spy(*arguments):
@@ -138,9 +138,9 @@ def clients(monkeypatch):
 
 
 def indicators(client, site):
-    """The position of each checkpoint's indicator, by the checkpoint's id."""
+    """Return the position of each checkpoint's indicator, by the checkpoint's id."""
     bullet = argo_env.world.world.pybullet
-    found = {}
+    positions = {}
     for n in range(bullet.getNumBodies(physicsClientId=client)):
         body = bullet.getBodyUniqueId(n, physicsClientId=client)
         if bullet.getNumJoints(body, physicsClientId=client) != 1:
@@ -152,8 +152,8 @@ def indicators(client, site):
         nearest = min(site.checkpoints, key=lambda c: math.dist(c.position, place))
         # The centre of mass lies a little behind the face.
         assert math.dist(nearest.position, place) <= 0.05
-        found[nearest.id] = bullet.getJointState(body, 0, physicsClientId=client)[0]
-    return found
+        positions[nearest.id] = bullet.getJointState(body, 0, physicsClientId=client)[0]
+    return positions
 
 
 def test_two_worlds_are_independent(clients, umad, robot):

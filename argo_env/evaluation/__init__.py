@@ -1,1 +1,1 @@
-"""Many runs of plans, and what they say: how sure a plan works, what breaks it, which is better."""
+"""Evaluations of missions over many simulated runs: success rates, failure causes, comparisons."""

@@ -1,4 +1,8 @@
-"""A case of an evaluation: what is run again and again, and the plan that it is a case of."""
+"""Cases of an evaluation, and names of the plans that they belong to.
+
+A plan is what an evaluation rates: a mission, an order of tasks (policy), a site, a robot, a drive
+and a sensor. Its cases differ in the faults.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,37 +13,37 @@ from argo_compiler.base.model import Model
 from argo_env.run.spec import RunSpec
 
 NO_FAULTS = "none"
-"""the name of the case in which nothing goes wrong"""
+"""name of the case without faults"""
 AS_WRITTEN = "as written"
-"""the policy that keeps the mission's order"""
+"""name of the policy that keeps the mission's order of tasks"""
 
 
 class EvaluationCase(Model):
-    """One of the things that are run again and again, each time with another seed."""
+    """Run specification that an evaluation repeats, each time with another seed."""
 
     mission: str
-    """what it is called in tables"""
+    """name of the mission in tables"""
     policy: str = AS_WRITTEN
-    """in which order the mission's tasks are done"""
+    """name of the policy that orders the mission's tasks"""
     faults: str = NO_FAULTS
-    """what the faults of this case are called"""
+    """name of this case's set of faults"""
     spec: RunSpec
-    """all but the seed, and what varies from world to world"""
+    """the run, except for its seed and for the values that vary from world to world"""
     digest: str = ""
-    """of the site's and the robot's descriptions, which the spec only names"""
+    """hash of the site's and the robot's descriptions, which the spec only refers to by name"""
     weight: float = Field(default=1.0, gt=0)
-    """how often missions are like this, beside the other cases of the same plan"""
+    """relative frequency of this case among the cases of the same plan"""
 
     @property
     def plan(self) -> "PlanName":
-        """What it is a case of: rates are told of plans, over all their faults and seeds."""
+        """Name of the case's plan; rates are given by plan, over all its faults and seeds."""
         spec = self.spec
         return PlanName(self.mission, self.policy, spec.site, spec.robot, spec.drive, spec.sensor)
 
 
 @dataclass(frozen=True, order=True)
 class PlanName:
-    """What is evaluated, under whatever faults."""
+    """Name of an evaluated plan: all that its cases have in common, so no faults."""
 
     mission: str
     policy: str
@@ -52,7 +56,7 @@ class PlanName:
         return self.beside(())
 
     def beside(self, others: Sequence["PlanName"]) -> str:
-        """Its name in words: the mission, and of the rest what is not the same for all."""
+        """Return a readable name: the mission, and each other part that differs in `others`."""
         parts = [self.mission]
         for name in ("policy", "site", "robot", "drive", "sensor"):
             own = getattr(self, name)

@@ -1,4 +1,8 @@
-"""Expensive runs that cheap ones help: how much the cheap ones tell is measured first."""
+"""Estimates from expensive runs with cheap runs as a control variate, if these pay.
+
+An evaluation runs with its own, expensive drive. Runs with a cheap drive in the same worlds and in
+many more can narrow the intervals. A pilot first measures the correlation and the costs.
+"""
 
 import math
 import time
@@ -29,44 +33,45 @@ from argo_env.run.drives_and_sensors import IDEAL, ROUTE
 from argo_env.run.run_setup import check_spec
 
 PILOT = 30
-"""worlds in which both are run first"""
+"""number of worlds of the pilot, in which both drives are run first"""
 MOST_CHEAP = 20_000
-"""worlds in which the cheap runs alone are made"""
-_FEWEST = 10
-"""successes, and failures, from which on a rate is about normally distributed"""
-_KEPT = "control.json"
+"""largest number of worlds with cheap runs only"""
+_MIN_COUNT = 10
+"""smallest number of successes, and of failures, for which a rate is about normally distributed"""
+_COST_FILE = "control.json"
 _QUANTITIES: dict[str, Callable[[RunRow], float]] = {
     "success": lambda row: float(row.success),
     "duration": lambda row: row.duration or 0.0,
 }
 
 MakeRuns = Callable[[EvaluationPlan], EvaluationResults]
-"""carries a plan out; what it has made before it does not make again"""
+"""function that runs an evaluation plan; it doesn't repeat runs that it has made before"""
 
 
 class _MeasuredCost(Model):
-    """What is kept of the pilot: when it is there, its runs take no time any more."""
+    """Cost measured in the pilot; stored, since runs that are already stored take no time."""
 
     cost: float = Field(gt=0)
+    """time of a cheap run, as a share of the time of an expensive run"""
 
 
 @dataclass(frozen=True)
 class ControlledMean:
-    """A mean over worlds, by expensive runs alone and with the help of cheap ones."""
+    """Mean over worlds, estimated from expensive runs alone and with the help of cheap runs."""
 
     quantity: str
-    """`success`, or `duration` (s) of all runs, whatever they came to"""
+    """`success`, or `duration` (s) of all runs, whatever their outcomes"""
     control: ControlVariate
-    """as it was measured in the first worlds"""
+    """correlation and cost, measured in the pilot"""
     alone: Estimate
-    """by the expensive runs alone"""
+    """estimate from the expensive runs alone"""
     helped: Estimate | None
-    """None: it does not pay; or there are so few failures or successes that no interval of this
-    kind holds"""
+    """estimate with the cheap runs; None if these don't pay, or if there are too few failures or
+    successes for an interval of this kind"""
     expensive: int
-    """worlds in which the expensive runs were made"""
+    """number of worlds with expensive runs"""
     cheap: int
-    """worlds in which only the cheap ones were"""
+    """number of worlds with cheap runs only"""
 
 
 def run_controlled(
@@ -76,25 +81,25 @@ def run_controlled(
     folder: Path,
     clock: Callable[[], float] = time.monotonic,
 ) -> tuple[EvaluationResults, tuple[ControlledMean, ...]]:
-    """Carries the plan out, and with the cheap `drive` as many more worlds as pay, if any do.
+    """Run the evaluation, and run more worlds with the cheap `drive` if that pays.
 
-    Both are run in the first worlds, which tells how they go together and what they cost; what was
-    measured is kept in the folder. No means are told where too few worlds could be run with both.
-    Raises ArgoError for several plans at once, strata, few worlds, or a cheap drive that can't have
-    the same faults.
+    Both drives run in the worlds of a pilot first, which measures their correlation and costs; the
+    measured cost is stored in the folder. The means are empty if too few worlds could be run with
+    both drives. Raises ArgoError for several plans at once, strata, too few worlds, or a cheap
+    drive that can't have the same faults.
     """
     cheap = with_drive(plan, drive)
-    first = plan.seeds[:PILOT]
-    begun = clock()
-    expensive_pilot = make(_part(plan, first))
-    between = clock()
-    cheap_pilot = make(_part(cheap, first))
-    cost = _cost(folder, between - begun, clock() - between)
+    pilot_seeds = plan.seeds[:PILOT]
+    expensive_start = clock()
+    expensive_pilot = make(_with_seeds(plan, pilot_seeds))
+    cheap_start = clock()
+    cheap_pilot = make(_with_seeds(cheap, pilot_seeds))
+    cost = _relative_cost(folder, cheap_start - expensive_start, clock() - cheap_start)
     results = make(plan)
     pairs = _by_world(expensive_pilot, "success").keys() & _by_world(cheap_pilot, "success").keys()
     if len(pairs) < FEWEST_PAIRS:
         return results, ()
-    controls = {name: _measured(name, expensive_pilot, cheap_pilot, cost) for name in _QUANTITIES}
+    controls = {name: _measure(name, expensive_pilot, cheap_pilot, cost) for name in _QUANTITIES}
     seeds = tuple(dict.fromkeys(row.seed for row in results.rows))
     paying = [control for control in controls.values() if control.pays]
     more: tuple[int, ...] = ()
@@ -102,7 +107,7 @@ def run_controlled(
         times = max(min(control.cheap_runs, MOST_CHEAP) for control in paying)
         count = min(MOST_CHEAP, math.ceil((times - 1) * len(seeds)))
         more = tuple(range(max(plan.seeds) + 1, max(plan.seeds) + 1 + count))
-    cheap_results = make(_part(cheap, (*seeds, *more))) if more else None
+    cheap_results = make(_with_seeds(cheap, (*seeds, *more))) if more else None
     return results, tuple(
         _mean(name, control, results, cheap_results if control.pays else None)
         for name, control in controls.items()
@@ -110,16 +115,19 @@ def run_controlled(
 
 
 def with_drive(plan: EvaluationPlan, drive: str) -> EvaluationPlan:
-    """The same plan with a cheap drive. Raises ArgoError if it can't have that."""
+    """Return the same evaluation plan with a cheap drive.
+
+    Raises ArgoError if cheap runs can't help this evaluation, or the drive can't have its faults.
+    """
     if len(plan.plans) > 1 or plan.strata:
         raise Invalid("cheap runs help one plan without strata: give one mission, drive and policy")
     if len(plan.seeds) < FEWEST_PAIRS:
         raise Invalid(
-            f"how runs of two drives go together takes at least {FEWEST_PAIRS} worlds to measure: "
+            f"the correlation of two drives takes at least {FEWEST_PAIRS} worlds to measure: "
             "give more seeds"
         )
     if plan.plans[0].drive == drive:
-        raise Conflict(f"the drive `{drive}` can't help itself: take a cheaper one")
+        raise Conflict(f"the drive `{drive}` can't help itself: name a cheaper one")
     cases = []
     for case in plan.cases:
         sensor = IDEAL if drive == ROUTE else case.spec.sensor
@@ -129,13 +137,13 @@ def with_drive(plan: EvaluationPlan, drive: str) -> EvaluationPlan:
     return plan.changed(cases=tuple(cases), stopping=Stopping())
 
 
-def _part(plan: EvaluationPlan, seeds: Sequence[int]) -> EvaluationPlan:
+def _with_seeds(plan: EvaluationPlan, seeds: Sequence[int]) -> EvaluationPlan:
     return plan.model_copy(update={"seeds": tuple(seeds), "stopping": Stopping()})
 
 
-def _cost(folder: Path, expensive: float, cheap: float) -> float:
-    """Of a cheap run, as a share of that of an expensive one, as it was measured first."""
-    path = folder / _KEPT
+def _relative_cost(folder: Path, expensive: float, cheap: float) -> float:
+    """Return the cost of a cheap run relative to an expensive one, as the first pilot measured."""
+    path = folder / _COST_FILE
     try:
         return _MeasuredCost.model_validate_json(read_bytes(path, "measured cost", 1_000)).cost
     except (NotFound, ValidationError):
@@ -144,7 +152,7 @@ def _cost(folder: Path, expensive: float, cheap: float) -> float:
         return cost
 
 
-def _measured(
+def _measure(
     name: str, expensive: EvaluationResults, cheap: EvaluationResults, cost: float
 ) -> ControlVariate:
     a, b = _by_world(expensive, name), _by_world(cheap, name)
@@ -162,9 +170,9 @@ def _mean(
 ) -> ControlledMean:
     worlds = _by_world(results, name)
     alone = _estimate(np.array([*worlds.values()]))
-    whole = sum(row.success for row in results.rows)
-    rare = name == "success" and not _FEWEST <= whole <= len(results.rows) - _FEWEST
-    if cheap is None or rare:
+    successes = sum(row.success for row in results.rows)
+    too_rare = name == "success" and not _MIN_COUNT <= successes <= len(results.rows) - _MIN_COUNT
+    if cheap is None or too_rare:
         return ControlledMean(name, control, alone, None, len(worlds), 0)
     known = _by_world(cheap, name)
     both = [seed for seed in worlds if seed in known]
@@ -178,7 +186,7 @@ def _mean(
 
 
 def _by_world(results: EvaluationResults, quantity: str) -> dict[int, float]:
-    """Return by seed the weighted mean over the cases, for worlds in which all have run."""
+    """Return, by seed, the weighted mean over the cases, for worlds in which all cases have run."""
     weights = {case.faults: case.weight for case in results.plan.cases}
     ran = (row for row in results.rows if row.carried_out)
     values = ((row.seed, row.faults, _QUANTITIES[quantity](row)) for row in ran)
@@ -186,7 +194,7 @@ def _by_world(results: EvaluationResults, quantity: str) -> dict[int, float]:
 
 
 def _estimate(values: NDArray[np.float64]) -> Estimate:
-    """The mean with the interval of Student's distribution."""
+    """Return the mean with its interval by Student's t distribution."""
     from scipy.stats import t
 
     n = len(values)

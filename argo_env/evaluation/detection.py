@@ -1,4 +1,4 @@
-"""Detections of what was wrong, with their delays, and false alarms."""
+"""Detected faults of a run with their delays, and its false alarms."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,8 +16,11 @@ from argo_env.site import Site
 
 
 def may_be_of(anomaly: Anomaly, fault: AnyFault, record: RunRecord, site: Site) -> bool:
-    """Whether what the robot found in a run on the site may be this fault of the run: of its kind,
-    while it lasted, and where it is, as far as the finding tells a place."""
+    """Return True if this fault of the run may be the cause of the anomaly that the robot found.
+
+    The anomaly must match the fault's kind, its time, and its location as far as the anomaly has
+    one.
+    """
     sign = fault.sign
     if sign is None or (anomaly.kind, anomaly.source) != (sign.event, sign.source):
         return False
@@ -32,38 +35,40 @@ def may_be_of(anomaly: Anomaly, fault: AnyFault, record: RunRecord, site: Site) 
 
 
 def reading_of(anomaly: Anomaly, record: RunRecord) -> Reading | None:
-    """The reading that an abnormal value was found by; None for what was found otherwise."""
+    """Return the reading in which an abnormal value was found; None for any other anomaly."""
     if not anomaly.is_reading:
         return None
     return next((reading for reading in record.readings if reading.t == anomaly.t), None)
 
 
 class FaultDetection(Model):
-    """A fault that happened, and when it was found."""
+    """Fault that occurred in a run, with the delay until the robot found it."""
 
     fault: str
-    """its kind"""
+    """kind of the fault"""
     began: float
     """s"""
     delay: float | None
-    """s until it was found; None: it was not"""
+    """s until the robot found it; None if it did not"""
 
 
 def detections(record: RunRecord, site: Site) -> tuple[FaultDetection, ...]:
-    """Of each fault of a run on the site that happened and can be found. Of several of one kind
-    each finding stands for one, in the order of time; for faults of two kinds that show as the same
-    in the same place it stands for both."""
-    told: set[tuple[str, int]] = set()
+    """Return the detection of each fault that occurred in a run on the site and can be found.
+
+    Among faults of one kind, each finding counts for one fault, in the order of time. It counts for
+    faults of two kinds if both have the same sign at the same location.
+    """
+    assigned: set[tuple[str, int]] = set()
     found = []
-    happened = [f for f in record.faults if f.begins <= record.result.duration]
-    for fault in sorted(happened, key=lambda one: one.begins):
+    occurred = [f for f in record.faults if f.begins <= record.result.duration]
+    for fault in sorted(occurred, key=lambda one: one.begins):
         if fault.sign is None:
             continue
         delay = None
         for number, anomaly in enumerate(record.anomalies):
-            new = (fault.kind, number) not in told
-            if new and may_be_of(anomaly, fault, record, site):
-                told.add((fault.kind, number))
+            is_free = (fault.kind, number) not in assigned
+            if is_free and may_be_of(anomaly, fault, record, site):
+                assigned.add((fault.kind, number))
                 delay = round(anomaly.t - fault.begins, 3)
                 break
         found.append(FaultDetection(fault=fault.kind, began=fault.begins, delay=delay))
@@ -71,20 +76,20 @@ def detections(record: RunRecord, site: Site) -> tuple[FaultDetection, ...]:
 
 
 _SLOW = 0.7
-"""share of its speed below which a drive may be found out of order (docs/faults.md)"""
-_BESIDE = 1.0  # s between a finding and the places of the path that tell its charge
+"""share of its speed below which the robot may report its drive as faulty (docs/faults.md)"""
+_NEARBY = 1.0  # s, largest time between a finding and the samples of the path that show its charge
 
 
 @dataclass(frozen=True)
-class _TrueWorld:
-    """A run, and what was so in its world."""
+class _GroundTruth:
+    """Run with the true state of its world, to which its findings are compared."""
 
     record: RunRecord
     spec: RunSpec
     site: Site
 
     def was_abnormal(self, finding: Finding) -> bool:
-        """Whether the checkpoint showed a value outside its nominal range."""
+        """Return True if the checkpoint truly showed a value outside its nominal range."""
         reading = reading_of(finding, self.record)
         if reading is None:
             return False
@@ -95,49 +100,55 @@ class _TrueWorld:
         return not checkpoint.nominal.contains(shown)
 
     def was_low(self, finding: Finding) -> bool:
-        """Whether the battery had as little charge as the robot found."""
+        """Return True if the battery's charge was as low as reported, within its estimate error."""
         charges = [
             sample.charge
             for sample in self.record.path
-            if sample.charge is not None and abs(sample.t - finding.t) <= _BESIDE
+            if sample.charge is not None and abs(sample.t - finding.t) <= _NEARBY
         ]
         reactions = self.record.mission.reactions
         level = next((r.battery_below for r in reactions if r.battery_below), LOW)
         return bool(charges) and min(charges) <= level + ESTIMATE_ERROR
 
     def was_out_of_order(self, finding: Finding) -> bool:
-        """Whether the drive was slower, or the camera noisier, than it should be."""
+        """Return True if the drive was too slow, or the camera noisy, as the finding reports."""
         conditions = self.spec.conditions
         if finding.source == "drive":
             return conditions.speed < _SLOW
         return finding.source == "camera" and conditions.sensor_noise > 0
 
-    def is_of(self, finding: Finding, fault: AnyFault) -> bool:
-        """Whether the fault may be why that was found."""
+    def is_caused_by(self, finding: Finding, fault: AnyFault) -> bool:
+        """Return True if the fault may be the cause of the finding."""
         if may_be_of(finding, fault, self.record, self.site):
             return True
-        # A camera that is out of order takes any value for another.
-        unsure = finding.is_reading and fault.kind == "sensor_dysfunction"
-        return unsure and fault.begins <= finding.t
+        # A faulty camera may misread any value.
+        may_misread = finding.is_reading and fault.kind == "sensor_dysfunction"
+        return may_misread and fault.begins <= finding.t
 
 
-_TRUE: dict[EventKind, Callable[[_TrueWorld, Finding], bool]] = {
-    EventKind.ABNORMAL_READING: _TrueWorld.was_abnormal,
-    EventKind.LOW_BATTERY: _TrueWorld.was_low,
-    EventKind.DYSFUNCTION: _TrueWorld.was_out_of_order,
+_TRUE_WITHOUT_FAULT: dict[EventKind, Callable[[_GroundTruth, Finding], bool]] = {
+    EventKind.ABNORMAL_READING: _GroundTruth.was_abnormal,
+    EventKind.LOW_BATTERY: _GroundTruth.was_low,
+    EventKind.DYSFUNCTION: _GroundTruth.was_out_of_order,
 }
-"""What may be so without any fault: values, charge, speed and noise are the world's own."""
+"""tests of findings that may be true without any fault, as each world has its own values, battery
+charge, drive speed and camera noise"""
 
 
 def false_alarms(record: RunRecord, spec: RunSpec, site: Site) -> int:
-    """How many findings of the run of a spec, on its site, were not so: no fault that had begun
-    shows as that, and neither values nor battery, drive or camera were as found. What the robot was
-    told by somebody is no finding of its own."""
-    world = _TrueWorld(record, spec, site)
+    """Return the number of false findings of the run of a spec on its site.
 
-    def was_so(finding: Finding) -> bool:
-        if any(world.is_of(finding, fault) for fault in record.faults):
+    A finding is false if no fault that had begun can be its cause, and the values, the battery, the
+    drive and the camera of this world were not as the finding states. Reports that a person gave
+    the robot don't count, as they are no findings of its own.
+    """
+    truth = _GroundTruth(record, spec, site)
+
+    def is_true(finding: Finding) -> bool:
+        if any(truth.is_caused_by(finding, fault) for fault in record.faults):
             return True
-        return finding.kind in _TRUE and _TRUE[finding.kind](world, finding)
+        return finding.kind in _TRUE_WITHOUT_FAULT and _TRUE_WITHOUT_FAULT[finding.kind](
+            truth, finding
+        )
 
-    return sum(not (finding.is_reported or was_so(finding)) for finding in record.findings)
+    return sum(not (finding.is_reported or is_true(finding)) for finding in record.findings)

@@ -1,5 +1,4 @@
-"""An evaluation under way: runs are handed out and carried out in whatever process, rows come back
-and are kept."""
+"""Execution of an evaluation: runs are distributed to workers, and their rows are stored."""
 
 import logging
 import os
@@ -26,27 +25,32 @@ from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 
 TOOK_TOO_LONG = 70
-"""exit code of a worker whose run took longer than it may"""
+"""exit code of a worker whose run exceeded its limit of wall time"""
 
 
 @dataclass(frozen=True)
 class WorkOrder:
-    """What a worker is told: a run, and the key that its row has."""
+    """Run that a worker is to execute, with all that goes into its row."""
 
     key: str
+    """key of the row"""
     case: EvaluationCase
     spec: RunSpec
     world: dict[str, float]
-    """what was drawn for its world"""
+    """values that were drawn for the run's world, by name"""
     drawn: str = ""
-    """what the faults are called that were"""
+    """name of the faults that were drawn for the run's world; empty if none are drawn"""
     limit: float | None = None
-    """s of wall time that it may take; then its process ends, and that is its reason"""
+    """s of wall time after which the worker process ends itself, which becomes the run's reason;
+    None: no limit"""
 
 
 def carry_out(order: WorkOrder, site: OpenedSite | None = None) -> RunRow:
-    """Makes the run, on the site that it names unless one is given, and its row. What goes wrong in
-    the simulator is an outcome as well: one of many thousand runs must not end them all."""
+    """Execute the run and return its row.
+
+    The site is the one that the spec names, unless one is given. An error of the simulator is an
+    outcome too: one of many thousand runs must not end the evaluation.
+    """
     row = _row(order, site)
     return row.model_copy(update={"world": order.world, "drawn": order.drawn})
 
@@ -63,7 +67,7 @@ def _row(order: WorkOrder, site: OpenedSite | None) -> RunRow:
         return row_of(order.key, order.case, order.spec, record, opened.site)
     except ArgoError as error:
         return row_without_end(order.key, order.case, order.spec, RunOutcome.ERROR, str(error))
-    except Exception as error:  # told in the row, with its place
+    except Exception as error:  # the row reports it, with its location in the code
         frame = traceback.extract_tb(error.__traceback__)[-1]
         place = f"{os.path.basename(frame.filename)}, line {frame.lineno}"
         reason = f"{type(error).__name__}: {error} ({place})"
@@ -74,42 +78,45 @@ def _row(order: WorkOrder, site: OpenedSite | None) -> RunRow:
 
 
 _log = logging.getLogger(__name__)
-_COMPACTED = 5_000
-"""rows in the log from which on they are moved to a Parquet file"""
+_COMPACT_AT = 5_000
+"""number of rows in the log at which they are moved to a Parquet file"""
 
 
 @dataclass(frozen=True)
 class EvaluationProgress:
-    """How far an evaluation is."""
+    """Progress of an evaluation at one moment."""
 
     outcomes: Mapping[PlanName, Counter[RunOutcome]]
-    """how the runs ended that have, of each plan"""
+    """number of ended runs by outcome, for each plan"""
     most: int
-    """runs that there are at most"""
+    """largest number of runs that the evaluation can have"""
     known: int
-    """of the runs that have ended, those that had before"""
+    """number of ended runs whose rows were in the store before"""
     seconds: float
-    """that it has taken"""
+    """s since the start of the execution"""
 
     @property
     def done(self) -> int:
-        """Runs that have ended."""
+        """Number of runs that have ended."""
         return sum(counts.total() for counts in self.outcomes.values())
 
     @property
     def remaining(self) -> float | None:
-        """s that it takes at most, if it goes on as fast; None: not known yet."""
-        made = self.done - self.known
-        return (self.most - self.done) * self.seconds / made if made else None
+        """Longest remaining time in s at the present rate; None before the first run has ended."""
+        executed = self.done - self.known
+        return (self.most - self.done) * self.seconds / executed if executed else None
 
     @property
     def all_outcomes(self) -> Counter[RunOutcome]:
-        """How the runs of all plans ended."""
+        """Number of ended runs by outcome, over all plans."""
         return sum(self.outcomes.values(), start=Counter())
 
 
 class Evaluating:
-    """Makes the runs of a plan that are not in the store yet. Holds the rows that count."""
+    """Executor of an evaluation's runs that are not in the store yet.
+
+    It holds the rows of all ended runs of the evaluation, and adds new ones to the store.
+    """
 
     def __init__(
         self,
@@ -121,10 +128,10 @@ class Evaluating:
         call: Callable[[WorkOrder], RunRow] = carry_out,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """`limit` (s of wall time) is what a run may take; `call` is what carries it out, in a
-        worker. Closes neither back end nor store.
+        """Prepare the execution of the evaluation plan.
 
-        Raises ArgoError for a plan that makes no sense.
+        `limit` is the longest wall time of a run in s, `call` the function that executes a run in a
+        worker. The caller closes back end and store. Raises ArgoError for an invalid plan.
         """
         plan.check()
         self._plan = plan
@@ -132,73 +139,76 @@ class Evaluating:
         self._store = store
         self._limit = limit
         self._clock = clock
-        self._begun = clock()
-        self._known = 0
-        self._order: dict[str, int] = {}
+        self._start_time = clock()
+        self._from_store = 0
+        self._positions: dict[str, int] = {}
         self._rows: list[RunRow] = []
         self._outcomes: dict[PlanName, Counter[RunOutcome]] = {p: Counter() for p in plan.plans}
 
     @property
     def progress(self) -> EvaluationProgress:
-        """How far it is."""
+        """Progress at this moment."""
         per_seed = 1 if self._plan.strata else len(self._plan.cases)
         return EvaluationProgress(
             {plan: counts.copy() for plan, counts in self._outcomes.items()},
             len(self._plan.seeds) * per_seed,
-            self._known,
-            self._clock() - self._begun,
+            self._from_store,
+            self._clock() - self._start_time,
         )
 
     @property
     def results(self) -> EvaluationResults:
-        """What has come of it, in the order of the plan, whichever run came first."""
-        rows = sorted(self._rows, key=lambda row: self._order[row.key])
+        """Results so far, in the order of the evaluation plan, whatever order the runs ended in."""
+        rows = sorted(self._rows, key=lambda row: self._positions[row.key])
         return EvaluationResults(self._plan, tuple(rows))
 
     def rows_as_they_come(self) -> Iterator[RunRow]:
-        """Makes all runs, and gives their rows; those that were there before come first."""
+        """Execute all runs and yield their rows as they end; in each batch, stored rows come first.
+
+        Moves the rows of the store to a Parquet file at the end.
+        """
         for batch in batches(self._plan, self._rows):
-            yield from self._carried_out(batch)
+            yield from self._run_batch(batch)
         if self._store is not None:
             self._store.compact()
 
-    def _carried_out(self, runs: Iterator[PlannedRun]) -> Iterator[RunRow]:
+    def _run_batch(self, runs: Iterator[PlannedRun]) -> Iterator[RunRow]:
         missing: list[tuple[PlannedRun, str]] = []
         for run in runs:
             key = self._plan.key(run)
-            self._order[key] = len(self._order)
+            self._positions[key] = len(self._positions)
             row = self._store.rows.get(key) if self._store is not None else None
             if row is None:
                 missing.append((run, key))
                 continue
-            self._known += 1
-            yield self._counted(row)
-        ahead = iter(missing)
-        for finished in self._handed_out(ahead):
-            row = self._row(finished)
+            self._from_store += 1
+            yield self._count(row)
+        pending = iter(missing)
+        for finished in self._as_completed(pending):
+            row = self._row_for(finished)
             if self._store is not None:
                 self._store.add(row)
-                if self._store.loose >= _COMPACTED:
+                if self._store.loose >= _COMPACT_AT:
                     self._store.compact()
-            yield self._counted(row)
+            yield self._count(row)
 
-    def _counted(self, row: RunRow) -> RunRow:
+    def _count(self, row: RunRow) -> RunRow:
         self._rows.append(row)
         self._outcomes[row.plan][row.outcome] += 1
         return row
 
-    def _handed_out(self, runs: Iterator[tuple[PlannedRun, str]]) -> Iterator[Finished]:
-        self._fill(runs)
+    def _as_completed(self, runs: Iterator[tuple[PlannedRun, str]]) -> Iterator[Finished]:
+        self._fill_pool(runs)
         for finished in self._pool.as_completed():
-            self._fill(runs)
+            self._fill_pool(runs)
             yield finished
 
-    def _fill(self, runs: Iterator[tuple[PlannedRun, str]]) -> None:
+    def _fill_pool(self, runs: Iterator[tuple[PlannedRun, str]]) -> None:
         while self._pool.wants_more:
-            following = next(runs, None)
-            if following is None:
+            next_run = next(runs, None)
+            if next_run is None:
                 return
-            run, key = following
+            run, key = next_run
             self._pool.submit(
                 (run, key),
                 WorkOrder(
@@ -211,15 +221,15 @@ class Evaluating:
                 ),
             )
 
-    def _row(self, finished: Finished) -> RunRow:
+    def _row_for(self, finished: Finished) -> RunRow:
         run, key = finished.ticket
         if isinstance(finished.value, RunRow):
             return finished.value
         outcome, reason = RunOutcome.DIED, finished.died
         if reason is not None and reason.endswith(f"code {TOOK_TOO_LONG}"):
-            reason = "the run took longer than it may"
+            reason = "the run took longer than its time limit"
         if reason is None:
-            # What can't be sent to a worker or back: whatever goes wrong in a run is a row.
+            # It couldn't be sent to a worker or back; each run gets a row, whatever went wrong.
             outcome, reason = RunOutcome.ERROR, f"{type(finished.error).__name__}: {finished.error}"
         _log.warning("run %s, seed %d: %s", key, run.seed, reason)
         row = row_without_end(key, self._plan.cases[run.case], run.spec, outcome, reason)
@@ -232,8 +242,11 @@ class Evaluating:
 
 
 def batches(plan: EvaluationPlan, rows: Sequence[RunRow]) -> Iterator[Iterator[PlannedRun]]:
-    """The runs of an evaluation, in batches. `rows` has those of all batches before when the next
-    one is asked for, so that what is decided does not depend on which run was the quickest."""
+    """Yield the runs of an evaluation in batches.
+
+    The caller must have added the rows of all previous batches to `rows` when it takes the next
+    batch. Decisions to stop therefore don't depend on which run was the quickest.
+    """
     if plan.strata:
         yield from _by_strata(plan, rows)
         return
@@ -248,29 +261,31 @@ def batches(plan: EvaluationPlan, rows: Sequence[RunRow]) -> Iterator[Iterator[P
 
 
 def _by_strata(plan: EvaluationPlan, rows: Sequence[RunRow]) -> Iterator[Iterator[PlannedRun]]:
-    """First as many runs of each case, then where they tell most. No seed is used twice, so that
-    the strata know nothing of each other."""
+    """Yield a first batch with equally many runs of each case, then batches by Neyman allocation.
+
+    No seed is used twice, so that the strata are independent of each other.
+    """
     seeds = iter(plan.seeds)
-    left = len(plan.seeds)
+    remaining = len(plan.seeds)
     cases = len(plan.cases)
-    shares = (plan.stopping.every,) * cases
-    while left:
+    counts = (plan.stopping.every,) * cases
+    while remaining:
         runs: list[PlannedRun] = []
-        for case, share in enumerate(shares):
-            for _ in range(min(share, left)):
+        for case, count in enumerate(counts):
+            for _ in range(min(count, remaining)):
                 runs.append(plan.run(case, next(seeds)))
-                left -= 1
+                remaining -= 1
         yield iter(runs)
         if plan.stopping.width is not None and is_enough(plan, rows):
             return
-        shares = allocation(_strata(plan, rows), min(left, plan.stopping.every * cases))
+        counts = allocation(_strata(plan, rows), min(remaining, plan.stopping.every * cases))
 
 
 def _strata(plan: EvaluationPlan, rows: Sequence[RunRow]) -> list[Stratum]:
-    whole = sum(case.weight for case in plan.cases)
-    found = []
+    total_weight = sum(case.weight for case in plan.cases)
+    strata = []
     for case in plan.cases:
         ran = [row for row in rows if row.faults == case.faults and row.carried_out]
-        done = sum(row.success for row in ran)
-        found.append(Stratum(case.weight / whole, done, len(ran)))
-    return found
+        successes = sum(row.success for row in ran)
+        strata.append(Stratum(case.weight / total_weight, successes, len(ran)))
+    return strata

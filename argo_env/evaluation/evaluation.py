@@ -1,4 +1,4 @@
-"""Evaluations from Python: missions, worlds and faults in, results out."""
+"""Python interface to evaluations: missions, worlds and faults in, results out."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
@@ -23,7 +23,7 @@ from argo_env.run.spec import RunSpec
 
 
 class Evaluation:
-    """What is to be evaluated: each mission with each set of faults, in the world of each seed.
+    """Evaluation of each mission with each set of faults, in the world of each seed.
 
     >>> results = Evaluation({"as written": mission}, seeds=range(100)).run(workers=2)
     >>> results.frame.groupby("faults")["outcome"].value_counts()
@@ -43,25 +43,27 @@ class Evaluation:
         width: float | None = None,
         name: str = "evaluation",
     ) -> None:
-        """Missions and sets of faults by what they are called; no faults: nothing goes wrong.
+        """Prepare the evaluation of missions and sets of faults, given by their names.
 
-        With `require`, such as `["success >= 0.98"]`, or the `width` of intervals, it stops as soon
-        as that is decided or reached. Raises ArgoError for what can't be run.
+        Without `faults` nothing goes wrong. With requirements in `require`, such as
+        `["success >= 0.98"]`, or a `width` of intervals, the evaluation stops as soon as the
+        requirements are decided and the width is reached. Raises ArgoError for missions, faults or
+        worlds that can't be run.
         """
-        named = {"mission": missions} if isinstance(missions, Mission) else missions
-        if not named:
+        by_name = {"mission": missions} if isinstance(missions, Mission) else missions
+        if not by_name:
             raise Invalid("there is nothing to evaluate: give a mission")
         opened = open_site(site) if isinstance(site, str) else site
         worlds.check(opened.site)
         cases = []
-        for mission_name, mission in named.items():
-            for faults_name, own in (faults or {NO_FAULTS: ()}).items():
+        for mission_name, mission in by_name.items():
+            for faults_name, fault_set in (faults or {NO_FAULTS: ()}).items():
                 spec = RunSpec(
                     mission=mission,
                     site=opened.reference,
                     drive=drive,
                     sensor=sensor,
-                    faults=tuple(own),
+                    faults=tuple(fault_set),
                 )
                 check_spec(spec, opened.site)
                 cases.append(
@@ -78,7 +80,7 @@ class Evaluation:
                 width=width, require=tuple(parse_requirement(text) for text in require)
             ),
         )
-        """what is run"""
+        """cases, seeds and the rule to stop"""
         self.plan.check()
 
     def run(
@@ -91,13 +93,20 @@ class Evaluation:
         replace: bool = False,
         heard: Callable[[EvaluationProgress], None] = lambda _: None,
     ) -> EvaluationResults:
-        """Makes the runs, by so many workers (as many as there are processors), and returns what
-        came of them. With a `folder` rows are kept there, and what is there is not run again;
-        `heard` is told how far it is after each run. Where another evaluation is in the folder, it
-        gives way if it is to be replaced, and only those of its rows stay that fit.
+        """Execute the runs and return the results.
 
-        Raises ArgoError if there are no such workers, or the folder can't be used, as where another
-        evaluation is in it.
+        Args:
+            workers: Number of workers; None for one per usable processor, or for all of a cluster.
+            folder: Folder in which rows are stored; runs whose rows it has are not repeated.
+            backend: Back end of the workers, or its name.
+            address: Address of an existing cluster, if the back end has one.
+            replace: Whether to replace another evaluation in the folder. Only those of its rows
+                that belong to this evaluation are kept.
+            heard: Function that is called with the progress after each run.
+
+        Raises:
+            ArgoError: If the back end has no such workers, or the folder can't be used, for example
+                because it has another evaluation.
         """
         with ExitStack() as stack:
             store: RowStore | None = None

@@ -1,4 +1,4 @@
-"""The file of an evaluation: what is run, how often, and what must hold."""
+"""Evaluation files in YAML: what is run, how often, and which requirements must be met."""
 
 from pydantic import Field, field_validator, model_validator
 
@@ -13,43 +13,47 @@ from argo_env.files.yaml_file import parse_yaml
 from argo_env.run.drives_and_sensors import DRIVES, IDEAL, SENSORS
 
 MAX_BYTES = 1_000_000
-"""of an evaluation's file; one takes some hundred bytes"""
+"""largest size of an evaluation file; a usual one has some hundred bytes"""
 
 
 class MissionEntry(Model):
-    """A mission of an evaluation."""
+    """Mission in an evaluation file."""
 
     file: str
-    """path of its script or JSON, from the folder of the evaluation's file"""
+    """path of its script or JSON, relative to the folder of the evaluation file"""
     name: str | None = None
-    """what it is called in tables; None: the file's name"""
+    """name in tables; None: the file's name"""
     start_area: int | None = None
-    """where the script leaves it"""
+    """start area, if the script leaves it open"""
     end_area: int | None = None
-    """where the script leaves it"""
+    """end area, if the script leaves it open"""
 
 
 class StopEntry(Model):
-    """When there are enough runs, before all seeds are used."""
+    """Rule to stop an evaluation before all seeds are used."""
 
     width: float | None = Field(default=None, gt=0, lt=1)
-    """of the interval of each plan's rate of success"""
+    """width that the interval of each plan's success rate must reach"""
     every: int = Field(default=20, ge=1)
-    """seeds after which one looks"""
+    """number of seeds between two checks of the rule"""
 
 
 class DrawnFaults(Model):
-    """Faults that come with a probability."""
+    """Faults that are drawn from a distribution."""
 
     file: str
-    """path of their distribution, from the folder of the evaluation's file"""
+    """path of the distribution, relative to the folder of the evaluation file"""
     strata: bool = False
-    """whether each is run often enough by itself, and the whole put together by probability"""
+    """whether to sample each fault separately and weight the rates by probability (stratified
+    sampling)"""
 
 
 class EvaluationFile(Model):
-    """What an evaluation is made of: each mission with each site, robot, drive, sensor, policy and
-    faults, in the world of each seed."""
+    """Content of an evaluation file.
+
+    Each mission is run with each site, robot, drive, sensor, policy and set of faults, in the world
+    of each seed.
+    """
 
     name: str = Field(default="evaluation", min_length=1, max_length=100)
     missions: tuple[str | MissionEntry, ...] = Field(min_length=1)
@@ -58,39 +62,39 @@ class EvaluationFile(Model):
     drives: tuple[str, ...] = Field(default=("route",), min_length=1)
     sensors: tuple[str, ...] = Field(default=(IDEAL,), min_length=1)
     policies: tuple[str, ...] = Field(default=(AS_WRITTEN,), min_length=1)
-    """in which order tasks are done: `as written`, `optimised`, or `module:function`"""
+    """orders of the tasks: `as written`, `optimised`, or `module:function`"""
     faults: tuple[str, ...] | DrawnFaults = (NO_FAULTS,)
-    """files or folders of faults, and `none`; or a distribution that they are drawn from"""
+    """files or folders of faults, and `none`; or a distribution to draw faults from"""
     seeds: str | int | tuple[int, ...] = "0..99"
     worlds: Variation = NO_VARIATION
-    """what differs from world to world"""
+    """values that vary from world to world"""
     require: tuple[str, ...] = ()
-    """what must hold, such as `success >= 0.98`: one stops when it is decided. One alone needs no
-    list"""
+    """requirements such as `success >= 0.98`; the evaluation stops when they are decided. A single
+    one needs no list"""
     stop: StopEntry = StopEntry()
     control: str | None = None
-    """a cheap drive whose runs help to estimate what those of the drive bring, if that pays"""
+    """cheap drive whose runs serve as a control variate for those of the drive, if that pays"""
 
     @field_validator("drives")
     @classmethod
-    def _drives(cls, names: tuple[str, ...]) -> tuple[str, ...]:
-        return _known(names, DRIVES, "drive")
+    def _check_drives(cls, names: tuple[str, ...]) -> tuple[str, ...]:
+        return _require_known(names, DRIVES, "drive")
 
     @field_validator("control")
     @classmethod
-    def _control(cls, name: str | None) -> str | None:
-        return name if name is None else _known((name,), DRIVES, "drive")[0]
+    def _check_control(cls, name: str | None) -> str | None:
+        return name if name is None else _require_known((name,), DRIVES, "drive")[0]
 
     @field_validator("sensors")
     @classmethod
-    def _sensors(cls, names: tuple[str, ...]) -> tuple[str, ...]:
-        return _known(names, tuple(SENSORS), "sensor")
+    def _check_sensors(cls, names: tuple[str, ...]) -> tuple[str, ...]:
+        return _require_known(names, tuple(SENSORS), "sensor")
 
     @field_validator("seeds", mode="before")
     @classmethod
-    def _seeds(cls, said: object) -> str:
-        several = said if isinstance(said, list | tuple) else [said]
-        text = ",".join(map(str, several))
+    def _seeds_as_text(cls, value: object) -> str:
+        parts = value if isinstance(value, list | tuple) else [value]
+        text = ",".join(map(str, parts))
         try:
             parse_seeds(text)
         except Invalid as error:
@@ -99,38 +103,39 @@ class EvaluationFile(Model):
 
     @field_validator("require", mode="before")
     @classmethod
-    def _one_alone(cls, said: object) -> object:
-        return (said,) if isinstance(said, str) else said
+    def _single_requirement(cls, value: object) -> object:
+        return (value,) if isinstance(value, str) else value
 
     @field_validator("require")
     @classmethod
-    def _requirements(cls, said: tuple[str, ...]) -> tuple[str, ...]:
+    def _check_requirements(cls, texts: tuple[str, ...]) -> tuple[str, ...]:
         try:
-            for one in said:
-                parse_requirement(one)
+            for text in texts:
+                parse_requirement(text)
         except Invalid as error:
             raise ValueError(str(error)) from None
-        return said
+        return texts
 
     @model_validator(mode="after")
     def _no_requirement_on_strata(self) -> "EvaluationFile":
         if self.strata and self.require:
             raise ValueError(
-                "strata have no worlds in common, so that no requirement can be looked at again "
-                "and again: give `stop: {width: ...}` instead"
+                "strata have no worlds in common, so that no requirement can be checked "
+                "repeatedly: give `stop: {width: ...}` instead"
             )
         return self
 
     @property
     def strata(self) -> bool:
-        """Whether runs go to the faults by how uncertain they are."""
+        """True if runs are allocated to the faults by their uncertainty (stratified sampling)."""
         return isinstance(self.faults, DrawnFaults) and self.faults.strata
 
 
 def decode_evaluation(content: bytes, source_name: str) -> EvaluationFile:
-    """The evaluation in YAML, which messages call `source_name`.
+    """Parse an evaluation in YAML; messages refer to it as `source_name`.
 
-    Raises ArgoError if it is no text, DiagnosticError, with the places, if it is no evaluation.
+    Raises ArgoError if the content is no text or too large, and DiagnosticError, with positions in
+    the text, if it is no evaluation.
     """
     require_size(content, source_name, "evaluation", MAX_BYTES)
     text = decode_text(content, source_name, "evaluation")
@@ -145,7 +150,7 @@ def decode_evaluation(content: bytes, source_name: str) -> EvaluationFile:
     )
 
 
-def _known(names: tuple[str, ...], known: tuple[str, ...], what: str) -> tuple[str, ...]:
+def _require_known(names: tuple[str, ...], known: tuple[str, ...], what: str) -> tuple[str, ...]:
     for name in names:
         if name not in known:
             raise ValueError(f"no {what} `{name}`; there are: {', '.join(known)}")

@@ -1,4 +1,4 @@
-"""The folder of an evaluation: its plan, its rows, and the specs of what failed."""
+"""Folder of an evaluation: its plan, its rows, and the specs of its unsuccessful runs."""
 
 import hashlib
 import os
@@ -23,17 +23,17 @@ PLAN = "evaluation.json"
 FAILING = "failing"
 REPORT = "report.html"
 COMPARISON = "comparison.html"
-_SPEC = re.compile(r"[0-9a-f]{24}\.json")
-_MOST_FAILING = 1_000
-"""specs that are written; the rows of all are there"""
+_SPEC_NAME = re.compile(r"[0-9a-f]{24}\.json")
+_MAX_FAILING = 1_000
+"""largest number of specs that are written; the rows of all runs are in the folder"""
 _MAX_BYTES = 1_000_000_000
 
 
-class _Kept(Model):
-    """What is in the file of the plan."""
+class _StoredPlan(Model):
+    """Content of the plan's file."""
 
     digest: str
-    """of all that the plan was made from"""
+    """hash of all that the plan was made from"""
     plan: EvaluationPlan
 
 
@@ -45,18 +45,18 @@ def open_rows(
     replace: bool = False,
     helper: EvaluationPlan | None = None,
 ) -> RowStore:
-    """The rows of an evaluation in its folder, opened for writing, with the plan kept beside them;
-    `helper` is the plan of cheap runs that help it.
+    """Open the rows of an evaluation in its folder for writing, and store its plan beside them.
 
-    An evaluation that is there goes on if it is the same, or has the same cases and fewer seeds.
-    Any other one gives way if it is to be replaced: of its rows those stay that fit.
+    An evaluation in the folder is continued if it is the same, or has the same cases and a subset
+    of the seeds. `replace` replaces any other evaluation and keeps only its rows that belong to the
+    new plan, or to `helper`, the plan of cheap runs that help the new one.
 
-    Raises Conflict for another evaluation that is not to be replaced, or if another process
-    evaluates into the folder; Unavailable if it can't be written.
+    Raises Conflict for another evaluation if `replace` is False, or if another process evaluates
+    into the folder; Unavailable if the folder can't be written.
     """
     store = RowStore(folder)
     try:
-        if not _goes_on(folder, plan):
+        if not _continues(folder, plan):
             if not replace:
                 raise Conflict(
                     f"{folder}: has another evaluation: choose another folder; or replace its "
@@ -66,7 +66,7 @@ def open_rows(
             plans = (plan,) if helper is None else (plan, helper)
             seeds = set(plan.seeds)
             store.keep_only(
-                lambda row: any(one.has(row, seeds if one is plan else {row.seed}) for one in plans)
+                lambda row: any(p.has(row, seeds if p is plan else {row.seed}) for p in plans)
             )
         keep_plan(folder, plan, digest)
     except BaseException:
@@ -75,53 +75,61 @@ def open_rows(
     return store
 
 
-def _goes_on(folder: Path, plan: EvaluationPlan) -> bool:
-    """Whether the plan goes on with what is in the folder, if there is anything."""
+def _continues(folder: Path, plan: EvaluationPlan) -> bool:
+    """Return True if the plan continues the evaluation in the folder, or the folder has none."""
     try:
-        before = kept_plan(folder)
+        stored = kept_plan(folder)
     except Invalid:
         return False  # of another version of Argo
-    return before is None or (
-        set(before.seeds) <= set(plan.seeds)
-        and before.changed(seeds=plan.seeds, stopping=plan.stopping) == plan
+    return stored is None or (
+        set(stored.seeds) <= set(plan.seeds)
+        and stored.changed(seeds=plan.seeds, stopping=plan.stopping) == plan
     )
 
 
 def keep_plan(folder: Path, plan: EvaluationPlan, digest: str) -> None:
-    """Writes the plan of an evaluation. Raises Unavailable where that can't be done."""
+    """Write the plan of an evaluation into its folder.
+
+    Raises Unavailable if the file can't be written.
+    """
     make_folder(folder)
-    write_file(folder / PLAN, _Kept(digest=digest, plan=plan).model_dump_json(indent=1))
+    write_file(folder / PLAN, _StoredPlan(digest=digest, plan=plan).model_dump_json(indent=1))
 
 
 def write_file(path: Path, text: str) -> Path:
-    """Writes a file of an evaluation and returns its path. Raises Unavailable where that can't be
-    done."""
+    """Write a file of an evaluation and return its path.
+
+    Raises Unavailable if the file can't be written.
+    """
     with writing(path):
         write_atomically(path, text)
     return path
 
 
 def kept_plan(folder: Path, digest: str | None = None) -> EvaluationPlan | None:
-    """The plan that is kept in the folder; None if there is none, or with a `digest` none that was
-    made from the same. Raises Invalid if it can't be understood."""
+    """Return the plan stored in the folder, or None if there is none.
+
+    With a `digest`, a plan that was made from anything else also gives None, as does a plan of
+    another version of Argo. Without a `digest`, the latter raises Invalid.
+    """
     try:
         content = read_bytes(folder / PLAN, "evaluation", _MAX_BYTES)
     except NotFound:
         return None
     try:
-        kept = _Kept.model_validate_json(content)
+        stored = _StoredPlan.model_validate_json(content)
     except ValidationError:
         if digest is not None:
-            return None  # of another version of Argo; it is made anew
+            return None  # of another version of Argo; the caller makes the plan again
         raise Invalid(f"{folder / PLAN}: is no plan of an evaluation by this version") from None
-    return kept.plan if digest in (None, kept.digest) else None
+    return stored.plan if digest in (None, stored.digest) else None
 
 
 def read_results(folder: Path) -> EvaluationResults:
-    """The evaluation in a folder, as far as it has come: of one that is not at its end the worlds
-    before the first one in which a run is missing.
+    """Read the results of the evaluation in a folder, which may be incomplete.
 
-    Raises NotFound if there is none.
+    An evaluation that has not ended gives the worlds before the first world with a missing run.
+    Raises NotFound if the folder has no evaluation.
     """
     plan = kept_plan(folder)
     if plan is None:
@@ -133,42 +141,44 @@ def read_results(folder: Path) -> EvaluationResults:
 
 
 def in_order(plan: EvaluationPlan, rows: tuple[RunRow, ...]) -> tuple[RunRow, ...]:
-    """Those rows that are of the plan, seed by seed and case by case."""
+    """Return the rows that belong to the plan, in the order of its seeds and, within, its cases."""
     seeds = {seed: k for k, seed in enumerate(plan.seeds)}
     by_key = {row.key: row for row in rows}
-    found = [row for row in by_key.values() if plan.has(row, seeds)]
-    return tuple(sorted(found, key=lambda row: (seeds[row.seed], plan.case_of(row))))
+    own_rows = [row for row in by_key.values() if plan.has(row, seeds)]
+    return tuple(sorted(own_rows, key=lambda row: (seeds[row.seed], plan.case_of(row))))
 
 
 def write_failing(folder: Path, results: EvaluationResults) -> dict[str, Path]:
-    """A file for each run that failed, from which it can be made again alone; by the rows' keys.
-    Those of runs that are none of the evaluation's any more are removed."""
-    written: dict[str, Path] = {}
+    """Write a spec file for each unsuccessful run, and return the paths by the rows' keys.
+
+    Each file repeats one run alone. All other spec files are removed.
+    """
+    paths: dict[str, Path] = {}
     for row in results.rows:
-        if row.success or len(written) == _MOST_FAILING:
+        if row.success or len(paths) == _MAX_FAILING:
             continue
         case = results.plan.case_of(row)
         assert case is not None
         run = results.plan.run(case, row.seed)
         path = folder / FAILING / f"{row.key}.json"
-        if not written:
+        if not paths:
             make_folder(folder / FAILING)
         write_file(path, run.spec.model_dump_json(indent=1))
-        written[row.key] = path
-    _remove_others(folder / FAILING, {path.name for path in written.values()})
-    return written
+        paths[row.key] = path
+    _remove_others(folder / FAILING, {path.name for path in paths.values()})
+    return paths
 
 
 def _remove_others(folder: Path, names: Collection[str]) -> None:
-    """Removes the specs of other runs from the folder."""
+    """Remove all specs from the folder whose file names are not in `names`."""
     for name in os.listdir(folder) if os.path.isdir(folder) else ():
-        if _SPEC.fullmatch(name) and name not in names:
+        if _SPEC_NAME.fullmatch(name) and name not in names:
             os.unlink(folder / name)
 
 
 def digest_of(*contents: bytes) -> str:
-    """Of all that a plan is made from."""
-    whole = hashlib.sha256()
+    """Return a hash of all contents that a plan is made from."""
+    digest = hashlib.sha256()
     for content in contents:
-        whole.update(len(content).to_bytes(8) + content)
-    return whole.hexdigest()
+        digest.update(len(content).to_bytes(8) + content)
+    return digest.hexdigest()

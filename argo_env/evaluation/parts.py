@@ -1,4 +1,4 @@
-"""Parquet files of rows. What is imported for them is not part of the base install."""
+"""Parquet files of rows. They need pyarrow, which is not part of the base install."""
 
 import os
 import re
@@ -16,29 +16,31 @@ if TYPE_CHECKING:
     import pyarrow
 
 PARTS = "parts"
-_NAME = re.compile(r"part-(\d+)\.parquet")
+_PART_NAME = re.compile(r"part-(\d+)\.parquet")
 
 
 def can_write_parts() -> bool:
-    """Whether pyarrow is installed."""
+    """Return True if pyarrow is installed."""
     return find_spec("pyarrow") is not None
 
 
 def has_parts(folder: Path) -> bool:
-    """Whether rows have been moved to Parquet files in the folder of an evaluation."""
-    return bool(_numbers(folder))
+    """Return True if the folder of an evaluation has Parquet files of rows."""
+    return bool(_part_numbers(folder))
 
 
 def write_part(folder: Path, rows: Sequence[RunRow]) -> Path:
-    """Writes rows to one more file, which is whole or not there. Raises Unavailable where that
-    can't be done."""
+    """Write rows to a new file atomically: the file is complete or does not exist.
+
+    Raises Unavailable if it can't be written.
+    """
     import pyarrow
     from pyarrow import parquet
 
     parts = folder / PARTS
-    path = _part(folder, max(_numbers(folder), default=0) + 1)
+    path = _part_path(folder, max(_part_numbers(folder), default=0) + 1)
     draft = parts / f".{path.name}"
-    table = pyarrow.Table.from_pylist([_plain(row) for row in rows], schema=_schema())
+    table = pyarrow.Table.from_pylist([_to_record(row) for row in rows], schema=_schema())
     try:
         parts.mkdir(exist_ok=True)
         parquet.write_table(table, draft)
@@ -52,11 +54,11 @@ def write_part(folder: Path, rows: Sequence[RunRow]) -> Path:
 
 
 def read_parts(folder: Path) -> tuple[RunRow, ...]:
-    """The rows in all files, in the order in which they were written.
+    """Read the rows of all files, in the order in which they were written.
 
-    Raises Unavailable if there are any, and pyarrow is missing or one can't be read.
+    Raises Unavailable if there are files, and pyarrow is missing or one of them can't be read.
     """
-    numbers = _numbers(folder)
+    numbers = _part_numbers(folder)
     if not numbers:
         return ()
     if not can_write_parts():
@@ -67,40 +69,40 @@ def read_parts(folder: Path) -> tuple[RunRow, ...]:
 
     rows: list[RunRow] = []
     for number in numbers:
-        path = _part(folder, number)
+        path = _part_path(folder, number)
         try:
-            # Not as a dataset, which would take the folder for a column.
-            plain = parquet.ParquetFile(path).read().to_pylist(maps_as_pydicts="strict")
+            # Reading it as a dataset would make a column of the folder's name.
+            records = parquet.ParquetFile(path).read().to_pylist(maps_as_pydicts="strict")
         except (OSError, ArrowInvalid) as error:
             raise Unavailable(f"{path}: can't be read: {error}") from error
-        rows += [RunRow.model_validate(one) for one in plain]
+        rows += [RunRow.model_validate(record) for record in records]
     return tuple(rows)
 
 
 def remove_parts(folder: Path) -> None:
-    """Removes all files. Raises Unavailable where that can't be done."""
+    """Remove all Parquet files from the folder. Raises Unavailable if that fails."""
     try:
-        for number in _numbers(folder):
-            os.unlink(_part(folder, number))
+        for number in _part_numbers(folder):
+            os.unlink(_part_path(folder, number))
     except OSError as error:
         raise Unavailable(f"{folder / PARTS}: can't be changed: {error.strerror}") from error
 
 
-def _part(folder: Path, number: int) -> Path:
+def _part_path(folder: Path, number: int) -> Path:
     return folder / PARTS / f"part-{number:05d}.parquet"
 
 
-def _numbers(folder: Path) -> list[int]:
+def _part_numbers(folder: Path) -> list[int]:
     try:
         names = os.listdir(folder / PARTS)
     except FileNotFoundError:
         return []
     except OSError as error:
         raise Unavailable(f"{folder / PARTS}: can't be read: {error.strerror}") from error
-    return sorted(int(found[1]) for name in names if (found := _NAME.fullmatch(name)))
+    return sorted(int(match[1]) for name in names if (match := _PART_NAME.fullmatch(name)))
 
 
-def _plain(row: RunRow) -> dict[str, Any]:
+def _to_record(row: RunRow) -> dict[str, Any]:
     return row.model_dump(mode="json")
 
 

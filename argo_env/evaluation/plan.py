@@ -1,4 +1,4 @@
-"""What is to be evaluated, as data: cases, seeds, and when there are enough runs."""
+"""Plan of an evaluation as data: its cases, its seeds, and the rule to stop early."""
 
 import hashlib
 from collections.abc import Container, Iterator, Sequence
@@ -22,123 +22,142 @@ if TYPE_CHECKING:
 
 
 class Stopping(Model):
-    """When there are enough runs, before all seeds have been used."""
+    """Rule to stop an evaluation before all seeds are used."""
 
     width: float | None = Field(default=None, gt=0, lt=1)
-    """of the interval of each plan's rate of success, at 95 %"""
+    """width that the 95 % interval of each plan's success rate must reach; None: any"""
     require: tuple[RateRequirement, ...] = ()
-    """what each plan must hold: one stops as soon as it is decided for all"""
+    """requirements on each plan; the evaluation stops when all are decided for all plans"""
     every: int = Field(default=20, ge=1)
-    """seeds after which one looks"""
+    """number of seeds between two checks of the rule"""
 
 
 class EvaluationPlan(Model):
-    """What is to be evaluated. Each seed is one world, in which all cases are run."""
+    """Plan of an evaluation; each seed is one world, in which all cases are run.
+
+    It has the runs of one or several evaluated plans (`PlanName`), which are compared.
+    """
 
     name: str = "evaluation"
     cases: tuple[EvaluationCase, ...] = Field(min_length=1)
     seeds: tuple[int, ...] = Field(min_length=1)
     variation: Variation = NO_VARIATION
-    """what differs from world to world beside what seeds draw anyway"""
+    """values that vary from world to world, beside those that every run draws by its seed"""
     stopping: Stopping = Stopping()
     strata: bool = False
-    """whether runs go to the cases by how uncertain they are, and not to all alike"""
+    """whether runs are allocated to the cases by their uncertainty (stratified sampling), instead
+    of equally"""
     added: str = ""
-    """what stands on the site beside its description, in words: where something does, no run can
-    be made again from its spec alone"""
+    """objects that were added to the site's description, in words; if there are any, no run can be
+    repeated from its spec alone"""
 
     def changed(self, **fields: Any) -> "EvaluationPlan":
-        """A plan with other `fields`, made anew: a copy would keep the names of the plans that the
-        cases before had."""
+        """Return a new plan with other values of `fields`.
+
+        Use it instead of `model_copy`, which would copy the cached names that belong to the old
+        cases.
+        """
         same = {name: getattr(self, name) for name in EvaluationPlan.model_fields}
         return EvaluationPlan(**{**same, **fields})
 
     @cached_property
     def plans(self) -> tuple[PlanName, ...]:
-        """What is evaluated, in the order of the cases."""
+        """Names of the evaluated plans, in the order of the cases."""
         return tuple(dict.fromkeys(case.plan for case in self.cases))
 
     def run(self, case: int, seed: int) -> "PlannedRun":
-        """The run of the case of that number in the world of the seed."""
+        """Return the run of the case with this index in the world of the seed."""
         return PlannedRun(case, seed, self.variation.applied(self.cases[case].spec, seed))
 
     def runs(self, seeds: Sequence[int] | None = None) -> Iterator["PlannedRun"]:
-        """All runs of these seeds (all), seed by seed, so that cases are compared in equal worlds
-        whenever one stops."""
+        """Yield the runs of these seeds (None: all seeds), seed by seed.
+
+        All cases of a seed come before the next seed, so that cases are compared in the same worlds
+        whenever the evaluation stops.
+        """
         for seed in self.seeds if seeds is None else seeds:
             for case in range(len(self.cases)):
                 yield self.run(case, seed)
 
     def key(self, run: "PlannedRun") -> str:
-        """What the run is known by: a hash of all that it depends on, of what its case is called,
-        and of Argo's version."""
+        """Return the run's key: a hash of all that it depends on.
+
+        Names of its case and Argo's version are part of the hash.
+        """
         case = self.cases[run.case]
-        said = (__version__, case.digest, case.mission, case.policy, case.faults)
-        text = "\n".join((*said, run.spec.model_dump_json()))
+        parts = (__version__, case.digest, case.mission, case.policy, case.faults)
+        text = "\n".join((*parts, run.spec.model_dump_json()))
         return hashlib.sha256(text.encode()).hexdigest()[:24]
 
     @cached_property
-    def _numbers(self) -> dict[tuple["PlanName", str], int]:
-        """The numbers of the cases, by plan and faults."""
+    def _case_indices(self) -> dict[tuple["PlanName", str], int]:
+        """Indices of the cases, by plan and faults."""
         return {(case.plan, case.faults): k for k, case in enumerate(self.cases)}
 
     def case_of(self, row: "RunRow") -> int | None:
-        """The number of the case that a row is of; None: of none."""
-        return self._numbers.get((row.plan, row.faults))
+        """Return the index of the row's case; None if the row belongs to no case of this plan."""
+        return self._case_indices.get((row.plan, row.faults))
 
     def has(self, row: "RunRow", seeds: Container[int]) -> bool:
-        """Whether a row is that of a run of this plan, with one of these seeds."""
+        """Return True if the row belongs to a run of this plan with one of these seeds."""
         case = self.case_of(row)
         if case is None or row.seed not in seeds:
             return False
         return self.key(self.run(case, row.seed)) == row.key
 
     def faults_in(self, case: str, seed: int) -> str:
-        """What goes wrong in the world of a seed: the faults of the case, or those drawn for it."""
+        """Return the name of the faults drawn for the seed's world, or of the case's faults."""
         return self.drawn_in(seed) or case
 
     def drawn_in(self, seed: int) -> str:
-        """What the faults are called that are drawn for the world of a seed; empty where the plan
-        draws none."""
+        """Return the name of the faults drawn for the seed's world.
+
+        It is empty for a plan that never draws faults. A plan that draws faults, but none for this
+        world, gives `NOTHING`.
+        """
         if self.variation.faults is None:
             return ""
         return self.variation.drawn_faults(seed) or NOTHING
 
     def check(self) -> None:
-        """Raises ArgoError for what makes no sense: equal cases, seeds twice."""
+        """Raise ArgoError for an invalid plan.
+
+        That is a plan with a seed twice, two cases of the same name, a requirement on detections
+        without any faults, or strata with several evaluated plans.
+        """
         if len(set(self.seeds)) < len(self.seeds):
-            raise Conflict("a seed is there twice: each one is a world of its own")
+            raise Conflict("a seed is there twice: give each seed once, as each is one world")
         names = [(case.plan, case.faults) for case in self.cases]
-        twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
-        if twice:
-            plan, faults = twice[0]
+        duplicates = [name for name in dict.fromkeys(names) if names.count(name) > 1]
+        if duplicates:
+            plan, faults = duplicates[0]
             raise Conflict(f"{plan} with faults {faults} is there twice: rename one of them")
         faultless = self.variation.faults is None and not any(c.spec.faults for c in self.cases)
-        if faultless and any(one.quantity == "detected" for one in self.stopping.require):
+        if faultless and any(r.quantity == "detected" for r in self.stopping.require):
             raise Invalid(
-                "that faults are `detected` is required, and there are none: name some to find"
+                "the requirement `detected` needs faults, and there are none: name some faults"
             )
         if self.strata and len(self.plans) > 1:
-            raise Invalid("strata are of one plan: give one mission, drive and policy")
+            raise Invalid("strata allow only one plan: give one mission, drive and policy")
 
 
 @dataclass(frozen=True)
 class PlannedRun:
-    """A run that is to be made."""
+    """Run that an evaluation plan contains."""
 
     case: int
-    """number of the case"""
+    """index of the case"""
     seed: int
     spec: RunSpec
-    """with all that is drawn for its world"""
+    """complete spec, with all that is drawn for its world"""
 
 
 def parse_seeds(text: str) -> tuple[int, ...]:
-    """Seeds as people write them: `0..999`, `7`, or several of these with commas.
+    """Parse seeds as people write them: `0..999`, `7`, or several of these with commas.
 
-    Raises Invalid for anything else.
+    Raises Invalid for anything else, and for seeds that are repeated, too large or too many.
     """
-    found: list[int] = []
+    seeds: list[int] = []
     for part in text.replace(" ", "").split(","):
         first, dots, last = part.partition("..")
         if not first.isdecimal() or (dots and not last.isdecimal()):
@@ -146,17 +165,17 @@ def parse_seeds(text: str) -> tuple[int, ...]:
         low, high = int(first), int(last or first)
         if high < low:
             raise Invalid(f"seeds `{part}`: the last one is before the first")
-        if high - low >= MOST_SEEDS - len(found):
+        if high - low >= MOST_SEEDS - len(seeds):
             raise Invalid(f"seeds `{part}`: there can be {MOST_SEEDS:,} seeds at most")
         if high > LARGEST_SEED:
             raise Invalid(f"seeds `{part}`: the largest there can be is {LARGEST_SEED}")
-        found += range(low, high + 1)
-    if len(set(found)) < len(found):
+        seeds += range(low, high + 1)
+    if len(set(seeds)) < len(seeds):
         raise Invalid(f"seeds `{text}`: one is there twice")
-    return tuple(found)
+    return tuple(seeds)
 
 
 MOST_SEEDS = 1_000_000
-"""of an evaluation"""
+"""largest number of seeds in an evaluation"""
 LARGEST_SEED = 2**63 - 1
-"""that rows can be kept of"""
+"""largest seed that rows can store"""

@@ -15,8 +15,8 @@ from argo_env.evaluation.rates import PlanRate
 from argo_env.evaluation.results import (
     DurationCurve,
     EvaluationResults,
+    cluster_failures,
     duration_curve,
-    failure_places_of,
 )
 from argo_env.evaluation.row import RunOutcome
 from argo_env.formatting import clock
@@ -377,7 +377,7 @@ def failure_places(
                 str(checkpoint.id), (x, y), (3, 3), textcoords="offset points",
                 fontsize=FONT - 2, color=INK,
             )  # fmt: skip
-    places = [place for place in failure_places_of(results.failing) if place.floor == floor]
+    places = [place for place in cluster_failures(results.failing) if place.floor == floor]
     most = max((place.runs for place in places), default=1)
     for place in reversed(places):  # where most failed lies on top
         one = place.runs == 1

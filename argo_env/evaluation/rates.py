@@ -1,4 +1,4 @@
-"""Rates of plans, from rows: the right interval for the way in which the runs came."""
+"""Rates of evaluated plans from rows, with the interval that suits the sampling."""
 
 import math
 from collections import Counter
@@ -22,35 +22,35 @@ from argo_env.evaluation.row import RunOutcome, RunRow
 
 
 class IntervalMethod(StrEnum):
-    """How an interval was made."""
+    """Method by which an interval was computed."""
 
     EXACT = "Clopper-Pearson"
-    """one run a world"""
+    """exact, for one run in each world"""
     SEQUENCE = "confidence sequence"
-    """several runs in each world, which depend on each other, so that their mean in each world
-    counts; or an end that depends on what came of the runs: it holds whenever one stops"""
+    """valid at any stopping time, for evaluations whose end depends on outcomes; also for several
+    runs in each world: these depend on each other, so that their mean counts as one value"""
     STRATA = "strata"
-    """runs of each case by themselves, put together by weight"""
+    """weighted sum over the cases, each of which is sampled separately"""
     QUICK = "Wilson"
-    """while it runs; nothing is claimed by it"""
+    """approximate, for display while the evaluation runs; nothing is claimed by it"""
 
 
 @dataclass(frozen=True)
 class PlanRate:
-    """How often something is so in the runs of a plan. Shares are 0 to 1, intervals of 95 %."""
+    """Share of a plan's runs that have some property, 0 to 1, with its 95 % interval."""
 
     value: float
     low: float
     high: float
     runs: int
-    """that count"""
+    """number of runs that count"""
     lost: int
-    """that could not be carried out, and do not count"""
+    """number of runs that could not be carried out, and do not count"""
     method: IntervalMethod
 
 
 def success(row: RunRow) -> bool:
-    """Whether the mission was one."""
+    """Return True if the mission succeeded."""
     return row.success
 
 
@@ -61,53 +61,65 @@ def rate_of(
     holds: Callable[[RunRow], bool | None] = success,
     any_time: bool = False,
 ) -> PlanRate:
-    """The rate of a plan over all its cases, from the rows of the evaluation. Runs that could not
-    be carried out are left out, and counted; those of which `holds` says None are left out, too.
-    `any_time`: the interval has to hold whatever ended the evaluation, as where somebody did who
-    saw what came of it."""
-    own = [row for row in rows if row.plan == plan]
-    ran = [row for row in own if row.carried_out]
-    lost = len(own) - len(ran)
+    """Compute the rate of a plan over all its cases.
+
+    Args:
+        evaluation: Evaluation that the plan belongs to.
+        plan: Plan to rate.
+        rows: Rows of the evaluation. Runs that could not be carried out don't count; their number
+            is returned.
+        holds: Property to count; a run for which it returns None does not count.
+        any_time: Whether the interval must be valid whatever ended the evaluation, for example a
+            person who saw the outcomes.
+    """
+    plan_rows = [row for row in rows if row.plan == plan]
+    ran = [row for row in plan_rows if row.carried_out]
+    lost = len(plan_rows) - len(ran)
     cases = [case for case in evaluation.cases if case.plan == plan]
     if len(cases) == 1:
-        rate, method = rate_of_runs(evaluation, _said(ran, holds), any_time)
+        rate, method = rate_of_runs(evaluation, _outcomes(ran, holds), any_time)
         return PlanRate(rate.value, rate.low, rate.high, rate.runs, lost, method)
     weights = {case.faults: case.weight for case in cases}
     if evaluation.strata:
-        of_case = {name: [row for row in ran if row.faults == name] for name in weights}
-        said = {name: _said(rows, holds) for name, rows in of_case.items()}
-        # A case of which no run counts is none of what the rate is over.
-        counts = [name for name in weights if said[name] or not of_case[name]]
-        if not counts:
+        by_case = {name: [row for row in ran if row.faults == name] for name in weights}
+        outcomes = {name: _outcomes(rows, holds) for name, rows in by_case.items()}
+        # A case that was run, but of which no run counts, is not part of the rate.
+        counting = [name for name in weights if outcomes[name] or not by_case[name]]
+        if not counting:
             return PlanRate(math.nan, 0.0, 1.0, 0, lost, IntervalMethod.STRATA)
-        whole = sum(weights[name] for name in counts)
+        total = sum(weights[name] for name in counting)
         strata = [
-            Stratum(weights[name] / whole, sum(said[name]), len(said[name])) for name in counts
+            Stratum(weights[name] / total, sum(outcomes[name]), len(outcomes[name]))
+            for name in counting
         ]
-        found, runs = stratified_rate(strata), len(_said(ran, holds))
-        return PlanRate(found.value, found.low, found.high, runs, lost, IntervalMethod.STRATA)
+        estimate, runs = stratified_rate(strata), len(_outcomes(ran, holds))
+        return PlanRate(
+            estimate.value, estimate.low, estimate.high, runs, lost, IntervalMethod.STRATA
+        )
     means = means_of(ran, weights, holds)
     sequence = ConfidenceSequence()
     sequence.add(means.values())
     low, high = sequence.interval
     value = sum(means.values()) / len(means) if means else math.nan
-    # A world of which one run is lost is left out as a whole.
-    count = len(_said([row for row in ran if row.seed in means], holds))
+    # A world with a lost run does not count at all.
+    count = len(_outcomes([row for row in ran if row.seed in means], holds))
     return PlanRate(value, low, high, count, lost, IntervalMethod.SEQUENCE)
 
 
-def _said(rows: Sequence[RunRow], holds: Callable[[RunRow], bool | None]) -> list[bool]:
-    """What is said of the runs that count."""
-    return [so for row in rows if (so := holds(row)) is not None]
+def _outcomes(rows: Sequence[RunRow], holds: Callable[[RunRow], bool | None]) -> list[bool]:
+    """Return the property's value for each run that counts."""
+    return [value for row in rows if (value := holds(row)) is not None]
 
 
 def rate_of_runs(
     evaluation: EvaluationPlan, outcomes: Sequence[bool], any_time: bool = False
 ) -> tuple[Rate, IntervalMethod]:
-    """How often something was so in runs of which each world has one, with an interval that holds
-    however the evaluation came to its end: the exact one holds where the number of runs, or the
-    width of the interval, was said before, and not where a requirement was decided, which is
-    the more often so the farther the runs at hand are from the truth."""
+    """Compute the rate of independent runs, one in each world, with an interval valid at its end.
+
+    The exact interval is valid if the number of runs or the width of the interval was fixed before.
+    It is not valid if the evaluation stopped at the decision of a requirement, which is the more
+    likely the farther the runs deviate from the truth, nor with `any_time`.
+    """
     count, runs = sum(outcomes), len(outcomes)
     if not (evaluation.stopping.require or any_time):
         return clopper_pearson(count, runs), IntervalMethod.EXACT
@@ -119,12 +131,12 @@ def rate_of_runs(
 def means_of(
     rows: Sequence[RunRow], weights: dict[str, float], holds: Callable[[RunRow], bool | None]
 ) -> dict[int, float]:
-    """Return by seed the share of a plan's runs of which something holds."""
+    """Return, by seed, the weighted share of a plan's runs that have the property."""
     return weighted_world_means(((row.seed, row.faults, holds(row)) for row in rows), weights)
 
 
 def quick_rate(outcomes: Counter[RunOutcome]) -> PlanRate:
-    """The rate of success of so many runs, to look at while more come."""
+    """Compute the success rate with an approximate interval, for display during the evaluation."""
     ran = outcomes[RunOutcome.SUCCESS] + outcomes[RunOutcome.FAILURE]
     rate = wilson(outcomes[RunOutcome.SUCCESS], ran)
     lost = outcomes.total() - ran
@@ -132,7 +144,7 @@ def quick_rate(outcomes: Counter[RunOutcome]) -> PlanRate:
 
 
 class Decision(StrEnum):
-    """What is known of a requirement."""
+    """Decision on a requirement."""
 
     MET = "met"
     MISSED = "missed"
@@ -141,24 +153,25 @@ class Decision(StrEnum):
 
 @dataclass(frozen=True)
 class RequirementVerdict:
-    """What the runs say of a requirement on a plan."""
+    """Verdict on a requirement for one plan, with the interval that it is based on."""
 
     plan: PlanName
     requirement: str
     verdict: Decision
     low: float
     high: float
-    """of the share, whenever one stops"""
+    """bounds of the share, 0 to 1, valid at any stopping time"""
     worlds: int
+    """number of worlds that count"""
 
 
 def judge_requirements(
     evaluation: EvaluationPlan, rows: Sequence[RunRow]
 ) -> tuple[RequirementVerdict, ...]:
-    """What is shown by now, of each plan and requirement. It may be asked after each run: the
-    chance that any of the verdicts on one plan is ever wrong is at most 5 %.
+    """Return the present verdict on each requirement for each plan.
 
-    Runs that could not be carried out count against the requirement.
+    It may be called after each run: the probability that any verdict on one plan is ever wrong is
+    at most 5 %. Runs that could not be carried out count against the requirement.
     """
     return tuple(
         RequirementVerdict(plan, str(requirement), verdict, *sequence.interval, sequence.runs)
@@ -169,14 +182,14 @@ def judge_requirements(
 def _decisions(
     evaluation: EvaluationPlan, rows: Sequence[RunRow]
 ) -> Iterator[tuple[PlanName, RateRequirement, ConfidenceSequence, Decision]]:
-    """Yield each plan and requirement with its confidence sequence and what that decides so far."""
+    """Yield each plan and requirement with its confidence sequence and its decision so far."""
     required = evaluation.stopping.require
     for plan in evaluation.plans:
-        own = [row for row in rows if row.plan == plan]
+        plan_rows = [row for row in rows if row.plan == plan]
         weights = {case.faults: case.weight for case in evaluation.cases if case.plan == plan}
         for requirement in required:
             sequence = ConfidenceSequence(level=1.0 - 0.05 / len(required))
-            sequence.add(means_of(own, weights, requirement.holds).values())
+            sequence.add(means_of(plan_rows, weights, requirement.holds).values())
             above = sequence.runs > 0 and sequence.is_above(requirement.share)
             below = sequence.runs > 0 and sequence.is_below(requirement.share)
             verdict = Decision.OPEN
@@ -186,9 +199,9 @@ def _decisions(
 
 
 def is_enough(plan: EvaluationPlan, rows: Sequence[RunRow]) -> bool:
-    """Whether all that one stops for is reached."""
+    """Return True if the evaluation's rule to stop is fulfilled; False if it has no rule."""
     stopping = plan.stopping
-    # Not by `judge_requirements`, which also searches for intervals and takes far longer.
+    # `judge_requirements` would also search for intervals and take far longer.
     if stopping.require and any(verdict is Decision.OPEN for *_, verdict in _decisions(plan, rows)):
         return False
     if stopping.width is not None:

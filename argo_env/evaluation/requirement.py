@@ -1,4 +1,4 @@
-"""Requirements: what a rate must be, such as `success >= 0.98`."""
+"""Requirements on rates, such as `success >= 0.98`."""
 
 import re
 from typing import TYPE_CHECKING
@@ -16,49 +16,56 @@ _FORM = re.compile(r"\s*([a-z_ ]+?)\s*(>=|<=)\s*([0-9.]+)\s*(%?)\s*")
 
 
 class RateRequirement(Model):
-    """How often something must, or may, be so."""
+    """Requirement that a quantity's rate is at least, or at most, a given share."""
 
     quantity: str
+    """name in `QUANTITIES`"""
     at_least: bool
+    """True: the rate must be at least the share; False: at most"""
     share: float = Field(gt=0, lt=1)
 
     @model_validator(mode="after")
     def _known(self) -> "RateRequirement":
         if self.quantity not in QUANTITIES:
             known = ", ".join(QUANTITIES)
-            raise ValueError(f"nothing is known of `{self.quantity}`; there are: {known}")
+            raise ValueError(f"no quantity `{self.quantity}`; there are: {known}")
         return self
 
     def __str__(self) -> str:
         return f"{self.quantity} {'>=' if self.at_least else '<='} {self.share:g}"
 
     def holds(self, row: "RunRow") -> bool | None:
-        """Whether it is so in the run, None if the run does not count. One that could not be
-        carried out counts against the requirement."""
+        """Return the quantity's value in the run, or None if the run does not count.
+
+        A run that could not be carried out gets the value that counts against the requirement.
+        """
         if not row.carried_out:
             return not self.at_least
         return QUANTITIES[self.quantity](row)
 
 
 def parse_requirement(text: str) -> RateRequirement:
-    """A requirement as people write it: `success >= 0.98`, `contact <= 1 %`. Raises Invalid."""
-    found = _FORM.fullmatch(text)
-    if found is None:
+    """Parse a requirement as people write it: `success >= 0.98`, `contact <= 1 %`.
+
+    Raises Invalid if it is no requirement, or if no number of runs can decide it.
+    """
+    match = _FORM.fullmatch(text)
+    if match is None:
         raise Invalid(
             f"requirement `{text}`: write it as `success >= 0.98`, with one of: "
             f"{', '.join(QUANTITIES)}"
         )
-    name, sign, number, percent = found.groups()
+    name, sign, number, percent = match.groups()
     if name not in QUANTITIES:
         known = ", ".join(QUANTITIES)
-        raise Invalid(f"requirement `{text}`: nothing is known of `{name}`; there are: {known}")
+        raise Invalid(f"requirement `{text}`: no quantity `{name}`; there are: {known}")
     try:
         share = float(number) / (100.0 if percent else 1.0)
     except ValueError:
-        raise Invalid(f"requirement `{text}`: {number} is no number") from None
+        raise Invalid(f"requirement `{text}`: `{number}` is no number") from None
     if not 0 < share < 1:
         raise Invalid(
-            f"requirement `{text}`: give a share between 0 and 1; that something is always or "
-            "never so can't be shown by any number of runs"
+            f"requirement `{text}`: give a share above 0 and below 1; no number of runs can show "
+            "that something is always or never the case"
         )
     return RateRequirement(quantity=name, at_least=sign == ">=", share=share)

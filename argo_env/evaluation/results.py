@@ -1,4 +1,4 @@
-"""Results of an evaluation: its rows, how long missions took, and where runs failed."""
+"""Results of an evaluation: rows, rates, durations of missions, and locations of failures."""
 
 import html
 import math
@@ -28,12 +28,12 @@ from argo_env.site.shapes import Vector
 if TYPE_CHECKING:
     import pandas
 
-_LEAST_BLOCK = 10  # seeds
+_MIN_BLOCK = 10  # seeds
 
 
 @dataclass(frozen=True)
 class GroupRate:
-    """The rate of success of some of a plan's runs, with its interval."""
+    """Success rate of a group of a plan's runs, with its interval."""
 
     plan: PlanName
     name: str
@@ -41,97 +41,102 @@ class GroupRate:
     outcomes: Counter[RunOutcome]
     method: IntervalMethod
     one_each: bool = True
-    """whether each world has one run in it: only then the interval is one"""
+    """whether the group has one run in each world; only then the interval is valid"""
 
 
 @dataclass(frozen=True)
 class EvaluationResults:
-    """The rows of an evaluation, in the order of its plan, and what they say."""
+    """Rows of an evaluation, in the order of its plan, with the rates computed from them."""
 
     plan: EvaluationPlan
     rows: tuple[RunRow, ...]
     cut_short: bool = False
-    """whether something else has ended it than the plan: intervals hold whatever that was"""
+    """whether the evaluation ended before its plan did; the intervals are then valid whatever ended
+    it"""
 
     @staticmethod
     def so_far(plan: EvaluationPlan, rows: Iterable[RunRow]) -> "EvaluationResults":
-        """Those of an evaluation that was cut short, of which there are these rows: of all worlds
-        before the first one in which a run is missing, as what has come of later ones depends on
-        how long runs take."""
+        """Return the results of an evaluation that was cut short, from its rows so far.
+
+        They have the worlds before the first world with a missing run. Later worlds are left out,
+        as their outcomes depend on how long runs take.
+        """
         by_world: dict[int, list[RunRow]] = defaultdict(list)
         for row in rows:
             by_world[row.seed].append(row)
-        found: list[RunRow] = []
+        complete: list[RunRow] = []
         for seed in plan.seeds:
             world = by_world[seed]
             if len(world) < len(plan.cases):
                 break
-            found += sorted(world, key=lambda row: plan.case_of(row) or 0)
-        return EvaluationResults(plan, tuple(found), cut_short=True)
+            complete += sorted(world, key=lambda row: plan.case_of(row) or 0)
+        return EvaluationResults(plan, tuple(complete), cut_short=True)
 
     @cached_property
     def outcomes(self) -> Counter[RunOutcome]:
-        """How many runs ended how."""
+        """Number of runs by outcome."""
         return Counter(row.outcome for row in self.rows)
 
     @property
     def missing(self) -> int:
-        """Runs that could not be carried out."""
+        """Number of runs that could not be carried out."""
         return self.outcomes[RunOutcome.ERROR] + self.outcomes[RunOutcome.DIED]
 
     @cached_property
     def failing(self) -> tuple[RunRow, ...]:
-        """The runs that were no success."""
+        """Rows of all runs without success: failed, or not carried out."""
         return tuple(row for row in self.rows if not row.success)
 
     def of(self, plan: PlanName) -> tuple[RunRow, ...]:
-        """The rows of one of the plans."""
+        """Return the rows of one evaluated plan."""
         return tuple(row for row in self.rows if row.plan == plan)
 
     def rate(self, plan: PlanName, quantity: str = "success") -> PlanRate:
-        """How often something is so in a plan's runs, over all their faults."""
+        """Compute the rate of a quantity in a plan's runs, over all their faults."""
         return rate_of(self.plan, plan, self.rows, QUANTITIES[quantity], self.cut_short)
 
     @cached_property
     def verdicts(self) -> tuple[RequirementVerdict, ...]:
-        """What is shown of what was required."""
+        """Verdicts on all requirements, for each plan."""
         return judge_requirements(self.plan, self.rows)
 
     def by_faults(self, plan: PlanName) -> tuple[GroupRate, ...]:
-        """A plan's rates by what went wrong."""
-        own = self.of(plan)
-        names = dict.fromkeys(self.faults_of(row) for row in own)
+        """Compute a plan's success rates by set of faults."""
+        plan_rows = self.of(plan)
+        names = dict.fromkeys(self.faults_of(row) for row in plan_rows)
         return tuple(
-            self._group(plan, name, [row for row in own if self.faults_of(row) == name])
+            self._group(plan, name, [row for row in plan_rows if self.faults_of(row) == name])
             for name in names
         )
 
     def faults_of(self, row: RunRow) -> str:
-        """What went wrong in a run: the faults of its case, or those that were drawn."""
+        """Return the name of a run's faults: those drawn for its world, or those of its case."""
         return self.plan.faults_in(row.faults, row.seed)
 
     @cached_property
     def delays(self) -> dict[str, list[float | None]]:
-        """By kind of fault, how long (s) it took until each was found; None: it was not."""
-        found: dict[str, list[float | None]] = {}
+        """Delays in s until each fault was found, by kind of fault; None if it was not found."""
+        delays: dict[str, list[float | None]] = {}
         for row in self.rows:
-            for one in row.detections:
-                found.setdefault(one.fault, []).append(one.delay)
-        return dict(sorted(found.items()))
+            for detection in row.detections:
+                delays.setdefault(detection.fault, []).append(detection.delay)
+        return dict(sorted(delays.items()))
 
     def by_seeds(self, plan: PlanName, blocks: int = 10) -> tuple[GroupRate, ...]:
-        """A plan's rates by some blocks of seeds, none too small to tell anything: they should
-        differ by chance only."""
-        own = self.of(plan)
-        seeds = sorted({row.seed for row in own})
-        size = max(_LEAST_BLOCK, -(-len(seeds) // blocks))
-        found = []
+        """Compute a plan's success rates by blocks of seeds, which should differ by chance only.
+
+        There are at most `blocks` blocks, and each but the last has at least 10 seeds.
+        """
+        plan_rows = self.of(plan)
+        seeds = sorted({row.seed for row in plan_rows})
+        size = max(_MIN_BLOCK, -(-len(seeds) // blocks))
+        groups = []
         for first in range(0, len(seeds), size):
             block = seeds[first : first + size]
-            rows = [row for row in own if block[0] <= row.seed <= block[-1]]
+            rows = [row for row in plan_rows if block[0] <= row.seed <= block[-1]]
             name = str(block[0]) if len(block) == 1 else f"{block[0]} to {block[-1]}"
-            found.append(self._group(plan, name, rows))
-        return tuple(found)
+            groups.append(self._group(plan, name, rows))
+        return tuple(groups)
 
     def _group(self, plan: PlanName, name: str, rows: Sequence[RunRow]) -> GroupRate:
         ran = [row.success for row in rows if row.carried_out]
@@ -141,21 +146,21 @@ class EvaluationResults:
 
     @cached_property
     def frame(self) -> "pandas.DataFrame":
-        """The rows as a table, one line each; what was drawn for the world as `world.…`."""
+        """Rows as a pandas table, one line each; values drawn for the world are `world.…`."""
         import pandas
 
-        lines = []
+        records = []
         for row in self.rows:
-            line = row.model_dump(mode="json", exclude={"world", "detections", "place"})
-            line["detected"] = QUANTITIES["detected"](row)
-            line["delay"] = max((one.delay or 0.0 for one in row.detections), default=None)
-            line["x"], line["y"], line["z"] = row.place or (None, None, None)
-            line.update({f"world.{name}": value for name, value in row.world.items()})
-            lines.append(line)
-        return pandas.DataFrame(lines)
+            record = row.model_dump(mode="json", exclude={"world", "detections", "place"})
+            record["detected"] = QUANTITIES["detected"](row)
+            record["delay"] = max((d.delay or 0.0 for d in row.detections), default=None)
+            record["x"], record["y"], record["z"] = row.place or (None, None, None)
+            record.update({f"world.{name}": value for name, value in row.world.items()})
+            records.append(record)
+        return pandas.DataFrame(records)
 
     def _repr_html_(self) -> str:
-        """As notebooks show it: a line for each plan."""
+        """Return the HTML table that notebooks show, with a line for each plan."""
         head = "".join(
             f"<th>{name}</th>" for name in ("plan", "runs", "success", "95 %", "failures", "lost")
         )
@@ -177,76 +182,79 @@ class EvaluationResults:
 
 @dataclass(frozen=True)
 class DurationCurve:
-    """The share of a plan's runs that had succeeded by a time. A run that failed never does."""
+    """Share of a plan's runs that have succeeded by each time (empirical distribution).
+
+    A failed run never succeeds, so that the share may stay below 1.
+    """
 
     plan: PlanName
     times: tuple[float, ...]
-    """s, of the runs that succeeded, ascending"""
+    """durations of the successful runs in s, ascending"""
     shares: tuple[float, ...]
-    """of all runs that were carried out, 0 to 1: those that had succeeded by each of the times"""
+    """share of all runs carried out that have succeeded by each of the times, 0 to 1"""
     limits: tuple[float, ...]
-    """s, the mission's longest durations; one, or none"""
+    """longest durations in s that the mission allows: one, or none"""
 
     @property
     def last(self) -> float:
-        """The share that succeeded at all."""
+        """Share of the runs that succeeded at any time, 0 to 1."""
         return self.shares[-1] if self.shares else 0.0
 
     def by(self, share: float) -> float | None:
-        """The time (s) by which that share (0 to 1) of the runs had succeeded; None: never."""
+        """Return the time in s by which this share (0 to 1) has succeeded; None if it never has."""
         k = bisect_left(self.shares, share - 1e-9)
         return self.times[k] if k < len(self.times) else None
 
 
 def duration_curve(results: EvaluationResults, plan: PlanName) -> DurationCurve:
-    """That of a plan. Each of its cases counts by its weight, however often it was run."""
+    """Compute the duration curve of a plan; each case counts by its weight, not its runs."""
     ran = [row for row in results.of(plan) if row.carried_out]
     weights = {case.faults: case.weight for case in results.plan.cases if case.plan == plan}
-    often = {name: sum(row.faults == name for row in ran) for name in weights}
-    whole = sum(weight for name, weight in weights.items() if often[name])
-    done = sorted(
-        (row.duration, weights[row.faults] / often[row.faults] / whole)
+    runs_by_faults = {name: sum(row.faults == name for row in ran) for name in weights}
+    total = sum(weight for name, weight in weights.items() if runs_by_faults[name])
+    weighted = sorted(
+        (row.duration, weights[row.faults] / runs_by_faults[row.faults] / total)
         for row in ran
         if row.success and row.duration is not None
     )
     return DurationCurve(
         plan,
-        tuple(time for time, _ in done),
-        tuple(min(share, 1.0) for share in accumulate(share for _, share in done)),
+        tuple(time for time, _ in weighted),
+        tuple(min(share, 1.0) for share in accumulate(share for _, share in weighted)),
         tuple(sorted({row.limit for row in ran if row.limit is not None})),
     )
 
 
-_NEAR = 0.5  # m
+_RADIUS = 0.5  # m, largest distance of a failure from the first one of its cluster
 
 
 @dataclass
-class FailurePlace:
-    """A place where runs failed."""
+class FailureCluster:
+    """Location where runs failed; it counts the failed runs by task."""
 
     floor: int
     at: Vector
-    """m, of the first of them; the others are at most half a metre away"""
+    """position of the first failure in m; the others are at most half a metre away"""
     tasks: Counter[str] = field(default_factory=Counter)
-    """how many failed there at each task"""
+    """number of failed runs by task"""
 
     @property
     def runs(self) -> int:
-        """How many failed there."""
+        """Number of runs that failed here."""
         return self.tasks.total()
 
 
-def failure_places_of(rows: Iterable[RunRow]) -> tuple[FailurePlace, ...]:
-    """The places where these runs failed, by floor, and where most did first."""
-    found: list[FailurePlace] = []
+def cluster_failures(rows: Iterable[RunRow]) -> tuple[FailureCluster, ...]:
+    """Group failed runs by location, in the order of floors and then of most failures first."""
+    clusters: list[FailureCluster] = []
     for row in rows:
         if row.success or row.place is None or row.floor is None:
             continue
-        for place in found:
-            if place.floor == row.floor and math.dist(place.at, row.place) <= _NEAR:
+        for cluster in clusters:
+            if cluster.floor == row.floor and math.dist(cluster.at, row.place) <= _RADIUS:
                 break
         else:
-            place = FailurePlace(row.floor, row.place)
-            found.append(place)
-        place.tasks[row.task or "no task"] += 1
-    return tuple(sorted(found, key=lambda one: (one.floor, -one.runs, one.at)))
+            cluster = FailureCluster(row.floor, row.place)
+            clusters.append(cluster)
+        cluster.tasks[row.task or "no task"] += 1
+    return tuple(sorted(clusters, key=lambda cluster: (cluster.floor, -cluster.runs, cluster.at)))

@@ -1,4 +1,4 @@
-"""A row of results: what is kept of a run."""
+"""Rows of an evaluation: the stored result of each run."""
 
 import math
 from enum import StrEnum
@@ -14,11 +14,11 @@ from argo_env.run.spec import RunSpec
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
 
-_CARRIED_OUT = (Action.MEASURE, Action.WAYPOINT)
+_COUNTED_ACTIONS = (Action.MEASURE, Action.WAYPOINT)
 
 
 class RunOutcome(StrEnum):
-    """How a run ended. Only the first two tell anything of the plan."""
+    """Outcome of a run; only success and failure say something about the evaluated plan."""
 
     SUCCESS = "success"
     FAILURE = "failure"
@@ -26,11 +26,11 @@ class RunOutcome(StrEnum):
     ERROR = "error"
     """the simulator failed"""
     DIED = "died"
-    """the process that carried it out died, each time that it was tried"""
+    """the worker process died at each attempt"""
 
 
 class RunRow(Model):
-    """What is kept of a run. Equal runs have equal rows, wherever they are carried out."""
+    """Stored result of a run; equal runs have equal rows, on any worker or machine."""
 
     key: str
     mission: str
@@ -40,50 +40,49 @@ class RunRow(Model):
     drive: str
     sensor: str
     faults: str
-    """of the case, by their name"""
+    """name of the case's set of faults"""
     seed: int
     outcome: RunOutcome
     reason: str
-    """what is missing, or went wrong; of a success the verdict"""
+    """what is missing or went wrong; the verdict of a successful run"""
     duration: float | None = None
-    """s of simulated time, as are all times"""
+    """s of simulated time, like all times"""
     limit: float | None = None
-    """s, the mission's maximum duration"""
+    """maximum duration of the mission in s"""
     distance: float | None = None
-    """m"""
+    """driven distance in m"""
     climbed: float | None = None
     """m"""
     charge: float | None = None
-    """of the battery, at the end, 0 to 1"""
+    """charge of the battery at the end, 0 to 1"""
     docked: bool | None = None
     tasks: int = 0
-    """of the mission that the robot carries out"""
+    """number of the mission's measurements and waypoints"""
     done: int = 0
-    """tasks that were done"""
+    """number of these tasks that were done"""
     failed: tuple[str, ...] = ()
-    """tasks that failed for good"""
+    """names of the tasks that failed for good"""
     readings: int = 0
     abnormal: int = 0
-    """readings outside their nominal range"""
+    """number of readings outside their nominal range"""
     findings: int = 0
     false_alarms: int = 0
-    """findings that were not so: neither a fault nor the values, charge or speed of this world
-    account for them"""
+    """number of false findings, which neither a fault nor the values, battery, drive or camera of
+    this world explain"""
     contacts: int = 0
     mishaps: int = 0
     late: int = 0
-    """tasks that ended after their time windows"""
+    """number of tasks that ended after their time windows"""
     detections: tuple[FaultDetection, ...] = ()
     task: str | None = None
-    """of a failure: the task at which it failed, or was when it ended"""
+    """first task that failed, or the last task if none did; None for a success"""
     place: Vector | None = None
-    """m, of a failure: where the robot was then"""
+    """position of the robot in m when that task failed or the run ended; None for a success"""
     floor: int | None = None
     drawn: str = ""
-    """what the faults are called that were drawn for the world of this seed; empty: none are drawn
-    in this evaluation"""
+    """name of the faults drawn for the world of this seed; empty if the evaluation draws none"""
     world: dict[str, float] = Field(default_factory=dict)
-    """what was drawn for the world of this seed"""
+    """values drawn for the world of this seed, by name"""
 
     @property
     def plan(self) -> PlanName:
@@ -95,14 +94,14 @@ class RunRow(Model):
 
     @property
     def carried_out(self) -> bool:
-        """Whether the run came to an end that tells something of the plan."""
+        """True if the simulation reached its end, with success or failure of the mission."""
         return self.outcome in (RunOutcome.SUCCESS, RunOutcome.FAILURE)
 
 
 def row_of(key: str, case: EvaluationCase, spec: RunSpec, record: RunRecord, site: Site) -> RunRow:
-    """The row of a run that was carried out on the site."""
+    """Return the row of a run that was carried out on the site."""
     result = record.result
-    asked = {task.name for task in record.mission.tasks if task.action in _CARRIED_OUT}
+    counted = {task.name for task in record.mission.tasks if task.action in _COUNTED_ACTIONS}
     done = {run.task for run in record.tasks if run.outcome == "done"}
     last = record.path[-1] if record.path else None
     failed = tuple(dict.fromkeys(r.task for r in record.tasks if r.outcome == "failed"))
@@ -116,8 +115,8 @@ def row_of(key: str, case: EvaluationCase, spec: RunSpec, record: RunRecord, sit
             "climbed": round(result.climbed, 3),
             "charge": None if last is None else last.charge,
             "docked": result.docked,
-            "tasks": len(asked),
-            "done": len(done & asked),
+            "tasks": len(counted),
+            "done": len(done & counted),
             "failed": failed,
             "readings": len(record.readings),
             "abnormal": sum(not reading.normal for reading in record.readings),
@@ -127,7 +126,7 @@ def row_of(key: str, case: EvaluationCase, spec: RunSpec, record: RunRecord, sit
             "mishaps": len(record.mishaps),
             "late": len(record.late),
             "detections": detections(record, site),
-            **({} if result.success else _where_it_failed(record)),
+            **({} if result.success else _failure_fields(record)),
         }
     )
 
@@ -135,7 +134,7 @@ def row_of(key: str, case: EvaluationCase, spec: RunSpec, record: RunRecord, sit
 def row_without_end(
     key: str, case: EvaluationCase, spec: RunSpec, outcome: RunOutcome, reason: str
 ) -> RunRow:
-    """The row of a run that could not be carried out, or of which no more is known yet."""
+    """Return a row without measured values, for a run that has none, or as a base for them."""
     return RunRow(
         key=key,
         mission=case.mission,
@@ -151,12 +150,16 @@ def row_without_end(
     )
 
 
-def _where_it_failed(record: RunRecord) -> dict[str, object]:
-    """The first task that failed and where the robot was at its end; else where it all ended."""
+def _failure_fields(record: RunRecord) -> dict[str, object]:
+    """Return the row's fields on where a run failed.
+
+    These are the first failed task and the robot's position when it failed, or else the last task
+    and the position at the end of the run.
+    """
     first = next((run for run in record.tasks if run.outcome == "failed"), None)
     last = record.tasks[-1].task if record.tasks else None
     task, t = (first.task, first.end) if first else (last, math.inf)
-    seen = next((s for s in record.path if s.t >= t), record.path[-1] if record.path else None)
-    if seen is None:
+    sample = next((s for s in record.path if s.t >= t), record.path[-1] if record.path else None)
+    if sample is None:
         return {"task": task}
-    return {"task": task, "place": (seen.x, seen.y, seen.z), "floor": seen.floor}
+    return {"task": task, "place": (sample.x, sample.y, sample.z), "floor": sample.floor}

@@ -1,5 +1,8 @@
-"""Scores: how well runs went by the criteria of a competition. What is known of them, and what is
-assumed, stands in one file, which may be replaced: `scenarios/scoring.yaml`."""
+"""Scores of runs by the criteria of a competition.
+
+The weights are in one file, `scenarios/scoring.yaml`, which can be replaced. It also says which of
+them are known and which are assumed.
+"""
 
 import math
 from collections.abc import Sequence
@@ -22,45 +25,50 @@ _Rules = TypeVar("_Rules", bound=Model)
 
 
 class ReliabilityRules(Model):
-    """What the mission was to do."""
+    """Rules on completing the mission; its shares add up to 1."""
 
     weight: float = Field(ge=0)
     """points"""
     tasks_done: float = Field(ge=0, le=1)
+    """share for tasks that are done"""
     success: float = Field(ge=0, le=1)
+    """share for a successful mission"""
 
     @model_validator(mode="after")
-    def _whole(self) -> "ReliabilityRules":
-        return _require_whole(self, self.tasks_done, self.success)
+    def _check_shares(self) -> "ReliabilityRules":
+        return _require_sum_of_one(self, self.tasks_done, self.success)
 
 
 class RobustnessRules(Model):
-    """What goes wrong is found, and the mission copes with it."""
+    """Rules on detecting faults and coping with them; its shares add up to 1."""
 
     weight: float = Field(ge=0)
     """points"""
     detected: float = Field(ge=0, le=1)
+    """share for faults that the robot finds"""
     no_false_alarm: float = Field(ge=0, le=1)
+    """share for a run without false findings"""
     goes_on: float = Field(ge=0, le=1)
+    """share for a robot that ends in its dock, or whose mission requires no dock"""
 
     @model_validator(mode="after")
-    def _whole(self) -> "RobustnessRules":
-        return _require_whole(self, self.detected, self.no_false_alarm, self.goes_on)
+    def _check_shares(self) -> "RobustnessRules":
+        return _require_sum_of_one(self, self.detected, self.no_false_alarm, self.goes_on)
 
 
 class SafetyRules(Model):
-    """Nothing is touched."""
+    """Rules on contacts and mishaps."""
 
     weight: float = Field(ge=0)
     """points"""
     contact: float = Field(ge=0, le=1)
-    """share that is lost with each contact"""
+    """share lost with each contact"""
     mishap: float = Field(ge=0, le=1)
-    """share that is lost with each slip, fall or stall"""
+    """share lost with each slip, fall or stall"""
 
 
 class ScoringRules(Model):
-    """How runs are scored, from 0 to the sum of the weights."""
+    """Rules that score a run, from 0 to the sum of the weights."""
 
     reliability: ReliabilityRules
     robustness: RobustnessRules
@@ -68,12 +76,12 @@ class ScoringRules(Model):
 
     @property
     def most(self) -> float:
-        """Points that can be had."""
+        """Largest possible score in points."""
         return self.reliability.weight + self.robustness.weight + self.safety.weight
 
 
 class RunScore(Model):
-    """The points of a run."""
+    """Score of a run, in points."""
 
     reliability: float
     robustness: float
@@ -85,13 +93,13 @@ class RunScore(Model):
 
 
 def score_of(row: RunRow, rules: ScoringRules) -> RunScore:
-    """The points of a run; of one that could not be carried out, none."""
+    """Compute the score of a run, which is 0 for a run that could not be carried out."""
     if not row.carried_out:
         return RunScore(reliability=0.0, robustness=0.0, safety=0.0)
-    # Of a mission with branches some tasks are not to be done.
+    # A successful mission with branches doesn't do all of its tasks.
     done = 1.0 if row.success or not row.tasks else row.done / row.tasks
     reliable, robust, safe = rules.reliability, rules.robustness, rules.safety
-    found = sum(one.delay is not None for one in row.detections)
+    found = sum(detection.delay is not None for detection in row.detections)
     detected = found / len(row.detections) if row.detections else 1.0
     lost = safe.contact * row.contacts + safe.mishap * row.mishaps
     return RunScore(
@@ -107,19 +115,23 @@ def score_of(row: RunRow, rules: ScoringRules) -> RunScore:
 
 
 def mean_score(rows: Sequence[RunRow], rules: ScoringRules) -> Estimate:
-    """The mean over runs that were carried out, with an interval of 95 % by the bootstrap over
-    worlds, as the runs of one world depend on each other."""
+    """Compute the mean score of the runs that were carried out, with a 95 % interval.
+
+    The interval is that of the bootstrap over worlds, as the runs of one world depend on each
+    other. All values are NaN if no run was carried out.
+    """
     means = world_means((row.seed, score_of(row, rules).total) for row in rows if row.carried_out)
     if not len(means):
         return Estimate(math.nan, math.nan, math.nan)
-    found = difference(means, np.zeros(len(means)))
-    return Estimate(found.value, found.low, found.high)
+    mean = difference(means, np.zeros(len(means)))
+    return Estimate(mean.value, mean.low, mean.high)
 
 
 def read_scoring(path: Path | None = None) -> ScoringRules:
-    """The rules in a YAML file, those that Argo ships if none is named.
+    """Read scoring rules from a YAML file; None for the rules that Argo ships.
 
-    Raises ArgoError if it can't be read, and DiagnosticError, with the place, if it holds none.
+    Raises ArgoError if the file can't be read, and DiagnosticError, with positions in the file, if
+    it has no valid rules.
     """
     file = path or resources.scenarios() / "scoring.yaml"
     content = read_bytes(file, "file of scoring rules", _MAX_BYTES)
@@ -134,8 +146,8 @@ def read_scoring(path: Path | None = None) -> ScoringRules:
     )
 
 
-def _require_whole(rules: _Rules, *shares: float) -> _Rules:
-    whole = math.fsum(shares)
-    if abs(whole - 1.0) > 1e-9:
-        raise ValueError(f"the shares of a criterion add up to {whole:g}, and must to 1")
+def _require_sum_of_one(rules: _Rules, *shares: float) -> _Rules:
+    total = math.fsum(shares)
+    if abs(total - 1.0) > 1e-9:
+        raise ValueError(f"the shares of a criterion add up to {total:g}, but must add up to 1")
     return rules

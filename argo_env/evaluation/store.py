@@ -1,9 +1,9 @@
-"""Rows on disk: what has come is never lost, and never there twice.
+"""Store of rows on disk that survives crashes without lost or duplicate rows.
 
 A folder has `rows.log`, to which each row is appended as a line with a checksum, and `parts/`, to
-which many rows at once are moved as a Parquet file that DuckDB and pandas read. A process that is
-killed leaves at most a torn last line, which is cut off; killed while rows are moved, it leaves
-them in both places, which the keys of rows tell.
+which many rows at once are moved as a Parquet file that DuckDB and pandas can read. A process that
+is killed leaves at most an incomplete last line, which is cut off. If it is killed while it moves
+rows, the rows are in both; their keys identify the duplicates.
 """
 
 import fcntl
@@ -37,14 +37,17 @@ from argo_env.files.folders import check_folder, make_folder
 
 LOG = "rows.log"
 _LOCK = ".lock"
-_SYNC = 1.0  # s between two times that rows are made to outlive the machine
+_SYNC = 1.0  # s between two calls of fsync, which secure the rows against a loss of power
 
 
 class RowStore(Closing):
-    """The rows of an evaluation in a folder. One process at a time has it open for writing."""
+    """Store of an evaluation's rows in a folder, which one process at a time can write.
+
+    It holds all rows in memory and adds new ones to the folder.
+    """
 
     def __init__(self, folder: Path, clock: Callable[[], float] = time.monotonic) -> None:
-        """Opens the folder, which is made if it is not there.
+        """Open the folder, and create it if it does not exist.
 
         Raises Conflict if another process has it open, Unavailable if it can't be written.
         """
@@ -52,31 +55,34 @@ class RowStore(Closing):
         check_folder(folder / PARTS)
         self.folder = folder
         self._clock = clock
-        self._lock = _locked(folder)
+        self._lock = _acquire_lock(folder)
         try:
-            found = read_log(folder)
+            logged = read_log(folder)
             self._file = os.open(folder / LOG, os.O_RDWR | os.O_CREAT, 0o644)
-            os.ftruncate(self._file, found.size)
-            self._size = os.lseek(self._file, found.size, os.SEEK_SET)
+            os.ftruncate(self._file, logged.size)
+            self._size = os.lseek(self._file, logged.size, os.SEEK_SET)
             sync_folder(folder)
         except OSError as error:
             os.close(self._lock)
-            raise _unwritable(folder, error) from error
-        self.damaged = found.damaged
-        """lines of the log that could not be read: their runs are made again"""
+            raise _not_writable(folder, error) from error
+        self.damaged = logged.damaged
+        """number of lines of the log that could not be read; their runs are repeated"""
         self._synced = clock()
         self._rows = {row.key: row for row in read_parts(folder)}
         self._moved = len(self._rows)
-        for row in found.rows:
+        for row in logged.rows:
             self._rows.setdefault(row.key, row)
 
     @property
     def rows(self) -> dict[str, RunRow]:
-        """All rows by their keys."""
+        """All rows, by their keys."""
         return self._rows
 
     def add(self, row: RunRow) -> None:
-        """Keeps a row, unless it is there already. Raises Unavailable if the disk is full."""
+        """Store a row, unless a row with its key is stored already.
+
+        Raises Unavailable if it can't be written, for example to a full disk.
+        """
         if row.key in self._rows:
             return
         line = _line(row)
@@ -91,17 +97,17 @@ class RowStore(Closing):
             self.sync()
 
     def sync(self) -> None:
-        """From now on also a machine that loses power keeps all rows."""
+        """Write all rows through to the disk, so that they survive a loss of power."""
         os.fsync(self._file)
         self._synced = self._clock()
 
     @property
     def loose(self) -> int:
-        """How many rows are in the log alone."""
+        """Number of rows that are in the log only."""
         return len(self._rows) - self._moved
 
     def compact(self) -> None:
-        """Moves the rows of the log into a Parquet file; without pyarrow they stay there."""
+        """Move the rows of the log to a Parquet file; without pyarrow they stay in the log."""
         if not self.loose or not can_write_parts():
             return
         self.sync()
@@ -112,15 +118,18 @@ class RowStore(Closing):
         self.sync()
 
     def keep_only(self, fits: Callable[[RunRow], bool]) -> None:
-        """Forgets all rows but those that fit. Raises Unavailable where that can't be done; killed
-        meanwhile, the folder has all that fit, and maybe others."""
-        kept = [row for row in self._rows.values() if fits(row)]
-        if len(kept) == len(self._rows):
+        """Discard all rows for which `fits` returns False.
+
+        A process that is killed meanwhile leaves all fitting rows in the folder, and maybe others.
+        Raises Unavailable if the files can't be written.
+        """
+        fitting = [row for row in self._rows.values() if fits(row)]
+        if len(fitting) == len(self._rows):
             return
         draft = self.folder / f".{LOG}"
         try:
             with open(draft, "wb") as file:
-                file.writelines(map(_line, kept))
+                file.writelines(map(_line, fitting))
                 file.flush()
                 os.fsync(file.fileno())
             os.replace(draft, self.folder / LOG)
@@ -129,46 +138,47 @@ class RowStore(Closing):
             self._file = os.open(self.folder / LOG, os.O_RDWR)
             self._size = os.lseek(self._file, 0, os.SEEK_END)
         except OSError as error:
-            raise _unwritable(self.folder, error) from error
+            raise _not_writable(self.folder, error) from error
         remove_parts(self.folder)
-        self._rows = {row.key: row for row in kept}
+        self._rows = {row.key: row for row in fitting}
         self._moved = 0
 
     def close(self) -> None:
-        """Lets another process have the folder."""
+        """Write all rows through to the disk and release the folder's lock."""
         self.sync()
         os.close(self._file)
         os.close(self._lock)
 
 
 def read_rows(folder: Path) -> tuple[RunRow, ...]:
-    """All rows in a folder, as far as they are there now; also while another process adds some.
+    """Read all rows that are in a folder now; another process may add rows meanwhile.
 
-    Raises NotFound if it is no folder of an evaluation, Unavailable if pyarrow is missing.
+    Raises NotFound if the folder has no rows, Unavailable if it has Parquet files and pyarrow is
+    missing.
     """
     if not (os.path.exists(folder / LOG) or has_parts(folder)):
         raise NotFound(f"{folder}: has no rows of an evaluation")
-    # The log first: what is moved meanwhile is then in both places, and not in none.
-    loose = read_log(folder).rows
-    found = {row.key: row for row in read_parts(folder)}
-    for row in loose:
-        found.setdefault(row.key, row)
-    return tuple(found.values())
+    # The log comes first: rows that are moved meanwhile are then read twice, and not missed.
+    logged = read_log(folder).rows
+    by_key = {row.key: row for row in read_parts(folder)}
+    for row in logged:
+        by_key.setdefault(row.key, row)
+    return tuple(by_key.values())
 
 
 @dataclass(frozen=True)
 class LoggedRows:
-    """The rows in a log."""
+    """Rows of a log file."""
 
     rows: tuple[RunRow, ...]
     size: int
-    """bytes up to the end of the last whole line"""
+    """number of bytes up to the end of the last complete line"""
     damaged: int
-    """lines whose checksum does not fit"""
+    """number of complete lines without a valid row, for example with a wrong checksum"""
 
 
 def read_log(folder: Path) -> LoggedRows:
-    """The rows of the log in a folder; what was torn by a kill is left out."""
+    """Read the rows of the log in a folder, without an incomplete last line."""
     try:
         content = (folder / LOG).read_bytes()
     except FileNotFoundError:
@@ -188,20 +198,21 @@ def _line(row: RunRow) -> bytes:
     return checked_line(row.model_dump(mode="json", exclude_defaults=True))
 
 
-def _unwritable(folder: Path, error: OSError) -> Unavailable:
+def _not_writable(folder: Path, error: OSError) -> Unavailable:
     return Unavailable(f"{error.filename or folder}: can't be written: {error.strerror}")
 
 
-def _locked(folder: Path) -> int:
+def _acquire_lock(folder: Path) -> int:
     try:
         file = os.open(folder / _LOCK, os.O_RDWR | os.O_CREAT, 0o644)
     except OSError as error:
-        raise _unwritable(folder, error) from error
+        raise _not_writable(folder, error) from error
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:
         os.close(file)
         raise Conflict(
-            f"{folder}: another process evaluates into it: wait for its end, or choose another"
+            f"{folder}: another process evaluates into it: wait until it ends, or choose another "
+            "folder"
         ) from None
     return file

@@ -1,4 +1,4 @@
-"""Worlds that vary: what is drawn anew for each seed, each from a stream of its own."""
+"""Variation of worlds: values that are drawn for each seed, each from its own random stream."""
 
 import math
 from typing import Annotated, Any
@@ -14,161 +14,170 @@ from argo_env.seeding import generator
 from argo_env.site import Site
 
 
-def _between(said: object) -> object:
-    """A number is the range that has only it."""
-    ends = (said, said) if _is_number(said) else said
+def _parse_range(value: object) -> object:
+    """Return the two ends of a range; a single number is both ends."""
+    ends = (value, value) if _is_number(value) else value
     if not isinstance(ends, list | tuple) or len(ends) != 2 or not all(map(_is_number, ends)):
-        raise ValueError("give a number, or the least and the most, as [0.8, 1.0]")
+        raise ValueError("give a number, or the smallest and the largest, as [0.8, 1.0]")
     return tuple(ends)
 
 
-def _is_number(said: object) -> bool:
-    return isinstance(said, int | float) and not isinstance(said, bool) and math.isfinite(said)
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-Range = Annotated[tuple[float, float], BeforeValidator(_between)]
-"""the least and the most; each between them is equally probable"""
+Range = Annotated[tuple[float, float], BeforeValidator(_parse_range)]
+"""smallest and largest value of a uniform distribution"""
 
 
 class _Ranges(Model):
-    """Fields that are ranges."""
+    """Base of models with fields that are ranges."""
 
     @model_validator(mode="after")
-    def _ordered(self) -> "_Ranges":
+    def _check_ends(self) -> "_Ranges":
         for name, value in self:
             if isinstance(value, tuple) and len(value) == 2 and value[1] < value[0]:
-                raise ValueError(f"{name}: {value[0]:g} to {value[1]:g}: the least comes first")
+                raise ValueError(
+                    f"{name}: {value[0]:g} to {value[1]:g}: give the smaller value first"
+                )
         return self
 
 
 class StepRange(_Ranges):
-    """A value that changes all at once, some time and by something."""
+    """Ranges of the time and the size of a sudden change of a checkpoint's value."""
 
     at: Range
-    """s"""
+    """time of the change in s"""
     change: Range
-    """in the checkpoint's unit"""
+    """size of the change in the checkpoint's unit"""
 
 
 class ValueRange(_Ranges):
-    """What a checkpoint shows, and how that changes during a run."""
+    """Ranges of a checkpoint's value at the start and of its changes during a run."""
 
     start: Range | None = None
-    """at the start, in the checkpoint's unit; None: somewhere in its nominal range"""
+    """value at the start, in the checkpoint's unit; None: drawn from the nominal range"""
     drift: Range = (0.0, 0.0)
-    """in the checkpoint's unit an hour"""
+    """change in the checkpoint's unit per hour"""
     noise: Range = (0.0, 0.0)
-    """standard deviation of what flickers, in the checkpoint's unit"""
+    """standard deviation of the value's noise, in the checkpoint's unit"""
     steps: tuple[StepRange, ...] = ()
+    """sudden changes of the value"""
 
 
 _CONDITIONS = ("ahead", "left", "turned", "speed", "friction", "charge", "capacity", "sensor_noise")
 
 
 class Variation(_Ranges):
-    """What differs from world to world beside what seeds draw anyway. Each is drawn from a stream
-    of its own, so that one more changes nothing of the others."""
+    """Ranges of values that vary from world to world, beside those that every run draws anyway.
+
+    Each value is drawn from its own random stream, so that a further one does not change the
+    others. None: the value does not vary.
+    """
 
     ahead: Range | None = None
-    """m that the robot stands ahead of where the mission starts, -1 to 1"""
+    """offset of the robot's start pose in m, ahead of the mission's start, -1 to 1"""
     left: Range | None = None
-    """m that it stands to the left of there, -1 to 1"""
+    """offset of the robot's start pose in m, to the left of the mission's start, -1 to 1"""
     turned: Range | None = None
-    """deg that it is turned there, counter-clockwise"""
+    """rotation of the robot's start pose in deg, counter-clockwise"""
     speed: Range | None = None
-    """share of its speed that the drive makes, up to 1"""
+    """speed of the drive relative to its usual speed, up to 1"""
     friction: Range | None = None
-    """beside that of the calibration, up to 1.3; for the drive `tracked`"""
+    """friction relative to the calibration, up to 1.3; for the drive `tracked`"""
     charge: Range | None = None
-    """of the battery at the start, up to 1"""
+    """charge of the battery at the start, up to 1"""
     capacity: Range | None = None
-    """share of the battery's capacity that is left, up to 1"""
+    """remaining capacity of the battery as a share of its nominal one, up to 1"""
     sensor_noise: Range | None = None
     """standard deviation of readings, as a share of the scale; the robot notices more than 0.01"""
     values: dict[int, ValueRange] = Field(default_factory=dict)
-    """what checkpoints show and how that changes, by number"""
+    """values of checkpoints and their changes, by number"""
     faults: FaultDistribution | None = None
-    """what goes wrong in each, beside the faults that all runs of a case have"""
+    """distribution of the faults in each world, in addition to the faults of a case"""
 
     @model_validator(mode="after")
-    def _possible(self) -> "Variation":
+    def _check_conditions(self) -> "Variation":
         for name in _CONDITIONS:
             for end in getattr(self, name) or ():
-                # Says by itself what a run can't have.
+                # This raises an error for a value that a run can't have.
                 RunConditions.model_validate({name: end})
         return self
 
     def check(self, site: Site) -> None:
-        """Raises Invalid for values that no checkpoint of the site can show."""
-        for id, one in self.values.items():
+        """Raise Invalid for a checkpoint that the site lacks, or a value that it can't show."""
+        for id, ranges in self.values.items():
             try:
-                for value in one.start or (site.checkpoint(id).nominal.low,):
+                for value in ranges.start or (site.checkpoint(id).nominal.low,):
                     true_values(site, 0, {id: value})
             except NotFound as error:
                 raise Invalid(str(error)) from error
 
     def applied(self, spec: RunSpec, seed: int) -> RunSpec:
-        """The spec of the run in the world of a seed."""
+        """Return the spec of the run in the world of a seed, with all values drawn for it."""
         update: dict[str, Any] = {"seed": seed}
         conditions = self._conditions(seed)
         if conditions:
             update["conditions"] = spec.conditions.model_copy(update=conditions)
-        first = {
-            id: _drawn(seed, one.start, "start", id)
-            for id, one in self.values.items()
-            if one.start is not None
+        start_values = {
+            id: _sample(seed, ranges.start, "start", id)
+            for id, ranges in self.values.items()
+            if ranges.start is not None
         }
-        if first:
-            update["values"] = {**first, **spec.values}
+        if start_values:
+            update["values"] = {**start_values, **spec.values}
         drawn = self.faults.drawn(seed) if self.faults is not None else None
         if drawn is not None:
             update["faults"] = (*spec.faults, *drawn.faults)
         return spec.model_copy(update=update)
 
     def drawn_faults(self, seed: int) -> str | None:
-        """What the faults are called that are drawn for the world of a seed; None: none are."""
+        """Return the name of the faults drawn for the world of a seed; None if none are drawn."""
         drawn = self.faults.drawn(seed) if self.faults is not None else None
         return None if drawn is None else drawn.name
 
     def drawn(self, seed: int) -> dict[str, float]:
-        """What is drawn for the world of a seed, by name."""
-        found = {n: v for n, v in self._conditions(seed).items() if n != "values"}
-        for id, one in self.values.items():
-            if one.start is not None:
-                found[f"start {id}"] = _drawn(seed, one.start, "start", id)
-            found[f"drift {id}"] = _drawn(seed, one.drift, "drift", id)
-        return found
+        """Return the values drawn for the world of a seed, by name, without noise and steps."""
+        values = {n: v for n, v in self._conditions(seed).items() if n != "values"}
+        for id, ranges in self.values.items():
+            if ranges.start is not None:
+                values[f"start {id}"] = _sample(seed, ranges.start, "start", id)
+            values[f"drift {id}"] = _sample(seed, ranges.drift, "drift", id)
+        return values
 
     def _conditions(self, seed: int) -> dict[str, Any]:
-        found: dict[str, Any] = {
-            name: _drawn(seed, getattr(self, name), name)
+        conditions: dict[str, Any] = {
+            name: _sample(seed, getattr(self, name), name)
             for name in _CONDITIONS
             if getattr(self, name) is not None
         }
         if self.values:
-            found["values"] = {id: _profile(one, seed, id) for id, one in self.values.items()}
-        return found
+            conditions["values"] = {
+                id: _profile(ranges, seed, id) for id, ranges in self.values.items()
+            }
+        return conditions
 
 
-def _profile(one: ValueRange, seed: int, id: int) -> ValueProfile:
+def _profile(ranges: ValueRange, seed: int, id: int) -> ValueProfile:
     return ValueProfile(
-        drift=_drawn(seed, one.drift, "drift", id),
-        noise=_drawn(seed, one.noise, "noise", id),
+        drift=_sample(seed, ranges.drift, "drift", id),
+        noise=_sample(seed, ranges.noise, "noise", id),
         steps=tuple(
             ValueStep(
-                at=_drawn(seed, step.at, "step", id, k, "at"),
-                change=_drawn(seed, step.change, "step", id, k, "change"),
+                at=_sample(seed, step.at, "step", id, k, "at"),
+                change=_sample(seed, step.change, "step", id, k, "change"),
             )
-            for k, step in enumerate(one.steps)
+            for k, step in enumerate(ranges.steps)
         ),
     )
 
 
-def _drawn(seed: int, between: Range, *purpose: str | int) -> float:
-    low, high = between
-    drawn = float(generator(seed, "world", *purpose).uniform(low, high))
-    return min(max(round(drawn, 6), low), high)
+def _sample(seed: int, ends: Range, *purpose: str | int) -> float:
+    low, high = ends
+    value = float(generator(seed, "world", *purpose).uniform(low, high))
+    return min(max(round(value, 6), low), high)
 
 
 NO_VARIATION = Variation()
-"""Worlds differ by what seeds draw anyway: values, and what faults leave open."""
+"""variation without ranges; worlds still differ in what every run draws by its seed: values of
+checkpoints, and what the faults leave open"""

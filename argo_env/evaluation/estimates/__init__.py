@@ -1,4 +1,4 @@
-"""Estimates from the outcomes of runs, and how sure they are: mathematics only.
+"""Statistical estimates from the outcomes of runs, with confidence intervals and tests.
 
-What is counted of each run is listed in `../statistics.py`.
+The counted quantities are listed in `../statistics.py`.
 """

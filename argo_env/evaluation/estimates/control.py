@@ -1,9 +1,9 @@
-"""Cheap runs that help to estimate what expensive ones bring: control variates.
+"""Control variates: cheap runs that narrow the interval of a mean over expensive runs.
 
-The same worlds are run with a cheap drive and an expensive one. Where the two go up and down
-together, many more runs of the cheap one alone tell in which way the few expensive ones were lucky
+The same worlds are run with a cheap drive and an expensive one. If their results are correlated,
+many more runs of the cheap drive alone show by how much the few expensive runs deviate by chance
 (regression estimates with double sampling: W. G. Cochran, Sampling techniques, 3rd edition, 1977,
-chapter 12). Whether that pays depends on their correlation and on what a run costs, so both are
+chapter 12). Whether that pays depends on the correlation and on the cost of a run, so both are
 measured first.
 """
 
@@ -17,33 +17,36 @@ from argo_compiler.base.errors import Invalid
 from argo_env.evaluation.estimates.rates import LEVEL, Estimate
 
 FEWEST_PAIRS = 10
-"""from which on a correlation says anything"""
+"""smallest number of pairs for a meaningful correlation"""
 
 
 @dataclass(frozen=True)
 class ControlVariate:
-    """How much a cheap run tells of an expensive one."""
+    """Correlation of cheap runs with expensive ones, and the relative cost of a cheap run."""
 
     correlation: float
     cost: float
-    """of a cheap run, as a share of that of an expensive one"""
+    """cost of a cheap run, as a share of the cost of an expensive run"""
 
     @classmethod
     def measured(
         cls, expensive: NDArray[np.float64], cheap: NDArray[np.float64], cost: float
     ) -> "ControlVariate":
-        """From pairs, one of each a world, shape (n,) each."""
+        """Measure it from pairs of runs, one pair in each world; arrays of shape (n,) each.
+
+        Raises Invalid for too few pairs, unequal numbers of runs, or a cost that is not positive.
+        """
         if len(expensive) != len(cheap) or len(expensive) < FEWEST_PAIRS:
-            raise Invalid(f"a correlation takes at least {FEWEST_PAIRS} pairs of runs")
+            raise Invalid(f"a correlation needs at least {FEWEST_PAIRS} pairs of runs")
         if not cost > 0:
-            raise Invalid(f"a cheap run that costs {cost:g} of an expensive one: give more than 0")
+            raise Invalid(f"a cheap run costs {cost:g} of an expensive one: give more than 0")
         if np.ptp(expensive) == 0 or np.ptp(cheap) == 0:
             return cls(0.0, cost)
         return cls(float(np.corrcoef(expensive, cheap)[0, 1]), cost)
 
     @property
     def cheap_runs(self) -> float:
-        """How many cheap runs there should be for each expensive one."""
+        """Best number of cheap runs for each expensive run; infinite for a perfect correlation."""
         unexplained = 1.0 - self.correlation**2
         if unexplained <= 0:
             return math.inf
@@ -51,8 +54,10 @@ class ControlVariate:
 
     @property
     def gain(self) -> float:
-        """How many times as much expensive runs alone would cost for the same accuracy; below 1 it
-        does not pay."""
+        """Cost of expensive runs alone for the same accuracy, relative to the cost with cheap runs.
+
+        Below 1, cheap runs do not pay.
+        """
         r2, k = self.correlation**2, self.cheap_runs
         if math.isinf(k):
             k = 1e6
@@ -60,7 +65,7 @@ class ControlVariate:
 
     @property
     def pays(self) -> bool:
-        """Whether it is worth it: a tenth less at least."""
+        """True if the gain is above 1.1."""
         return self.gain > 1.1
 
 
@@ -70,19 +75,29 @@ def controlled_mean(
     more_cheap: NDArray[np.float64],
     level: float = LEVEL,
 ) -> Estimate:
-    """The mean of the expensive runs, from pairs, shape (n,) each, and the cheap runs of further
-    worlds, shape (m,). The interval is that of the normal distribution with n - 2 degrees."""
+    """Estimate the mean of expensive runs from pairs of runs and further cheap runs.
+
+    Args:
+        expensive: Results of the pairs' expensive runs, shape (n,).
+        cheap: Results of the pairs' cheap runs in the same worlds, shape (n,).
+        more_cheap: Results of cheap runs in further worlds, shape (m,).
+        level: Level of the interval, which uses Student's t distribution with n - 2 degrees of
+            freedom.
+
+    Raises:
+        Invalid: For too few pairs, or unequal numbers of runs.
+    """
     n, m = len(expensive), len(more_cheap)
     if n != len(cheap) or n < FEWEST_PAIRS:
-        raise Invalid(f"it takes at least {FEWEST_PAIRS} pairs of runs")
+        raise Invalid(f"a control variate needs at least {FEWEST_PAIRS} pairs of runs")
     from scipy.stats import t
 
     spread = float(np.var(cheap, ddof=1))
     slope = float(np.cov(expensive, cheap, ddof=1)[0, 1]) / spread if spread else 0.0
     all_cheap = np.concatenate([cheap, more_cheap])
     value = float(np.mean(expensive)) + slope * float(np.mean(all_cheap) - np.mean(cheap))
-    rest = expensive - np.mean(expensive) - slope * (cheap - np.mean(cheap))
-    unexplained = float(rest @ rest) / (n - 2)
+    residuals = expensive - np.mean(expensive) - slope * (cheap - np.mean(cheap))
+    unexplained = float(residuals @ residuals) / (n - 2)
     shift = float(np.mean(cheap) - np.mean(all_cheap)) ** 2
     variance = unexplained / n
     if spread:

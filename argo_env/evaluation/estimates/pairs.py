@@ -1,6 +1,6 @@
-"""Paired comparisons of two plans in the same worlds.
+"""Statistics of paired comparisons: two plans in the same worlds.
 
-Functions import scipy.stats, as an evaluation that compares nothing begins sooner without it.
+Functions import scipy.stats themselves, so that an evaluation without comparisons starts faster.
 """
 
 import math
@@ -14,12 +14,12 @@ from argo_env.evaluation.estimates.rates import LEVEL, clopper_pearson
 from argo_env.seeding import generator
 
 RESAMPLES = 10_000
-_AT_ONCE = 2_000_000  # numbers in memory
+_BATCH_SIZE = 2_000_000  # numbers in memory at once
 
 
 @dataclass(frozen=True)
 class SuccessPairs:
-    """How often which of two plans succeeded in one world."""
+    """Numbers of pairs of runs by which of the two plans succeeded."""
 
     both: int
     first_only: int
@@ -28,7 +28,7 @@ class SuccessPairs:
 
     @classmethod
     def of(cls, first: NDArray[np.bool_], second: NDArray[np.bool_]) -> "SuccessPairs":
-        """Two plans' successes, shape (n,) each, world by world."""
+        """Count the pairs from the successes of two plans, world by world; shape (n,) each."""
         _require_pairs(first, second)
         return cls(
             int(np.sum(first & second)),
@@ -43,62 +43,77 @@ class SuccessPairs:
 
     @property
     def difference(self) -> float:
-        """By how much the first one's rate is higher."""
+        """Difference of the success rates, first plan minus second plan; NaN without pairs."""
         return (self.first_only - self.second_only) / self.pairs if self.pairs else math.nan
 
     def interval(self, level: float = LEVEL) -> tuple[float, float]:
-        """Between what the difference of the rates lies, with at least the probability `level`,
-        whatever they are: the exact intervals of both kinds of pairs that differ, each of which
-        may err half as often, put together."""
-        each = (1.0 + level) / 2.0
-        up = clopper_pearson(self.first_only, self.pairs, each)
-        down = clopper_pearson(self.second_only, self.pairs, each)
-        return up.low - down.high, up.high - down.low
+        """Return an interval of the difference of the rates with coverage of at least `level`.
+
+        The coverage is guaranteed for all true rates. The exact intervals of the two kinds of
+        discordant pairs are combined; each of them may err half as often (Bonferroni).
+        """
+        each_level = (1.0 + level) / 2.0
+        first = clopper_pearson(self.first_only, self.pairs, each_level)
+        second = clopper_pearson(self.second_only, self.pairs, each_level)
+        return first.low - second.high, first.high - second.low
 
     @property
     def p_value(self) -> float:
-        """Of McNemar's exact test: how likely a difference at least as great is if there is none.
+        """P-value of McNemar's exact test for a difference of the success rates.
 
-        Q. McNemar, Psychometrika 12 (1947), 153-157; exact by the binomial distribution of the
-        pairs that differ.
+        That is the probability of a difference at least as large if there is truly none
+        (Q. McNemar, Psychometrika 12 (1947), 153-157), exact by the binomial distribution of the
+        discordant pairs.
         """
         from scipy.stats import binomtest
 
-        differ = self.first_only + self.second_only
-        return float(binomtest(self.first_only, differ).pvalue) if differ else 1.0
+        discordant = self.first_only + self.second_only
+        return float(binomtest(self.first_only, discordant).pvalue) if discordant else 1.0
 
 
 def power(pairs: int, first_only: float, second_only: float, alpha: float = 1.0 - LEVEL) -> float:
-    """How likely McNemar's exact test finds a difference with so many pairs, if these shares of
-    them differ in truth."""
+    """Compute the power of McNemar's exact test.
+
+    Args:
+        pairs: Number of pairs.
+        first_only: True share of pairs in which only the first plan succeeds.
+        second_only: True share of pairs in which only the second plan succeeds.
+        alpha: Significance level of the test.
+
+    Returns:
+        Probability that the test finds a difference.
+
+    Raises:
+        Invalid: For shares that are negative, or above 1 together.
+    """
     from scipy.stats import binom
 
     if min(first_only, second_only) < 0 or first_only + second_only > 1:
-        raise Invalid("the shares of pairs that differ lie between 0 and 1, and together below 1")
-    differ = first_only + second_only
-    if differ == 0:
+        raise Invalid("give shares of differing pairs of at least 0, and together at most 1")
+    discordant = first_only + second_only
+    if discordant == 0:
         return 0.0
-    share = first_only / differ
+    share = first_only / discordant
     found = 0.0
     for n in range(pairs + 1):
-        chance = float(binom.pmf(n, pairs, differ))
-        if chance < 1e-12 or n == 0:
+        probability = float(binom.pmf(n, pairs, discordant))
+        if probability < 1e-12 or n == 0:
             continue
-        # The test is symmetric: up to that many of one kind it is significant.
-        least = binom.ppf(alpha / 2.0, n, 0.5) - 1
-        while least >= 0 and 2.0 * binom.cdf(least, n, 0.5) > alpha:
-            least -= 1
-        while 2.0 * binom.cdf(least + 1, n, 0.5) <= alpha and 2 * (least + 1) < n:
-            least += 1
-        if least >= 0:
-            tails = binom.cdf(least, n, share) + binom.sf(n - least - 1, n, share)
-            found += chance * float(tails)
+        # The test is symmetric: it is significant if at most `critical` pairs are of one kind.
+        critical = binom.ppf(alpha / 2.0, n, 0.5) - 1
+        while critical >= 0 and 2.0 * binom.cdf(critical, n, 0.5) > alpha:
+            critical -= 1
+        while 2.0 * binom.cdf(critical + 1, n, 0.5) <= alpha and 2 * (critical + 1) < n:
+            critical += 1
+        if critical >= 0:
+            tails = binom.cdf(critical, n, share) + binom.sf(n - critical - 1, n, share)
+            found += probability * float(tails)
     return found
 
 
 @dataclass(frozen=True)
 class Difference:
-    """By how much a mean is higher, with its interval, and how likely that is by chance."""
+    """Difference of two means, with its interval and its p-value."""
 
     pairs: int
     value: float
@@ -108,51 +123,57 @@ class Difference:
 
     @property
     def found(self) -> bool:
-        """Whether there is one, at the level of 95 %."""
+        """True if the difference is significant at the level of 95 %."""
         return self.p_value <= 1.0 - LEVEL
 
 
 def difference(
     first: NDArray[np.float64], second: NDArray[np.float64], seed: int = 0, level: float = LEVEL
 ) -> Difference:
-    """Of the means of two plans, from one value a world, shape (n,) each.
+    """Compute the difference of the means of two plans, from one value in each world.
 
-    The interval is that of the paired bootstrap (percentiles over worlds drawn again); how likely
-    the difference is by chance says a test that swaps the plans in each world by the toss of a
-    coin, which is exact but for the number of tosses, and says 1 where no pair differs.
+    `first` and `second` have the shape (n,), world by world. The interval is that of the paired
+    bootstrap (percentiles over resampled worlds). The p-value is that of a permutation test that
+    randomly swaps the plans in each world. The test is exact except for the limited number of
+    random swaps; its p-value is 1 if no pair differs.
     """
     _require_pairs(first, second)
     if not len(first):
         return Difference(0, math.nan, math.nan, math.nan, 1.0)
-    gaps = np.asarray(first, dtype=float) - np.asarray(second, dtype=float)
-    mean = float(np.mean(gaps))
+    differences = np.asarray(first, dtype=float) - np.asarray(second, dtype=float)
+    mean = float(np.mean(differences))
     rng = generator(seed, "difference")
-    worlds = _blocks(len(gaps))
-    drawn = np.concatenate(
-        [gaps[rng.integers(len(gaps), size=(n, len(gaps)))].mean(axis=1) for n in worlds]
+    batches = _resample_batches(len(differences))
+    means = np.concatenate(
+        [
+            differences[rng.integers(len(differences), size=(n, len(differences)))].mean(axis=1)
+            for n in batches
+        ]
     )
-    low, high = np.quantile(drawn, [(1 - level) / 2, (1 + level) / 2])
-    return Difference(len(gaps), mean, float(low), float(high), _swapped(gaps, rng))
+    low, high = np.quantile(means, [(1 - level) / 2, (1 + level) / 2])
+    return Difference(
+        len(differences), mean, float(low), float(high), _permutation_p_value(differences, rng)
+    )
 
 
-def _swapped(gaps: NDArray[np.float64], rng: np.random.Generator) -> float:
-    differing = gaps[gaps != 0.0]
-    if not len(differing):
+def _permutation_p_value(differences: NDArray[np.float64], rng: np.random.Generator) -> float:
+    nonzero = differences[differences != 0.0]
+    if not len(nonzero):
         return 1.0
-    seen = abs(float(np.sum(differing))) * (1 - 1e-12)
+    observed = abs(float(np.sum(nonzero))) * (1 - 1e-12)
     extreme = 0
-    for n in _blocks(len(differing)):
-        signs = rng.integers(2, size=(n, len(differing)), dtype=np.int8) * 2.0 - 1.0
-        extreme += int(np.sum(np.abs(signs @ differing) >= seen))
-    return (extreme + 1) / (RESAMPLES + 1)  # what was seen is one of the ways to toss
+    for n in _resample_batches(len(nonzero)):
+        signs = rng.integers(2, size=(n, len(nonzero)), dtype=np.int8) * 2.0 - 1.0
+        extreme += int(np.sum(np.abs(signs @ nonzero) >= observed))
+    return (extreme + 1) / (RESAMPLES + 1)  # the observed order counts as one permutation
 
 
-def _blocks(pairs: int) -> list[int]:
-    """RESAMPLES in parts that fit into memory."""
-    most = max(1, _AT_ONCE // pairs)
+def _resample_batches(pairs: int) -> list[int]:
+    """Split RESAMPLES into batches that fit into memory, and return their sizes."""
+    most = max(1, _BATCH_SIZE // pairs)
     return [min(most, RESAMPLES - first) for first in range(0, RESAMPLES, most)]
 
 
 def _require_pairs(first: NDArray[np.generic], second: NDArray[np.generic]) -> None:
     if len(first) != len(second):
-        raise Invalid(f"{len(first)} and {len(second)} runs make no pairs: one of each a world")
+        raise Invalid(f"{len(first)} and {len(second)} runs make no pairs: give equal numbers")

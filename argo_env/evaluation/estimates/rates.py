@@ -1,9 +1,9 @@
 """Rates with confidence intervals, of runs, of worlds and of strata.
 
-The runs of one world depend on each other and count as one. Strata are faults that come with known
-probabilities: where failures are rare and most of them come with a few faults, it tells more to run
-each fault often enough than to wait until chance brings it (stratified sampling: W. G. Cochran,
-Sampling techniques, 3rd edition, 1977, chapter 5).
+The runs of one world depend on each other and count as one. Strata are faults with known
+probabilities. If failures are rare and most of them come with a few faults, running each fault
+often enough gives more information than drawing faults by their probabilities (stratified sampling:
+W. G. Cochran, Sampling techniques, 3rd edition, 1977, chapter 5).
 """
 
 import math
@@ -19,34 +19,36 @@ from scipy.special import betaincinv
 from argo_compiler.base.errors import Invalid
 
 LEVEL = 0.95
-"""of all intervals, unless another is asked for"""
+"""default level of all intervals"""
 
 
 @dataclass(frozen=True)
 class Rate:
-    """How many of some runs, and between what the true share lies. Shares are 0 to 1."""
+    """Share of runs that have some property, with an interval of the true share; 0 to 1."""
 
     count: int
+    """number of runs with the property"""
     runs: int
     low: float
     high: float
 
     @property
     def value(self) -> float:
-        """The share of the runs; NaN of none."""
+        """Share of the runs with the property; NaN without runs."""
         return self.count / self.runs if self.runs else math.nan
 
     @property
     def width(self) -> float:
-        """Of the interval."""
+        """Width of the interval."""
         return self.high - self.low
 
 
 def clopper_pearson(count: int, runs: int, level: float = LEVEL) -> Rate:
-    """The exact interval: it has the true share with at least the probability `level`, whatever
-    that share is, if the number of runs does not depend on their outcomes.
+    """Compute a rate with its exact interval.
 
-    C. J. Clopper and E. S. Pearson, Biometrika 26 (1934), 404-413.
+    The interval contains the true share with a probability of at least `level`, whatever that share
+    is, if the number of runs does not depend on their outcomes (C. J. Clopper and E. S. Pearson,
+    Biometrika 26 (1934), 404-413).
     """
     _check(count, runs, level)
     half = (1.0 - level) / 2.0
@@ -56,10 +58,10 @@ def clopper_pearson(count: int, runs: int, level: float = LEVEL) -> Rate:
 
 
 def wilson(count: int, runs: int, level: float = LEVEL) -> Rate:
-    """A quick interval to look at while runs still come. Its coverage is `level` on average only,
-    so nothing is claimed by it.
+    """Compute a rate with an approximate interval, for display while runs are still executed.
 
-    E. B. Wilson, Journal of the American Statistical Association 22 (1927), 209-212.
+    Its coverage is `level` on average only, so that nothing is claimed by it (E. B. Wilson, Journal
+    of the American Statistical Association 22 (1927), 209-212).
     """
     _check(count, runs, level)
     if not runs:
@@ -75,24 +77,25 @@ def wilson(count: int, runs: int, level: float = LEVEL) -> Rate:
 
 def _check(count: int, runs: int, level: float) -> None:
     if not 0 <= count <= runs:
-        raise Invalid(f"{count} of {runs} runs: give a number of them, 0 to {runs}")
+        raise Invalid(f"{count} of {runs} runs: give a count from 0 to {runs}")
     if not 0 < level < 1:
-        raise Invalid(f"an interval that holds with {level:g}: give a level between 0 and 1")
+        raise Invalid(f"a level of {level:g}: give a level between 0 and 1")
 
 
 @dataclass(frozen=True)
 class Stratum:
-    """What was seen of one of the strata."""
+    """Stratum with its weight and its runs so far."""
 
     weight: float
-    """the share of all missions that are like this; those of all strata add up to 1"""
+    """share of this stratum among all missions; the weights of all strata add up to 1"""
     count: int
+    """number of runs with the property"""
     runs: int
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """A number with its confidence interval."""
+    """Estimated number with its confidence interval."""
 
     value: float
     low: float
@@ -100,14 +103,15 @@ class Estimate:
 
 
 def stratified_rate(strata: Sequence[Stratum], level: float = LEVEL) -> Estimate:
-    """The rate of the whole, from independent runs of each stratum.
+    """Estimate the overall rate from independent runs of each stratum.
 
-    The interval is put together from the exact ones of the strata: the squares of their halves
-    add up, each weighted (G. Y. Zou, W. Huang and X. Zhang, Computational Statistics and Data
-    Analysis 53 (2009), 1080-1085). It is no exact one; its coverage is measured in the suite.
+    The interval combines the exact intervals of the strata: the weighted distances of their ends
+    from the rates add up in squares (G. Y. Zou, W. Huang and X. Zhang, Computational Statistics and
+    Data Analysis 53 (2009), 1080-1085). It is approximate; the tests measure its coverage. Raises
+    Invalid if the weights don't add up to 1.
     """
     if not strata or abs(math.fsum(s.weight for s in strata) - 1.0) > 1e-6:
-        raise Invalid("the weights of all strata add up to 1")
+        raise Invalid("the weights of the strata must add up to 1")
     rates = [clopper_pearson(s.count, s.runs, level) for s in strata]
     shares = [0.5 if math.isnan(rate.value) else rate.value for rate in rates]
     value = math.fsum(s.weight * share for s, share in zip(strata, shares, strict=True))
@@ -119,51 +123,53 @@ def stratified_rate(strata: Sequence[Stratum], level: float = LEVEL) -> Estimate
 
 
 def allocation(strata: Sequence[Stratum], runs: int) -> tuple[int, ...]:
-    """How many of so many further runs each stratum gets, so that the whole rate becomes as sure as
-    can be: by weight, and by how uncertain the outcome is (J. Neyman, Journal of the Royal
-    Statistical Society 97 (1934), 558-625). Each gets at least one, if there are enough."""
-    # As if one more had succeeded and one more failed: a stratum of which few runs are known is
-    # not taken for sure.
+    """Return how many of the further `runs` each stratum gets for the narrowest overall interval.
+
+    The numbers are proportional to the weight and to the standard deviation of the outcome (Neyman
+    allocation: J. Neyman, Journal of the Royal Statistical Society 97 (1934), 558-625). Each
+    stratum gets at least one run, if there are enough.
+    """
+    # One success and one failure are added, so that a stratum with few runs does not seem certain.
     shares = [(s.count + 1) / (s.runs + 2) for s in strata]
     needs = [s.weight * math.sqrt(p * (1 - p)) for s, p in zip(strata, shares, strict=True)]
-    whole = math.fsum(needs)
-    least = 1 if runs >= len(strata) else 0
-    free = runs - least * len(strata)
-    exact = [free * need / whole if whole else free / len(strata) for need in needs]
-    given = [math.floor(one) for one in exact]
-    by_rest = sorted(range(len(strata)), key=lambda k: given[k] - exact[k])
-    for k in by_rest[: free - sum(given)]:
-        given[k] += 1
-    return tuple(least + one for one in given)
+    total_need = math.fsum(needs)
+    minimum = 1 if runs >= len(strata) else 0
+    free = runs - minimum * len(strata)
+    exact = [free * need / total_need if total_need else free / len(strata) for need in needs]
+    counts = [math.floor(share) for share in exact]
+    by_remainder = sorted(range(len(strata)), key=lambda k: counts[k] - exact[k])
+    for k in by_remainder[: free - sum(counts)]:
+        counts[k] += 1
+    return tuple(minimum + count for count in counts)
 
 
 def world_means(values: Iterable[tuple[int, float | tuple[float, ...]]]) -> NDArray[np.float64]:
-    """Return the mean in each world of what runs, or pairs of them, have come to.
+    """Return the mean of the values in each world.
 
-    Each value, or tuple of values, comes with its world's seed; the worlds are in the order in
-    which they first come.
+    Each value of a run, or tuple of values of a pair of runs, comes with its world's seed. The
+    worlds are in the order of their first values.
     """
     worlds: dict[int, list[float | tuple[float, ...]]] = defaultdict(list)
     for seed, value in values:
         worlds[seed].append(value)
-    return np.array([np.mean(found, axis=0) for found in worlds.values()])
+    return np.array([np.mean(results, axis=0) for results in worlds.values()])
 
 
 def weighted_world_means(
     values: Iterable[tuple[int, str, float | None]], weights: Mapping[str, float]
 ) -> dict[int, float]:
-    """Return by seed the weighted mean over the cases that count in a world.
+    """Return, by seed, the weighted mean over the cases that count in a world.
 
-    Each value comes with the seed and the case; None counts for nothing. Worlds in which a case is
-    missing, or none counts, are left out.
+    Each value comes with its seed and its case; a case whose value is None does not count. Worlds
+    in which a case is missing, or no case counts, are left out.
     """
     worlds: dict[int, dict[str, float | None]] = defaultdict(dict)
     for seed, case, value in values:
         worlds[seed][case] = value
     means = {}
-    for seed, found in worlds.items():
-        counting = {case: value for case, value in found.items() if value is not None}
-        whole = sum(weights[case] for case in counting)
-        if len(found) == len(weights) and whole:
-            means[seed] = sum(weights[case] * v for case, v in counting.items()) / whole
+    for seed, by_case in worlds.items():
+        counting = {case: value for case, value in by_case.items() if value is not None}
+        total_weight = sum(weights[case] for case in counting)
+        if len(by_case) == len(weights) and total_weight:
+            means[seed] = sum(weights[case] * v for case, v in counting.items()) / total_weight
     return means

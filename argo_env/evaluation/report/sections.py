@@ -19,9 +19,9 @@ from argo_env.evaluation.report.picture import picture
 from argo_env.evaluation.report.words import counted, meaning, ranges
 from argo_env.evaluation.results import (
     EvaluationResults,
-    FailurePlace,
+    FailureCluster,
     GroupRate,
-    failure_places_of,
+    cluster_failures,
 )
 from argo_env.evaluation.row import RunOutcome, RunRow
 from argo_env.evaluation.statistics import QUANTITIES
@@ -107,7 +107,7 @@ class FloorFailures:
 
     site: str
     floor: int
-    spots: tuple[FailurePlace, ...]
+    spots: tuple[FailureCluster, ...]
     picture: Markup | None
     """of the floor; None: the site can't be opened any more"""
     why: str = ""
@@ -172,7 +172,7 @@ def floors_with_failures(results: EvaluationResults) -> list[FloorFailures]:
         )
         site, why = _site(reference, robot)
         name = reference if site is None else site.spec.title
-        spots = failure_places_of(own.rows)
+        spots = cluster_failures(own.rows)
         for floor in sorted({spot.floor for spot in spots}):
             here = tuple(spot for spot in spots if spot.floor == floor)
             drawn = None if site is None else _drawn(own, site, floor)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from argo_env.evaluation.results import EvaluationResults, duration_curve, failure_places_of
+from argo_env.evaluation.results import EvaluationResults, cluster_failures, duration_curve
 from argo_env.evaluation.row import RunOutcome, RunRow
 from tests.argo_env.evaluation.conftest import plan_of
 from tests.argo_env.evaluation.test_store import row as a_row
@@ -52,7 +52,7 @@ def test_places_half_a_metre_apart_are_one():
         row(4, 10.0),
         row(5, task="C"),  # nobody knows where
     ]
-    found = failure_places_of(rows)
+    found = cluster_failures(rows)
     assert [(place.floor, place.runs) for place in found] == [(1, 2), (1, 1), (2, 1)]
     assert found[0].tasks == {"A": 1, "B": 1}
     assert found[1].tasks == {"no task": 1}

@@ -107,7 +107,7 @@ def test_a_run_that_takes_too_long_ends(processes, mission):
     plan = EvaluationPlan(cases=(EvaluationCase(mission="slow", spec=slow),), seeds=(1,))
     results = evaluated(plan, processes, limit=0.05)
     assert results.rows[0].outcome is RunOutcome.DIED
-    assert results.rows[0].reason == "the run took longer than it may"
+    assert results.rows[0].reason == "the run took longer than its time limit"
 
 
 def test_only_what_is_missing_is_made(processes, plan, tmp_path):

@@ -121,7 +121,7 @@ def test_draws_stay_in_their_ranges_and_fill_them(mission):
 @pytest.mark.parametrize(
     ("ranges", "said"),
     [
-        ({"speed": (0.9, 0.8)}, "the least comes first"),
+        ({"speed": (0.9, 0.8)}, "give the smaller value first"),
         ({"speed": (0.9, 1.5)}, "less than or equal to 1"),
         ({"charge": (0.0, 0.5)}, "greater than 0"),
         ({"colour": 3}, "Extra inputs"),

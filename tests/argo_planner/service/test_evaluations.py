@@ -234,13 +234,13 @@ def test_obstacles_stand_in_the_worlds(tmp_path: Path, site: OpenedSite) -> None
 
 def test_what_makes_no_sense_is_refused_before_anything_runs(service: Served, id: str) -> None:
     for said, why in (
-        ({"require": ["good >= 1"]}, "nothing is known of `good`"),
+        ({"require": ["good >= 1"]}, "no quantity `good`"),
         ({"without_faults": False}, "nothing is to be run"),
         ({"worlds": 10_000, "faults": FAULTS * 20}, "too many"),
         ({"drive": "boat"}, "no drive `boat`"),
         ({"sensor": "camera"}, "take the sensor `ideal` or another drive"),
         ({"faults": [{"kind": "brick"}]}, "take another drive"),
-        ({"variation": {"speed": [0.9, 0.5]}}, "the least comes first"),
+        ({"variation": {"speed": [0.9, 0.5]}}, "give the smaller value first"),
         ({"variation": {"values": {"999": {"drift": [0, 1]}}}}, "no checkpoint 999"),
         ({"variation": {"values": {"1": {"start": [1, 1e300]}}}}, "checkpoint 1"),
     ):

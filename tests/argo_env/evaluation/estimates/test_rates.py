@@ -50,7 +50,7 @@ def test_of_no_runs_nothing_is_known():
 
 @pytest.mark.parametrize(("count", "runs"), [(-1, 3), (4, 3)])
 def test_no_more_succeed_than_ran(count, runs):
-    with pytest.raises(Invalid, match="give a number of them"):
+    with pytest.raises(Invalid, match="give a count from 0 to"):
         clopper_pearson(count, runs)
 
 

@@ -14,7 +14,7 @@ from argo_env.evaluation.case import EvaluationCase, PlanName
 from argo_env.evaluation.estimates.rates import Stratum, allocation
 from argo_env.evaluation.plan import EvaluationPlan, PlannedRun
 from argo_env.evaluation.pool.backend import WorkerBackend
-from argo_env.evaluation.pool.pool import Finished, Pool
+from argo_env.evaluation.pool.pool import CompletedCall, Pool
 from argo_env.evaluation.rates import is_enough
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome, RunRow, row_of, row_without_end
@@ -197,14 +197,14 @@ class Evaluating:
         self._outcomes[row.plan][row.outcome] += 1
         return row
 
-    def _as_completed(self, runs: Iterator[tuple[PlannedRun, str]]) -> Iterator[Finished]:
+    def _as_completed(self, runs: Iterator[tuple[PlannedRun, str]]) -> Iterator[CompletedCall]:
         self._fill_pool(runs)
         for finished in self._pool.as_completed():
             self._fill_pool(runs)
             yield finished
 
     def _fill_pool(self, runs: Iterator[tuple[PlannedRun, str]]) -> None:
-        while self._pool.wants_more:
+        while self._pool.needs_calls:
             next_run = next(runs, None)
             if next_run is None:
                 return
@@ -221,7 +221,7 @@ class Evaluating:
                 ),
             )
 
-    def _row_for(self, finished: Finished) -> RunRow:
+    def _row_for(self, finished: CompletedCall) -> RunRow:
         run, key = finished.ticket
         if isinstance(finished.value, RunRow):
             return finished.value

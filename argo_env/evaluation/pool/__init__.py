@@ -1,1 +1,1 @@
-"""Many calls of a function in worker processes, here or on a cluster, of which some may die."""
+"""Pool of worker processes, here or on a cluster, that survives the death of workers."""

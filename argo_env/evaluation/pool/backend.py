@@ -1,4 +1,4 @@
-"""The seam to what has the worker processes, and whether a cluster answers at an address."""
+"""Interface of the back ends that make worker processes, and a check of cluster addresses."""
 
 import socket
 from collections.abc import Callable, Sequence
@@ -9,46 +9,50 @@ from argo_compiler.base.errors import Invalid, Unavailable
 
 
 class WorkerDiedError(Exception):
-    """The worker process ended before the call did; holds what is known of why."""
+    """Raised when a worker process ended before its call did; the message is the known reason."""
 
     def __init__(self, reason: str, killed: bool = False) -> None:
-        """`killed`: somebody else has ended it, as far as that is known."""
+        """Store the reason, and whether another process killed the worker, as far as known."""
         super().__init__(reason)
         self.killed = killed
 
 
 class WorkerBackend(Protocol):
-    """Has worker processes, and calls a function in them. What is called and what it is given and
-    returns can be pickled."""
+    """Back end that owns worker processes and calls functions in them.
+
+    Functions, their arguments and their results must be picklable.
+    """
 
     name: str
     workers: int
-    """how many calls are carried out at once"""
-    names_the_dead: bool
-    """whether a worker that dies tells which call it died of, and takes no other along"""
+    """number of calls that are executed at once"""
+    isolates_deaths: bool
+    """whether a dying worker loses its own call only, so that the call is known"""
 
-    def submit(self, call: Callable[[Any], Any], argument: Any) -> Any:
-        """Hands the call to the workers; returns what stands for it."""
+    def submit(self, function: Callable[[Any], Any], argument: Any) -> Any:
+        """Send a call to the workers and return its handle."""
 
     def wait(self, calls: Sequence[Any]) -> Sequence[Any]:
-        """Waits until some of these have ended, and returns those."""
+        """Wait until some of these calls have ended, and return the handles of those."""
 
     def result(self, call: Any) -> Any:
-        """What a call that has ended has returned; raises what it raised, or WorkerDiedError."""
+        """Return the result of a call that has ended; raise its exception, or WorkerDiedError."""
 
-    def mend(self) -> None:
-        """New workers in place of those that have died."""
+    def replace_dead_workers(self) -> None:
+        """Start new workers in place of dead ones."""
 
     def close(self) -> None:
-        """Ends the workers, whatever they do."""
+        """End the workers, whether or not they execute calls."""
 
 
-_PATIENCE = 5.0  # s until somebody who listens has taken a connection
+_CONNECT_TIMEOUT = 5.0  # s
 
 
 def require_listener(address: str, cluster: str) -> None:
-    """Raises Invalid for what is no address of a `cluster`, such as `Ray`, Unavailable if nobody
-    listens there."""
+    """Raise an error if no server listens at the address of a `cluster`, such as `Ray`.
+
+    Raises Invalid for a malformed address, Unavailable if no server listens there.
+    """
     try:
         parts = urlsplit(address if "://" in address else f"tcp://{address}")
         host, port = parts.hostname, parts.port
@@ -57,7 +61,7 @@ def require_listener(address: str, cluster: str) -> None:
     if host is None or port is None:
         raise Invalid(f"`{address}` is no address of a {cluster} cluster: give host:port")
     try:
-        socket.create_connection((host, port), timeout=_PATIENCE).close()
+        socket.create_connection((host, port), timeout=_CONNECT_TIMEOUT).close()
     except OSError as error:
         why = error.strerror or "no answer"
         raise Unavailable(f"no {cluster} cluster at {address}: {why}") from None

@@ -1,4 +1,4 @@
-"""The back ends by name. What one of them needs is imported when it is made."""
+"""Back ends by name; each imports the packages that it needs when it is made."""
 
 from collections.abc import Callable
 from importlib.util import find_spec
@@ -16,24 +16,26 @@ def _processes(
     workers: int | None, address: str | None, context: ForkServerContext | None
 ) -> WorkerBackend:
     if address is not None:
-        raise Invalid("processes are of this machine and have no address: take `ray` or `dask`")
-    from argo_env.evaluation.pool.processes import Processes
+        raise Invalid(
+            "processes run on this machine and have no address: name the back end `ray` or `dask`"
+        )
+    from argo_env.evaluation.pool.process_backend import ProcessBackend
 
-    return Processes(workers or usable_processors(), context)
+    return ProcessBackend(workers or usable_processors(), context)
 
 
 def _ray(workers: int | None, address: str | None, _: object) -> WorkerBackend:
     _require("ray")
-    from argo_env.evaluation.pool.on_ray import RayCluster
+    from argo_env.evaluation.pool.ray_backend import RayBackend
 
-    return RayCluster(workers or (None if address else usable_processors()), address)
+    return RayBackend(workers or (None if address else usable_processors()), address)
 
 
 def _dask(workers: int | None, address: str | None, _: object) -> WorkerBackend:
     _require("distributed")
-    from argo_env.evaluation.pool.on_dask import DaskCluster
+    from argo_env.evaluation.pool.dask_backend import DaskBackend
 
-    return DaskCluster(workers or (None if address else usable_processors()), address)
+    return DaskBackend(workers or (None if address else usable_processors()), address)
 
 
 BACKENDS: dict[str, Callable[[int | None, str | None, ForkServerContext | None], WorkerBackend]] = {
@@ -41,9 +43,12 @@ BACKENDS: dict[str, Callable[[int | None, str | None, ForkServerContext | None],
     "ray": _ray,
     "dask": _dask,
 }
-"""Functions that make the back ends. They take a number of workers (None: all that there are), the
-address of a cluster (None: this machine), and the context in which processes of this machine
-begin."""
+"""Factories of the back ends, by name.
+
+They take the number of workers (None: one for each processor of this machine, or all of an existing
+cluster), the address of a cluster (None: this machine), and the multiprocessing context that starts
+processes on this machine.
+"""
 
 
 def make_backend(
@@ -52,15 +57,23 @@ def make_backend(
     address: str | None = None,
     context: ForkServerContext | None = None,
 ) -> WorkerBackend:
-    """Return the back end of that name, with its workers begun.
+    """Return the back end with this name, with its workers started.
 
-    `context`: the one in which worker processes of this machine begin; without it each loads anew
-    what it needs. Raises ArgoError if there can be no such back end.
+    Args:
+        name: Name of the back end in `BACKENDS`.
+        workers: Number of workers; None for one for each processor of this machine, or for all of
+            an existing cluster.
+        address: Address of an existing cluster; None for this machine.
+        context: Multiprocessing context that starts worker processes on this machine; without it
+            each worker imports all modules itself.
+
+    Raises:
+        ArgoError: If there is no such back end, or it can't be started with these arguments.
     """
     if name not in BACKENDS:
         raise Invalid(f"no back end `{name}`; there are: {', '.join(BACKENDS)}")
     if workers is not None and workers < 1:
-        raise Invalid(f"{workers} workers can't do anything: give 1 or more")
+        raise Invalid(f"{workers} workers can't execute anything: give 1 or more")
     return BACKENDS[name](workers, address, context)
 
 

@@ -1,6 +1,6 @@
-"""Calls handed to workers, and what came of each: also of those that kill their worker.
+"""Pool that distributes calls to workers and survives calls that kill their worker.
 
-Several calls are handed over together, since that takes as long for a short one as the call itself.
+Several calls are sent together in a chunk, since sending takes as long as a short call itself.
 """
 
 import time
@@ -12,81 +12,82 @@ from typing import Any
 from argo_env.closing import Closing
 from argo_env.evaluation.pool.backend import WorkerBackend, WorkerDiedError
 
-_WORTH = 0.25  # s that a bundle should take: as long as nobody minds waiting for what came of it
-_MOST = 32
+_CHUNK_TIME = 0.25  # s that a chunk should take, a short time to wait for its results
+_MAX_CHUNK = 32
 
 
 @dataclass(frozen=True)
 class CallOutcome:
-    """What came of one of the calls."""
+    """Result of one call in a chunk."""
 
     value: Any = None
     error: Exception | None = None
-    """what it raised, if it did"""
+    """exception that the call raised; None if it returned"""
 
 
 @dataclass(frozen=True)
-class Bundle:
-    """A function, and what it is called with, one after the other."""
+class Chunk:
+    """Function with the arguments of several calls, which are executed one after the other."""
 
-    call: Callable[[Any], Any]
+    function: Callable[[Any], Any]
     arguments: tuple[Any, ...]
 
 
-def carry_out_bundle(bundle: Bundle) -> tuple[tuple[CallOutcome, ...], float]:
-    """In a worker: what came of each call, and how long all took (s)."""
-    begun = time.perf_counter()
+def execute_chunk(chunk: Chunk) -> tuple[tuple[CallOutcome, ...], float]:
+    """Execute the calls in a worker; return their outcomes and the time of all calls in s."""
+    start = time.perf_counter()
     outcomes = []
-    for argument in bundle.arguments:
+    for argument in chunk.arguments:
         try:
-            outcomes.append(CallOutcome(bundle.call(argument)))
-        except Exception as error:  # whatever the function raises is what came of the call
+            outcomes.append(CallOutcome(chunk.function(argument)))
+        except Exception as error:  # any exception of the function is the outcome of the call
             outcomes.append(CallOutcome(error=error))
-    return tuple(outcomes), time.perf_counter() - begun
+    return tuple(outcomes), time.perf_counter() - start
 
 
-class BundleSize:
-    """How many calls are handed over together. Learns how long they take."""
+class ChunkSize:
+    """Number of calls in a chunk; it adapts to the measured time of the calls."""
 
     def __init__(self) -> None:
         self._mean: float | None = None
-        """s a call"""
+        """moving average of the time of a call in s; None before the first measurement"""
 
-    def learn(self, count: int, seconds: float) -> None:
-        """So many calls took that long."""
+    def update(self, count: int, seconds: float) -> None:
+        """Update the moving average: `count` calls took this many seconds."""
         mean = seconds / count
         self._mean = mean if self._mean is None else 0.8 * self._mean + 0.2 * mean
 
     @property
-    def most(self) -> int:
-        """As many as together take about a quarter of a second; one as long as nothing is known."""
+    def limit(self) -> int:
+        """Number of calls that take about a quarter of a second; 1 before any measurement."""
         if self._mean is None:
             return 1
-        return max(1, min(_MOST, int(_WORTH / max(self._mean, 1e-6))))
+        return max(1, min(_MAX_CHUNK, int(_CHUNK_TIME / max(self._mean, 1e-6))))
 
-    def of(self, waiting: Sequence[Any], workers: int) -> int:
-        """How many of those that wait: no more than leaves some for each worker."""
-        return min(self.most, max(1, len(waiting) // workers))
+    def next_size(self, waiting: Sequence[Any], workers: int) -> int:
+        """Return the number of waiting calls for the next chunk, which leaves calls for all."""
+        return min(self.limit, max(1, len(waiting) // workers))
 
 
 CRASHES, KILLS = 3, 10
-"""deaths of a worker from which on its call is given up: those of which no other call can be the
-reason. A process that was killed may have been so by chance, and more than once."""
-_AHEAD = 3  # bundles a worker that are handed over at once, so that none waits for the next
+"""number of deaths of workers, by a crash or by a kill, after which the pool gives up their call.
+Deaths that another call may have caused don't count. A worker may be killed by chance, and more
+than once, so that more kills are allowed."""
+_CHUNKS_AHEAD = 3  # chunks for each worker that are sent at once, so that no worker has to wait
 
 
 @dataclass(frozen=True)
-class Finished:
-    """What came of a call."""
+class CompletedCall:
+    """Result of a call, as the pool returns it."""
 
     ticket: Any
-    """what `submit` was given"""
+    """identifier that the caller gave to `submit`"""
     value: Any = None
-    """what it returned"""
+    """value that the call returned"""
     error: Exception | None = None
-    """what it raised, if it did"""
+    """exception that the call raised; None if it returned"""
     died: str | None = None
-    """why its workers died, if they did, each time that it was tried"""
+    """reason why its workers died at each attempt; None if they did not"""
 
 
 @dataclass
@@ -94,93 +95,95 @@ class _Call:
     ticket: Any
     argument: Any
     deaths: float = 0.0
-    """of its workers that are its own, as a share of those with which it is given up"""
+    """deaths of workers that this call caused, as a share of those at which it is given up"""
     alone: bool = False
-    """whether no other call can be the reason if its worker dies now"""
+    """whether this call must be the cause if its worker dies now"""
     single: bool = False
-    """whether it is to be handed over by itself"""
+    """whether the call must be in a chunk of its own"""
 
 
 class Pool(Closing):
-    """Hands calls of one function to workers and gives back what came of them, as it comes.
+    """Pool that executes calls of one function in workers and yields the results as they complete.
 
-    Short calls are handed over several together. Where a worker dies, its calls are tried again in
-    fresh ones, each while no other is under way that could be the reason; a call whose workers die
-    each time is given back as `died`. All others are carried out, each once more if it was lost
-    with a worker.
+    It holds the calls that have not completed. Short calls are sent in chunks. If a worker dies,
+    its calls are repeated by new workers, each while no other call runs that could be the cause. A
+    call whose workers die at each attempt completes with `died`. All other calls are executed, and
+    executed again if they were lost with a worker.
     """
 
-    def __init__(self, backend: WorkerBackend, call: Callable[[Any], Any]) -> None:
+    def __init__(self, backend: WorkerBackend, function: Callable[[Any], Any]) -> None:
         self._backend = backend
-        self._call = call
+        self._function = function
         self._waiting: deque[_Call] = deque()
         self._suspects: deque[_Call] = deque()
-        self._under_way: dict[Any, list[_Call]] = {}
-        self._size = BundleSize()
+        self._running: dict[Any, list[_Call]] = {}
+        self._chunk_size = ChunkSize()
 
     @property
-    def open(self) -> int:
-        """How many calls have not ended."""
-        under_way = sum(map(len, self._under_way.values()))
-        return len(self._waiting) + len(self._suspects) + under_way
+    def pending(self) -> int:
+        """Number of calls that have not completed."""
+        running = sum(map(len, self._running.values()))
+        return len(self._waiting) + len(self._suspects) + running
 
     @property
-    def wants_more(self) -> bool:
-        """Whether a worker may soon have nothing to do."""
-        return self.open < 2 * _AHEAD * self._backend.workers * self._size.most
+    def needs_calls(self) -> bool:
+        """True if a worker may soon be idle unless more calls are submitted."""
+        return self.pending < 2 * _CHUNKS_AHEAD * self._backend.workers * self._chunk_size.limit
 
     def submit(self, ticket: Any, argument: Any) -> None:
-        """Calls the function with the argument, when a worker is free for it."""
+        """Add a call of the function with this argument, for the next free worker."""
         self._waiting.append(_Call(ticket, argument))
 
-    def as_completed(self) -> Iterator[Finished]:
-        """What came of the calls, in the order in which they end; more may be submitted
-        meanwhile. Ends when none is open."""
-        while self.open:
-            self._hand_over()
-            for handle in self._backend.wait(list(self._under_way)):
-                yield from self._taken(handle)
+    def as_completed(self) -> Iterator[CompletedCall]:
+        """Yield the calls in the order in which they complete, until none is pending.
+
+        More calls may be submitted meanwhile.
+        """
+        while self.pending:
+            self._dispatch()
+            for handle in self._backend.wait(list(self._running)):
+                yield from self._collect(handle)
 
     def close(self) -> None:
-        """Ends the workers. What they were at is lost."""
+        """End the workers; calls that they execute are lost."""
         self._backend.close()
 
-    def _hand_over(self) -> None:
-        if self._suspects and not self._backend.names_the_dead:
-            # One after the other, and alone: who dies then is to blame.
-            if not self._under_way:
-                self._backend.mend()
-                self._begin([self._suspects.popleft()], alone=True)
+    def _dispatch(self) -> None:
+        if self._suspects and not self._backend.isolates_deaths:
+            # Suspects run one after the other and alone, so that a death identifies its call.
+            if not self._running:
+                self._backend.replace_dead_workers()
+                self._start([self._suspects.popleft()], alone=True)
             return
         while self._suspects:
-            self._begin([self._suspects.popleft()], alone=True)
-        while self._waiting and len(self._under_way) < _AHEAD * self._backend.workers:
-            calls = self._bundled()
-            self._begin(calls, alone=self._backend.names_the_dead and len(calls) == 1)
+            self._start([self._suspects.popleft()], alone=True)
+        while self._waiting and len(self._running) < _CHUNKS_AHEAD * self._backend.workers:
+            calls = self._next_chunk()
+            self._start(calls, alone=self._backend.isolates_deaths and len(calls) == 1)
 
-    def _bundled(self) -> list[_Call]:
-        """The next ones of those that wait."""
+    def _next_chunk(self) -> list[_Call]:
+        """Remove the calls of the next chunk from the waiting ones, and return them."""
         calls = [self._waiting.popleft()]
-        for _ in range(self._size.of(self._waiting, self._backend.workers) - 1):
+        for _ in range(self._chunk_size.next_size(self._waiting, self._backend.workers) - 1):
             if calls[0].single or not self._waiting or self._waiting[0].single:
                 break
             calls.append(self._waiting.popleft())
         return calls
 
-    def _begin(self, calls: list[_Call], alone: bool) -> None:
+    def _start(self, calls: list[_Call], alone: bool) -> None:
         for call in calls:
             call.alone = alone
-        bundle = Bundle(self._call, tuple(call.argument for call in calls))
+        chunk = Chunk(self._function, tuple(call.argument for call in calls))
         try:
-            handle = self._backend.submit(carry_out_bundle, bundle)
+            handle = self._backend.submit(execute_chunk, chunk)
         except WorkerDiedError:
-            # The workers died of something before these calls came to them.
+            # The workers died before they received these calls.
             self._suspects.extend(calls)
             return
-        self._under_way[handle] = calls
+        self._running[handle] = calls
 
-    def _taken(self, handle: Any) -> Iterator[Finished]:
-        calls = self._under_way.pop(handle)
+    def _collect(self, handle: Any) -> Iterator[CompletedCall]:
+        calls = self._running.pop(handle)
         try:
             outcomes, seconds = self._backend.result(handle)
         except WorkerDiedError as death:
@@ -188,16 +191,16 @@ class Pool(Closing):
                 if call.alone:
                     call.deaths += 1 / (KILLS if death.killed else CRASHES)
                 if call.deaths > 1 - 1e-9:
-                    yield Finished(call.ticket, died=str(death))
+                    yield CompletedCall(call.ticket, died=str(death))
                 else:
                     self._suspects.append(call)
-        except Exception as error:  # what can't be sent to a worker, or back
+        except Exception as error:  # the chunk or its result can't be pickled
             if len(calls) == 1:
-                yield Finished(calls[0].ticket, error=error)
+                yield CompletedCall(calls[0].ticket, error=error)
             for call in calls if len(calls) > 1 else ():
                 call.single = True
                 self._waiting.append(call)
         else:
-            self._size.learn(len(calls), seconds)
+            self._chunk_size.update(len(calls), seconds)
             for call, outcome in zip(calls, outcomes, strict=True):
-                yield Finished(call.ticket, outcome.value, outcome.error)
+                yield CompletedCall(call.ticket, outcome.value, outcome.error)

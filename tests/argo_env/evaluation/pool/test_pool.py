@@ -108,7 +108,7 @@ def test_workers_that_can_not_begin_are_said_to():
             raise ChildProcessError(errno.ECHILD, "too little memory")
 
     backend = make_backend(workers=1, context=SimpleNamespace(Process=Refused))
-    with pytest.raises(Unavailable, match="no worker process can begin: too little memory"):
+    with pytest.raises(Unavailable, match="no worker process can start: too little memory"):
         carried_out(backend, work.square, [1])
     backend.close()
 
@@ -207,9 +207,9 @@ def test_a_cluster_that_is_not_there_is_said(name):
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["ray", "dask"])
 def test_what_is_no_cluster_is_not_waited_for(name, monkeypatch):
-    module = pytest.importorskip(f"argo_env.evaluation.pool.on_{name}")
-    monkeypatch.setattr(module, "_ANSWERS" if name == "ray" else "_PATIENCE", 2.0)
+    module = pytest.importorskip(f"argo_env.evaluation.pool.{name}_backend")
+    monkeypatch.setattr(module, "_CONNECT_TIMEOUT" if name == "ray" else "_SCHEDULER_TIMEOUT", 2.0)
     with socket.create_server(("127.0.0.1", 0)) as silent:
         port = silent.getsockname()[1]
-        with pytest.raises(ArgoError, match="what listens there does not answer as one"):
+        with pytest.raises(ArgoError, match="the server there does not answer as one"):
             make_backend(name, address=f"127.0.0.1:{port}")

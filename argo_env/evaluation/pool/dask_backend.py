@@ -1,4 +1,4 @@
-"""Workers of a Dask cluster: one of this machine, or an existing one by its address."""
+"""Back end with the workers of a Dask cluster, on this machine or at an address."""
 
 import asyncio
 import logging
@@ -15,30 +15,30 @@ from argo_compiler.base.errors import Unavailable
 from argo_env.evaluation.pool.backend import WorkerDiedError, require_listener
 
 _LOGGERS = tuple(f"distributed{part}" for part in ("", ".scheduler", ".nanny", ".core", ".worker"))
-_PATIENCE = 10.0  # s until a scheduler has said that it is one
+_SCHEDULER_TIMEOUT = 10.0  # s until a scheduler has identified itself
 _SETTINGS = {
-    # A call is tried again by the pool, which knows when it was alone.
+    # The pool repeats calls itself, as it knows whether a call was alone when its worker died.
     "distributed.scheduler.allowed-failures": 0,
     "distributed.scheduler.worker-saturation": 1.0,
     "distributed.comm.timeouts.connect": "20s",
-    # On a busy machine a worker that has died takes longer than the 15 s of the default to be there
-    # again; then its nanny would be closed for good, and calls would wait for ever.
+    # On a busy machine a dead worker takes longer than the default of 15 s to be restarted; its
+    # nanny would then be closed for good, and calls would wait forever.
     "distributed.deploy.lost-worker-timeout": "1h",
     "distributed.admin.log-format": "%(message)s",
 }
 
 
-class DaskCluster:
-    """Dask's workers by its own futures. Calls that wait at a worker may be lost with it."""
+class DaskBackend:
+    """Back end with Dask's workers and futures; a dying worker may lose calls that wait for it."""
 
     name = "dask"
-    names_the_dead = False
+    isolates_deaths = False
 
     def __init__(self, workers: int | None, address: str | None = None) -> None:
-        """Without an `address` a cluster of so many workers is begun on this machine; of one that
-        exists, `workers` None are as many as it has threads.
+        """Connect to the cluster at the address, or start one on this machine if it is None.
 
-        Raises Unavailable if it can't be reached.
+        `workers` None stands for the number of threads of an existing cluster. Raises Unavailable
+        if the cluster can't be reached or started.
         """
         for name in _LOGGERS:
             logging.getLogger(name).setLevel(logging.CRITICAL)
@@ -62,8 +62,8 @@ class DaskCluster:
             raise Unavailable(f"no Dask cluster{where}: {error}") from None
         self.workers = workers or max(1, sum(self._client.nthreads().values()))
 
-    def submit(self, call: Callable[[Any], Any], argument: Any) -> Any:
-        return self._client.submit(call, argument, pure=False)
+    def submit(self, function: Callable[[Any], Any], argument: Any) -> Any:
+        return self._client.submit(function, argument, pure=False)
 
     def wait(self, calls: Sequence[Any]) -> Sequence[Any]:
         if not calls:
@@ -81,8 +81,8 @@ class DaskCluster:
         finally:
             call.release()
 
-    def mend(self) -> None:
-        """Dask's nannies begin new workers by themselves."""
+    def replace_dead_workers(self) -> None:
+        """Do nothing, as Dask's nannies start new workers themselves."""
 
     def close(self) -> None:
         self._client.close()
@@ -91,19 +91,19 @@ class DaskCluster:
 
 
 def _require_scheduler(address: str) -> None:
-    """Raises ArgoError if no scheduler answers at the address: a client would wait for ever."""
+    """Raise ArgoError if no scheduler answers at the address; a client would wait forever."""
     require_listener(address, "Dask")
 
-    async def asked() -> str:
-        async with asyncio.timeout(_PATIENCE), rpc(address) as scheduler:
+    async def query_type() -> str:
+        async with asyncio.timeout(_SCHEDULER_TIMEOUT), rpc(address) as scheduler:
             return str((await scheduler.identity()).get("type"))
 
     try:
-        # In a thread of its own: a notebook has a loop in this one.
+        # A separate thread is needed, as a notebook has an event loop in this one.
         with ThreadPoolExecutor(1) as thread:
-            kind = thread.submit(asyncio.run, asked()).result()
-    except Exception as error:  # whatever else may be listening answers with
-        why = "what listens there does not answer as one" if isinstance(error, OSError) else error
+            kind = thread.submit(asyncio.run, query_type()).result()
+    except Exception as error:  # another server may answer with anything
+        why = "the server there does not answer as one" if isinstance(error, OSError) else error
         raise Unavailable(f"no Dask cluster at {address}: {why}") from None
     if kind != "Scheduler":
         raise Unavailable(f"no Dask cluster at {address}: it is the address of a {kind}")

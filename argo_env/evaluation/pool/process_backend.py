@@ -1,4 +1,4 @@
-"""Worker processes on this machine, by loky."""
+"""Back end with worker processes on this machine, by loky."""
 
 import os
 import re
@@ -16,33 +16,33 @@ from argo_env.evaluation.pool.backend import WorkerDiedError
 from argo_env.worker_processes import end_with_parent
 
 
-class Processes:
-    """Workers that are processes of this machine. If one dies, all of them are begun anew, and with
-    it the calls that were under way.
+class ProcessBackend:
+    """Back end with worker processes on this machine.
 
-    Each is begun as a process of the context is; without one it loads anew what it needs.
+    If one worker dies, all of them must be replaced, and all calls being executed are lost.
     """
 
     name = "processes"
-    names_the_dead = False
+    isolates_deaths = False
 
     def __init__(self, workers: int, context: ForkServerContext | None = None) -> None:
+        """Start the workers by the context; without one, each worker imports all modules itself."""
         self.workers = workers
-        # Its semaphores are cleared away without a word even where this process is killed.
+        # Loky's context removes its semaphores silently, even if this process is killed.
         self._context = LokyContext()
         if context is not None:
             self._context.Process = context.Process
         self._broken = False
-        self._executor = self._begun()
+        self._executor = self._start()
 
-    def submit(self, call: Callable[[Any], Any], argument: Any) -> "Future[Any]":
+    def submit(self, function: Callable[[Any], Any], argument: Any) -> "Future[Any]":
         try:
-            future: Future[Any] = self._executor.submit(call, argument)
+            future: Future[Any] = self._executor.submit(function, argument)
         except BrokenProcessPool as broken:
             self._broken = True
             raise _death(broken) from None
         except OSError as error:
-            raise Unavailable(f"no worker process can begin: {error.strerror}") from error
+            raise Unavailable(f"no worker process can start: {error.strerror}") from error
         return future
 
     def wait(self, calls: Sequence["Future[Any]"]) -> Sequence["Future[Any]"]:
@@ -58,38 +58,38 @@ class Processes:
             self._broken = True
             raise _death(broken) from None
 
-    def mend(self) -> None:
+    def replace_dead_workers(self) -> None:
         if self._broken:
             self.close()
-            self._executor = self._begun()
+            self._executor = self._start()
             self._broken = False
 
     def close(self) -> None:
         self._executor.shutdown(wait=True, kill_workers=True)
 
-    def _begun(self) -> ProcessPoolExecutor:
+    def _start(self) -> ProcessPoolExecutor:
         niceness = os.getpriority(os.PRIO_PROCESS, 0)
         return ProcessPoolExecutor(
             self.workers,
             context=self._context,
-            initializer=_begin,
+            initializer=_initialize,
             initargs=(os.getpid(), niceness),
         )
 
 
-def _begin(parent: int, niceness: int) -> None:
+def _initialize(parent: int, niceness: int) -> None:
     end_with_parent(parent)
     os.setpriority(os.PRIO_PROCESS, 0, niceness)
 
 
 def _death(broken: BrokenProcessPool) -> WorkerDiedError:
-    """What loky knows of the end of its workers, in a few words."""
+    """Return the error with the reason for the end of a worker, parsed from loky's message."""
     codes = re.findall(r"(SIG[A-Z]+|EXIT)\((-?\d+)\)", str(broken))
-    # Its own end of those that were left is no reason.
-    own = [(name, code) for name, code in codes if name != "SIGTERM"] or codes
-    if not own:
+    # Loky itself ends the remaining workers by SIGTERM, which is no reason.
+    reasons = [(name, code) for name, code in codes if name != "SIGTERM"] or codes
+    if not reasons:
         return WorkerDiedError("the worker process ended")
-    name, code = own[0]
+    name, code = reasons[0]
     if name == "EXIT":
         return WorkerDiedError(f"the worker process ended with code {code}")
     killed = name in ("SIGKILL", "SIGTERM")

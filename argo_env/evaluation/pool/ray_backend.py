@@ -1,4 +1,4 @@
-"""Workers of a Ray cluster: one of this machine, or an existing one by its address."""
+"""Back end with the workers of a Ray cluster, on this machine or at an address."""
 
 import logging
 import os
@@ -13,31 +13,31 @@ from ray.exceptions import GetTimeoutError, RayTaskError, WorkerCrashedError
 from argo_compiler.base.errors import Unavailable
 from argo_env.evaluation.pool.backend import WorkerDiedError, require_listener
 
-_STORE = 100_000_000  # bytes that Ray shares between processes; specs and rows are small
-_ANSWERS = 40.0  # s until a cluster has taken a client
-_PATIENCE = 60.0  # s until a result that is ready is there
+_STORE_SIZE = 100_000_000  # bytes of Ray's shared memory; specs and rows are small
+_CONNECT_TIMEOUT = 40.0  # s until a cluster has accepted a client
+_RESULT_TIMEOUT = 60.0  # s until a result that is ready has been transferred
 
 
-class RayCluster:
-    """Ray's workers by its own futures. A worker that dies takes no other call along."""
+class RayBackend:
+    """Back end with Ray's workers and futures; a dying worker loses its own call only."""
 
     name = "ray"
-    names_the_dead = True
+    isolates_deaths = True
 
     def __init__(self, workers: int | None, address: str | None = None) -> None:
-        """Without an `address` a cluster of so many workers is begun on this machine; of one that
-        exists, `workers` None are as many as it has processors.
+        """Connect to the cluster at the address, or start one on this machine if it is None.
 
-        Raises Unavailable if it can't be reached.
+        `workers` None stands for the number of processors of an existing cluster. Raises
+        Unavailable if the cluster can't be reached or started.
         """
         os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
         if address not in (None, "auto", "local"):
             _require_cluster(str(address))
-        own: dict[str, Any] = {}
+        local_options: dict[str, Any] = {}
         if address is None:
-            own = {
+            local_options = {
                 "num_cpus": workers,
-                "object_store_memory": _STORE,
+                "object_store_memory": _STORE_SIZE,
                 "include_dashboard": False,
             }
         try:
@@ -46,20 +46,20 @@ class RayCluster:
                 log_to_driver=False,
                 logging_level=logging.ERROR,
                 ignore_reinit_error=False,
-                **own,
+                **local_options,
             )
         except (ConnectionError, RuntimeError, ValueError) as error:
             where = f" at {address}" if address else ""
             raise Unavailable(f"no Ray cluster{where}: {error}") from None
-        # What it would print of workers that died is what rows say.
+        # Ray would print messages about dead workers, which the rows report already.
         ray._private.worker._worker_logs_enabled = False
         self.workers = workers or max(1, int(ray.cluster_resources().get("CPU", 1)))
-        self._remote: dict[Any, Any] = {}
+        self._functions: dict[Any, Any] = {}
 
-    def submit(self, call: Callable[[Any], Any], argument: Any) -> Any:
-        remote = self._remote.get(call)
+    def submit(self, function: Callable[[Any], Any], argument: Any) -> Any:
+        remote = self._functions.get(function)
         if remote is None:
-            remote = self._remote[call] = ray.remote(max_retries=0, num_cpus=1)(call)
+            remote = self._functions[function] = ray.remote(max_retries=0, num_cpus=1)(function)
         return remote.remote(argument)
 
     def wait(self, calls: Sequence[Any]) -> Sequence[Any]:
@@ -72,41 +72,44 @@ class RayCluster:
 
     def result(self, call: Any) -> Any:
         try:
-            return ray.get(call, timeout=_PATIENCE)
+            return ray.get(call, timeout=_RESULT_TIMEOUT)
         except WorkerCrashedError:
             raise WorkerDiedError("the worker process ended") from None
         except RayTaskError as error:
             raise error.cause if isinstance(error.cause, Exception) else error from None
         except GetTimeoutError:
             raise WorkerDiedError("its result was lost with a machine of the cluster") from None
-        except ray.exceptions.RayError as error:  # a machine is gone, or out of memory
+        except ray.exceptions.RayError as error:  # a machine was lost, or is out of memory
             raise WorkerDiedError(_first_line(error)) from None
 
-    def mend(self) -> None:
-        """Ray begins new workers by itself."""
+    def replace_dead_workers(self) -> None:
+        """Do nothing, as Ray starts new workers itself."""
 
     def close(self) -> None:
         ray.shutdown(wait_for_processes=True)
 
 
 def _require_cluster(address: str) -> None:
-    """Raises ArgoError if a cluster at the address takes no calls: asked in a process of its own,
-    as Ray would go on for ever trying to reach one that does not answer."""
+    """Raise ArgoError if no Ray cluster accepts clients at the address.
+
+    The check runs in a separate process, as Ray would try forever to reach a cluster that does not
+    answer.
+    """
     require_listener(address, "Ray")
-    asked = "import ray, sys; ray.init(sys.argv[1], log_to_driver=False, logging_level=40)"
+    script = "import ray, sys; ray.init(sys.argv[1], log_to_driver=False, logging_level=40)"
     try:
-        done = subprocess.run(
-            (sys.executable, "-c", asked, address), capture_output=True, timeout=_ANSWERS
+        process = subprocess.run(
+            (sys.executable, "-c", script, address), capture_output=True, timeout=_CONNECT_TIMEOUT
         )
     except subprocess.TimeoutExpired:
         raise Unavailable(
-            f"no Ray cluster at {address}: what listens there does not answer as one"
+            f"no Ray cluster at {address}: the server there does not answer as one"
         ) from None
-    if done.returncode:
-        said = done.stderr.decode(errors="replace").strip()
-        why = said.rpartition("\n")[2]
-        if "InvalidAuthToken" in said:
-            why = "it asks for a token: set RAY_AUTH_MODE=token and RAY_AUTH_TOKEN"
+    if process.returncode:
+        errors = process.stderr.decode(errors="replace").strip()
+        why = errors.rpartition("\n")[2]
+        if "InvalidAuthToken" in errors:
+            why = "it requires a token: set RAY_AUTH_MODE=token and RAY_AUTH_TOKEN"
         raise Unavailable(f"no Ray cluster at {address}: {why}")
 
 

@@ -15,7 +15,7 @@ from argo_env.evaluation.comparison import PlanComparison
 from argo_env.evaluation.controlled import ControlledMean
 from argo_env.evaluation.estimates.pairs import Difference
 from argo_env.evaluation.rates import Decision, IntervalMethod
-from argo_env.evaluation.report.words import why_sequence
+from argo_env.evaluation.report.texts import why_sequence
 from argo_env.evaluation.results import EvaluationResults, GroupRate
 from argo_env.evaluation.row import RunOutcome
 from argo_env.evaluation.score import ScoringRules, mean_score

@@ -1,1 +1,1 @@
-"""The reports of evaluations and of comparisons: pages that need no other file."""
+"""Reports of evaluations and of comparisons: HTML pages that need no other file."""

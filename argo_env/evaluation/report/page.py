@@ -1,4 +1,4 @@
-"""Writes the pages. Equal results give equal bytes."""
+"""Pages of the reports; equal results give equal bytes."""
 
 import math
 from collections.abc import Callable
@@ -33,7 +33,7 @@ from argo_env.evaluation.report.sections import (
     plan_sections,
     reasons,
 )
-from argo_env.evaluation.report.words import (
+from argo_env.evaluation.report.texts import (
     between,
     chance,
     counted,
@@ -48,34 +48,40 @@ from argo_env.files.folders import make_folder
 from argo_env.formatting import clock
 from argo_env.report.svg import clean
 
-_RUNS, _SHOWN, _REASONS, _PLACES = 100, 12, 15, 12
-"""lines of tables; of runs some are to be opened first, and all are among the rows"""
+_MAX_RUNS, _SHOWN_RUNS, _MAX_REASONS, _MAX_CLUSTERS = 100, 12, 15, 12
+"""largest numbers of lines in tables; the runs after the first `_SHOWN_RUNS` are in a section that
+is closed at first, and the stored rows have all runs"""
 _GAINS = (0.01, 0.02, 0.05, 0.1, 0.2)
 
 
 def write_evaluation_report(folder: Path, results: EvaluationResults) -> Path:
-    """Writes `report.html` into the folder of an evaluation and returns its path. Raises
-    Unavailable where it can't be written."""
+    """Write `report.html` into the folder of an evaluation and return its path.
+
+    Raises Unavailable if it can't be written.
+    """
     return write_file(folder / REPORT, evaluation_page(results, folder))
 
 
 def write_comparison_report(
     folder: Path, first: Path, second: Path, compared: PlanComparison
 ) -> Path:
-    """Writes `comparison.html` into a folder, of two evaluations in theirs, and returns its
-    path. Raises as `write_evaluation_report`."""
+    """Write `comparison.html` into a folder and return its path.
+
+    `first` and `second` are the folders of the two evaluations. Raises Unavailable if the file
+    can't be written.
+    """
     make_folder(folder)
     return write_file(folder / COMPARISON, comparison_page(compared, first, second))
 
 
 def evaluation_page(results: EvaluationResults, folder: Path) -> str:
-    """The report of an evaluation, whose files lie in the folder."""
+    """Return the report of an evaluation whose files are in the folder, as HTML."""
     plans = results.plan.plans
     sections = plan_sections(results)
     names = {plan: section.name for plan, section in zip(plans, sections, strict=True)}
-    said = "; ".join(f"{s.name} {in_percent(s.rate.value) or 'no run'}" for s in sections)
+    rates = "; ".join(f"{s.name} {in_percent(s.rate.value) or 'no run'}" for s in sections)
     delays = results.delays
-    why = reasons(results)
+    all_reasons = reasons(results)
     blocks = [(names[plan], results.by_seeds(plan)) for plan in plans]
     return _template("evaluation.html.j2").render(
         name=results.plan.name,
@@ -84,15 +90,15 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
         verdicts=[(verdict, names[verdict.plan]) for verdict in results.verdicts],
         outcomes=results.outcomes,
         lost=results.missing,
-        forest=picture(f"Rates of success with intervals: {said}", lambda: forest_of_rates(results))
+        forest=picture(f"Success rates with intervals: {rates}", lambda: forest_of_rates(results))
         if results.rows
         else None,
         required=any(r.quantity == "success" for r in results.plan.stopping.require),
         others=other_rates(results),
-        heats=[(names[plan], _heat(results, plan, names[plan])) for plan in _with_faults(results)],
-        durations=picture(
-            "The share of runs that had succeeded by a time", lambda: durations(results)
-        )
+        heat_maps=[
+            (names[plan], _heat_map(results, plan, names[plan])) for plan in _with_faults(results)
+        ],
+        durations=picture("Share of runs that have succeeded by a time", lambda: durations(results))
         if any(row.success for row in results.rows)
         else None,
         curves=[(names[plan], duration_curve(results, plan)) for plan in plans],
@@ -102,14 +108,14 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
         )
         if delays
         else None,
-        found=[(kind, *_found(of_kind)) for kind, of_kind in delays.items()],
-        reasons=why[:_REASONS],
-        more_reasons=max(0, len(why) - _REASONS),
-        places=floors_with_failures(results),
-        most_places=_PLACES,
-        failing=failing_runs(results, folder)[:_RUNS],
-        shown=_SHOWN,
-        more=max(0, len(results.failing) - _RUNS),
+        found=[(kind, *_delay_summary(of_kind)) for kind, of_kind in delays.items()],
+        reasons=all_reasons[:_MAX_REASONS],
+        more_reasons=max(0, len(all_reasons) - _MAX_REASONS),
+        floors=floors_with_failures(results),
+        most_clusters=_MAX_CLUSTERS,
+        failing=failing_runs(results, folder)[:_MAX_RUNS],
+        shown=_SHOWN_RUNS,
+        more=max(0, len(results.failing) - _MAX_RUNS),
         faults_of=results.faults_of,
         added=results.plan.added,
         blocks=[(name, groups) for name, groups in blocks if len(groups) > 1],
@@ -122,12 +128,12 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
 def comparison_page(
     compared: PlanComparison, first: Path | None = None, second: Path | None = None
 ) -> str:
-    """The report of a comparison, of evaluations that lie in these folders."""
+    """Return the report of a comparison as HTML; it names the evaluations' folders if given."""
     worlds = len({a.seed for a, _ in compared.pairs})
     both = any(a.success and b.success for a, b in compared.pairs)
     pairs = compared.successes
     made = [("Argo", __version__)]
-    made += [(name, str(at)) for name, at in (("A is in", first), ("B is in", second)) if at]
+    made += [(name, str(path)) for name, path in (("A is in", first), ("B is in", second)) if path]
     success = compared.success
     in_percents = replace(
         success, value=100 * success.value, low=100 * success.low, high=100 * success.high
@@ -143,7 +149,7 @@ def comparison_page(
         ],
         test="McNemar's exact test"
         if worlds == pairs.pairs
-        else "A test over worlds, which swaps the plans by the toss of a coin",
+        else "A test over worlds, which swaps the plans at random",
         sides=picture(
             f"Pairs in which one plan succeeds alone: A in {pairs.first_only}, B in "
             f"{pairs.second_only}",
@@ -161,24 +167,26 @@ def comparison_page(
 
 
 def _in_yaml(variation: Variation) -> str:
-    """As a file would say it, in a line; empty if nothing varies."""
-    said = variation.model_dump(mode="json", exclude_none=True, exclude_defaults=True)
-    return yaml.safe_dump(said, default_flow_style=True, width=math.inf).strip() if said else ""
+    """Return the variation as a line of YAML; empty if nothing varies."""
+    data = variation.model_dump(mode="json", exclude_none=True, exclude_defaults=True)
+    return yaml.safe_dump(data, default_flow_style=True, width=math.inf).strip() if data else ""
 
 
 def _with_faults(results: EvaluationResults) -> list[PlanName]:
-    """The plans that were run with several sets of faults."""
+    """Return the plans that were run with several sets of faults."""
     return [plan for plan in results.plan.plans if len(results.by_faults(plan)) > 1]
 
 
-def _heat(results: EvaluationResults, plan: PlanName, name: str) -> Markup:
-    alt = f"How the runs of {name} ended, by faults"
+def _heat_map(results: EvaluationResults, plan: PlanName, name: str) -> Markup:
+    alt = f"Outcomes of the runs of {name}, by faults"
     return picture(alt, lambda: outcomes_by_faults(results, plan=plan))
 
 
-def _found(delays: list[float | None]) -> tuple[int, int, float | None, float | None]:
-    """How often a kind of fault happened, how often it was found, and the median and the longest
-    time (s) until then."""
+def _delay_summary(delays: list[float | None]) -> tuple[int, int, float | None, float | None]:
+    """Return the number of faults, the number of those found, and their median and longest delay.
+
+    Delays are in s; both are None if no fault was found.
+    """
     times = [delay for delay in delays if delay is not None]
     if not times:
         return len(delays), 0, None, None

@@ -1,4 +1,4 @@
-"""A plot as an inline SVG in the colours of the page, which are others in the dark."""
+"""Plots as inline SVG elements in the colours of the page, which differ in dark mode."""
 
 import io
 import re
@@ -24,22 +24,24 @@ PALETTE = {
     "site-edge": plots.EDGE,
     **{f"series-{k}": ink for k, ink in enumerate(plots.SERIES)},
 }  # fmt: skip
-"""what the page calls the colours that plots are drawn in"""
+"""colours of the plots, by the names of the page's CSS variables"""
 
-_LARGEST = 1.5  # px of a page for 1 point of a figure
+_MAX_SCALE = 1.5  # px of a page for 1 point of a figure
 _NAMES = {ink: name for name, ink in PALETTE.items()}
 _COLOUR = re.compile("|".join(_NAMES))
-_LONG = re.compile(r"(\d+\.\d\d)\d+")
+_LONG_DECIMAL = re.compile(r"(\d+\.\d\d)\d+")
 _REFERENCE = re.compile(r"#([\w-]+)")
 
 
 def picture(alt: str, draw: Callable[[], "Axes"]) -> Markup:
-    """What `draw` draws on a figure of its own; `alt` says in words what there is to be seen. Equal
-    plots with equal words give equal text."""
+    """Return the plot that `draw` draws on a new figure, as an SVG element.
+
+    `alt` describes the plot in words. Equal plots with equal descriptions give equal text.
+    """
     with warnings.catch_warnings():
-        # The browser's font draws it, whether or not that of the machine that made it can.
+        # The browser draws the text with its own font, so that missing glyphs here don't matter.
         warnings.filterwarnings("ignore", "Glyph .* missing from")
-        # Text stays text, and names of shapes come from what they are and from the picture's.
+        # Text stays text, and ids of shapes are hashes of their content and of `alt`.
         with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": alt}):
             content = io.BytesIO()
             figure = draw().figure
@@ -49,37 +51,41 @@ def picture(alt: str, draw: Callable[[], "Axes"]) -> Markup:
 
 
 def _inline(svg: ElementTree.Element, alt: str) -> Markup:
-    """The drawing as an element of a page: without what would count for the whole of the page."""
+    """Return the SVG as an element of a page, without the parts that would affect the whole page.
+
+    These are metadata, styles, namespaces and unused ids.
+    """
     for parent in svg.iter():
         for child in list(parent):
             if child.tag.rpartition("}")[2] in ("metadata", "style"):
                 parent.remove(child)
     used = {
-        name for one in svg.iter() for value in one.attrib.values()
+        name for element in svg.iter() for value in element.attrib.values()
         for name in _REFERENCE.findall(value)
     }  # fmt: skip
-    for one in svg.iter():
-        one.tag = one.tag.rpartition("}")[2]
-        own = {name.rpartition("}")[2]: value for name, value in one.attrib.items()}
-        if own.get("id") not in used:
-            own.pop("id", None)
-        one.attrib = {name: _shorter(name, value) for name, value in own.items()}
-        one.tail = None
-        one.text = one.text if one.tag == "text" else None
+    for element in svg.iter():
+        element.tag = element.tag.rpartition("}")[2]
+        attributes = {name.rpartition("}")[2]: value for name, value in element.attrib.items()}
+        if attributes.get("id") not in used:
+            attributes.pop("id", None)
+        element.attrib = {name: _simplify(name, value) for name, value in attributes.items()}
+        element.tail = None
+        element.text = element.text if element.tag == "text" else None
     width = float(svg.attrib["viewBox"].split()[2])
     svg.attrib = {
         "viewBox": svg.attrib["viewBox"],
-        "style": f"max-width: {_LARGEST * width:.0f}px",
+        "style": f"max-width: {_MAX_SCALE * width:.0f}px",
         "role": "img",
         "aria-label": clean(alt),
     }
     return markup(svg)
 
 
-def _shorter(name: str, value: str) -> str:
+def _simplify(name: str, value: str) -> str:
+    """Return the attribute's value with the page's fonts and colours, and with two decimals."""
     if name == "style":
         value = re.sub(r"font-family: [^;]*; ?", "", value)
-        return _COLOUR.sub(lambda found: f"var(--{_NAMES[found[0]]})", value)
+        return _COLOUR.sub(lambda match: f"var(--{_NAMES[match[0]]})", value)
     if name == "d":
         value = " ".join(value.split())
-    return value if name == "id" else _LONG.sub(r"\1", value)
+    return value if name == "id" else _LONG_DECIMAL.sub(r"\1", value)

@@ -1,5 +1,7 @@
-"""Sections of a report: plans, runs that are no success, and how the evaluation was made, without
-the time of day, so that equal rows have an equal report."""
+"""Sections of a report: plans, unsuccessful runs, and how the evaluation was made.
+
+They have no time of day, so that equal rows give an equal report.
+"""
 
 import re
 import shlex
@@ -16,7 +18,7 @@ from argo_env.evaluation.folder import FAILING
 from argo_env.evaluation.plots import failure_places
 from argo_env.evaluation.rates import PlanRate, means_of, success
 from argo_env.evaluation.report.picture import picture
-from argo_env.evaluation.report.words import counted, meaning, ranges
+from argo_env.evaluation.report.texts import counted, meaning, ranges
 from argo_env.evaluation.results import (
     EvaluationResults,
     FailureCluster,
@@ -32,25 +34,26 @@ from argo_env.site import Site
 
 @dataclass(frozen=True)
 class PlanSection:
-    """A plan as a report shows it."""
+    """Section of a report on one evaluated plan."""
 
     name: str
     rate: PlanRate
     worlds: int
-    """that count"""
+    """number of worlds that count"""
     meaning: str
+    """sentences on what the rate means"""
     faults: tuple[GroupRate, ...]
     outcomes: Counter[RunOutcome]
 
 
 def plan_sections(results: EvaluationResults) -> list[PlanSection]:
-    """One of each plan, in their order."""
+    """Return the section of each plan, in the order of the plans."""
     plans = results.plan.plans
     return [
         PlanSection(
             plan.beside(plans),
             results.rate(plan),
-            _worlds(results, plan),
+            _count_worlds(results, plan),
             meaning(results, plan),
             results.by_faults(plan),
             Counter(row.outcome for row in results.of(plan)),
@@ -60,8 +63,11 @@ def plan_sections(results: EvaluationResults) -> list[PlanSection]:
 
 
 def other_rates(results: EvaluationResults) -> list[tuple[str, str, PlanRate]]:
-    """What else can be so in a run, of which plan, and how often it was. Without what can't be:
-    nothing is found where nothing is wrong, or late where there is no limit."""
+    """Return the rates of all quantities but success: description, plan and rate.
+
+    Quantities that make no sense are left out: detections without faults, and late ends without a
+    limit.
+    """
     plans = results.plan.plans
     ran = [row for row in results.rows if row.carried_out]
     left_out = {"success"}
@@ -72,7 +78,7 @@ def other_rates(results: EvaluationResults) -> list[tuple[str, str, PlanRate]]:
     if not ran:
         return []
     return [
-        (_WORDS.get(name, name), plan.beside(plans), results.rate(plan, name))
+        (_DESCRIPTIONS.get(name, name), plan.beside(plans), results.rate(plan, name))
         for name in QUANTITIES
         if name not in left_out
         for plan in plans
@@ -80,17 +86,17 @@ def other_rates(results: EvaluationResults) -> list[tuple[str, str, PlanRate]]:
     ]
 
 
-_WORDS = {
+_DESCRIPTIONS = {
     "contact": "the robot touched something",
-    "mishap": "there was trouble on the way",
-    "late": "it took longer than it may",
-    "detected": "all that was wrong was found, where anything was",
-    "false alarm": "something was found that was not so",
+    "mishap": "the robot slipped, fell or stalled",
+    "late": "the mission exceeded its limit of time",
+    "detected": "all faults were found, if there were any",
+    "false alarm": "the robot reported something that was not true",
 }
 
 
-def _worlds(results: EvaluationResults, plan: PlanName) -> int:
-    """In how many worlds the plan's runs were that count."""
+def _count_worlds(results: EvaluationResults, plan: PlanName) -> int:
+    """Return the number of worlds with runs of the plan that count."""
     ran = [row for row in results.of(plan) if row.carried_out]
     weights = {case.faults: case.weight for case in results.plan.cases if case.plan == plan}
     if results.plan.strata or len(weights) == 1:
@@ -103,25 +109,27 @@ _SECONDS = re.compile(r"\b\d+(?:\.\d+)?(?= s\b)")
 
 @dataclass(frozen=True)
 class FloorFailures:
-    """A floor of a site on which runs failed."""
+    """Floor of a site on which runs failed."""
 
     site: str
     floor: int
-    spots: tuple[FailureCluster, ...]
+    clusters: tuple[FailureCluster, ...]
     picture: Markup | None
-    """of the floor; None: the site can't be opened any more"""
+    """drawing of the floor; None if the site can't be opened any more, or has no such floor"""
     why: str = ""
-    """it can't"""
+    """reason why the site can't be opened"""
 
     @property
     def runs(self) -> int:
-        """How many failed there."""
-        return sum(spot.runs for spot in self.spots)
+        """Number of runs that failed on the floor."""
+        return sum(cluster.runs for cluster in self.clusters)
 
 
 def failing_runs(results: EvaluationResults, folder: Path) -> list[tuple[RunRow, str, str]]:
-    """Each run that is no success, of which plan it is, and the file in the folder from which it is
-    made again, quoted as shells want it."""
+    """Return each unsuccessful run with its plan and the file in the folder that repeats it.
+
+    The file's path is quoted for a shell.
+    """
     plans = results.plan.plans
     return [
         (row, row.plan.beside(plans), shlex.quote(str(folder / FAILING / f"{row.key}.json")))
@@ -130,74 +138,76 @@ def failing_runs(results: EvaluationResults, folder: Path) -> list[tuple[RunRow,
 
 
 def reasons(results: EvaluationResults) -> list[tuple[tuple[str, str], int, list[str]]]:
-    """Plan and reason of failures, how many have it, and with which faults; the most frequent ones
-    first. Reasons that differ in how long something took only are one."""
+    """Return the reasons of unsuccessful runs: plan and reason, number of runs, and their faults.
+
+    The most frequent reasons come first. Reasons that differ only in seconds are merged.
+    """
     plans = results.plan.plans
-    found: dict[tuple[str, str], list[tuple[str, str]]] = {}
+    groups: dict[tuple[str, str], list[tuple[str, str]]] = {}
     for row in results.failing:
-        said = row.reason if row.carried_out else f"{row.outcome.value}: {row.reason}"
-        key = row.plan.beside(plans), _SECONDS.sub("", said)
-        found.setdefault(key, []).append((said, results.faults_of(row)))
-    ordered = sorted(found.items(), key=lambda one: -len(one[1]))
+        reason = row.reason if row.carried_out else f"{row.outcome.value}: {row.reason}"
+        key = row.plan.beside(plans), _SECONDS.sub("", reason)
+        groups.setdefault(key, []).append((reason, results.faults_of(row)))
+    ordered = sorted(groups.items(), key=lambda group: -len(group[1]))
     return [
         (
-            (plan, _put_together([said for said, _ in own])),
-            len(own),
-            list(dict.fromkeys(faults for _, faults in own)),
+            (plan, _merge([reason for reason, _ in group])),
+            len(group),
+            list(dict.fromkeys(faults for _, faults in group)),
         )
-        for (plan, _), own in ordered
+        for (plan, _), group in ordered
     ]
 
 
-def _put_together(alike: list[str]) -> str:
-    """Sentences that differ in seconds only as one, in which these are `349 to 353 s`."""
-    times = zip(*(_SECONDS.findall(said) for said in alike), strict=True)
-    spans = iter([(min(each, key=float), max(each, key=float)) for each in times])
+def _merge(similar: list[str]) -> str:
+    """Merge sentences that differ only in seconds into one with ranges such as `349 to 353 s`."""
+    columns = zip(*(_SECONDS.findall(sentence) for sentence in similar), strict=True)
+    ends = iter([(min(times, key=float), max(times, key=float)) for times in columns])
 
-    def span(_: re.Match[str]) -> str:
-        low, high = next(spans)
+    def next_range(_: re.Match[str]) -> str:
+        low, high = next(ends)
         return low if low == high else f"{low} to {high}"
 
-    return _SECONDS.sub(span, alike[0])
+    return _SECONDS.sub(next_range, similar[0])
 
 
 def floors_with_failures(results: EvaluationResults) -> list[FloorFailures]:
-    """The floors on which runs failed, with their pictures, site by site."""
-    found = []
+    """Return the floors on which runs failed, with their pictures, site by site."""
+    floors = []
     failing = [row for row in results.failing if row.place and row.floor is not None]
     for reference, robot in dict.fromkeys((row.site, row.robot) for row in failing):
-        own = replace(
+        site_results = replace(
             results,
             rows=tuple(row for row in failing if (row.site, row.robot) == (reference, robot)),
         )
-        site, why = _site(reference, robot)
+        site, why = _open(reference, robot)
         name = reference if site is None else site.spec.title
-        spots = cluster_failures(own.rows)
-        for floor in sorted({spot.floor for spot in spots}):
-            here = tuple(spot for spot in spots if spot.floor == floor)
-            drawn = None if site is None else _drawn(own, site, floor)
-            found.append(FloorFailures(name, floor, here, drawn, why))
-    return found
+        clusters = cluster_failures(site_results.rows)
+        for floor in sorted({cluster.floor for cluster in clusters}):
+            on_floor = tuple(cluster for cluster in clusters if cluster.floor == floor)
+            drawing = None if site is None else _draw_floor(site_results, site, floor)
+            floors.append(FloorFailures(name, floor, on_floor, drawing, why))
+    return floors
 
 
-def _site(reference: str, robot: str) -> tuple[Site | None, str]:
-    """The site, or why it can't be opened: its file may have gone since."""
+def _open(reference: str, robot: str) -> tuple[Site | None, str]:
+    """Open the site, or return why it can't be opened; its file may have been removed since."""
     try:
         return open_site(reference, load_robot(robot)).site, ""
     except ArgoError as error:
         return None, str(error)
 
 
-def _drawn(own: EvaluationResults, site: Site, floor: int) -> Markup | None:
-    if floor not in {one.number for one in site.spec.floors}:
+def _draw_floor(results: EvaluationResults, site: Site, floor: int) -> Markup | None:
+    if floor not in {level.number for level in site.spec.floors}:
         return None
-    failed = sum(row.floor == floor for row in own.rows)
-    alt = f"Plan of floor {floor} of {site.name}: {counted(failed, 'run')} failed there"
-    return picture(alt, lambda: failure_places(own, site, floor))
+    failed = sum(row.floor == floor for row in results.rows)
+    alt = f"Drawing of floor {floor} of {site.name}: {counted(failed, 'run')} failed there"
+    return picture(alt, lambda: failure_places(results, site, floor))
 
 
 def how_it_was_made(results: EvaluationResults) -> list[tuple[str, list[str]]]:
-    """What was run, by name."""
+    """Return what was run, as names with values: missions, sites, faults, seeds and so on."""
     plan = results.plan
     cases = plan.cases
     names = {
@@ -209,22 +219,22 @@ def how_it_was_made(results: EvaluationResults) -> list[tuple[str, list[str]]]:
         "Sensors": [case.spec.sensor for case in cases],
         "Faults": [_weighted(case.faults, case.weight) for case in cases],
     }
-    made = [(what, list(dict.fromkeys(said))) for what, said in names.items()]
+    made = [(name, list(dict.fromkeys(values))) for name, values in names.items()]
     if plan.added:
         made.append(("On the site", [plan.added]))
-    asked = len(cases) * len(plan.seeds)
+    most_runs = len(cases) * len(plan.seeds)
     made.append(("Seeds", [ranges(plan.seeds)]))
-    made.append(("Runs", [f"{len(results.rows)} of {asked} that there may be"]))
+    made.append(("Runs", [f"{len(results.rows)} of at most {most_runs}"]))
     if results.cut_short:
-        made.append(("Ended", ["before its time; told are the worlds of which no run is missing"]))
+        made.append(("Ended", ["early; only worlds with all of their runs are reported"]))
     stopping = []
     if plan.stopping.require:
-        stopping.append("when all that was required is decided")
+        stopping.append("when all requirements are decided")
     if plan.stopping.width is not None:
         stopping.append(f"when all intervals are no wider than {100 * plan.stopping.width:g} %")
     if stopping:
-        looked = f"one looks after {counted(plan.stopping.every, 'seed')}"
-        made.append(("Stops", [*stopping, looked]))
+        interval = f"checked after every {counted(plan.stopping.every, 'seed')}"
+        made.append(("Stops", [*stopping, interval]))
     made.append(("Argo", [__version__]))
     return made
 

@@ -58,6 +58,6 @@ def test_where_outcomes_ended_an_evaluation_the_interval_decides(mission, failin
     assert (found.conclusion == fixed.conclusion) is shown
     assert "the interval of the difference allows for that" in comparison_page(found)
     assert "nan" not in comparison_page(found).lower()
-    power = "What so many pairs can show"  # by a test that does not decide here
+    power = "What this number of pairs can show"  # by a test that does not decide here
     assert power in comparison_page(fixed)
     assert power not in comparison_page(found)

@@ -130,7 +130,7 @@ def test_what_was_ended_by_hand_is_told_so_that_it_holds_and_has_a_report(
     assert standing["rate"]["runs"] % 2 == 0, "of whole worlds"
     report = service.client.get(f"/api/jobs/{job}/report")
     assert report.status_code == 200
-    assert "It was ended before its time" in report.text
+    assert "The evaluation was ended early" in report.text
     assert service.client.delete(f"/api/evaluations/{job}").status_code == 204
     problem(service.client.get(f"/api/jobs/{job}"), 404, "not-found")
     assert job not in {one["id"] for one in service.client.get("/api/jobs").json()["jobs"]}

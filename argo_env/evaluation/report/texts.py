@@ -1,4 +1,4 @@
-"""What the numbers of an evaluation mean, in sentences."""
+"""Texts of reports: numbers as text, and sentences that explain the numbers of an evaluation."""
 
 import math
 from collections.abc import Sequence
@@ -10,53 +10,56 @@ from argo_env.formatting import clock
 
 
 def in_percent(share: float) -> str:
-    """A share (0 to 1) in percent, with one decimal; nothing of NaN."""
+    """Return a share (0 to 1) in percent, with one decimal; empty for NaN."""
     return "" if math.isnan(share) else f"{100 * share:.1f} %"
 
 
 def between(low: float, high: float) -> str:
-    """Two shares (0 to 1) as an interval in percent."""
+    """Return two shares (0 to 1) as an interval in percent."""
     return f"{100 * low:.1f} to {100 * high:.1f} %"
 
 
 def chance(p_value: float) -> str:
-    """A probability that may be very small, or unknown."""
+    """Return a p-value as text; empty for NaN, which stands for an unknown one."""
     if math.isnan(p_value):
         return ""
     return f"{p_value:.3f}" if p_value >= 0.001 else "below 0.001"
 
 
 def ranges(numbers: Sequence[int]) -> str:
-    """Whole numbers in words, such as `0 to 9, 12`."""
+    """Return whole numbers as ranges, such as `0 to 9, 12`; at most 20 ranges are listed."""
     parts: list[list[int]] = []
     for number in sorted(numbers):
         if parts and number == parts[-1][-1] + 1:
             parts[-1][1:] = [number]
         else:
             parts.append([number])
-    said = [" to ".join(map(str, part)) for part in parts[:20]]
-    return ", ".join(said) + (f" and {len(parts) - 20} more ranges" if len(parts) > 20 else "")
+    texts = [" to ".join(map(str, part)) for part in parts[:20]]
+    return ", ".join(texts) + (f" and {len(parts) - 20} more ranges" if len(parts) > 20 else "")
 
 
 def time_or(seconds: float | None, otherwise: str) -> str:
-    """A time (s) as minutes and seconds, or what is said where there is none."""
+    """Return a time (s) as minutes and seconds, or the text `otherwise` for None."""
     return otherwise if seconds is None else clock(seconds)
 
 
 def counted(number: int, what: str) -> str:
-    """So many of something, such as `1 run` or `2 runs`."""
+    """Return a number with its noun, such as `1 run` or `2 runs`."""
     return f"{number} {what}{'' if number == 1 else 's'}"
 
 
 def headline(results: EvaluationResults) -> tuple[str, str]:
-    """Whether what was required holds, or else the rate, and `good`, `bad` or `notice`."""
+    """Return the headline of a report and its rating: `good`, `bad` or `notice`.
+
+    The headline states whether the requirements are met or, without any, how many runs succeeded.
+    """
     decisions = {verdict.verdict for verdict in results.verdicts}
     if Decision.MISSED in decisions:
         return "a requirement is missed", "bad"
     if Decision.OPEN in decisions:
         return "a requirement is not decided", "notice"
     if decisions:
-        return "all that was required is met", "good"
+        return "all requirements are met", "good"
     rates = [results.rate(plan) for plan in results.plan.plans]
     if all(not rate.runs for rate in rates):
         return "no run could be carried out", "bad"
@@ -66,22 +69,28 @@ def headline(results: EvaluationResults) -> tuple[str, str]:
 
 
 def why_sequence(results: EvaluationResults, several: bool) -> list[str]:
-    """Why the interval of a rate is a confidence sequence, in sentences; `several`: there are
-    several runs in each world."""
-    said = []
+    """Return sentences on why the interval of a rate is a confidence sequence.
+
+    `several` is True if each world has several runs of the plan.
+    """
+    sentences = []
     if several:
-        said.append("The runs of one world depend on each other, so that a world counts as one.")
+        sentences.append(
+            "The runs of one world depend on each other, so that a world counts as one."
+        )
     if results.cut_short:
-        said.append(
-            "It was ended before its time, maybe by somebody who saw what came of the runs."
+        sentences.append(
+            "The evaluation was ended early, maybe by a person who saw the outcomes of the runs."
         )
     elif results.plan.stopping.require:
-        said.append("Its end may depend on what came of the runs, as there is a requirement.")
-    return [*said, "The interval is a confidence sequence, which allows for that."]
+        sentences.append(
+            "The end of the evaluation may depend on the outcomes, as there is a requirement."
+        )
+    return [*sentences, "The interval is a confidence sequence, which allows for that."]
 
 
 def meaning(results: EvaluationResults, plan: PlanName) -> str:
-    """What the rate of a plan says, and what not."""
+    """Return sentences that explain what the rate of a plan means."""
     rate = results.rate(plan)
     if not rate.runs:
         return "Nothing is known: no run was carried out."
@@ -94,7 +103,7 @@ def meaning(results: EvaluationResults, plan: PlanName) -> str:
             if rate.lost and several:
                 how += " Worlds in which a run could not be carried out are left out."
         case _:
-            how = "The rates with each set of faults are put together by their probabilities."
+            how = "The rates with each set of faults are weighted by their probabilities."
     within = f"between {in_percent(rate.low)} and {in_percent(rate.high)}"
     return (
         f"In worlds that are drawn like these, the true share of successes lies {within}: of 100 "

@@ -1,7 +1,7 @@
-"""Missions for isar, Equinor's supervisor of inspection robots (https://github.com/equinor/isar).
+"""Import and export of missions for isar, Equinor's software for inspection robots.
 
-What it reads is the `StartMissionDefinition` of its API, version 1.34: inspections in a fixed
-order. `docs/exchange.md` says what that can hold.
+isar (https://github.com/equinor/isar) reads the `StartMissionDefinition` of its API, version 1.34:
+inspections in a fixed order. `docs/exchange.md` describes which missions that can express.
 """
 
 from typing import TYPE_CHECKING
@@ -11,15 +11,15 @@ from argo_compiler.base.lazy_names import lazy_names
 __all__ = ["Imported", "InspectionView", "find_definition", "from_isar", "read_isar", "to_isar"]
 
 if TYPE_CHECKING:
-    from argo_compiler.isar.reading import Imported, from_isar, read_isar
+    from argo_compiler.isar.exporter import InspectionView, to_isar
+    from argo_compiler.isar.importer import Imported, from_isar, read_isar
     from argo_compiler.isar.recognition import find_definition
-    from argo_compiler.isar.writing import InspectionView, to_isar
 else:
     __getattr__, __dir__ = lazy_names(
         __name__,
         {
-            "reading": ["Imported", "from_isar", "read_isar"],
+            "importer": ["Imported", "from_isar", "read_isar"],
             "recognition": ["find_definition"],
-            "writing": ["InspectionView", "to_isar"],
+            "exporter": ["InspectionView", "to_isar"],
         },
     )

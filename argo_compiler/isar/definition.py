@@ -1,23 +1,26 @@
-"""The form of isar's mission definition, as version 1.34 of its API reads it."""
+"""Models of isar's mission definition, as version 1.34 of its API reads it."""
 
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict
 
 FRAME = "asset"
-"""isar's name for the frame of the plant, which is the site's; `robot` is isar's default"""
+"""isar's name for the frame of the plant, which is the site's frame; isar's default is `robot`."""
 IMAGE = "Image"
 
 
 class Part(BaseModel):
-    """isar takes no notice of fields that it does not know; here they are kept, to warn of them."""
+    """Base of the models; keeps fields that isar does not know, so that Argo can report them.
 
-    # Looked for in each mission that is read, and mostly not there.
+    isar itself ignores such fields.
+    """
+
+    # Building is deferred, as most missions are not isar's and do not need the models.
     model_config = ConfigDict(frozen=True, extra="allow", allow_inf_nan=False, defer_build=True)
 
 
 class Position(Part):
-    """A point, m."""
+    """Point in m."""
 
     x: float
     y: float
@@ -26,7 +29,7 @@ class Position(Part):
 
 
 class Orientation(Part):
-    """A unit quaternion."""
+    """Orientation as a unit quaternion."""
 
     x: float
     y: float
@@ -36,7 +39,7 @@ class Orientation(Part):
 
 
 class RobotPose(Part):
-    """Where the robot stands."""
+    """Pose of the robot."""
 
     position: Position
     orientation: Orientation
@@ -44,29 +47,29 @@ class RobotPose(Part):
 
 
 class IsarInspection(Part):
-    """What is recorded, and of which point."""
+    """Kind and target point of an inspection."""
 
     type: str = IMAGE
     inspection_target: Position
     inspection_description: str | None = None
     duration: float | None = None
-    """s, of videos and sounds"""
+    """duration in s of a video or a sound recording"""
 
 
 class TaskDefinition(Part):
-    """One inspection, or the way home."""
+    """Task of a mission: one inspection, or the return to the home pose."""
 
     id: str | None = None
     type: Literal["inspection", "return_to_home"] = "inspection"
     pose: RobotPose
     inspection: IsarInspection | None = None
     tag: str | None = None
-    """of the equipment that is inspected"""
+    """tag of the equipment that is inspected"""
     zoom: dict[str, Any] | None = None
 
 
 class MissionDefinition(Part):
-    """The body of a request to isar's `/schedule/start-mission`."""
+    """Body of a request to isar's `/schedule/start-mission`."""
 
     id: str | None = None
     name: str | None = None

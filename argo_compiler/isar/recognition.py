@@ -1,4 +1,4 @@
-"""Recognition of isar's definitions, without what reads them."""
+"""Recognition of isar's definitions, without importing their models."""
 
 import json
 from typing import Any
@@ -8,26 +8,29 @@ from argo_compiler.files.mission_file import MAX_BYTES
 
 INSPECTION = "inspection"
 RETURN_TO_HOME = "return_to_home"
-"""kinds of its tasks"""
+"""Types of isar's tasks, with `INSPECTION`."""
 WRAPPED = "mission_definition"
-"""what isar's API calls the definition in the body of a request"""
+"""Field of a request to isar's API that contains the definition."""
 
 
 def find_definition(content: bytes) -> dict[str, Any] | None:
-    """Return the data of a file with an isar definition; None if it is no such file."""
-    # Argo's own missions can be large: they are not read twice for having these words in them.
+    """Return the data of a file with an isar definition, or None if the file has none."""
+    # Argo's own missions can be large, so they are parsed here only if they contain these words.
     try:
         text = "" if len(content) > MAX_BYTES else decode_text(content, "", "mission")
         if not any(f'"{word}"' in text for word in (INSPECTION, RETURN_TO_HOME, WRAPPED)):
             return None
         data = json.loads(text)
     except (FileError, ValueError, RecursionError):
-        return None  # the reader of missions says what is wrong with the file
+        return None  # the reader of missions reports what is wrong with the file
     return data if _is_definition(data) else None
 
 
 def _is_definition(data: Any) -> bool:
-    """Return True if this is meant as isar's and not as Argo's, whose tasks have actions."""
+    """Return True if the data look like isar's definition and not like a mission of Argo.
+
+    Only tasks of Argo have actions.
+    """
     if not isinstance(data, dict) or "version" in data:
         return False
     definition = data.get(WRAPPED, data)

@@ -1,4 +1,4 @@
-"""What isar accepts, as a table, apart from Argo's own idea of it."""
+"""Table of the data that isar accepts, independent of Argo's models."""
 
 NUMBER, TEXT = (int, float), str
 
@@ -36,16 +36,19 @@ MODELS = {
     ),
     "ZoomDescription": ({"objectWidth": NUMBER, "objectHeight": NUMBER}, {}),
 }
-"""The models of isar 1.34.28 (src/isar/apis/models/start_mission_definition.py and models.py of
-github.com/equinor/isar): fields that are required, and fields that may be left out."""
+"""Models of isar 1.34.28: required fields and optional fields.
+
+They are copied from src/isar/apis/models/start_mission_definition.py and models.py of
+github.com/equinor/isar.
+"""
 
 
-def assert_isar_takes(value, model="StartMissionDefinition"):
-    """Fails where the value is not of that model, or has more, which isar would ignore."""
+def assert_isar_accepts(value, model="StartMissionDefinition"):
+    """Assert that a value matches isar's model, without further fields, which isar would ignore."""
     if isinstance(model, list):
         assert isinstance(value, list)
         for element in value:
-            assert_isar_takes(element, model[0])
+            assert_isar_accepts(element, model[0])
     elif isinstance(model, set):
         assert value in model
     elif isinstance(model, str):
@@ -53,7 +56,7 @@ def assert_isar_takes(value, model="StartMissionDefinition"):
         assert isinstance(value, dict), model
         assert set(required) <= set(value) <= {*required, *optional}, model
         for name, part in value.items():
-            assert_isar_takes(part, (required | optional)[name])
+            assert_isar_accepts(part, (required | optional)[name])
     else:
         assert isinstance(value, model), model
         assert not isinstance(value, bool)

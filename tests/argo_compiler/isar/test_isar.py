@@ -1,4 +1,4 @@
-"""Missions for isar and from it."""
+"""Tests of exporting missions to isar and importing them from isar."""
 
 import json
 import math
@@ -29,7 +29,7 @@ from argo_compiler.il import (
     Transition,
 )
 from argo_compiler.isar import InspectionView, from_isar, read_isar, to_isar
-from tests.argo_compiler.isar.conftest import assert_isar_takes
+from tests.argo_compiler.isar.conftest import assert_isar_accepts
 from tests.mission_writing import checkpoint, drive, measure, start, wait, way
 
 VIEWS = {
@@ -65,11 +65,11 @@ def repeated(**limits):
 
 def export(mission, views=VIEWS):
     data = json.loads(to_isar(mission, lower(mission), views))
-    assert_isar_takes(data)
+    assert_isar_accepts(data)
     return data
 
 
-def test_what_is_written():
+def test_a_mission_is_exported_as_a_definition():
     mission = Mission(
         designation="Round",
         tasks=(
@@ -85,7 +85,7 @@ def test_what_is_written():
     def at(x, y, z, **more):
         return {"x": x, "y": y, "z": z, **more, "frame_name": "asset"}
 
-    def standing(x, y, z, qz, qw):
+    def robot_pose(x, y, z, qz, qw):
         return {
             "position": at(x, y, z),
             "orientation": at(0, 0, qz, w=qw),
@@ -94,13 +94,13 @@ def test_what_is_written():
 
     assert data == {
         "name": "Round",
-        "start_pose": standing(0, 0, 0, 0, 1),
+        "start_pose": robot_pose(0, 0, 0, 0, 1),
         "tasks": [
             {
                 "id": "A",
                 "type": "inspection",
                 "tag": "1",
-                "pose": standing(1, 2, 0, 1, pytest.approx(0)),
+                "pose": robot_pose(1, 2, 0, 1, pytest.approx(0)),
                 "inspection": {
                     "type": "Image",
                     "inspection_target": at(0.5, 2, 1.2),
@@ -111,14 +111,14 @@ def test_what_is_written():
                 "id": "B",
                 "type": "inspection",
                 "tag": "2",
-                "pose": standing(9, 0, 0, 0, 1),
+                "pose": robot_pose(9, 0, 0, 0, 1),
                 "inspection": {"type": "Image", "inspection_target": at(4, 2, 3.5)},
             },
         ],
     }
 
 
-def test_counted_groups_are_written_out():
+def test_groups_with_a_count_are_unrolled():
     mission = Mission(
         tasks=(
             measure("A", "B", object_id="1"),
@@ -136,7 +136,7 @@ def test_counted_groups_are_written_out():
     assert "".join(task["tag"] for task in data["tasks"]) == "12211221"
 
 
-def test_where_ways_only_meet_nothing_is_written():
+def test_a_wait_of_no_duration_is_not_exported():
     join = wait("J", duration=0)
     mission = Mission(
         tasks=(measure("A", "J", object_id="1"), join),
@@ -145,11 +145,11 @@ def test_where_ways_only_meet_nothing_is_written():
     assert [task["id"] for task in export(mission)["tasks"]] == ["A", "A (2)"]
 
 
-def test_the_last_way_to_the_dock_is_the_way_home():
+def test_a_last_drive_to_the_dock_is_the_return_to_home():
     dock = Pose(x=0, y=0, z=0, yaw=1)
     home = Task(name="home", action=Action.WAYPOINT, pose=dock)
-    for said in ({"dock": dock}, {"end_area": 1}):
-        data = export(Mission(**said, tasks=(measure("A", "home", object_id="1"), home)))
+    for fields in ({"dock": dock}, {"end_area": 1}):
+        data = export(Mission(**fields, tasks=(measure("A", "home", object_id="1"), home)))
         assert data["tasks"][1]["type"] == "return_to_home"
         imported = from_isar(data, "isar").mission
         assert imported.dock == imported.tasks[1].pose
@@ -158,22 +158,22 @@ def test_the_last_way_to_the_dock_is_the_way_home():
 
 
 @pytest.mark.parametrize(
-    ("code", "mission", "said"),
+    ("code", "mission", "message"),
     [
         ("task", alone(at_1(retries=1)), "'A' has retries"),
         ("task", alone(at_1(velocity=1)), "'A' has a velocity"),
         ("task", alone(at_1(on_failure=OnFailure.ABORT)), "'A' has a failure policy"),
         ("task", alone(at_1(joint_states=JOINTS)), "'A' has joint states"),
-        ("task", alone(at_1(time_limit=9)), "'A' has a limit of time"),
-        ("task", alone(at_1(reading_limit=9)), "'A' has a limit for its reading"),
-        ("task", alone(at_1(window=TimeWindow(latest=9))), "'A' has a window"),
+        ("task", alone(at_1(time_limit=9)), "'A' has a time limit"),
+        ("task", alone(at_1(reading_limit=9)), "'A' has a reading limit"),
+        ("task", alone(at_1(window=TimeWindow(latest=9))), "'A' has a time window"),
         ("task", alone(wait("W", duration=9)), "'W' has a wait"),
-        ("group", repeated(max_repeat_count=2, every=9), "'G' is repeated at set times"),
+        ("group", repeated(max_repeat_count=2, every=9), "'G' is repeated at fixed times"),
         ("group", repeated(until=(LOW,)), "'G' is repeated until"),
         ("task", alone(at_1(way("A", LOW))), "'A' has conditions"),
         ("reaction", alone(at_1(), reactions=(GAS,)), "gas_leak"),
         ("mode", alone(at_1(), mode=Mode.SUPERVISORY), "supervisory"),
-        ("group", repeated(max_repeat_duration=9), "'G' is repeated for a time"),
+        ("group", repeated(max_repeat_duration=9), "'G' is repeated for a duration"),
         ("waypoint", alone(drive("W")), "'W' only drives"),
         ("no-target", alone(measure("A", object_id="3")), "checkpoint '3' of task 'A'"),
         ("endless", alone(at_1("A")), "more than 10000 tasks"),
@@ -181,13 +181,13 @@ def test_the_last_way_to_the_dock_is_the_way_home():
         ("empty", alone(Task(name="S", action=Action.START)), "without tasks"),
     ],
 )
-def test_what_isar_can_not_say_is_refused(code, mission, said):
+def test_features_that_isar_lacks_are_refused(code, mission, message):
     with pytest.raises(DiagnosticError) as caught:
         to_isar(mission, lower(mission), VIEWS)
-    (finding,) = caught.value.diagnostics
-    assert finding.code == f"export.isar-{code}"
-    assert said in finding.message
-    assert finding.hint
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == f"export.isar-{code}"
+    assert message in diagnostic.message
+    assert diagnostic.hint
 
 
 COORDINATES = st.floats(-1e6, 1e6)
@@ -201,7 +201,7 @@ POSES = st.builds(
     start=st.none() | POSES,
     designation=st.text(st.characters(exclude_categories=["Cs"]), min_size=1),
 )
-def test_inspections_in_order_come_back(stops, start, designation):
+def test_importing_an_export_gives_the_same_inspections(stops, start, designation):
     names = [f"T{i}" for i in range(len(stops))]
     tasks = [
         measure(name, *names[i + 1 : i + 2], object_id=object_id, pose=pose)
@@ -214,17 +214,17 @@ def test_inspections_in_order_come_back(stops, start, designation):
     imported = from_isar(export(mission), "isar")
     assert not imported.diagnostics
     turned = [task.pose.yaw - back.pose.yaw for task, back in zip_tasks(mission, imported.mission)]
-    # A quaternion keeps the heading but for the last digits; -pi comes back as pi.
+    # A quaternion changes the last digits of a heading, and -pi comes back as pi.
     assert [math.cos(turn) for turn in turned] == pytest.approx([1.0] * len(turned))
-    assert level(imported.mission) == level(mission)
+    assert with_zero_headings(imported.mission) == with_zero_headings(mission)
 
 
 def zip_tasks(left, right):
     return zip(left.tasks, right.tasks, strict=True)
 
 
-def level(mission):
-    """The mission with all headings 0."""
+def with_zero_headings(mission):
+    """Return the mission with all headings set to 0."""
     tasks = tuple(
         task.model_copy(update={"pose": task.pose.model_copy(update={"yaw": 0.0})})
         for task in mission.tasks
@@ -233,7 +233,7 @@ def level(mission):
 
 
 def definition(**task):
-    """The example of isar's README (section "Running a robot mission"), in the frame asset."""
+    """Return the example in isar's README ("Running a robot mission"), in the frame `asset`."""
     point = {"x": 1.0, "y": 1.0, "z": 1.0, "frame_name": "asset"}
     data = {
         "id": "example ID",
@@ -255,7 +255,7 @@ def definition(**task):
     return {"id": "example ID", "tasks": [data | task], "name": "Example name"}
 
 
-def test_a_definition_is_read():
+def test_a_definition_is_imported():
     imported = from_isar(definition(), "isar", CATALOG)
     assert not imported.diagnostics
     (task,) = imported.mission.tasks
@@ -264,7 +264,7 @@ def test_a_definition_is_read():
     assert not check(imported.mission, CATALOG)
 
 
-def test_the_body_of_a_request_is_read_too(tmp_path):
+def test_the_body_of_a_request_is_imported_too(tmp_path):
     path = tmp_path / "isar.json"
     path.write_text(json.dumps({"mission_definition": definition()}))
     assert read_isar(path.read_bytes(), str(path), CATALOG) == from_isar(
@@ -272,7 +272,7 @@ def test_the_body_of_a_request_is_read_too(tmp_path):
     )
 
 
-def test_what_is_not_taken_over_is_a_warning():
+def test_a_warning_reports_each_ignored_field():
     robot = definition()["tasks"][0]["pose"] | {"frame_name": "robot"}
     data = definition(pose=robot, zoom={"objectWidth": 1, "objectHeight": 1}, analysis=["x"])
     imported = from_isar(data | {"start_pose": robot}, "isar", CATALOG)
@@ -287,7 +287,7 @@ def test_what_is_not_taken_over_is_a_warning():
     assert not check(imported.mission, CATALOG)
 
 
-def test_an_orientation_of_zeros_is_dropped():
+def test_a_pose_with_an_orientation_of_zeros_is_ignored():
     data = definition()
     data["tasks"][0]["pose"]["orientation"]["w"] = 0
     imported = from_isar(data, "isar")
@@ -296,7 +296,7 @@ def test_an_orientation_of_zeros_is_dropped():
 
 
 @pytest.mark.parametrize(
-    ("data", "code", "said"),
+    ("data", "code", "message"),
     [
         (definition(tag=None), "tag", "tasks[0]: has no tag"),
         (definition(inspection=None), "inspection", "tasks[0]: has no inspection"),
@@ -317,12 +317,12 @@ def test_an_orientation_of_zeros_is_dropped():
         ([], "wrong-field", "the mission: "),
     ],
 )
-def test_what_argo_can_not_do_is_refused(data, code, said):
+def test_inspections_that_argo_cannot_do_are_refused(data, code, message):
     with pytest.raises(DiagnosticError) as caught:
         from_isar(data, "isar")
-    found = [f for f in caught.value.diagnostics if f.severity is Severity.ERROR]
-    assert found[0].code == f"isar.{code}"
-    assert found[0].message.startswith(said)
+    errors = [f for f in caught.value.diagnostics if f.severity is Severity.ERROR]
+    assert errors[0].code == f"isar.{code}"
+    assert errors[0].message.startswith(message)
 
 
 @pytest.mark.parametrize(
@@ -336,7 +336,7 @@ def test_what_argo_can_not_do_is_refused(data, code, said):
         b"\xff",
     ],
 )
-def test_other_files_are_left_to_the_reader_of_missions(tmp_path, content):
+def test_a_file_without_a_definition_is_not_imported(tmp_path, content):
     path = tmp_path / "plan.json"
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
     assert read_isar(path.read_bytes(), str(path)) is None

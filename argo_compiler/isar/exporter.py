@@ -1,4 +1,4 @@
-"""Missions become isar's definitions, where what the robot does can be said as a fixed order."""
+"""Export of missions as isar's definitions, if the robot's tasks have a fixed order."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -15,32 +15,32 @@ from argo_compiler.isar.definition import FRAME, IMAGE
 from argo_compiler.isar.recognition import INSPECTION, RETURN_TO_HOME
 
 MAX_TASKS = 10_000
-"""of the definition, rounds unrolled"""
+"""Largest number of tasks in a definition, after the rounds of groups are unrolled."""
 
 
 class InspectionView(Model):
-    """How a checkpoint is inspected: from where, which point, and its name for people."""
+    """View of a checkpoint: the robot's pose, the target point, and the checkpoint's name."""
 
     pose: Pose
     target: tuple[float, float, float]
-    """m, in the site's frame"""
+    """point in m, in the site's frame"""
     name: str = ""
 
 
 def to_isar(mission: Mission, hfsm: Hfsm, views: Mapping[str, InspectionView]) -> str:
-    """The definition as JSON: the inspections in the order in which the machine does them.
+    """Return the definition as JSON: the inspections in the order in which the machine does them.
 
-    `views` holds the site's checkpoints by their `object_id`; a MEASURE with a pose is inspected
-    from there. Groups with a count are unrolled.
+    `views` contains the site's checkpoints by their `object_id`. If a MEASURE has a pose, that pose
+    replaces the pose of the view. Groups with a count are unrolled.
 
-    Raises DiagnosticError with a diagnostic for all that isar can't say.
+    Raises DiagnosticError with a diagnostic for each part that isar can't express.
     """
-    raise_refusals(_unsaid(mission))
-    tasks = _in_order(hfsm)
-    raise_refusals(_unplaced(mission, tasks, views))
+    raise_refusals(_feature_refusals(mission))
+    tasks = _task_order(hfsm)
+    raise_refusals(_task_refusals(mission, tasks, views))
     names: set[str] = set()
     definition: dict[str, Any] = {
-        # Made from the mission, so that equal missions are equal files.
+        # Computed from the mission, so that equal missions give equal files.
         "id": str(uuid5(NAMESPACE_URL, f"argo:{mission.model_dump_json()}")),
         "name": mission.designation or "Argo",
         "tasks": [_task(task, _unique(task.name, names), views) for task in tasks],
@@ -51,100 +51,111 @@ def to_isar(mission: Mission, hfsm: Hfsm, views: Mapping[str, InspectionView]) -
     return json.dumps(definition, indent=2, ensure_ascii=False) + "\n"
 
 
-def _unsaid(mission: Mission) -> Iterator[Diagnostic]:
-    """All that changes what the robot does and has no place in a definition."""
+def _feature_refusals(mission: Mission) -> Iterator[Diagnostic]:
+    """Yield a refusal for each feature that changes the robot's behaviour and that isar lacks."""
     if mission.mode is Mode.SUPERVISORY:
-        yield refusal("isar-mode", "isar has no supervisory missions", "plan it as autonomous")
+        yield refusal("isar-mode", "isar has no supervisory missions", "set its mode to autonomous")
     for task in mission.tasks:
-        for field, given in (
+        for feature, is_used in (
             ("conditions", any(transition.conditions for transition in task.transitions)),
             ("retries", task.retries > 0),
             ("a failure policy", task.on_failure is not OnFailure.CONTINUE),
             ("a velocity", task.velocity is not None),
             ("joint states", task.joint_states is not None),
-            ("a limit of time", task.time_limit is not None),
-            ("a limit for its reading", task.reading_limit is not None),
-            ("a window", task.window is not None),
+            ("a time limit", task.time_limit is not None),
+            ("a reading limit", task.reading_limit is not None),
+            ("a time window", task.window is not None),
             ("a wait", task.wait is not None and task.wait.duration != 0),
         ):
-            if given:
+            if is_used:
                 yield refusal(
                     "isar-task",
-                    f"task '{task.name}' has {field}, which isar's tasks have not",
-                    "remove it, or export to a format that has it",
+                    f"task '{task.name}' has {feature}, which isar's tasks do not support",
+                    "remove this, or export to a format that supports it",
                     task.source,
                 )
     for group in mission.groups:
-        how = (
-            ("for a time", group.max_repeat_duration > 0),
-            ("at set times", group.every > 0),
-            ("until its conditions hold", bool(group.until)),
+        limits = (
+            ("for a duration", group.max_repeat_duration > 0),
+            ("at fixed times", group.every > 0),
+            ("until its conditions are satisfied", bool(group.until)),
         )
-        for words in (words for words, given in how if given):
+        for words in (words for words, is_used in limits if is_used):
             yield refusal(
                 "isar-group",
-                f"group '{group.name}' is repeated {words}; isar repeats nothing, and only a "
-                "number of rounds can be written out",
-                "leave that out, and limit it by max_repeat_count",
+                f"group '{group.name}' is repeated {words}; isar repeats nothing, and only a fixed "
+                "number of rounds can be exported as separate tasks",
+                "remove this, and limit the rounds by max_repeat_count",
                 group.source,
             )
     for reaction in mission.reactions:
         yield refusal(
             "isar-reaction",
-            f"the reaction to {reaction.event} has no place in isar's missions",
+            f"the reaction to {reaction.event} can't be exported: isar has no reactions",
             "remove it; isar's own state machine reacts",
             reaction.source,
         )
 
 
-def _in_order(hfsm: Hfsm) -> tuple[Task, ...]:
-    """What the machine does if every action succeeds, as it does without conditions and times."""
+def _task_order(hfsm: Hfsm) -> tuple[Task, ...]:
+    """Return the tasks in the order in which the machine executes them if all actions succeed.
+
+    Without conditions and times, the machine has no other order.
+    """
     executor = Executor(hfsm)
     commands = executor.start(0.0)
-    done: list[Task] = []
+    executed: list[Task] = []
     while commands:
         (command,) = commands
         assert isinstance(command, StartAction)
-        done.append(command.task)
-        if len(done) > MAX_TASKS:
+        executed.append(command.task)
+        if len(executed) > MAX_TASKS:
             raise_refusals(
                 [
                     refusal(
                         "isar-endless",
-                        f"the mission has more than {MAX_TASKS} tasks, rounds written out",
-                        "limit its groups, or lead no transition back",
+                        f"the mission has more than {MAX_TASKS} tasks when its rounds are unrolled",
+                        "limit the rounds of its groups, and remove transitions that lead back",
                     )
                 ]
             )
         commands = executor.handle(ActionSucceeded(command.task.name), 0.0)
-    return tuple(done)
+    return tuple(executed)
 
 
-def _unplaced(
+def _task_refusals(
     mission: Mission, tasks: tuple[Task, ...], views: Mapping[str, InspectionView]
 ) -> Iterator[Diagnostic]:
+    """Yield refusals for drives to other poses than the dock, and for unknown checkpoints.
+
+    A mission without tasks is refused, too.
+    """
     if not tasks:
-        yield refusal("isar-empty", "isar has no missions without tasks", "measure something")
+        yield refusal(
+            "isar-empty",
+            "isar has no missions without tasks",
+            "add a task that measures a checkpoint",
+        )
     seen: set[str] = set()
     for index, task in enumerate(tasks):
         if task.name in seen:
             continue
         seen.add(task.name)
-        docks = mission.end_area is not None or task.pose == mission.dock
-        home = index == len(tasks) - 1 and docks
-        if task.action is Action.WAYPOINT and not home:
+        leads_to_dock = mission.end_area is not None or task.pose == mission.dock
+        is_return = index == len(tasks) - 1 and leads_to_dock
+        if task.action is Action.WAYPOINT and not is_return:
             yield refusal(
                 "isar-waypoint",
-                f"task '{task.name}' only drives; isar's tasks are inspections, and as the last "
-                "one the way to the dock",
-                "remove it, or measure a checkpoint there",
+                f"task '{task.name}' only drives to a pose; isar's tasks are inspections, and only "
+                "the last task may be a drive to the dock",
+                "remove the task, or measure a checkpoint there",
                 task.source,
             )
         elif task.action is Action.MEASURE and task.object_id not in views:
             yield refusal(
                 "isar-no-target",
-                f"where checkpoint '{task.object_id}' of task '{task.name}' is, is not known, "
-                "and isar needs a point to look at",
+                f"the position of checkpoint '{task.object_id}' of task '{task.name}' is not "
+                "known, but isar needs a point to look at",
                 "export with the site that has the checkpoint",
                 task.source,
             )
@@ -169,11 +180,14 @@ def _task(task: Task, id: str, views: Mapping[str, InspectionView]) -> dict[str,
 
 
 def _unique(name: str, names: set[str]) -> str:
-    """The name, with the number of its round where it has been used; isar's ids are unique."""
-    unique, round = name, 1
+    """Return a name that is not in `names`, with a number if needed, and add it to `names`.
+
+    isar requires unique ids; the second round of a task `A` becomes `A (2)`.
+    """
+    unique, number = name, 1
     while unique in names:
-        round += 1
-        unique = f"{name} ({round})"
+        number += 1
+        unique = f"{name} ({number})"
     names.add(unique)
     return unique
 

@@ -1,4 +1,4 @@
-"""isar's definitions become missions."""
+"""Import of isar's definitions as missions."""
 
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -27,14 +27,14 @@ _START = "START"
 
 @dataclass(frozen=True)
 class Imported:
-    """A mission, and warnings about what it could not take over."""
+    """Imported mission, and warnings about parts of the definition that were ignored."""
 
     mission: Mission
     diagnostics: tuple[Diagnostic, ...]
 
 
 def read_isar(content: bytes, source_name: str, catalog: Catalog | None = None) -> Imported | None:
-    """The mission of a file with an isar definition; None if it is no such file.
+    """Return the mission of a file with an isar definition, or None if the file has none.
 
     Raises DiagnosticError as `from_isar` does.
     """
@@ -43,16 +43,17 @@ def read_isar(content: bytes, source_name: str, catalog: Catalog | None = None) 
 
 
 def from_isar(data: Any, source_name: str, catalog: Catalog | None = None) -> Imported:
-    """The mission of a definition: a MEASURE for each image, in order, by the tag of the equipment.
+    """Return the mission of a definition, with a MEASURE for each image, in the same order.
 
-    A tag is a checkpoint's number, or its name where a catalogue is given. The robot's pose is
-    kept, though Argo chooses its own; the target is the site's.
+    The tag of the equipment names the checkpoint: it is the checkpoint's number, or its name if a
+    catalogue is given. The robot's pose is imported, although Argo chooses its own; the target
+    point is not, as the site has it.
 
-    Raises DiagnosticError for what Argo can't do, with a diagnostic for each.
+    Raises DiagnosticError with a diagnostic for each part that Argo can't execute.
     """
     definition = data.get(WRAPPED, data) if isinstance(data, dict) else data
     try:
-        read = MissionDefinition.model_validate(definition)
+        validated = MissionDefinition.model_validate(definition)
     except ValidationError as error:
         diagnostics = [
             diagnostic_of(
@@ -63,39 +64,44 @@ def from_isar(data: Any, source_name: str, catalog: Catalog | None = None) -> Im
             for e in error.errors(include_url=False)[:100]
         ]
         raise DiagnosticError(source_name, diagnostics) from None
-    return _Reader(source_name, catalog).mission(read)
+    return _Importer(source_name, catalog).mission(validated)
 
 
 @dataclass
-class _Reader:
-    """Reads one definition; collects diagnostics on the way."""
+class _Importer:
+    """Importer of one definition; collects diagnostics."""
 
     source_name: str
     catalog: Catalog | None
     diagnostics: list[Diagnostic] = field(default_factory=list)
 
-    def mission(self, read: MissionDefinition) -> Imported:
+    def mission(self, definition: MissionDefinition) -> Imported:
         names = (
             {} if self.catalog is None else {c.name: str(c.id) for c in self.catalog.checkpoints}
         )
-        self._warn_of_extras("", read)
+        self._warn_of_extras("", definition)
         tasks: list[Task] = []
         dock: Pose | None = None
-        if read.start_pose:
-            pose = self._pose("start_pose", read.start_pose)
+        if definition.start_pose:
+            pose = self._pose("start_pose", definition.start_pose)
             tasks.append(Task(name=_START, action=Action.START, pose=pose))
-        used = {task.id for task in read.tasks if task.id} | {_START}
-        for index, task in enumerate(read.tasks):
-            place = f"tasks[{index}]"
-            self._warn_of_extras(place, task)
-            name = task.id or _fresh(f"task {index + 1}", used)
-            pose = self._pose(f"{place}.pose", task.pose)
+        used = {task.id for task in definition.tasks if task.id} | {_START}
+        for index, task in enumerate(definition.tasks):
+            path = f"tasks[{index}]"
+            self._warn_of_extras(path, task)
+            name = task.id or _unused(f"task {index + 1}", used)
+            pose = self._pose(f"{path}.pose", task.pose)
             if task.type == RETURN_TO_HOME:
                 dock = pose
-                self._require(place, pose is not None, "home", "says not where home is in the site")
+                self._require(
+                    path,
+                    pose is not None,
+                    "home",
+                    "has no usable pose of the home in the site's frame",
+                )
                 tasks.append(Task(name=name, action=Action.WAYPOINT, pose=pose))
             else:
-                self._check_inspection(place, task)
+                self._check_inspection(path, task)
                 object_id = names.get(task.tag or "", task.tag)
                 tasks.append(Task(name=name, action=Action.MEASURE, object_id=object_id, pose=pose))
         if has_errors(self.diagnostics):
@@ -104,55 +110,60 @@ class _Reader:
             task.model_copy(update={"transitions": (Transition(target=following.name),)})
             for task, following in pairwise(tasks)
         ]
-        mission = Mission(designation=read.name or "", tasks=(*linked, *tasks[-1:]), dock=dock)
+        mission = Mission(
+            designation=definition.name or "", tasks=(*linked, *tasks[-1:]), dock=dock
+        )
         return Imported(mission, tuple(self.diagnostics))
 
-    def _check_inspection(self, place: str, task: TaskDefinition) -> None:
+    def _check_inspection(self, path: str, task: TaskDefinition) -> None:
         inspection = task.inspection
-        self._require(place, inspection is not None, "inspection", "has no inspection")
+        self._require(path, inspection is not None, "inspection", "has no inspection")
         self._require(
-            place, bool(task.tag), "tag", "has no tag: which checkpoint it inspects is not said"
+            path, bool(task.tag), "tag", "has no tag, which names the checkpoint to inspect"
         )
         if task.zoom is not None:
-            self._warn(f"{place}.zoom", "is not taken over: Argo does not zoom")
+            self._warn(f"{path}.zoom", "is ignored: Argo does not zoom")
         if inspection:
-            self._warn_of_extras(f"{place}.inspection", inspection)
+            self._warn_of_extras(f"{path}.inspection", inspection)
             self._require(
-                place,
+                path,
                 inspection.type == IMAGE,
                 "inspection-type",
-                f"is an inspection of type {inspection.type}; Argo reads checkpoints, in images",
+                f"is an inspection of type {inspection.type}; Argo only reads images",
             )
 
-    def _pose(self, place: str, pose: RobotPose) -> Pose | None:
-        """The pose in the site's frame, if it is one."""
+    def _pose(self, path: str, pose: RobotPose) -> Pose | None:
+        """Return the pose in the site's frame.
+
+        If it is in another frame or its orientation is invalid, add a warning and return None.
+        """
         frames = {pose.frame_name, pose.position.frame_name, pose.orientation.frame_name}
         if frames != {FRAME}:
             other = ", ".join(sorted(frames - {FRAME}))
-            self._warn(place, f"is not taken over: it is in the frame {other}, not in {FRAME}")
+            self._warn(path, f"is ignored: it is in the frame {other}, not in {FRAME}")
             return None
         q, p = pose.orientation, pose.position
         try:
             return Pose(x=p.x, y=p.y, z=p.z, yaw=to_yaw(q.x, q.y, q.z, q.w))
         except ValueError as error:
-            self._warn(place, f"is not taken over: the orientation {error}")
+            self._warn(path, f"is ignored: the orientation {error}")
             return None
 
-    def _require(self, place: str, given: bool, code: str, message: str) -> None:
-        if not given:
+    def _require(self, path: str, is_given: bool, code: str, message: str) -> None:
+        if not is_given:
             hint = "remove the task, or complete it"
-            self.diagnostics.append(diagnostic_of(f"isar.{code}", f"{place}: {message}", hint))
+            self.diagnostics.append(diagnostic_of(f"isar.{code}", f"{path}: {message}", hint))
 
-    def _warn_of_extras(self, place: str, part: Part) -> None:
+    def _warn_of_extras(self, path: str, part: Part) -> None:
         for name, value in (part.model_extra or {}).items():
             if value is not None:
-                self._warn(f"{place}.{name}".removeprefix("."), "is not taken over")
+                self._warn(f"{path}.{name}".removeprefix("."), "is ignored")
 
-    def _warn(self, place: str, message: str) -> None:
-        self.diagnostics.append(diagnostic_of("isar.dropped", f"{place}: {message}"))
+    def _warn(self, path: str, message: str) -> None:
+        self.diagnostics.append(diagnostic_of("isar.dropped", f"{path}: {message}"))
 
 
-def _fresh(name: str, used: set[str]) -> str:
+def _unused(name: str, used: set[str]) -> str:
     while name in used:
         name += "'"
     used.add(name)

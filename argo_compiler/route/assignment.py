@@ -6,7 +6,7 @@ from scipy.optimize import linear_sum_assignment
 
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import NEVER
-from argo_compiler.route.pruning import Pruned, shortest
+from argo_compiler.route.pruning import Pruned, least_arc_times
 
 
 def assignment_bound(network: StepNetwork, pruned: Pruned) -> int | None:
@@ -22,7 +22,7 @@ def assignment_bound(network: StepNetwork, pruned: Pruned) -> int | None:
     if not len(network.prize):
         direct = int(network.time[network.size, network.size])
         return direct if direct < NEVER else None
-    times = shortest(network) + np.append(network.service, 0)[None, :]
+    times = least_arc_times(network) + np.append(network.service, 0)[None, :]
     least = least_between_steps(network, pruned, times)
     rows, columns = linear_sum_assignment(least.astype(np.float64))
     total = int(least[rows, columns].sum())

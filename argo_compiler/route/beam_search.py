@@ -1,5 +1,4 @@
-"""Beams of labels: where the robot may be after so many steps, with two measures of how it got
-there, and of those only the most promising."""
+"""Beam search over labels with two measures, which keeps only the most promising of each layer."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -7,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route.held_karp import INF, prizes
-from argo_compiler.route.lower_bounds import LowerBound
+from argo_compiler.route.held_karp import INF, set_prizes
+from argo_compiler.route.lower_bounds import CompletionBound
 from argo_compiler.route.network import StepNetwork
-from argo_compiler.route.order_ideals import Bits
+from argo_compiler.route.order_ideals import StepBits
 from argo_compiler.route.problem import NEVER, Objective
 from argo_compiler.route.pruning import Pruned
 from argo_compiler.route.search import Search
@@ -18,88 +17,99 @@ from argo_compiler.route.solution import LabelSolution
 
 Vector = NDArray[np.int64]
 
-_NODE, _LABEL = 1e-4, 1.5e-6
-"""s for a node, and for each label that is gone on from to it"""
+_TIME_PER_NODE, _TIME_PER_LABEL = 1e-4, 1.5e-6
+"""nominal s for a node, and for each label that is extended to it"""
 _DIRECT = -1
-"""charger of a way without a charge"""
+"""number in place of a charger's for a leg without a charge"""
 
 
 @dataclass(frozen=True, eq=False)
-class Beam:
-    """What a beam has found."""
+class BeamResult:
+    """Best path of one beam search, with a bound."""
 
     path: tuple[int, ...] | None
     charges: dict[int, int]
     complete: bool
-    """whether nothing was dropped that might have led to a better path"""
+    """true if no label was dropped that might have led to a better path"""
     bound: int
-    """no path costs less, unless it is the best known one"""
+    """lower bound on the cost of all paths, at most the cost of the best known one"""
 
 
 @dataclass(frozen=True, eq=False)
 class _Labels:
-    """Those of one layer: where the robot may be after so many steps."""
+    """Labels of one layer, as arrays with one entry per label."""
 
     mask: Vector
     last: Vector
     time: Vector
-    other: Vector
+    second: Vector
+    """second measure: energy used since the last charge, or travel"""
     parent: Vector
+    """row of the label in the layer before"""
     charger: Vector
 
-    def take(self, rows: NDArray[np.int64] | NDArray[np.bool_]) -> "_Labels":
-        parts = (self.mask, self.last, self.time, self.other, self.parent, self.charger)
+    def select(self, rows: NDArray[np.int64] | NDArray[np.bool_]) -> "_Labels":
+        parts = (self.mask, self.last, self.time, self.second, self.parent, self.charger)
         return _Labels(*(part[rows] for part in parts))
 
 
-class Space:
-    """What all beams that have the same guide share: its method `beam` is one search."""
+class BeamSearch:
+    """Data that all beam searches with the same completion bound share; `run` is one search."""
 
     def __init__(
-        self, network: StepNetwork, pruned: Pruned, bits: Bits, guide: LowerBound, *, level: bool
+        self,
+        network: StepNetwork,
+        pruned: Pruned,
+        bits: StepBits,
+        bound: CompletionBound,
+        *,
+        equal_prizes: bool,
     ) -> None:
-        """`level`: whether all routes that there are win the same: then cost counts."""
+        """`equal_prizes`: all possible routes win the same prize, so that the cost decides."""
         self._network, self._pruned = network, pruned
-        self._bits, self._guide, self._level = bits, guide, level
+        self._bits, self._bound, self._equal_prizes = bits, bound, equal_prizes
         self._battery = network.problem.battery
-        # The other measure: energy, or travel where that is not the time as well.
+        # The second measure is travel if waiting costs nothing, otherwise energy.
         self._counts_travel = network.problem.waits
 
-    def beam(self, width: int, best: LabelSolution | None, search: Search) -> Beam:
-        """The best path of a search that keeps the `width` most promising labels of a layer."""
+    def run(self, width: int, best: LabelSolution | None, search: Search) -> BeamResult:
+        """Search with at most the `width` most promising labels of each layer.
+
+        `best`: the best known path, which the search tries to improve.
+        """
         upper = None if best is None or best.path is None else (best.prize, best.cost)
         layers = [self._start()]
-        lost: int | None = None  # the least cost of the labels that were dropped
+        least_dropped: int | None = None  # the least cost of the labels that were dropped
         end: tuple[tuple[int, int], int, int, int] | None = None
-        for number in range(len(self._network.prize) + 1):
-            labels = layers[number]
+        for size in range(len(self._network.prize) + 1):
+            labels = layers[size]
             if not len(labels.mask):
                 break
-            one = self._best_end(number, labels)
-            if one is not None and (end is None or one[0] > end[0]):
-                end = one
-                if upper is None or one[0] > (upper[0], -upper[1]):
-                    upper = one[0][0], -one[0][1]
-            if number == len(self._network.prize):
+            candidate = self._best_end(size, labels)
+            if candidate is not None and (end is None or candidate[0] > end[0]):
+                end = candidate
+                if upper is None or candidate[0] > (upper[0], -upper[1]):
+                    upper = candidate[0][0], -candidate[0][1]
+            if size == len(self._network.prize):
                 break
-            following = self._next(number, labels, upper, search)
-            if following is None:  # the time is over
-                lost = 0
+            following = self._next_layer(size, labels, upper, search)
+            if following is None:  # the time is up
+                least_dropped = 0
                 break
             labels, least = following
             if len(labels.mask) > width:
                 keep = np.sort(np.argsort(least, kind="stable")[:width])
                 dropped = int(np.delete(least, keep).min())
-                lost = dropped if lost is None else min(lost, dropped)
-                labels = labels.take(keep)
+                least_dropped = dropped if least_dropped is None else min(least_dropped, dropped)
+                labels = labels.select(keep)
             layers.append(labels)
-        known = NEVER if upper is None else upper[1]
-        bound = min(known, NEVER if lost is None else lost)
-        bound = 0 if bound >= NEVER or not self._level else bound
+        best_cost = NEVER if upper is None else upper[1]
+        bound = min(best_cost, NEVER if least_dropped is None else least_dropped)
+        bound = 0 if bound >= NEVER or not self._equal_prizes else bound
         if end is None:
-            return Beam(None, {}, lost is None, bound)
-        path, charges = self._path(layers, *end[1:])
-        return Beam(path, charges, lost is None, bound)
+            return BeamResult(None, {}, least_dropped is None, bound)
+        path, charges = self._trace_path(layers, *end[1:])
+        return BeamResult(path, charges, least_dropped is None, bound)
 
     def _start(self) -> _Labels:
         used = 0 if self._battery is None else self._battery.used
@@ -108,121 +118,130 @@ class Space:
         return _Labels(zero, at, zero, np.array([used]), zero - 1, zero + _DIRECT)
 
     def _legs(self, labels: _Labels, rows: Vector, node: int) -> Iterator[tuple[Vector, ...]]:
-        """The ways from labels to a node (m: the end): rows, arrival, other measure, charger."""
+        """Yield the feasible legs from labels to a node (m: the end), straight or by a charger.
+
+        Each item has the rows of its labels, their arrival times, second measures, and charger.
+        """
         network, battery = self._network, self._battery
-        last, time, other = labels.last[rows], labels.time[rows], labels.other[rows]
-        way = network.time[last, node]
+        last, time, second = labels.last[rows], labels.time[rows], labels.second[rows]
+        drive = network.time[last, node]
         if battery is None:
             service = int(network.service[node]) if node < network.size else 0
-            more = way + service if self._counts_travel else 0
-            yield self._leg(rows, time + way, other + more, way < NEVER, _DIRECT)
+            more = drive + service if self._counts_travel else 0
+            yield self._leg(rows, time + drive, second + more, drive < NEVER, _DIRECT)
             return
         assert network.energy is not None
-        used = other + network.energy[last, node]
-        there = (way < NEVER) & (used <= battery.capacity)
-        yield self._leg(rows, time + way, used, there, _DIRECT)
+        used = second + network.energy[last, node]
+        feasible = (drive < NEVER) & (used <= battery.capacity)
+        yield self._leg(rows, time + drive, used, feasible, _DIRECT)
         for number, station in enumerate(network.chargers):
-            at = other + station.to_energy[last]
-            way = station.to[last] + station.out[node]
+            charged = second + station.to_energy[last]
+            drive = station.to[last] + station.out[node]
             after = np.full(len(rows), station.out_energy[node])
-            there = (way < NEVER) & (at <= battery.capacity) & (after <= battery.capacity)
-            yield self._leg(rows, time + way + battery.overhead + at, after, there, number)
+            feasible = (drive < NEVER) & (charged <= battery.capacity) & (after <= battery.capacity)
+            yield self._leg(
+                rows, time + drive + battery.overhead + charged, after, feasible, number
+            )
 
     @staticmethod
     def _leg(
-        rows: Vector, time: Vector, other: Vector, there: NDArray[np.bool_], charger: int
+        rows: Vector, time: Vector, second: Vector, feasible: NDArray[np.bool_], charger: int
     ) -> tuple[Vector, ...]:
-        chargers = np.full(int(there.sum()), charger)
-        return rows[there], time[there], other[there], chargers
+        chargers = np.full(int(feasible.sum()), charger)
+        return rows[feasible], time[feasible], second[feasible], chargers
 
-    def _next(
-        self, number: int, labels: _Labels, upper: tuple[int, int] | None, search: Search
+    def _next_layer(
+        self, size: int, labels: _Labels, upper: tuple[int, int] | None, search: Search
     ) -> tuple[_Labels, Vector] | None:
-        """The labels of the next layer that may lead to a better path, and the least that a path
-        of each can cost; None if the time is over before."""
+        """Return the undominated labels of the next layer that may lead to a better path.
+
+        With them returns a lower bound on the cost of the paths of each; None if the time is up
+        before the end.
+        """
         network, pruned = self._network, self._pruned
-        rules = self._bits.layer(number)
-        parts = [labels.take(np.zeros(0, np.int64))]
+        rules = self._bits.layer(size)
+        parts = [labels.select(np.zeros(0, np.int64))]
         for node in range(network.size):
             if search.remaining() <= 0.0:
                 return None
             rows = rules.rows(labels.mask, node)
             rows = rows[pruned.arcs[labels.last[rows], node]]
-            search.spend(_NODE + _LABEL * len(rows))
+            search.spend(_TIME_PER_NODE + _TIME_PER_LABEL * len(rows))
             earliest = int(network.earliest[network.step[node]])
-            for origin, time, other, charger in self._legs(labels, rows, node):
+            for origin, time, second, charger in self._legs(labels, rows, node):
                 begin = np.maximum(time, earliest)
                 fits = begin <= pruned.latest[node]
                 origin = origin[fits]
                 masks = rules.after(labels.mask[origin], node)
                 time = begin[fits] + network.service[node]
-                one = _Labels(
-                    masks, np.full(len(origin), node), time, other[fits], origin, charger[fits]
-                ).take(self._guide.within(number + 1, masks))
-                if len(one.mask):
-                    parts.append(one.take(self._promising(number + 1, one, upper)))
-        fields = ("mask", "last", "time", "other", "parent", "charger")
+                extended = _Labels(
+                    masks, np.full(len(origin), node), time, second[fits], origin, charger[fits]
+                ).select(self._bound.contains(size + 1, masks))
+                if len(extended.mask):
+                    parts.append(extended.select(self._is_promising(size + 1, extended, upper)))
+        fields = ("mask", "last", "time", "second", "parent", "charger")
         joined = _Labels(*(np.concatenate([getattr(p, f) for p in parts]) for f in fields))
         if not len(joined.mask):
             return joined, joined.time
-        kept = joined.take(_undominated(joined))
-        return kept, self._least(number + 1, kept)
+        undominated = joined.select(_undominated(joined))
+        return undominated, self._least_costs(size + 1, undominated)
 
-    def _ends(self, number: int, labels: _Labels) -> Vector:
-        """The soonest time at the end that a path of each label can have."""
-        guide = self._guide.to_come(number, labels.mask, labels.last)
-        end = labels.time + guide[0]
-        if len(guide) > 1:
+    def _least_end_times(self, size: int, labels: _Labels) -> Vector:
+        """Return a lower bound on the end time of the paths of each label."""
+        remaining = self._bound.remaining_cost(size, labels.mask, labels.last)
+        end = labels.time + remaining[0]
+        if len(remaining) > 1:
             assert self._battery is not None
-            charged = labels.time + labels.other + guide[1] - self._battery.capacity
+            charged = labels.time + labels.second + remaining[1] - self._battery.capacity
             end = np.maximum(end, charged)
         return np.asarray(end, np.int64)
 
-    def _least(self, number: int, labels: _Labels) -> Vector:
-        """The least cost of a path of each label."""
+    def _least_costs(self, size: int, labels: _Labels) -> Vector:
+        """Return a lower bound on the cost of the paths of each label."""
         if self._counts_travel:
-            to_come = self._guide.to_come(number, labels.mask, labels.last)
-            return np.asarray(labels.other + to_come[0])
-        return self._ends(number, labels)
+            remaining = self._bound.remaining_cost(size, labels.mask, labels.last)
+            return np.asarray(labels.second + remaining[0])
+        return self._least_end_times(size, labels)
 
-    def _promising(
-        self, number: int, labels: _Labels, upper: tuple[int, int] | None
+    def _is_promising(
+        self, size: int, labels: _Labels, upper: tuple[int, int] | None
     ) -> NDArray[np.bool_]:
-        """Whether labels may lead to a path that is better than the best known one."""
+        """Return, for each label, whether it may lead to a path better than the best known one."""
         last = min(self._network.limit, int(INF) - 1)
-        promising = self._ends(number, labels) <= last
-        if upper is not None and self._level:
-            promising &= self._least(number, labels) < upper[1]
+        promising = self._least_end_times(size, labels) <= last
+        if upper is not None and self._equal_prizes:
+            promising &= self._least_costs(size, labels) < upper[1]
         return promising
 
-    def _best_end(
-        self, number: int, labels: _Labels
-    ) -> tuple[tuple[int, int], int, int, int] | None:
-        """Prize and cost (negative), layer, label and charger of the best path that ends here."""
+    def _best_end(self, size: int, labels: _Labels) -> tuple[tuple[int, int], int, int, int] | None:
+        """Return the best path that ends after this layer, or None if there is none.
+
+        It is described by its prize and negative cost, its layer, label and last charger.
+        """
         network = self._network
         masks = labels.mask
-        rows = np.flatnonzero(self._guide.may_end(number, masks))
+        rows = np.flatnonzero(self._bound.can_end(size, masks))
         best = None
-        for origin, time, other, charger in self._legs(labels, rows, network.size):
+        for origin, time, second, charger in self._legs(labels, rows, network.size):
             fits = time <= network.limit
             if not fits.any():
                 continue
-            won = prizes(network, masks[origin[fits]])
-            costs = (other if self._counts_travel else time)[fits]
+            prizes = set_prizes(network, masks[origin[fits]])
+            costs = (second if self._counts_travel else time)[fits]
             if network.objective is Objective.PRIZE:
                 costs = np.zeros_like(costs)
-            k = int(np.lexsort((costs, -won))[0])
-            worth = int(won[k]), -int(costs[k])
-            if best is None or worth > best[0]:
-                best = worth, number, int(origin[fits][k]), int(charger[fits][k])
+            k = int(np.lexsort((costs, -prizes))[0])
+            value = int(prizes[k]), -int(costs[k])
+            if best is None or value > best[0]:
+                best = value, size, int(origin[fits][k]), int(charger[fits][k])
         return best
 
-    def _path(
-        self, layers: list[_Labels], number: int, row: int, charger: int
+    def _trace_path(
+        self, layers: list[_Labels], size: int, row: int, charger: int
     ) -> tuple[tuple[int, ...], dict[int, int]]:
-        charges = {} if charger == _DIRECT else {number: charger}
+        charges = {} if charger == _DIRECT else {size: charger}
         path = []
-        for k in range(number, 0, -1):
+        for k in range(size, 0, -1):
             labels = layers[k]
             path.append(int(labels.last[row]))
             if labels.charger[row] != _DIRECT:
@@ -232,17 +251,19 @@ class Space:
 
 
 def _undominated(labels: _Labels) -> NDArray[np.int64]:
-    """The rows of the labels than which none with the same set and last node is as good in both
-    measures, in the order of sets, nodes and times."""
+    """Return the rows of the labels that no other one with the same set and last node dominates.
+
+    They are in the order of sets, nodes and times.
+    """
     if not len(labels.mask):
         return np.zeros(0, np.int64)
-    order = np.lexsort((labels.other, labels.time, labels.last, labels.mask))
+    order = np.lexsort((labels.second, labels.time, labels.last, labels.mask))
     mask, last = labels.mask[order], labels.last[order]
     changes = (np.diff(mask, prepend=mask[0]) != 0) | (np.diff(last, prepend=last[0]) != 0)
     group = np.cumsum(changes)
-    # Shifted down from group to group, the smallest so far is that of the group.
-    span = int(labels.other.max()) + 1
-    shifted = labels.other[order] - group * span
+    # Each group is shifted below the one before, so that the running minimum restarts with it.
+    span = int(labels.second.max()) + 1
+    shifted = labels.second[order] - group * span
     smallest = np.minimum.accumulate(shifted)
     first = np.diff(group, prepend=-1) != 0
     better = np.append(True, shifted[1:] < smallest[:-1])

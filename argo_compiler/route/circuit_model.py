@@ -14,7 +14,7 @@ from ortools.sat.python import cp_model
 
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import NEVER, Objective
-from argo_compiler.route.pruning import Pruned, horizon, paths
+from argo_compiler.route.pruning import Pruned, horizon, least_path_times
 
 _ARC = 6e-5
 """s that an arc takes to be built and looked at, and twice as long with clocks or positions"""
@@ -35,7 +35,7 @@ class CircuitModel:
         self.model = cp_model.CpModel()
         self._network, self._pruned = network, pruned
         self._timed = end is not None
-        self._apart = paths(network)
+        self._apart = least_path_times(network)
         self._horizon = horizon(network)
         if end is not None:
             self._horizon = min(self._horizon, end)

@@ -1,7 +1,7 @@
-"""The least that is still to come, for each set of steps made and each last node.
+"""Lower bounds on the remaining cost of a route, for each set of steps and each last node.
 
-Windows and the battery are left out, so these are lower bounds for problems that have them: the
-dynamic programme of `held_karp`, backwards.
+They come from the dynamic programme of `held_karp`, run backwards without time windows and without
+the battery. So they are lower bounds for problems that have these.
 """
 
 from dataclasses import dataclass
@@ -9,87 +9,101 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route.held_karp import INF, may_end
+from argo_compiler.route.held_karp import INF, can_end
 from argo_compiler.route.network import StepNetwork
-from argo_compiler.route.order_ideals import MOST_BITS, Bits, Masks
+from argo_compiler.route.order_ideals import MOST_BITS, Masks, StepBits
 
 _DENSE = 22
-"""steps up to which a table has the place of each set"""
+"""highest number of steps for which a table has the index of each set"""
 
 
 @dataclass(frozen=True, eq=False)
-class Sets:
-    """Sets of k steps, by k, each list sorted."""
+class StepSets:
+    """Sets of k steps, in one sorted list for each k."""
 
     layers: tuple[Masks, ...]
-    last: tuple[NDArray[np.bool_], ...]
-    """of each set, whether the route may end with it"""
-    places: NDArray[np.int32] | None
-    """of each mask, its place in its list, -1 for masks that are in none; None: too many masks"""
+    can_end: tuple[NDArray[np.bool_], ...]
+    """for each set, whether the route may end with it"""
+    index: NDArray[np.int32] | None
+    """index of each mask in its list, -1 for masks in no list; None: there are too many masks"""
 
-    def find(self, number: int, wanted: Masks) -> tuple[Masks, NDArray[np.bool_]]:
-        """The places of sets in the list of that number, and whether they are there at all."""
-        if self.places is not None:
-            place = self.places[wanted].astype(np.int64)
-            return place, place >= 0
-        among = self.layers[number]
-        if not len(among):
+    def find(self, size: int, wanted: Masks) -> tuple[Masks, NDArray[np.bool_]]:
+        """Return the indices of sets in the list of `size`, and whether each set is in it.
+
+        The index of a set that is not in the list has no meaning.
+        """
+        if self.index is not None:
+            index = self.index[wanted].astype(np.int64)
+            return index, index >= 0
+        masks = self.layers[size]
+        if not len(masks):
             return np.zeros(len(wanted), np.int64), np.zeros(len(wanted), np.bool_)
-        place = np.minimum(np.searchsorted(among, wanted), len(among) - 1)
-        return place, among[place] == wanted
+        index = np.minimum(np.searchsorted(masks, wanted), len(masks) - 1)
+        return index, masks[index] == wanted
 
 
-def _sets(layers: list[Masks], last: list[NDArray[np.bool_]], bits: int) -> Sets:
-    places = None
+def _make_step_sets(layers: list[Masks], ends: list[NDArray[np.bool_]], bits: int) -> StepSets:
+    index = None
     if bits <= _DENSE:
-        places = np.full(1 << bits, -1, np.int32)
+        index = np.full(1 << bits, -1, np.int32)
         for layer in layers:
-            places[layer] = np.arange(len(layer), dtype=np.int32)
-    return Sets(tuple(layers), tuple(last), places)
+            index[layer] = np.arange(len(layer), dtype=np.int32)
+    return StepSets(tuple(layers), tuple(ends), index)
 
 
-def sets_of(network: StepNetwork, bits: Bits, layers: list[Masks]) -> Sets:
-    """These sets of 0, 1 and so on steps."""
-    last = [may_end(network, bits, size, masks) for size, masks in enumerate(layers)]
-    # With bits that are shared, equal masks may stand for sets of different sizes.
-    return _sets(layers, last, MOST_BITS if bits.shared else len(network.prize))
+def sets_in_layers(network: StepNetwork, bits: StepBits, layers: list[Masks]) -> StepSets:
+    """Return the sets of the layers, which have 0, 1 and so on steps."""
+    ends = [can_end(network, bits, size, masks) for size, masks in enumerate(layers)]
+    # If steps share bits, sets of different sizes may have the same mask.
+    return _make_step_sets(layers, ends, MOST_BITS if bits.shared else len(network.prize))
 
 
-def sets_towards(goals: Masks, steps: int) -> Sets:
-    """All subsets of some sets, which are those that the route may end with. `steps`: few enough
-    for a table of all sets."""
-    there = np.zeros(1 << steps, np.bool_)
-    there[goals] = True
-    goal = there.copy()
+def subsets_of(goals: Masks, steps: int) -> StepSets:
+    """Return all subsets of the goals; a route may end only with a goal.
+
+    `steps`: number of steps, which must be low enough for a table of all sets.
+    """
+    is_subset = np.zeros(1 << steps, np.bool_)
+    is_subset[goals] = True
+    is_goal = is_subset.copy()
     for s in range(steps):
-        halves = there.reshape(-1, 2, 1 << s)
+        halves = is_subset.reshape(-1, 2, 1 << s)
         halves[:, 0, :] |= halves[:, 1, :]
-    masks = np.flatnonzero(there)
+    masks = np.flatnonzero(is_subset)
     size = np.bitwise_count(masks)
     layers = [masks[size == k] for k in range(int(size.max(initial=0)) + 1)]
-    return _sets(layers, [goal[layer] for layer in layers], steps)
+    return _make_step_sets(layers, [is_goal[layer] for layer in layers], steps)
 
 
-def to_come(
-    network: StepNetwork, bits: Bits, sets: Sets, arcs: NDArray[np.int32]
+def completion_costs(
+    network: StepNetwork, bits: StepBits, sets: StepSets, costs: NDArray[np.int32]
 ) -> list[NDArray[np.int32]]:
-    """For each layer the least sum of arcs with which a set that may be the last is reached, and
-    the end. `arcs`: some kinds of them, shape (kinds, m + 1, m + 1); shape of the result (kinds,
-    sets, m + 1), the last column that from the start; INF where there is no way."""
-    m, kinds = network.size, len(arcs)
-    found: list[NDArray[np.int32]] = []
-    for number in reversed(range(len(sets.layers))):
-        masks = sets.layers[number]
+    """Compute, for each layer, the least cost from each set and last node to the end of a route.
+
+    Args:
+        network: The network with m nodes.
+        bits: The bits of its steps.
+        sets: The sets, and those with which a route may end.
+        costs: Costs of arcs of several kinds, shape (kinds, m + 1, m + 1).
+
+    Returns:
+        One array per layer, shape (kinds, sets, m + 1), the last column from the start; INF where
+        no route is possible.
+    """
+    m, kinds = network.size, len(costs)
+    reversed_layers: list[NDArray[np.int32]] = []
+    for size in reversed(range(len(sets.layers))):
+        masks = sets.layers[size]
         least = np.full((kinds, len(masks), m + 1), INF, np.int32)
-        least[:, sets.last[number]] = arcs[:, None, :, m]
-        if found:
-            following, rules = found[-1], bits.layer(number)
+        least[:, sets.can_end[size]] = costs[:, None, :, m]
+        if reversed_layers:
+            following, rules = reversed_layers[-1], bits.layer(size)
             for node in range(m):
                 rows = rules.rows(masks, node)
-                place, there = sets.find(number + 1, rules.after(masks[rows], node))
-                rows, place = rows[there], place[there]
+                index, exists = sets.find(size + 1, rules.after(masks[rows], node))
+                rows, index = rows[exists], index[exists]
                 for kind in range(kinds):
-                    onward = arcs[kind, None, :, node] + following[kind, place, node, None]
+                    onward = costs[kind, None, :, node] + following[kind, index, node, None]
                     least[kind, rows] = np.minimum(least[kind, rows], onward)
-        found.append(np.minimum(least, INF))
-    return found[::-1]
+        reversed_layers.append(np.minimum(least, INF))
+    return reversed_layers[::-1]

@@ -1,9 +1,9 @@
-"""Exact dynamic programming over the sets of steps that an order allows to have been made.
+"""Exact dynamic programming over the sets of steps that may come first in a route.
 
-Held and Karp's programme, layer by layer in NumPy: after k steps it holds, for each set of k steps
-that may come first (an ideal of the partial order) and each last node, the soonest time when the
-robot is done there. To be sooner is never worse, so time windows, limits and what is left out cost
-nothing more. What limits it is the number of sets: they are counted first.
+This is Held and Karp's programme, computed in layers with NumPy. Layer k holds, for each set of k
+steps that may come first (an ideal of the partial order) and each last node, the earliest time at
+which the robot completes the node. To be earlier is never worse, so time windows, limits and
+optional steps add no states. The limit of the method is the number of sets, which is counted first.
 """
 
 from collections.abc import Callable, Iterator
@@ -14,58 +14,66 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from argo_compiler.route.network import StepNetwork
-from argo_compiler.route.order_ideals import Bits, Masks
+from argo_compiler.route.order_ideals import Masks, StepBits
 from argo_compiler.route.problem import RouteProblem
-from argo_compiler.route.pruning import Pruned, longest, shortest
+from argo_compiler.route.pruning import Pruned, least_arc_times, unlimited_horizon
 from argo_compiler.route.search import Search
 
 INF = np.int32(1 << 29)
-"""more than any time"""
+"""number above any time"""
 _MOST_SETS = 1_500_000
-_MOST_WORK = 24_000_000
-"""sets times nodes"""
+_MOST_STATES = 24_000_000
+"""highest number of sets times nodes"""
 _FEW_SETS = 30_000
-"""that take no time worth speaking of; of steps in any order, CP-SAT proves more sooner"""
-_NOMINAL = 2e-7
-"""s for a set and a node"""
+"""number of sets that take almost no time; with more sets of unordered steps, CP-SAT is faster"""
+_TIME_PER_STATE = 2e-7
+"""nominal s for one set and one node"""
 
 
 @dataclass(frozen=True, eq=False)
 class Layer:
-    """The sets of k steps, sorted, and the soonest times at their last nodes, shape (sets, m)."""
+    """Sorted sets of k steps, and the earliest times at their last nodes, shape (sets, m)."""
 
     masks: Masks
     times: NDArray[np.int32]
     origin: NDArray[np.int32]
-    """the row of the set of k - 1 steps that each was reached from, shape of `times`"""
+    """row of the set of k - 1 steps before each last node, shape of `times`"""
 
 
 def count_sets(
-    network: StepNetwork, pruned: Pruned, most: int, over: Callable[[], bool] = lambda: False
+    network: StepNetwork,
+    pruned: Pruned,
+    most: int,
+    is_time_up: Callable[[], bool] = lambda: False,
 ) -> int:
-    """How many sets of steps the order allows; more than `most` when they are so many, or when
-    counting them is `over` before it is done."""
-    bits = Bits(network, pruned)
+    """Count the sets of steps that may come first in a route, as the precedences allow.
+
+    Returns a number above `most` if there are more than `most`, if they do not fit into masks, or
+    if the time is up before the end.
+    """
+    bits = StepBits(network, pruned)
     if not bits.fits:
         return most + 1
     first_node = {int(step): node for node, step in reversed(list(enumerate(network.step)))}
     if bits.shared:
-        return _count(bits, list(first_node.values()), most, over)
-    # The product over the parts of the order that have nothing to do with each other.
+        return _count(bits, list(first_node.values()), most, is_time_up)
+    # The number is the product over the components of the order that are independent.
     total = 1
-    _, part = connected_components(pruned.needs, directed=False)
-    for number in range(int(part.max(initial=-1)) + 1):
-        nodes = [first_node[s] for s in np.flatnonzero(part == number).tolist() if s in first_node]
-        total *= _count(bits, nodes, most // total, over)
+    _, component = connected_components(pruned.needs, directed=False)
+    for number in range(int(component.max(initial=-1)) + 1):
+        nodes = [
+            first_node[s] for s in np.flatnonzero(component == number).tolist() if s in first_node
+        ]
+        total *= _count(bits, nodes, most // total, is_time_up)
         if total > most:
             break
     return total
 
 
-def _count(bits: Bits, nodes: list[int], most: int, over: Callable[[], bool]) -> int:
+def _count(bits: StepBits, nodes: list[int], most: int, is_time_up: Callable[[], bool]) -> int:
     masks, total, size = np.zeros(1, np.int64), 1, 0
     while len(masks) and total <= most:
-        if over():
+        if is_time_up():
             return most + 1
         rules = bits.layer(size)
         following = [
@@ -76,33 +84,38 @@ def _count(bits: Bits, nodes: list[int], most: int, over: Callable[[], bool]) ->
     return total
 
 
-def small_layers(search: Search) -> list[Layer] | None:
-    """The layers of a search's network, if they are few enough to be gone through."""
+def layers_if_few(search: Search) -> list[Layer] | None:
+    """Compute the layers of a search's network, or return None if they have too many sets.
+
+    Adds a reason to the search that names the number of sets, or the lack of time.
+    """
     network, pruned = search.network, search.pruned
-    most = min(_MOST_SETS, _MOST_WORK // max(1, network.size))
-    part = search.share(0.7)
+    most = min(_MOST_SETS, _MOST_STATES // max(1, network.size))
+    share = search.share(0.7)
     if not search.timed:
-        most = min(most, int(part.remaining() / (_NOMINAL * max(1, network.size))))
-    sets = count_sets(network, pruned, most, lambda: part.remaining() <= 0.0)
-    ordered = network.windowed or pruned.before.any() or network.problem.battery is not None
-    # Windows may leave much fewer sets than the order does.
-    few = sets <= (most if ordered else _FEW_SETS) or network.windowed
-    if not few or longest(network) >= INF or not Bits(network, pruned).fits:
-        search.add_reason(f"{int(pruned.steps.sum())} steps allow too many sets to go through")
+        most = min(most, int(share.remaining() / (_TIME_PER_STATE * max(1, network.size))))
+    sets = count_sets(network, pruned, most, lambda: share.remaining() <= 0.0)
+    is_ordered = network.windowed or pruned.before.any() or network.problem.battery is not None
+    # Windows may leave much fewer sets than the precedences do.
+    is_few = sets <= (most if is_ordered else _FEW_SETS) or network.windowed
+    if not is_few or unlimited_horizon(network) >= INF or not StepBits(network, pruned).fits:
+        search.add_reason(f"{int(pruned.steps.sum())} steps allow too many sets to check all")
         return None
-    layers = soonest_layers(network, pruned, most, lambda: part.remaining() <= 0.0)
+    layers = compute_layers(network, pruned, most, lambda: share.remaining() <= 0.0)
     if layers is None:
-        search.add_reason("there are too many sets to go through, or there was no time for them")
+        search.add_reason("there are too many sets to check all, or the time was too short")
         return None
     count = 1 + sum(len(layer.masks) for layer in layers)
-    search.spend(count * network.size * _NOMINAL)
+    search.spend(count * network.size * _TIME_PER_STATE)
     search.add_reason(f"order and time allow {count} sets of {int(pruned.steps.sum())} steps")
     return layers
 
 
 class HeldKarp:
-    """Goes through all sets, where the soonest is always the best: where there is no battery, and
-    the waiting for windows counts."""
+    """Solver that enumerates all sets, for problems in which the earliest time is always best.
+
+    These are problems without a battery, in which waiting for windows counts.
+    """
 
     name = "Held-Karp"
 
@@ -110,7 +123,7 @@ class HeldKarp:
         return problem.battery is None and not problem.waits
 
     def solve(self, search: Search, /) -> None:
-        layers = small_layers(search)
+        layers = layers_if_few(search)
         if layers is None:
             return
         best = best_path(search.network, layers, search.pruned)
@@ -118,49 +131,55 @@ class HeldKarp:
             search.report_infeasible()
             return
         search.offer(best.path)
-        found = search.best
-        assert found is not None
-        search.report_bounds(best.prize, found.cost, best.prize)
+        solution = search.best
+        assert solution is not None
+        search.report_bounds(best.prize, solution.cost, best.prize)
 
 
 @dataclass(frozen=True)
 class BestPath:
-    """A path that wins the most, and among those is the soonest at the end."""
+    """Path with the highest prize, and the earliest end at that prize."""
 
     path: tuple[int, ...]
     prize: int
     end: int
 
 
-def soonest_layers(
-    network: StepNetwork, pruned: Pruned, most: int, over: Callable[[], bool]
+def compute_layers(
+    network: StepNetwork, pruned: Pruned, most: int, is_time_up: Callable[[], bool]
 ) -> list[Layer] | None:
-    """The layers of a network whose battery is never empty; None if they have more than `most`
-    sets, or the time is over before."""
-    arcs = arcs_of(network, pruned, shortest(network))
+    """Compute the layers of a network, as if the battery was never empty.
+
+    Returns None if they have more than `most` sets, or if the time is up before the end.
+    """
+    arcs = allowed_arcs(network, pruned, least_arc_times(network))
     latest = np.minimum(pruned.latest, INF - 1)
     earliest = network.earliest[network.step]
     layers, total = [], 0
-    for layer in soonest(network, Bits(network, pruned), arcs, earliest, latest, over):
+    for layer in iter_layers(
+        network, StepBits(network, pruned), arcs, earliest, latest, is_time_up
+    ):
         total += len(layer.masks)
         if total > most:
             return None
         layers.append(layer)
-    return None if over() else layers
+    return None if is_time_up() else layers
 
 
 def best_path(network: StepNetwork, layers: list[Layer], pruned: Pruned) -> BestPath | None:
-    """The best path that the layers hold; None: there is none."""
-    best = _best_end(network, Bits(network, pruned), layers)
+    """Return the best path of the layers, or None if there is none."""
+    best = _best_end(network, StepBits(network, pruned), layers)
     if best is None:
         return None
     prize, end, number, row, node = best
-    arcs = arcs_of(network, pruned, shortest(network))
-    return BestPath(_path(network, arcs, layers, number, row, node), prize, end)
+    arcs = allowed_arcs(network, pruned, least_arc_times(network))
+    return BestPath(_trace_path(network, arcs, layers, number, row, node), prize, end)
 
 
-def arcs_of(network: StepNetwork, pruned: Pruned, times: NDArray[np.int64]) -> NDArray[np.int32]:
-    """The arcs that are left, INF for the others; to the end from everywhere."""
+def allowed_arcs(
+    network: StepNetwork, pruned: Pruned, times: NDArray[np.int64]
+) -> NDArray[np.int32]:
+    """Return the times of the unpruned arcs and that from start to end, and INF for the others."""
     arcs = np.minimum(times, INF).astype(np.int32)
     allowed = pruned.arcs.copy()
     allowed[network.size, network.size] = True
@@ -168,16 +187,19 @@ def arcs_of(network: StepNetwork, pruned: Pruned, times: NDArray[np.int64]) -> N
     return arcs
 
 
-def soonest(
+def iter_layers(
     network: StepNetwork,
-    bits: Bits,
+    bits: StepBits,
     arcs: NDArray[np.int32],
     earliest: Masks,
     latest: Masks,
-    over: Callable[[], bool] = lambda: False,
+    is_time_up: Callable[[], bool] = lambda: False,
 ) -> Iterator[Layer]:
-    """The layers from that of the first steps on, for arcs between nodes that begin when they may
-    (`earliest`, `latest`, shape (m,)); not all of them when the time is over."""
+    """Yield the layers, from that of single steps on, until there are no more or the time is up.
+
+    `arcs`: times of arcs, shape (m + 1, m + 1); `earliest`, `latest`: limits on the begin of each
+    node, shape (m,).
+    """
     m, size = network.size, 0
     masks, times = np.zeros(1, np.int64), np.zeros((1, 1), np.int32)
     onward = arcs[m:, :]  # from the start; afterwards from all nodes
@@ -186,7 +208,7 @@ def soonest(
         origins, parts, ends = [], [], []
         nodes = np.flatnonzero(rules.open).tolist()
         for node in nodes:
-            if over():
+            if is_time_up():
                 return
             rows = rules.rows(masks, node)
             arrival = (times[rows] + onward[None, :, node]).min(axis=1)
@@ -195,7 +217,7 @@ def soonest(
             origins.append(rows[in_time])
             parts.append(rules.after(masks[rows[in_time]], node))
             ends.append(begin[in_time] + network.service[node])
-        masks, place = np.unique(np.concatenate([*parts, masks[:0]]), return_inverse=True)
+        masks, inverse = np.unique(np.concatenate([*parts, masks[:0]]), return_inverse=True)
         if not len(masks):
             return
         size += 1
@@ -203,44 +225,44 @@ def soonest(
         origin = np.full((len(masks), m), -1, np.int32)
         first = 0
         for node, rows, end in zip(nodes, origins, ends, strict=True):
-            there = place[first : first + len(end)]
-            times[there, node], origin[there, node] = end, rows
+            new_rows = inverse[first : first + len(end)]
+            times[new_rows, node], origin[new_rows, node] = end, rows
             first += len(end)
-        keep = _in_time(network, bits, latest, size, masks, times)
+        keep = _can_complete(network, bits, latest, size, masks, times)
         masks, times, origin = masks[keep], times[keep], origin[keep]
         yield Layer(masks, times, origin)
         onward = arcs[:m, :]
 
 
-def ends(network: StepNetwork, arcs: NDArray[np.int32], layer: Layer) -> Masks:
-    """The soonest time at the end for each set of a layer."""
-    home = arcs[: network.size, network.size]
-    return np.asarray((layer.times + home).min(axis=1), np.int64)
+def end_times(network: StepNetwork, arcs: NDArray[np.int32], layer: Layer) -> Masks:
+    """Return the earliest time at the end for each set of a layer."""
+    to_end = arcs[: network.size, network.size]
+    return np.asarray((layer.times + to_end).min(axis=1), np.int64)
 
 
-def _in_time(
+def _can_complete(
     network: StepNetwork,
-    bits: Bits,
+    bits: StepBits,
     latest: Masks,
     size: int,
     masks: Masks,
     times: NDArray[np.int32],
 ) -> NDArray[np.bool_]:
-    """Whether each mandatory step that is still to be made can begin in time."""
-    at = times.min(axis=1)
+    """Return, for each set, whether it is early enough for each remaining mandatory step."""
+    earliest = times.min(axis=1)
     keep = np.ones(len(masks), np.bool_)
     last = np.full(len(network.prize), -1, np.int64)
     np.maximum.at(last, network.step, latest)
-    doubt, sure = bits.in_doubt(size), bits.surely(size)
-    ahead = network.mandatory & ~sure & (last < INF - 1)
-    keep &= at <= last[ahead & ~doubt].min(initial=int(INF))
-    for s in np.flatnonzero(ahead & doubt).tolist():
-        keep &= (masks & bits.bit(s) != 0) | (at <= last[s])
+    undecided, certain = bits.undecided(size), bits.certain(size)
+    ahead = network.mandatory & ~certain & (last < INF - 1)
+    keep &= earliest <= last[ahead & ~undecided].min(initial=int(INF))
+    for s in np.flatnonzero(ahead & undecided).tolist():
+        keep &= (masks & bits.bit(s) != 0) | (earliest <= last[s])
     return keep
 
 
-def prizes(network: StepNetwork, masks: Masks) -> Masks:
-    """What the steps of each set are worth; everything where nothing may be left out."""
+def set_prizes(network: StepNetwork, masks: Masks) -> Masks:
+    """Return the prize of each set; the prize of all steps if no step is optional."""
     if not network.selective:
         return np.full(len(masks), network.prize.sum())
     total = np.zeros(len(masks), np.int64)
@@ -249,39 +271,42 @@ def prizes(network: StepNetwork, masks: Masks) -> Masks:
     return total
 
 
-def may_end(network: StepNetwork, bits: Bits, size: int, masks: Masks) -> NDArray[np.bool_]:
-    """Whether sets of that size have all that must be made."""
+def can_end(network: StepNetwork, bits: StepBits, size: int, masks: Masks) -> NDArray[np.bool_]:
+    """Return, for each set of `size`, whether it contains all mandatory steps."""
     if not network.selective:
         return np.full(len(masks), size == len(network.prize))
-    all_of = bits.mask(network.mandatory)
-    return np.asarray((masks & all_of) == all_of)
+    mandatory = bits.mask(network.mandatory)
+    return np.asarray((masks & mandatory) == mandatory)
 
 
 def _best_end(
-    network: StepNetwork, bits: Bits, layers: list[Layer]
+    network: StepNetwork, bits: StepBits, layers: list[Layer]
 ) -> tuple[int, int, int, int, int] | None:
-    """The prize, end, layer, row and last node of the best path; layer -1: straight to the end."""
+    """Return the prize, end time, layer, row and last node of the best path, or None.
+
+    Layer -1 means that the path has no nodes.
+    """
     m = network.size
-    home = np.minimum(shortest(network)[:, m], INF).astype(np.int32)
+    to_end = np.minimum(least_arc_times(network)[:, m], INF).astype(np.int32)
     limit = min(network.limit, int(INF) - 1)
-    none = may_end(network, bits, 0, np.zeros(1, np.int64)).all()
-    best = (0, -int(home[m]), -1, 0, 0) if none and home[m] <= limit else None
+    may_be_empty = can_end(network, bits, 0, np.zeros(1, np.int64)).all()
+    best = (0, -int(to_end[m]), -1, 0, 0) if may_be_empty and to_end[m] <= limit else None
     for number, layer in enumerate(layers):
-        whole = layer.times + home[:m]
-        nodes = whole.argmin(axis=1)
-        end = whole[np.arange(len(whole)), nodes].astype(np.int64)
-        rows = np.flatnonzero(may_end(network, bits, number + 1, layer.masks) & (end <= limit))
+        totals = layer.times + to_end[:m]
+        nodes = totals.argmin(axis=1)
+        end = totals[np.arange(len(totals)), nodes].astype(np.int64)
+        rows = np.flatnonzero(can_end(network, bits, number + 1, layer.masks) & (end <= limit))
         if not len(rows):
             continue
-        won = prizes(network, layer.masks[rows])
-        pick = int(np.lexsort((end[rows], -won))[0])
+        prizes = set_prizes(network, layer.masks[rows])
+        pick = int(np.lexsort((end[rows], -prizes))[0])
         row = int(rows[pick])
-        one = (int(won[pick]), -int(end[row]), number, row, int(nodes[row]))
-        best = one if best is None else max(best, one, key=lambda end: end[:2])
+        candidate = (int(prizes[pick]), -int(end[row]), number, row, int(nodes[row]))
+        best = candidate if best is None else max(best, candidate, key=lambda end: end[:2])
     return None if best is None else (best[0], -best[1], *best[2:])
 
 
-def _path(
+def _trace_path(
     network: StepNetwork,
     arcs: NDArray[np.int32],
     layers: list[Layer],
@@ -289,7 +314,7 @@ def _path(
     row: int,
     node: int,
 ) -> tuple[int, ...]:
-    """The nodes of the path that ends there, back from its end."""
+    """Return the nodes of the path to a last node, traced back from there."""
     if number < 0:
         return ()
     path = [node]

@@ -1,10 +1,10 @@
-"""Dynamic programming with two measures: time, and energy since the last charge or travel.
+"""Dynamic programming over labels with two measures: time, and energy used or travel.
 
-Where the soonest is not always the best (a battery to be charged on the way; waiting that does not
-count), each set and last node has many labels, of which none is better in both measures. Labels
-that can't lead to a better route than the best known one are dropped: what is still to come is
-known from the problem without windows and battery. Narrow beams, wider from one to the next, find
-routes; one that had to drop nothing for its width proves the best.
+The earliest time is not always best if the battery is charged on the way, or if waiting costs
+nothing. So each set and last node has several labels that do not dominate each other in the two
+measures. Labels that cannot lead to a better route than the best known one are dropped, by a lower
+bound on their remaining cost from the problem without windows and battery. Beam searches of
+increasing width find routes; one that drops no label for its width proves the best route.
 """
 
 from collections.abc import Iterable
@@ -12,47 +12,48 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route.beam_search import Beam, Space
-from argo_compiler.route.completion_bounds import Sets, sets_of, sets_towards
+from argo_compiler.route.beam_search import BeamResult, BeamSearch
+from argo_compiler.route.completion_bounds import StepSets, sets_in_layers, subsets_of
 from argo_compiler.route.held_karp import (
     INF,
     Layer,
-    arcs_of,
+    allowed_arcs,
     best_path,
-    ends,
-    may_end,
-    prizes,
-    small_layers,
-    soonest,
+    can_end,
+    end_times,
+    iter_layers,
+    layers_if_few,
+    set_prizes,
 )
-from argo_compiler.route.lower_bounds import PriceGuide, TableGuide
+from argo_compiler.route.lower_bounds import DualBound, TableBound
 from argo_compiler.route.modes import plus
 from argo_compiler.route.network import StepNetwork
-from argo_compiler.route.order_ideals import Bits
+from argo_compiler.route.order_ideals import StepBits
 from argo_compiler.route.path_timing import PathTiming
 from argo_compiler.route.problem import Objective, RouteProblem
-from argo_compiler.route.pruning import Pruned, longest, shortest
+from argo_compiler.route.pruning import Pruned, least_arc_times, unlimited_horizon
 from argo_compiler.route.search import Search
 from argo_compiler.route.solution import LabelSolution, make_solution, no_solution
 
 Vector = NDArray[np.int64]
 
 WIDTHS = (300, 3_000, 30_000, 300_000, 2_000_000)
-"""labels in a layer, from one beam to the next"""
-_NARROWER = (1_000, 10_000, 100_000, 500_000)
-"""the same where sets are not kept apart from labels"""
+"""widths of the successive beam searches with tables, in labels per layer"""
+_WIDTHS_WITHOUT_TABLES = (1_000, 10_000, 100_000, 500_000)
+"""widths of the successive beam searches with dual prices, in labels per layer"""
 _FIRST_GOALS = 64
+"""number of goals in the first group that is searched by prize"""
 _MOST_OPTIONAL = 22
-"""steps where something may be left out: then tables of all their subsets are made"""
+"""highest number of steps with optional ones among them: there are tables of all their subsets"""
 
 
 def _applies(problem: RouteProblem) -> bool:
-    """Whether two measures are needed, and enough."""
+    """Return True if two measures are necessary and sufficient."""
     return problem.waits != (problem.battery is not None)
 
 
 class Labels:
-    """Goes through all sets, if they are few enough, with the labels of each."""
+    """Solver with labels and tables of all sets of steps, if they are few enough."""
 
     name = "labels"
 
@@ -63,13 +64,13 @@ class Labels:
         network = search.network
         if network.selective and len(network.prize) > _MOST_OPTIONAL:
             return
-        layers = small_layers(search)
+        layers = layers_if_few(search)
         if layers is not None:
-            _tell(search, solve_labels(network, search.pruned, search, layers))
+            _report(search, solve_with_tables(network, search.pruned, search, layers))
 
 
 class LabelBeams:
-    """Beams of labels with prices for what is still to come, for any number of sets."""
+    """Solver with beams of labels and bounds from dual prices, for any number of sets."""
 
     name = "beams of labels"
 
@@ -78,88 +79,98 @@ class LabelBeams:
 
     def solve(self, search: Search, /) -> None:
         network, pruned = search.network, search.pruned
-        if longest(network) < INF and Bits(network, pruned).fits:
-            _tell(search, search_labels(network, pruned, search, None))
+        if unlimited_horizon(network) < INF and StepBits(network, pruned).fits:
+            _report(search, solve_with_dual_prices(network, pruned, search, None))
 
 
-def _tell(search: Search, found: LabelSolution) -> None:
-    if found.path is not None:
-        search.offer(found.path, found.charges)
-    elif found.proven:
+def _report(search: Search, solution: LabelSolution) -> None:
+    if solution.path is not None:
+        search.offer(solution.path, solution.charges)
+    elif solution.proven:
         search.report_infeasible()
         return
-    least = found.prize_bound if search.network.selective else 0
-    search.report_bounds(found.prize_bound, found.bound, least)
+    least = solution.prize_bound if search.network.selective else 0
+    search.report_bounds(solution.prize_bound, solution.bound, least)
 
 
-def solve_labels(
+def solve_with_tables(
     network: StepNetwork, pruned: Pruned, search: Search, layers: list[Layer]
 ) -> LabelSolution:
-    """The best path that the beams find until the deadline, and its bounds. `layers`: those of the
-    network without a battery."""
+    """Return the best path that the beam searches find until the deadline, and its bounds.
+
+    `layers`: layers of the network without a battery.
+    """
     start: LabelSolution | None = None
-    soon = best_path(network, layers, pruned)
-    if soon is None:
+    earliest = best_path(network, layers, pruned)
+    if earliest is None:
         return no_solution(network, proven=True)
-    # If the battery lasts for the best route without a battery, that is it.
+    # If the battery lasts for the best route without a battery, that route is the best one.
     timing = PathTiming(network)
-    label = timing.follow(soon.path)
+    label = timing.follow(earliest.path)
     if label is not None:
-        one = make_solution(network, soon.path, dict(label.charges), int(network.prize.sum()), 0)
-        search.offer(soon.path, dict(label.charges))
-        if label.time == soon.end and network.objective is not Objective.TRAVEL:
-            return make_solution(network, soon.path, dict(label.charges), soon.prize, one.cost)
-        start = one
+        followed = make_solution(
+            network, earliest.path, dict(label.charges), int(network.prize.sum()), 0
+        )
+        search.offer(earliest.path, dict(label.charges))
+        if label.time == earliest.end and network.objective is not Objective.TRAVEL:
+            return make_solution(
+                network, earliest.path, dict(label.charges), earliest.prize, followed.cost
+            )
+        start = followed
     if network.selective:
-        return _by_prize(network, pruned, search, layers, start)
-    bits = Bits(network, pruned)
+        return _solve_by_prize(network, pruned, search, layers, start)
+    bits = StepBits(network, pruned)
     sets = [np.zeros(1, np.int64), *(layer.masks for layer in layers)]
     del layers
-    space = _with_tables(network, pruned, sets_of(network, bits, sets))
-    return _widening(network, space, search, WIDTHS, start)
+    beams = _search_with_tables(network, pruned, sets_in_layers(network, bits, sets))
+    return _widen(network, beams, search, WIDTHS, start)
 
 
-def search_labels(
+def solve_with_dual_prices(
     network: StepNetwork, pruned: Pruned, search: Search, start: LabelSolution | None
 ) -> LabelSolution:
-    """The best path that the beams find until the deadline, and its bounds, with as many sets as
-    there may be. For networks in which nothing may be left out, and whose steps `Bits` fit."""
-    bits = Bits(network, pruned)
-    kinds = _kinds(network)
-    space = Space(network, pruned, bits, PriceGuide(network, pruned, bits, kinds), level=True)
-    return _widening(network, space, search, _NARROWER, start)
+    """Return the best path that the beam searches find until the deadline, and its bounds.
+
+    For any number of sets, in networks without optional steps whose bits fit into masks.
+    """
+    bits = StepBits(network, pruned)
+    costs = _cost_matrices(network)
+    beams = BeamSearch(
+        network, pruned, bits, DualBound(network, pruned, bits, costs), equal_prizes=True
+    )
+    return _widen(network, beams, search, _WIDTHS_WITHOUT_TABLES, start)
 
 
-def _kinds(network: StepNetwork) -> list[Vector]:
-    """The costs of arcs that bounds are made from: time, and time and energy together."""
+def _cost_matrices(network: StepNetwork) -> list[Vector]:
+    """Return the arc costs for bounds: times, and, with chargers, times plus energies."""
     service = np.append(network.service, 0)[None, :]
-    kinds = [plus(shortest(network), service)]
+    matrices = [plus(least_arc_times(network), service)]
     if network.problem.battery is not None and network.chargers:
-        kinds.append(plus(_times_and_energies(network), service))
-    return kinds
+        matrices.append(plus(_times_and_energies(network), service))
+    return matrices
 
 
-def _with_tables(network: StepNetwork, pruned: Pruned, sets: Sets) -> Space:
-    bits = Bits(network, pruned)
-    kinds = np.stack([arcs_of(network, pruned, kind) for kind in _kinds(network)])
-    guide = TableGuide(network, bits, sets, kinds)
-    layers = zip(sets.layers, sets.last, strict=True)
-    worth = np.concatenate([prizes(network, layer[last]) for layer, last in layers])
-    return Space(network, pruned, bits, guide, level=bool((worth == worth[:1]).all()))
+def _search_with_tables(network: StepNetwork, pruned: Pruned, sets: StepSets) -> BeamSearch:
+    bits = StepBits(network, pruned)
+    costs = np.stack([allowed_arcs(network, pruned, matrix) for matrix in _cost_matrices(network)])
+    bound = TableBound(network, bits, sets, costs)
+    layers = zip(sets.layers, sets.can_end, strict=True)
+    prizes = np.concatenate([set_prizes(network, layer[ends]) for layer, ends in layers])
+    return BeamSearch(network, pruned, bits, bound, equal_prizes=bool((prizes == prizes[:1]).all()))
 
 
-def _widening(
+def _widen(
     network: StepNetwork,
-    space: Space,
+    beams: BeamSearch,
     search: Search,
     widths: tuple[int, ...],
     start: LabelSolution | None,
 ) -> LabelSolution:
-    """Beams, each wider than the one before, until one drops nothing or the time is over."""
+    """Run beam searches of increasing width, until one drops no label or the time is up."""
     prize, bound, best = int(network.prize.sum()), 0, start
     for width in widths:
-        beam = space.beam(width, best, search)
-        best = _better(network, search, beam, best)
+        beam = beams.run(width, best, search)
+        best = _offer_if_better(network, search, beam, best)
         if beam.complete:
             if best is None or best.path is None:
                 return no_solution(network, proven=True)
@@ -173,41 +184,45 @@ def _widening(
     return make_solution(network, best.path, best.charges, prize, bound)
 
 
-def _by_prize(
+def _solve_by_prize(
     network: StepNetwork,
     pruned: Pruned,
     search: Search,
     layers: list[Layer],
     start: LabelSolution | None,
 ) -> LabelSolution:
-    """The sets that could be made in time without windows and battery, from those of the highest
-    prize down, so many at once: which of them can be made, and then at which least cost."""
-    goals, worth = _goals(network, pruned, layers)
-    most, best, first, size = int(worth.max(initial=-1)), start, 0, _FIRST_GOALS
+    """Search the goals from the highest prize down, in groups, and then for the least cost.
+
+    Goals are the sets that are possible in time without windows and battery. The first part of the
+    search finds the highest prize of a goal that is really possible, the second part the cheapest
+    path to a goal with that prize.
+    """
+    goals, prizes = _goal_sets(network, pruned, layers)
+    most, best, first, size = int(prizes.max(initial=-1)), start, 0, _FIRST_GOALS
     while first < len(goals):
         search.report_bounds(prize_bound=most)
-        # All of one prize stay together.
-        lowest = worth[min(first + size, len(goals)) - 1]
-        after = int(np.searchsorted(-worth, -lowest, side="right"))
-        some, complete = goals[first:after], False
+        # Goals with equal prizes are in the same group.
+        lowest = prizes[min(first + size, len(goals)) - 1]
+        after = int(np.searchsorted(-prizes, -lowest, side="right"))
+        group, complete = goals[first:after], False
         for width in WIDTHS:
-            # Once one is found, only what is worth more is of interest.
+            # With a path at hand, only goals with a higher prize matter.
             if best is not None and best.path is not None:
-                some = some[prizes(network, some) > best.prize]
-            if not len(some):
+                group = group[set_prizes(network, group) > best.prize]
+            if not len(group):
                 complete = True
                 break
-            space = _with_tables(network, pruned, sets_towards(some, len(network.prize)))
-            beam = space.beam(width, None, search)
-            best, complete = _better(network, search, beam, best), beam.complete
+            beams = _search_with_tables(network, pruned, subsets_of(group, len(network.prize)))
+            beam = beams.run(width, None, search)
+            best, complete = _offer_if_better(network, search, beam, best), beam.complete
             if complete or search.remaining() <= 0.0:
                 break
         if best is not None and best.path is not None and complete and best.prize >= lowest:
-            return _cheapest(network, pruned, search, best, goals[worth == best.prize])
+            return _cheapest(network, pruned, search, best, goals[prizes == best.prize])
         if not complete:
             break
         first, size = after, size * 4
-        most = int(worth[after]) if after < len(goals) else -1
+        most = int(prizes[after]) if after < len(goals) else -1
     if best is None or best.path is None:
         return no_solution(network, proven=most < 0)
     return make_solution(network, best.path, best.charges, max(most, best.prize), 0)
@@ -216,70 +231,75 @@ def _by_prize(
 def _cheapest(
     network: StepNetwork, pruned: Pruned, search: Search, best: LabelSolution, goals: Vector
 ) -> LabelSolution:
-    """The cheapest path to any of the goals, which are all of those with the best prize."""
+    """Return the cheapest path to any of the goals, which are all goals with the best prize."""
     search.report_bounds(prize_bound=best.prize)
     if network.objective is Objective.PRIZE:
         return make_solution(network, best.path or (), best.charges, best.prize, 0)
-    space = _with_tables(network, pruned, sets_towards(goals, len(network.prize)))
-    cheapest = _widening(network, space, search, WIDTHS, best)
+    beams = _search_with_tables(network, pruned, subsets_of(goals, len(network.prize)))
+    cheapest = _widen(network, beams, search, WIDTHS, best)
     return make_solution(network, cheapest.path or (), cheapest.charges, best.prize, cheapest.bound)
 
 
-def _better(
-    network: StepNetwork, search: Search, beam: Beam, best: LabelSolution | None
+def _offer_if_better(
+    network: StepNetwork, search: Search, beam: BeamResult, best: LabelSolution | None
 ) -> LabelSolution | None:
-    """The better of a beam's path and the best so far."""
+    """Offer a beam's path if it is better than the best one, and return the better of the two."""
     if beam.path is None:
         return best
-    one = make_solution(network, beam.path, beam.charges, int(network.prize.sum()), 0)
-    if not one.better_than(best):
+    solution = make_solution(network, beam.path, beam.charges, int(network.prize.sum()), 0)
+    if not solution.better_than(best):
         return best
-    search.offer(one.path or (), one.charges)
-    return one
+    search.offer(solution.path or (), solution.charges)
+    return solution
 
 
-def _goals(network: StepNetwork, pruned: Pruned, layers: list[Layer]) -> tuple[Vector, Vector]:
-    """The sets that may be all that is made, and their prizes, which fall: what can't be made in
-    time is not among them, the time for charging what is used at least included."""
+def _goal_sets(network: StepNetwork, pruned: Pruned, layers: list[Layer]) -> tuple[Vector, Vector]:
+    """Return the sets that a route may make in time, and their prizes, in descending order.
+
+    The check of the time leaves out windows and the battery's state, but includes the least time to
+    charge the energy used.
+    """
     limit, m = min(network.limit, int(INF) - 1), network.size
-    arcs = arcs_of(network, pruned, shortest(network))
-    goals, end = _soonest_ends(network, arcs, layers)
-    may = may_end(network, Bits(network, pruned), 0, goals)
+    arcs = allowed_arcs(network, pruned, least_arc_times(network))
+    goals, end = _earliest_ends(network, arcs, layers)
+    may = can_end(network, StepBits(network, pruned), 0, goals)
     goals = goals[may & (end <= limit)]
     battery = network.problem.battery
     if battery is not None and network.limit < INF:
-        spared = battery.capacity - battery.used
-        arcs = arcs_of(network, pruned, _times_and_energies(network))
-        late = np.full(m, min(limit + spared, int(INF) - 1), np.int64)
-        charged = soonest(network, Bits(network, pruned), arcs, np.zeros(m, np.int64), late)
-        whole, end = _soonest_ends(network, arcs, charged)
-        goals = np.intersect1d(goals, whole[end - spared <= limit], assume_unique=True)
+        available = battery.capacity - battery.used
+        arcs = allowed_arcs(network, pruned, _times_and_energies(network))
+        latest = np.full(m, min(limit + available, int(INF) - 1), np.int64)
+        charged = iter_layers(
+            network, StepBits(network, pruned), arcs, np.zeros(m, np.int64), latest
+        )
+        masks, end = _earliest_ends(network, arcs, charged)
+        goals = np.intersect1d(goals, masks[end - available <= limit], assume_unique=True)
     goals = np.sort(goals)
-    worth = prizes(network, goals)
-    order = np.argsort(-worth, kind="stable")
-    return goals[order], worth[order]
+    prizes = set_prizes(network, goals)
+    order = np.argsort(-prizes, kind="stable")
+    return goals[order], prizes[order]
 
 
-def _soonest_ends(
+def _earliest_ends(
     network: StepNetwork, arcs: NDArray[np.int32], layers: Iterable[Layer]
 ) -> tuple[Vector, Vector]:
-    """All sets that can be made, and their soonest ends."""
+    """Return all sets of the layers, with the empty one, and their earliest end times."""
     m = network.size
     masks, at_end = [np.zeros(1, np.int64)], [arcs[m:, m].astype(np.int64)]
     for layer in layers:
         masks.append(layer.masks)
-        at_end.append(ends(network, arcs, layer))
+        at_end.append(end_times(network, arcs, layer))
     return np.concatenate(masks), np.concatenate(at_end)
 
 
 def _times_and_energies(network: StepNetwork) -> NDArray[np.int64]:
-    """The least time and energy together that each arc takes, straight or by a charger."""
+    """Return the least sum of time and energy of each arc, straight or by a charger."""
     battery = network.problem.battery
     assert battery is not None
     assert network.energy is not None
     both = plus(network.time, network.energy)
     for station in network.chargers:
-        way = plus(station.to, station.to_energy)[:, None]
-        onward = plus(station.out, station.out_energy)[None, :]
-        both = np.minimum(both, plus(way + onward, battery.overhead))
+        inbound = plus(station.to, station.to_energy)[:, None]
+        outbound = plus(station.out, station.out_energy)[None, :]
+        both = np.minimum(both, plus(inbound + outbound, battery.overhead))
     return both

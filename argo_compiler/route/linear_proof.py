@@ -19,7 +19,7 @@ from argo_compiler.route.cp_solver import run_solver, solver_for, spend
 from argo_compiler.route.linear_relaxation import LinearRelaxation
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import Objective, RouteProblem
-from argo_compiler.route.pruning import horizon, shortest
+from argo_compiler.route.pruning import horizon, least_arc_times
 from argo_compiler.route.search import Search
 
 _ABOVE = 0.005
@@ -55,7 +55,7 @@ class LinearProof:
         best = search.best
         some = not network.selective or (best is not None and best.prize >= search.prize_bound)
         if network.objective is not Objective.PRIZE and some:
-            times = shortest(network) + np.append(network.service, 0)
+            times = least_arc_times(network) + np.append(network.service, 0)
             least = best.prize if best is not None and network.selective else 0
             _Stage(search, times, least).run(whole=whole)
 

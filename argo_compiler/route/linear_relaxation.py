@@ -18,7 +18,7 @@ from ortools.linear_solver import pywraplp
 
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import NEVER
-from argo_compiler.route.pruning import Pruned, shortest
+from argo_compiler.route.pruning import Pruned, least_arc_times
 from argo_compiler.route.search import Search
 
 Numbers = NDArray[np.int64]
@@ -84,7 +84,7 @@ class LinearRelaxation:
         self._network = network
         self._home = np.append(network.step, len(network.prize))
         self._must = np.append(network.mandatory, True)
-        times = shortest(network) + np.append(network.service, 0)[None, :]
+        times = least_arc_times(network) + np.append(network.service, 0)[None, :]
         self._arcs = pruned.arcs.copy()
         # The way straight to the end.
         self._arcs[m, m] = not network.mandatory.any() and times[m, m] < NEVER

@@ -1,9 +1,9 @@
-"""Sets of steps as bits of whole numbers.
+"""Sets of steps as bits of integers.
 
-After k of the s steps of a route that leaves nothing out, a step with p steps before it and f after
-it in the order is surely made if k >= s - f, and surely not if k <= p. Only between does it need a
-bit, and steps whose times of doubt do not overlap share one: so strongly ordered problems of
-hundreds of steps fit into 62 bits.
+Consider a route with all s steps, and a step with p predecessors and f successors. After k steps
+of the route, the step is certainly made if k >= s - f, and certainly not made if k <= p. It needs a
+bit only for the values of k between, where it is undecided. Steps that are undecided for different
+values of k share a bit. So problems of hundreds of steps with many precedences fit into 62 bits.
 """
 
 from dataclasses import dataclass
@@ -21,55 +21,55 @@ MOST_BITS = 62
 
 @dataclass(frozen=True, eq=False)
 class LayerRules:
-    """What holds for sets of k steps: which nodes may come next. Arrays have an entry a node."""
+    """Rules for the nodes that may follow sets of k steps; arrays have one entry per node."""
 
     bit: Masks
-    """of the node's step, among sets of k + 1 steps; 0: it is in all of them that follow"""
+    """bit of the node's step in sets of k + 1 steps; 0: all sets with the node contain the step"""
     needs: Masks
-    """bits of sets of k steps"""
+    """bits of the steps that the node needs, in sets of k steps"""
     ruled_out_by: Masks
-    """bits of sets of k steps; that of the step itself included"""
+    """bits of the steps that rule out the node, in sets of k steps, with that of its own step"""
     open: NDArray[np.bool_]
-    """whether the node can come next at all"""
-    kept: np.int64
-    """the bits that stay as they are from sets of k to sets of k + 1 steps; others begin as 0"""
+    """true if the node may follow some set"""
+    unchanged: np.int64
+    """bits with the same meaning in sets of k and of k + 1 steps; other bits start as 0"""
 
     def rows(self, masks: Masks, node: int) -> NDArray[np.int64]:
-        """The rows of the sets after which the node may come."""
+        """Return the rows of the sets that the node may follow."""
         if not self.open[node]:
             return np.zeros(0, np.int64)
         needs, ruled = self.needs[node], self.ruled_out_by[node]
         return np.flatnonzero(((masks & needs) == needs) & ((masks & ruled) == 0))
 
     def after(self, masks: Masks, node: int) -> Masks:
-        """The sets with the node's step."""
-        return np.asarray((masks & self.kept) | self.bit[node])
+        """Return the sets with the node's step added."""
+        return np.asarray((masks & self.unchanged) | self.bit[node])
 
 
-class Bits:
-    """The bits of a network's steps."""
+class StepBits:
+    """Bits of a network's steps, which caches the rules for sets of each size."""
 
     def __init__(self, network: StepNetwork, pruned: Pruned) -> None:
         self._network, self._pruned = network, pruned
         count = len(network.prize)
         self.shared = count > MOST_BITS and not network.selective
         self._from = np.zeros(count, np.int64)
-        """of each step, how many steps the smallest sets have that it may be in, less 1"""
+        """largest size of the sets that cannot contain each step"""
         self._to = np.full(count, count + 1, np.int64)
-        """how many steps the smallest sets have that it must be in"""
+        """smallest size of the sets that all contain each step"""
         if self.shared:
             self._from = pruned.needs.sum(axis=0)
             self._to = count - pruned.needs.sum(axis=1)
-        self._number = self._numbers()
-        self._of_layer: dict[int, LayerRules] = {}
+        self._number = self._assign_numbers()
+        self._rules_by_size: dict[int, LayerRules] = {}
 
     @property
     def fits(self) -> bool:
-        """Whether there are bits enough."""
+        """True if the bits of all steps fit into a mask."""
         return int(self._number.max(initial=-1)) < MOST_BITS
 
-    def _numbers(self) -> Masks:
-        """The number of each step's bit: the first that is free when the step may first be made."""
+    def _assign_numbers(self) -> Masks:
+        """Return the number of each step's bit: the first that is free when it is undecided."""
         if not self.shared:
             return np.arange(len(self._from))
         free_from: list[int] = []
@@ -88,16 +88,16 @@ class Bits:
                 break  # they don't fit, whatever follows
         return numbers
 
-    def in_doubt(self, size: int) -> NDArray[np.bool_]:
-        """The steps that have a bit in sets of that size: those that only some of them have."""
+    def undecided(self, size: int) -> NDArray[np.bool_]:
+        """Return, for each step, whether only some sets of `size` contain it: then it has a bit."""
         return np.asarray((self._from < size) & (size < self._to))
 
-    def surely(self, size: int) -> NDArray[np.bool_]:
-        """The steps that all sets of that size have."""
+    def certain(self, size: int) -> NDArray[np.bool_]:
+        """Return, for each step, whether all sets of `size` contain it."""
         return np.asarray(size >= self._to)
 
     def mask(self, steps: NDArray[np.bool_]) -> np.int64:
-        """The bits of some steps."""
+        """Return the bits of some steps."""
         total = np.int64(0)
         for number in self._number[steps].tolist():
             total |= np.int64(1) << np.int64(number)
@@ -107,23 +107,25 @@ class Bits:
         return np.int64(1) << np.int64(self._number[step])
 
     def layer(self, size: int) -> LayerRules:
-        """The rules for sets of that size."""
-        if size not in self._of_layer:
-            self._of_layer[size] = self._rules(size)
-        return self._of_layer[size]
+        """Return the rules for sets of `size`."""
+        if size not in self._rules_by_size:
+            self._rules_by_size[size] = self._rules(size)
+        return self._rules_by_size[size]
 
     def _rules(self, size: int) -> LayerRules:
         network, pruned = self._network, self._pruned
-        doubt, sure = self.in_doubt(size), self.surely(size)
-        doubt_after = self.in_doubt(size + 1)
-        bit, needs, ruled = (np.zeros(len(doubt), np.int64) for _ in range(3))
-        may = pruned.steps & ~sure & (self._from <= size)
-        may[may] &= ~pruned.needs[~doubt & ~sure][:, may].any(axis=0)
-        may[may] &= ~pruned.before[may][:, sure].any(axis=1)
+        undecided, certain = self.undecided(size), self.certain(size)
+        undecided_next = self.undecided(size + 1)
+        bit, needs, ruled = (np.zeros(len(undecided), np.int64) for _ in range(3))
+        may = pruned.steps & ~certain & (self._from <= size)
+        may[may] &= ~pruned.needs[~undecided & ~certain][:, may].any(axis=0)
+        may[may] &= ~pruned.before[may][:, certain].any(axis=1)
         for s in np.flatnonzero(may).tolist():
-            bit[s] = self.bit(s) if doubt_after[s] else 0
-            needs[s] = self.mask(pruned.needs[:, s] & doubt)
-            ruled[s] = self.mask(pruned.before[s] & doubt) | (self.bit(s) if doubt[s] else 0)
+            bit[s] = self.bit(s) if undecided_next[s] else 0
+            needs[s] = self.mask(pruned.needs[:, s] & undecided)
+            ruled[s] = self.mask(pruned.before[s] & undecided) | (
+                self.bit(s) if undecided[s] else 0
+            )
         step = network.step
-        kept = self.mask(doubt & doubt_after)
-        return LayerRules(bit[step], needs[step], ruled[step], may[step], kept)
+        unchanged = self.mask(undecided & undecided_next)
+        return LayerRules(bit[step], needs[step], ruled[step], may[step], unchanged)

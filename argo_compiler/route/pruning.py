@@ -1,4 +1,4 @@
-"""Which steps and arcs no route can have: what the solvers need not look at."""
+"""Pruning of a network: removal of the steps and arcs that no route can have."""
 
 from dataclasses import dataclass
 
@@ -9,33 +9,33 @@ from argo_compiler.route.network import StepNetwork, compose
 from argo_compiler.route.problem import NEVER
 
 _MOST_NODES = 300
-"""whose shortest paths take no time worth speaking of"""
+"""highest number of nodes whose shortest paths take almost no time to compute"""
 
 
 @dataclass(frozen=True, eq=False)
 class Pruned:
-    """What is left of a network."""
+    """Steps, arcs, time windows and precedences of a network after pruning."""
 
     arcs: NDArray[np.bool_]
-    """shape (m + 1, m + 1): whether column may come right after row"""
+    """true if column may come directly after row, shape (m + 1, m + 1)"""
     steps: NDArray[np.bool_]
-    """whether a step may be made"""
+    """true if a route may make the step, shape (s,)"""
     earliest: NDArray[np.int64]
-    """when each node may begin at the soonest, shape (m,)"""
+    """earliest begin of each node, shape (m,)"""
     latest: NDArray[np.int64]
-    """when it must begin at the latest"""
+    """latest begin of each node, shape (m,)"""
     needs: NDArray[np.bool_]
-    """`StepNetwork.needs` and what the windows add to it"""
+    """`StepNetwork.needs`, and the needs that follow from the windows"""
     before: NDArray[np.bool_]
-    """`StepNetwork.before` and what the windows add to it"""
+    """`StepNetwork.before`, and the order that follows from the windows"""
     possible: bool
-    """false: there is no route"""
+    """false if the pruning proves that there is no route"""
 
 
 def prune(network: StepNetwork) -> Pruned:
-    """What is left when ways, precedence, windows and the limit are looked at arc by arc."""
+    """Prune the arcs and steps that travel times, precedences, windows or the limit rule out."""
     m, step = network.size, network.step
-    best = shortest(network)
+    best = least_arc_times(network)
     earliest, latest = _windows(network, best)
     arcs: NDArray[np.bool_] = best < NEVER
     needs, before = _orders(network, earliest, latest)
@@ -43,8 +43,8 @@ def prune(network: StepNetwork) -> Pruned:
     alive = steps[step] & (earliest <= latest)
     np.fill_diagonal(arcs, False)
     arcs[:m, :m] &= step[:, None] != step[None, :]
-    # Right after `row`, `column` must not be one that rules it out, nor one that some step between
-    # them is needed for.
+    # `column` can't come directly after `row` if it must come before `row`, or if it needs a step
+    # between the two.
     between = compose(needs, needs)
     apart: NDArray[np.bool_] = np.logical_or(before.T, between)
     arcs[:m, :m] &= ~apart[step][:, step]
@@ -58,7 +58,7 @@ def prune(network: StepNetwork) -> Pruned:
     reachable: NDArray[np.bool_] = np.zeros(len(steps), np.bool_)
     reachable[step[arcs[:, :m].any(axis=0) & arcs[:m, :].any(axis=1)]] = True
     steps &= reachable
-    # `needs` is closed: what needs a step that can't be made can't be made either.
+    # `needs` is transitively closed, so one pass removes all steps that need a removed one.
     steps &= ~(needs & ~steps[:, None]).any(axis=0)
     arcs[:m, :] &= steps[step][:, None]
     arcs[:, :m] &= steps[step][None, :]
@@ -69,13 +69,15 @@ def prune(network: StepNetwork) -> Pruned:
 def _orders(
     network: StepNetwork, earliest: NDArray[np.int64], latest: NDArray[np.int64]
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """The order between steps, and what follows from windows: if `column` can't be begun any more
-    when `row` has been made at its soonest, it comes before it."""
+    """Return the needs and the order between steps, with those that follow from the windows.
+
+    If `column` is too late even after `row` at its earliest, it must come before `row`.
+    """
     if not network.windowed and network.limit >= NEVER:
         return network.needs, network.before
     m, count = network.size, len(network.prize)
-    apart = paths(network)
-    late = earliest[:, None] + network.service[:, None] + apart > latest[None, :]
+    distances = least_path_times(network)
+    late = earliest[:, None] + network.service[:, None] + distances > latest[None, :]
     too_late = np.ones((count, count), np.bool_)
     for i in range(m):
         np.logical_and.at(too_late, (network.step[i], network.step), late[i])
@@ -89,33 +91,35 @@ def _orders(
         needs = wider
 
 
-def shortest(network: StepNetwork) -> NDArray[np.int64]:
-    """The times of the arcs, or by a charger where that is shorter than straight, without the time
-    of charging itself: no way from row to column takes less."""
+def least_arc_times(network: StepNetwork) -> NDArray[np.int64]:
+    """Return the least time of each arc, straight or by a charger without the time of charging.
+
+    It is a lower bound on the time from row to column, shape (m + 1, m + 1).
+    """
     best = network.time.copy()
     battery = network.problem.battery
     for station in network.chargers:
         assert battery is not None
-        by_it = station.to[:, None] + battery.overhead + station.out[None, :]
-        best = np.minimum(best, np.where(by_it >= NEVER, NEVER, by_it))
+        by_charger = station.to[:, None] + battery.overhead + station.out[None, :]
+        best = np.minimum(best, np.where(by_charger >= NEVER, NEVER, by_charger))
     return best
 
 
 def horizon(network: StepNetwork) -> int:
-    """A time when every route that does not wait longer than it must is at the end."""
-    return min(network.limit, longest(network))
+    """Return a time at which each route without unnecessary waiting has reached the end."""
+    return min(network.limit, unlimited_horizon(network))
 
 
-def longest(network: StepNetwork) -> int:
-    """The same without the limit."""
-    arcs = shortest(network)
+def unlimited_horizon(network: StepNetwork) -> int:
+    """Return the horizon of a network without its limit on the duration."""
+    arcs = least_arc_times(network)
     arcs = np.where(arcs >= NEVER, 0, arcs)
     total = int(np.append(network.service, 0).sum() + arcs.max(axis=0).sum())
     battery = network.problem.battery
     if battery is not None:
-        ways = [int(np.where(s.to >= NEVER, 0, s.to).max()) for s in network.chargers]
+        tos = [int(np.where(s.to >= NEVER, 0, s.to).max()) for s in network.chargers]
         outs = [int(np.where(s.out >= NEVER, 0, s.out).max()) for s in network.chargers]
-        charge = battery.capacity + battery.overhead + max(ways, default=0) + max(outs, default=0)
+        charge = battery.capacity + battery.overhead + max(tos, default=0) + max(outs, default=0)
         total += charge * (len(network.prize) + 1)
     direct = int(network.time[:, :].max(initial=0, where=network.time < NEVER))
     total += direct * (len(network.prize) + 1)
@@ -123,8 +127,8 @@ def longest(network: StepNetwork) -> int:
 
 
 def _possible_steps(needs: NDArray[np.bool_], before: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Without the steps that would have to come before themselves, or need one that must."""
-    # Of a circle of steps that are needed for each other, closed over, each needs itself.
+    """Return, for each step, whether neither it nor a step it needs must come before itself."""
+    # In the transitive closure, each step of a cycle needs itself.
     impossible = np.diagonal(before | needs)
     impossible = impossible | (needs & impossible[:, None]).any(axis=0)
     possible: NDArray[np.bool_] = ~impossible
@@ -134,52 +138,62 @@ def _possible_steps(needs: NDArray[np.bool_], before: NDArray[np.bool_]) -> NDAr
 def _windows(
     network: StepNetwork, best: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """When each node may begin: no sooner than on the shortest way from the start, and no later
-    than leaves time to get to the end. Ways need not keep the triangle inequality, so these are
-    shortest paths, with services."""
+    """Return the earliest and the latest begin of each node.
+
+    The earliest is not before the end of the shortest path from the start; the latest leaves the
+    time of the shortest path to the end. As arcs may violate the triangle inequality, these are
+    shortest paths over any nodes, with their services.
+    """
     m = network.size
     graph = best.astype(np.float64)
     graph[:m, :] += network.service[:, None]
     graph[best >= NEVER] = np.inf
-    # In the node m start and end are one; no path has a reason to go through it.
-    ahead = _lengths(graph[m, :m], graph[:m, :m])
-    back = _lengths(graph[:m, m], graph[:m, :m].T)
-    soonest = np.where(np.isfinite(ahead), ahead, NEVER).astype(np.int64)
-    left = np.where(np.isfinite(back), back, NEVER).astype(np.int64)
-    earliest = np.maximum(network.earliest[network.step], soonest)
+    # Node m is both the start and the end, so no path needs to go through it.
+    from_start = _shortest_path_lengths(graph[m, :m], graph[:m, :m])
+    to_end = _shortest_path_lengths(graph[:m, m], graph[:m, :m].T)
+    arrival = np.where(np.isfinite(from_start), from_start, NEVER).astype(np.int64)
+    remaining = np.where(np.isfinite(to_end), to_end, NEVER).astype(np.int64)
+    earliest = np.maximum(network.earliest[network.step], arrival)
     limit = network.limit
-    home = (
-        np.where(left >= NEVER, -1, limit - left)
+    latest = (
+        np.where(remaining >= NEVER, -1, limit - remaining)
         if limit < NEVER
-        else np.where(left >= NEVER, -1, NEVER)
+        else np.where(remaining >= NEVER, -1, NEVER)
     )
-    return earliest, np.minimum(network.latest[network.step], home)
+    return earliest, np.minimum(network.latest[network.step], latest)
 
 
-def paths(network: StepNetwork) -> NDArray[np.int64]:
-    """At most the least time from the end of one node to the beginning of another, by whatever
-    nodes, shape (m, m); that itself where there are not more than _MOST_NODES."""
+def least_path_times(network: StepNetwork) -> NDArray[np.int64]:
+    """Return lower bounds on the time from the end of one node to the begin of another.
+
+    Shape (m, m), by paths over any nodes. The bounds are exact for up to _MOST_NODES nodes.
+    """
     m = network.size
-    least = shortest(network)[:m, :m]
-    if m > _MOST_NODES:  # by another node, a way has at least two arcs
+    least = least_arc_times(network)[:m, :m]
+    if m > _MOST_NODES:  # a path over another node has at least two arcs
         np.fill_diagonal(least, NEVER)
         out = least.min(axis=1) + network.service.min()
         by_others: NDArray[np.int64] = out[:, None] + least.min(axis=0)
         return np.minimum(np.minimum(least, by_others), NEVER)
     for through in range(m):
-        by_it = least[:, through, None] + network.service[through] + least[None, through, :]
-        np.minimum(least, by_it, out=least)
+        by_node = least[:, through, None] + network.service[through] + least[None, through, :]
+        np.minimum(least, by_node, out=least)
     return np.minimum(least, NEVER)
 
 
-def _lengths(first: NDArray[np.float64], onward: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The lengths of the shortest paths, from the lengths of their first arcs and of the others
-    (E. W. Dijkstra, Numerische Mathematik 1, 1959)."""
+def _shortest_path_lengths(
+    first: NDArray[np.float64], onward: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Compute the lengths of the shortest paths, by Dijkstra's algorithm.
+
+    `first`: lengths of the first arcs; `onward`: lengths of the other arcs (E. W. Dijkstra,
+    Numerische Mathematik 1, 1959).
+    """
     length, ahead = first.copy(), first.copy()
     for _ in range(len(length)):
         at = int(ahead.argmin())
         ahead[at] = np.inf
-        by_it = length[at] + onward[at]
-        ahead = np.where(by_it < length, by_it, ahead)
-        length = np.minimum(length, by_it)
+        by_node = length[at] + onward[at]
+        ahead = np.where(by_node < length, by_node, ahead)
+        length = np.minimum(length, by_node)
     return length

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.path_timing import PathTiming
 from argo_compiler.route.problem import NEVER, RouteProblem
-from argo_compiler.route.pruning import Pruned, shortest
+from argo_compiler.route.pruning import Pruned, least_arc_times
 from argo_compiler.route.search import Search
 
 Path = tuple[int, ...]
@@ -59,7 +59,7 @@ class LocalSearch:
         self._network, self._pruned = network, pruned
         self._timing = PathTiming(network)
         self._rng = np.random.default_rng(seed)
-        self._near = shortest(network)
+        self._near = least_arc_times(network)
         self._step = network.step.tolist()
         self._needs = [set(np.flatnonzero(column).tolist()) for column in pruned.needs.T]
         self._after = [set(np.flatnonzero(row).tolist()) for row in pruned.before]

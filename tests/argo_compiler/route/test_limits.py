@@ -8,7 +8,7 @@ from scipy.sparse.csgraph import shortest_path
 
 from argo_compiler.route import Precedence, RouteProblem, evaluate, suggest_route
 from argo_compiler.route.network import network
-from argo_compiler.route.pruning import paths
+from argo_compiler.route.pruning import least_path_times
 from argo_compiler.route.stop import FirstFeasible
 from benchmarks.routes_limits import KINDS, places
 
@@ -96,7 +96,7 @@ def test_ways_between_nodes_are_never_longer_than_the_shortest(size: int) -> Non
     service = np.array([visit.service for visit in problem.visits])
     arcs = travel[:size, :size] + service[:, None]
     shortest = shortest_path(arcs) - service[:, None]
-    found = paths(network(problem, lambda step: tuple(step.parts)))
+    found = least_path_times(network(problem, lambda step: tuple(step.parts)))
     between = ~np.eye(size, dtype=np.bool_)
     assert (found <= shortest)[between].all()
     assert (found <= travel[:size, :size])[between].all()

@@ -64,10 +64,10 @@ def progress_now(machine: Machine, now: float, by_hand: Sequence[ByHand]) -> Pro
     Raises Conflict if an action still runs, or the mission has ended or has nothing left to do.
     """
     if machine.finished or machine.outcome is not None:
-        raise Conflict("the mission has ended: there is nothing that could go on")
+        raise Conflict("the mission has ended: there is nothing to continue")
     if machine.running is not None or not machine.paused:
         raise Conflict(
-            "the mission goes on: take the robot over, and let time pass until no action runs"
+            "the mission is running: take the robot over, and let time pass until no action runs"
         )
     progress = machine.progress()
     if progress.active is None:

@@ -73,7 +73,7 @@ class OpenMachine:
         Raises Conflict if an action runs, DiagnosticError if the mission has errors with the task.
         """
         if (running := self.running) is not None:
-            raise Conflict(f"task '{running.name}' is still under way")
+            raise Conflict(f"task '{running.name}' is still running")
         *earlier, last = self.mission.tasks
         linked = last.model_copy(update={"transitions": (Transition(target=task.name),)})
         mission = self.mission.model_copy(update={"tasks": (*earlier, linked, task)})

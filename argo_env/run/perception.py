@@ -74,7 +74,7 @@ class Perception:
                         found.append(self._anomaly(watch, detection, now))
         return tuple(found)
 
-    def update_steps(self, first: int, last: int, charges: tuple[float, float]) -> set[int]:
+    def steps_with_updates(self, first: int, last: int, charges: tuple[float, float]) -> set[int]:
         """Return the numbers of the steps in which an update may find or change anything.
 
         Args:

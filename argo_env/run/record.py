@@ -205,7 +205,7 @@ class Anomaly(Model):
             return f"on {where(self.floor, self.place)}"
         if self.noticed_from is None:
             return ""
-        prefix = "told while the robot was on" if self.is_reported else "noticed from"
+        prefix = "reported while the robot was on" if self.is_reported else "noticed from"
         return f"{prefix} {where(self.floor, self.noticed_from)}"
 
     def is_end_of(self, other: "Anomaly") -> bool:
@@ -345,7 +345,7 @@ class GivenValue(Model):
     def in_words(self) -> str:
         note = "" if self.normal else ", which is abnormal"
         return (
-            f"told that {self.name} (#{self.checkpoint}) shows {self.value:.4g} {self.unit}{note}"
+            f"reported: {self.name} (#{self.checkpoint}) shows {self.value:.4g} {self.unit}{note}"
         )
 
 

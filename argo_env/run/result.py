@@ -231,10 +231,10 @@ def make_record(
             TraceStep(t=e.time, source=e.source, target=e.target, cause=e.why) for e in trace
         ),
         path=tuple(log.path),
-        interruptions=interruptions.all(log.last.t),
+        interruptions=interruptions.interruptions(log.last.t),
         waits=wait_runs(spec.mission, visits, log.last.t),
         windows=windows,
-        rounds=rounds.all(),
+        rounds=rounds.rounds(),
         given_values=tuple(log.given_values),
         mishaps=tuple(log.mishaps),
         anomalies=tuple(log.anomalies),

@@ -1,6 +1,6 @@
-"""The seam to the robot: all that a run asks of what carries its actions out.
+"""Interface of a run to the robot that carries out its actions.
 
-`Vehicle` is the simulated robot, `argo_env.remote.RemoteRobot` one that is somewhere else.
+`Vehicle` is the simulated robot, `argo_env.remote.RemoteRobot` a real one in another place.
 """
 
 from collections.abc import Sequence
@@ -22,43 +22,45 @@ ActionEnd = ActionSucceeded | ActionFailed | ActionStopped
 
 @dataclass(frozen=True)
 class Sensed:
-    """What came of one time step."""
+    """Result of one time step: the end of the action, a reading and anomalies, if any."""
 
     end: ActionEnd | None = None
-    """of the action, if it has ended"""
+    """end of the action, if it has ended"""
     reading: Reading | None = None
     found: tuple[Anomaly, ...] = ()
 
 
 class RobotAction(Protocol):
-    """The action of a task, from its start to its end."""
+    """Protocol of the action of a task, from its start to its end."""
 
     arrival_path: Path | None
-    """the path that the robot came by, where that is known"""
+    """the path by which the robot reached its pose, if known"""
 
     @property
     def task(self) -> Task: ...
     @property
     def path(self) -> Path | None:
-        """the way there, where it is known"""
+        """Path to the pose of the task, if known."""
 
     def cancel(self, reason: str, interrupted: bool) -> None:
-        """Ends the action as soon as it has cleaned up, which a following step tells."""
+        """Cancel the action: it cleans up, and a following step reports its end."""
 
     def detour(self, setup: RunSetup) -> None:
-        """Goes on with a setup whose navigator knows of something new in the way."""
+        """Continue with a setup whose navigator knows of a new blockage."""
 
     def to_task_run(self, end: ActionEnd, now: float, distance: float, climbed: float) -> TaskRun:
-        """The action as it goes into the record: it ended at `now` (s), after the robot's whole way
-        of `distance` and `climbed` (m)."""
+        """Return the entry for the record of the action, which ended at `now` (s).
+
+        `distance` and `climbed` (m) are those of the robot since the mission's start.
+        """
 
 
 class RobotPower(Protocol):
-    """What the robot lives on."""
+    """Protocol of the robot's power supply."""
 
     @property
     def charge(self) -> float | None:
-        """of the battery, 0 to 1; None: not known, or without end"""
+        """Charge of the battery, 0 to 1; None: not known, or the power never ends."""
 
     @property
     def empty(self) -> bool: ...
@@ -67,49 +69,56 @@ class RobotPower(Protocol):
 
 
 class AnyRobot(Protocol):
-    """A robot that carries out one action at a time. Times are s of the run."""
+    """Protocol of a robot that carries out one action at a time.
+
+    Times are in s since the mission's start.
+    """
 
     odometry: Odometry
-    """what its way adds up to"""
+    """sums of the robot's motion"""
 
     @property
     def setup(self) -> RunSetup:
-        """the site as the robot knows it, its time step and its pose"""
+        """Run setup: the site as the robot knows it, the drive with its time step and pose."""
 
     @property
     def supply(self) -> RobotPower: ...
     @property
     def silent_since(self) -> float | None:
-        """s, since when nothing was heard of it: what it told last may not be so any more; None:
-        it is heard"""
+        """Time in s since when the robot sends nothing; its last state may be outdated then.
+
+        None if the robot is connected.
+        """
 
     def place(self, pose: BodyPose, now: float) -> None:
-        """The run begins or goes on, at `now`; a robot that can be put somewhere stands at `pose`
-        from now on."""
+        """Set the robot to `pose` at the start of a run, or when it continues, at time `now`.
+
+        A real robot stays where it is.
+        """
 
     def apply_initial_state(self, initial: InitialState) -> None:
-        """The run goes on from where another one stood."""
+        """Set the state at the start of a run that continues another run."""
 
     def restore(self, last: Entry) -> None:
-        """The run goes on after the entry, as its process has died."""
+        """Restore the state after the last entry of a run whose process has died."""
 
     def restore_anomalies(self, reported: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
-        """These were found before `now`, with the robot at these poses."""
+        """Restore anomalies that were found before `now`, each with the robot's pose then."""
 
     def update_faults(self, now: float) -> None:
-        """Lets all begin and end that is due, where faults are simulated."""
+        """Begin and end the simulated faults that are due."""
 
     def avoid(self, blockages: Sequence[Blockage]) -> None:
-        """From now on paths keep clear of these as well."""
+        """Make later paths keep clear of these blockages as well."""
 
     def start(self, command: StartAction, now: float, arrival_path: Path | None) -> RobotAction:
-        """Starts an action; no other one is under way."""
+        """Start an action; no other action may be running."""
 
     def advance(self, step: int, now: float, action: RobotAction | None) -> Sensed:
-        """Lets the time step of that number pass, up to `now`, with `action` under way."""
+        """Let time step number `step` pass, up to `now`, with `action` running."""
 
     def state(self) -> dict[str, Any]:
-        """What an entry tells of it, from its pose to what it touches."""
+        """Return the fields of an entry that hold the robot's state, from its pose to contacts."""
 
     def clear_reported(self) -> None:
-        """What the last `state` told of mishaps and contacts is not told again."""
+        """Clear the mishaps and ended contacts that `state` has already reported."""

@@ -1,5 +1,4 @@
-"""Requests to a run that goes on, refusals of those that make no sense, and the actions of a person
-who has taken the robot over."""
+"""Commands to a current run, their checks, and the supervision of the robot by a person."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -27,41 +26,46 @@ from argo_env.run.record import TaskRun
 from argo_env.run.run_setup import RunSetup
 from argo_env.site import Site
 
-_DRIVEN = (Action.WAYPOINT, Action.MEASURE)
+_ROBOT_ACTIONS = (Action.WAYPOINT, Action.MEASURE)
 
 
 class Supervision:
-    """Follows the entries of a run. Holds whether a person has the robot, whether an action that
-    they asked for is under way, and those that have been done."""
+    """Supervision of the robot by a person, which changes with the entries of a run.
+
+    It holds whether a person has the robot, and the actions by hand: the running and the done ones.
+    """
 
     def __init__(self, mission: Mission) -> None:
         self.taken_over = False
         """whether a person has taken the robot over, and not given it back"""
         self.acting = False
-        """whether an action by hand is under way"""
+        """whether an action by hand is running"""
         self._mission = mission
         self._results: list[tuple[float, ByHand]] = []
 
     def results_at(self, now: float) -> tuple[ByHand, ...]:
-        """The mission's tasks done by hand since the take-over, told at time `now` (s)."""
-        return tuple(one.model_copy(update={"age": now - end}) for end, one in self._results)
+        """Return the mission's tasks done by hand since the take-over, with ages at `now` (s)."""
+        return tuple(result.model_copy(update={"age": now - end}) for end, result in self._results)
 
     def end_action(self, run: TaskRun, entry: Entry) -> None:
-        """An action by hand has ended."""
+        """End the action by hand; it counts as done if it succeeded and is a task of the mission.
+
+        `run` is its entry for the record, and `entry` the log's entry with its reading.
+        """
         self.acting = False
         if run.outcome != "done" or self._mission.task(run.task) is None:
             return
         reading = entry.reading
-        done = ByHand(
+        result = ByHand(
             task=run.task,
             value=None if reading is None else reading.value,
             abnormal=reading is not None and not reading.normal,
             duration=run.end - run.start,
         )
-        self._results.append((run.end, done))
+        self._results.append((run.end, result))
 
     def update(self, kind: str, machine: Machine) -> None:
-        """The machine was told an event of that kind."""
+        """Update the supervision after the machine has handled an event of this kind."""
         if kind == "take_over" and machine.paused:
             self.taken_over = True
         elif kind in ("resume", "give_back") or not machine.paused:
@@ -70,8 +74,10 @@ class Supervision:
 
 
 def check_by_hand(task: Task, mission: Mission, site: Site) -> None:
-    """Raises Invalid for a task that no robot carries out for a person, NotFound for a checkpoint
-    that the site does not have."""
+    """Raise Invalid for a task that can't be done by hand.
+
+    Raises NotFound for a checkpoint that the site does not have.
+    """
     if not isinstance(task, Task):
         raise Invalid(f"{task!r} is no task: give one that drives or measures")
     own = mission.task(task.name)
@@ -79,7 +85,7 @@ def check_by_hand(task: Task, mission: Mission, site: Site) -> None:
         raise Invalid(
             f"the mission has another task '{task.name}': give that one, or another name to this"
         )
-    if task.action not in _DRIVEN:
+    if task.action not in _ROBOT_ACTIONS:
         raise Invalid(
             f"task '{task.name}' is a {task.action}, for which the robot does nothing: give one "
             "that drives or measures"
@@ -87,11 +93,11 @@ def check_by_hand(task: Task, mission: Mission, site: Site) -> None:
     if task.action is Action.MEASURE:
         site.measured_by(task.object_id)
     elif task.pose is None:
-        raise Invalid(f"task '{task.name}' says not where to drive: give it a pose")
+        raise Invalid(f"task '{task.name}' does not state where to drive: give it a pose")
 
 
 def require_supervised(supervision: Supervision, running: Task | None) -> None:
-    """Raises Conflict where a person can't let the robot do anything now."""
+    """Raise Conflict if a person can't let the robot act by hand now."""
     if running is not None:
         raise Conflict(
             f"the action of task '{running.name}' has not ended yet: stop it, or let time pass "
@@ -105,29 +111,31 @@ def require_supervised(supervision: Supervision, running: Task | None) -> None:
 
 @dataclass(frozen=True, slots=True)
 class InjectFault:
-    """Something goes wrong from now on, as long as the fault says."""
+    """Injection of a fault, which begins now or at its own later time, and lasts as it states."""
 
     fault: AnyFault
 
 
 @dataclass(frozen=True, slots=True)
 class StopRun:
-    """The run ends here, whatever it is doing; the record says why."""
+    """Stop of the run at once, whatever it is doing; the record states the reason."""
 
     reason: str = "it was stopped by a person"
 
 
 @dataclass(frozen=True, slots=True)
 class DoByHand:
-    """A person who has taken the robot over lets it carry out the action of a task: one of the
-    mission's, or another WAYPOINT or MEASURE under a name of its own."""
+    """Action by hand, ordered by a person who has taken the robot over.
+
+    The task is one of the mission's, or another WAYPOINT or MEASURE under a name of its own.
+    """
 
     task: Task
 
 
 @dataclass(frozen=True, slots=True)
 class StopByHand:
-    """The action that a person let the robot carry out is cancelled, and cleans up."""
+    """Stop of the action by hand, which is cancelled and cleans up."""
 
 
 RunCommand = (
@@ -135,14 +143,17 @@ RunCommand = (
     | DoByHand | StopByHand
 )  # fmt: skip
 
-_TO_THE_MACHINE = (Pause, Resume, TakeOver, GiveBack, Cancel, Occurred, ReadingGiven)
+_MACHINE_EVENTS = (Pause, Resume, TakeOver, GiveBack, Cancel, Occurred, ReadingGiven)
 
 
 def check_event(event: RunCommand, mission: Mission, site: Site) -> Event:
-    """The event as one for the machine of the mission; Invalid if nobody outside can tell it,
-    NotFound for a checkpoint that the site does not have."""
-    if not isinstance(event, _TO_THE_MACHINE):
-        raise Invalid(f"{event!r} is nothing that a run can be told from outside")
+    """Return a command that is an event for the machine of the mission, after checks.
+
+    Raises Invalid if it can't come from outside the run, NotFound for a checkpoint that the site
+    does not have.
+    """
+    if not isinstance(event, _MACHINE_EVENTS):
+        raise Invalid(f"{event!r} is no command that a run can receive from outside")
     logged = LoggedEvent.from_event(event)
     _check(logged, mission, site)
     return logged.to_event()
@@ -151,10 +162,10 @@ def check_event(event: RunCommand, mission: Mission, site: Site) -> Event:
 def check_scheduled_events(
     events: Sequence[tuple[float, LoggedEvent]], mission: Mission, site: Site
 ) -> None:
-    """Raises Invalid for events and times (s) that no run of the mission can be given."""
+    """Raise Invalid for scheduled events and times (s) that can't occur in a run of the mission."""
     for t, event in events:
         if not isinstance(event, LoggedEvent):
-            raise Invalid(f"{event!r} is no event as data: make it one with `logged`")
+            raise Invalid(f"{event!r} is no event as data: convert it with `logged_events`")
         try:
             require_event_time(t)
             _check(event, mission, site)
@@ -163,7 +174,7 @@ def check_scheduled_events(
 
 
 def require_no_action_by_hand(event: Event, acting: Task | None) -> None:
-    """Raises Conflict if the mission were to go on while an action by hand is under way."""
+    """Raise Conflict if the event would resume the mission while an action by hand is running."""
     if acting is not None and isinstance(event, Resume | GiveBack):
         raise Conflict(
             f"the robot still carries out '{acting.name}' by hand: stop that, or let time pass "
@@ -172,7 +183,7 @@ def require_no_action_by_hand(event: Event, acting: Task | None) -> None:
 
 
 def require_no_action(machine: Machine) -> None:
-    """Raises Conflict while an action still runs: nothing can be given back."""
+    """Raise Conflict while an action runs, because the robot can't be given back then."""
     if running := machine.running:
         raise Conflict(
             f"the action of task '{running.name}' has not ended yet: take over, and let time pass "
@@ -181,7 +192,7 @@ def require_no_action(machine: Machine) -> None:
 
 
 def require_taken_over(machine: Machine, now: float) -> None:
-    """Raises Conflict where a robot is to be given back that nobody has taken over."""
+    """Raise Conflict if the robot is to be given back at `now` (s) and nobody has taken it over."""
     if machine.running and not machine.paused and machine.reaction is None:
         raise Conflict(
             f"the robot was to be given back by {now:g} s, and nobody has taken it over: the "
@@ -190,31 +201,31 @@ def require_taken_over(machine: Machine, now: float) -> None:
 
 
 def mark_abnormal(site: Site, mission: Mission, event: Event) -> Event:
-    """The event with what the site tells of it: whether values that a person gives are abnormal."""
+    """Return the event, with values reported by a person marked as abnormal if the site says so."""
 
-    def abnormal(object_id: str | None, value: float) -> bool:
+    def is_abnormal(object_id: str | None, value: float) -> bool:
         return any(
             str(c.id) == object_id and not c.nominal.contains(value) for c in site.checkpoints
         )
 
     match event:
         case ReadingGiven():
-            odd = event.abnormal or abnormal(event.object_id, event.value)
-            return replace(event, abnormal=odd)
-        case GiveBack(done):
-            seen = []
-            for one in done:
-                task = mission.task(one.task)
-                odd = one.abnormal
-                if task is not None and one.value is not None:
-                    odd = odd or abnormal(task.object_id, one.value)
-                seen.append(one.model_copy(update={"abnormal": odd}))
-            return GiveBack(tuple(seen))
+            abnormal = event.abnormal or is_abnormal(event.object_id, event.value)
+            return replace(event, abnormal=abnormal)
+        case GiveBack(results):
+            marked = []
+            for result in results:
+                task = mission.task(result.task)
+                abnormal = result.abnormal
+                if task is not None and result.value is not None:
+                    abnormal = abnormal or is_abnormal(task.object_id, result.value)
+                marked.append(result.model_copy(update={"abnormal": abnormal}))
+            return GiveBack(tuple(marked))
     return event
 
 
 def _check(event: LoggedEvent, mission: Mission, site: Site) -> None:
-    """Raises Invalid or NotFound for what a run of the mission can't be told."""
+    """Raise Invalid or NotFound for an event that can't occur in a run of the mission."""
     require_external(event)
     if event.by_hand:
         _check_by_hand(event.by_hand, mission)
@@ -222,34 +233,33 @@ def _check(event: LoggedEvent, mission: Mission, site: Site) -> None:
         site.measured_by(event.object_id)
 
 
-def _check_by_hand(done: Sequence[ByHand], mission: Mission) -> None:
-    """Raises Invalid for what a person can't have done by hand in the mission."""
-    _, findings = match(Progress(active=None, by_hand=tuple(done)), mission)
-    for finding in findings:
-        if finding.code.startswith("handover.by-hand"):
-            raise Invalid(f"{finding.message}: {finding.hint}")
+def _check_by_hand(results: Sequence[ByHand], mission: Mission) -> None:
+    """Raise Invalid for results that a person can't have got by hand in the mission."""
+    _, diagnostics = match(Progress(active=None, by_hand=tuple(results)), mission)
+    for diagnostic in diagnostics:
+        if diagnostic.code.startswith("handover.by-hand"):
+            raise Invalid(f"{diagnostic.message}: {diagnostic.hint}")
 
 
 def resolve_new_fault(fault: AnyFault, setup: RunSetup, seed: int, now: float) -> AnyFault:
-    """The fault, settled, as it begins at time `now` (s), or later if it says so.
+    """Resolve a fault that is injected at time `now` (s) and begins then, or at its own later time.
 
-    Raises Conflict for one that can't begin while a run goes on, ArgoError for what the site does
-    not have.
+    Raises Conflict for a fault that can't begin during a run, ArgoError if the site does not have
+    its target.
     """
     if not isinstance(fault, Fault):
         raise Invalid(f"{fault!r} is no fault")
     kind = f"a fault of kind `{fault.kind}`"
     if setup.schedule is None:
-        raise Conflict(f"{kind} finds nothing to act on: this run has no parts that go wrong")
+        raise Conflict(f"{kind} has no effect: no faults are simulated in this run")
     if not isinstance(fault, TimedFault):
         raise Conflict(
-            f"{kind} is there from the run's start or not at all: give it in the faults of the "
-            "run's spec"
+            f"{kind} can only begin with the run: give it in the faults of the run's spec"
         )
     if fault.needs_world and not setup.watches_world:
         raise Conflict(
             f"the drive `{setup.drive.name}` has no world in which {kind} could be found; "
-            "take another drive"
+            "choose another drive"
         )
     if fault.until is not None and fault.until <= now:
         raise Invalid(f"{kind} would end at {fault.until:g} s, and it is {now:g} s already")

@@ -1,5 +1,4 @@
-"""The setup: all that a mission is carried out with, how it is fitted out for a run, and what the
-site's instruments show meanwhile."""
+"""Run setup: world, navigator, drive, sensor, watches and faults of a run, and displayed values."""
 
 import math
 from collections.abc import Mapping
@@ -34,43 +33,54 @@ from argo_env.world.world import World
 
 
 class Instruments:
-    """Lets instruments show what they show at a time. A fault of a value comes before its
-    profile."""
+    """Instruments of the site, which display values that change over time.
+
+    A fault that changes a value has priority over the value's profile.
+    """
 
     def __init__(
         self, targets: FaultTargets, site: Site, seed: int, profiles: Mapping[int, ValueProfile]
     ) -> None:
-        """The profiles are by number of the checkpoint. Raises NotFound for one that the site does
-        not have."""
+        """Take the value profiles by number of the checkpoint.
+
+        Raises NotFound for a checkpoint that the site does not have.
+        """
         self._targets = targets
         self._site = site
         self._seed = seed
         self._profiles = {site.checkpoint(id).id: profile for id, profile in profiles.items()}
         self._first = {id: targets.usual[id] for id in self._profiles}
 
-    def look_at(self, checkpoint_id: int, now: float) -> None:
-        """Somebody is about to look at the checkpoint, at time `now` (s)."""
+    def update(self, checkpoint_id: int, now: float) -> None:
+        """Set the value that the checkpoint displays at time `now` (s), before it is read."""
         self._targets.sensor.time = now
         profile = self._profiles.get(checkpoint_id)
         if profile is None:
             return
         checkpoint = self._site.checkpoint(checkpoint_id)
         value = displayed_value(checkpoint, self._first[checkpoint_id], profile, self._seed, now)
-        as_usual = self._targets.truth[checkpoint_id] == self._targets.usual[checkpoint_id]
+        has_no_fault = self._targets.truth[checkpoint_id] == self._targets.usual[checkpoint_id]
         self._targets.usual[checkpoint_id] = value
-        if as_usual:
+        if has_no_fault:
             self._targets.show(checkpoint_id, value)
 
 
 def displayed_value(
     checkpoint: SiteCheckpoint, first: float, profile: ValueProfile, seed: int, now: float
 ) -> float:
-    """What the checkpoint shows at time `now` (s), in its unit, if it showed `first` at 0 s and no
-    fault changes it; the `seed` of the run draws what flickers."""
+    """Return the value that a checkpoint displays at time `now` (s) if no fault changes it.
+
+    Args:
+        checkpoint: the checkpoint; the value is in its unit.
+        first: the value displayed at 0 s.
+        profile: how the value changes over time.
+        seed: seed of the run, which draws the noise.
+        now: time in s.
+    """
     value = first + profile.drift * now / 3600.0
     value += math.fsum(step.change for step in profile.steps if step.at <= now)
     if profile.noise:
-        # Of the moment alone, so that no other look changes it.
+        # The noise depends on the time alone, so that other readings do not change it.
         rng = generator(seed, "value", checkpoint.id, round(1000 * now))
         value += profile.noise * float(rng.standard_normal())
     scale = checkpoint.range
@@ -79,39 +89,47 @@ def displayed_value(
 
 @dataclass(frozen=True)
 class RunSetup:
-    """What a mission is carried out with."""
+    """Run setup: the world and the robot's parts with which a mission is carried out."""
 
     world: AnyWorld
     navigator: Navigator
     drive: Drive
     sensor: Sensor
     watches: tuple[Watch, ...] = ()
-    """what notices things by itself"""
+    """watches that notice anomalies"""
     battery: Battery | None = None
-    """None: the robot has power without end"""
+    """None: the robot's power never ends"""
     schedule: Schedule | None = None
-    """what goes wrong, and when; None: nothing does"""
+    """schedule of the faults; None: there are none"""
     instruments: Instruments | None = None
-    """what checkpoints show over time; None: always the same"""
+    """displays of values that change over time; None: the values are constant"""
 
     def read(self, checkpoint_id: int, now: float) -> Measurement:
-        """Reads the checkpoint at time `now` (s), from where the robot stands. Raises as sensors
-        do."""
+        """Read the checkpoint at time `now` (s) from the robot's pose.
+
+        Raises MeasurementError if the sensor can't read it.
+        """
         if self.instruments is not None:
-            self.instruments.look_at(checkpoint_id, now)
+            self.instruments.update(checkpoint_id, now)
         return self.sensor.measure(checkpoint_id, self.drive.pose)
 
     @property
     def watches_world(self) -> bool:
-        """Whether there is a world of bodies and signals that watches look at."""
+        """True if there is a simulated world of bodies and signals for the watches."""
         return isinstance(self.world, World)
 
 
 def make_run_setup(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitStack) -> RunSetup:
-    """Return the setup of a run whose spec was checked; `stack` closes it. With `gui` its world is
-    shown in a window.
+    """Make the setup of a run whose spec was checked.
 
-    Raises ArgoError if there can be no window.
+    Args:
+        spec: the spec of the run.
+        navigator: the navigator of the site.
+        gui: whether the world is shown in a window.
+        stack: exit stack that closes the setup.
+
+    Raises:
+        ArgoError: there can be no window.
     """
     site, robot, seed = navigator.site, navigator.robot, spec.seed
     truth = true_values(site, seed, spec.values)
@@ -127,33 +145,37 @@ def make_run_setup(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitSt
         camera: Sensor = IdealSensor(world, robot, truth)
     else:
         real = changed_site(site, faults).elements
-        drawn = spec.sensor != IDEAL  # others take pictures
-        world = stack.enter_context(World(site, robot, gui, real, drawn))
+        is_drawn = spec.sensor != IDEAL  # other sensors take pictures
+        world = stack.enter_context(World(site, robot, gui, real, is_drawn))
         inner = WORLD_DRIVES[spec.drive](world, robot, spec.conditions.friction)
         camera = SENSORS[spec.sensor](world, truth, seed)
         watches = standard_watches(world, surroundings, seed)
         for id, value in truth.items():
             world.show_value(id, value)
-    given = spec.conditions
-    drive, network, battery = Powertrain(inner, given.speed), RadioNetwork(site), Battery(robot)
-    battery.wear(given.capacity)
-    battery.charge = 1.0 if given.charge is None else given.charge
-    sensor = OnboardSensor(camera, site, seed, given.sensor_noise)
+    conditions = spec.conditions
+    drive, network, battery = (
+        Powertrain(inner, conditions.speed),
+        RadioNetwork(site),
+        Battery(robot),
+    )
+    battery.wear(conditions.capacity)
+    battery.charge = 1.0 if conditions.charge is None else conditions.charge
+    sensor = OnboardSensor(camera, site, seed, conditions.sensor_noise)
     targets = FaultTargets(world, truth, surroundings, drive, sensor, battery, network)
     level = next((r.battery_below for r in spec.mission.reactions if r.battery_below), None)
     watches += onboard_watches(robot, battery, network, drive, sensor, level)
-    instruments = Instruments(targets, site, seed, given.values)
+    instruments = Instruments(targets, site, seed, conditions.values)
     schedule = Schedule(faults, targets)
     return RunSetup(world, navigator, drive, sensor, watches, battery, schedule, instruments)
 
 
-def check_spec(spec: RunSpec, site: Site, said: FaultText | None = None) -> None:
+def check_spec(spec: RunSpec, site: Site, fault_text: FaultText | None = None) -> None:
     """Raise ArgoError for a spec that no run on the site can have, whatever its mission is.
 
-    With the text that its faults were read from, errors of these have lines.
+    With `fault_text`, from which the faults were read, errors in faults state their lines.
     """
-    if said:
-        said.require_fit(site, spec.seed)
+    if fault_text:
+        fault_text.require_fit(site, spec.seed)
     if spec.drive not in DRIVES:
         raise Invalid(f"no drive `{spec.drive}`; there are: {', '.join(DRIVES)}")
     if spec.sensor not in SENSORS:
@@ -161,23 +183,23 @@ def check_spec(spec: RunSpec, site: Site, said: FaultText | None = None) -> None
     if spec.drive == ROUTE and spec.sensor != IDEAL:
         raise Invalid(
             f"the drive `{spec.drive}` has no world that the sensor `{spec.sensor}` could "
-            f"look at; take the sensor `{IDEAL}` or another drive"
+            f"look at; choose the sensor `{IDEAL}` or another drive"
         )
     true_values(site, spec.seed, spec.values)
     for id in spec.conditions.values:
         site.checkpoint(id)
-    if not said:
+    if not fault_text:
         settle(spec.faults, site, spec.seed)
     unseen = [f.kind for f in spec.faults if f.needs_world]
     if spec.drive == ROUTE and unseen:
         raise Invalid(
             f"the drive `{spec.drive}` has no world in which a fault like `{unseen[0]}` could "
-            "be found; take another drive"
+            "be found; choose another drive"
         )
 
 
 def true_values(site: Site, seed: int, given: Mapping[int, float]) -> dict[int, float]:
-    """What each checkpoint shows, in its unit: drawn by the seed, or as given.
+    """Return the true value of each checkpoint in its unit: drawn by the seed, or the given one.
 
     Raises NotFound for a checkpoint that the site does not have, Invalid for a value beyond its
     scale.

@@ -1,4 +1,4 @@
-"""Whole runs in one call: of a spec, and from a journal on."""
+"""Complete runs in one call: from a spec, or resumed from a journal."""
 
 import logging
 import math
@@ -23,10 +23,10 @@ _log = logging.getLogger(__name__)
 
 
 def run(spec: RunSpec) -> RunRecord:
-    """Runs the mission of a spec on its site and returns the record: for worker processes, which
-    can be sent this function and a spec.
+    """Run the mission of a spec on its site and return the record.
 
-    Raises ArgoError as `simulate` does.
+    This function can be pickled with a spec and sent to worker processes. Raises ArgoError as
+    `simulate` does.
     """
     return simulate(spec)
 
@@ -44,30 +44,36 @@ def simulate(
 ) -> RunRecord:
     """Run the mission of a spec to its end and return the record. Equal specs give equal records.
 
-    The `site` is the one that the spec names, if it is open already. A run that `check_run` has
-    checked on it is not checked again. With a `journal` the run can be resumed after its
-    process has died: a new file, or with `replace` one that is there already. With `pace` a second
-    of wall time shows at most that many seconds of simulated time. The function `interrupted` is
-    asked after each step whether the run is to stop there: the record is as it stands then, and a
-    journal can go on.
+    Args:
+        spec: the spec of the run. A run that `check_run` has checked on the site is not checked
+            again.
+        site: the site that the spec names, if it is already open.
+        observers: objects that are called with each entry.
+        journal: path of a new journal, from which the run can be resumed after its process has
+            died.
+        replace: whether the journal may replace an existing file.
+        gui: whether the world is shown in a window.
+        pace: the most simulated seconds that may pass in one second of real time; None: no limit.
+        interrupted: function that is called after each step; True stops the run there. The record
+            is that of the run so far, and the run can be resumed from its journal.
 
     Raises:
         ArgoError: the mission makes no sense on this site, there is no such site, drive or sensor,
             the site is not the spec's, or the journal can't be written.
     """
-    known = check_run(spec, site)
-    spec, site = known.spec, known.site
+    checked = check_run(spec, site)
+    spec, site = checked.spec, checked.site
     machine = make_machine(spec.mission, spec.beginning)
     _log.info(
         "a run on %s: drive %s, sensor %s, seed %d", site.name, spec.drive, spec.sensor, spec.seed
     )
     with ExitStack() as stack:
-        told = [*_paced(pace), *observers]
+        all_observers = [*_make_clock(pace), *observers]
         if journal is not None:
-            # First, so that nobody is told what is not on disk.
-            book = create_journal(Path(journal), Header.from_run(site, spec), replace)
-            told.insert(0, stack.enter_context(book))
-        simulation = Simulation(machine, site, known, observers=told, gui=gui)
+            # First, so that no other observer receives an entry that is not yet on disk.
+            created = create_journal(Path(journal), Header.from_run(site, spec), replace)
+            all_observers.insert(0, stack.enter_context(created))
+        simulation = Simulation(machine, site, checked, observers=all_observers, gui=gui)
         return stack.enter_context(simulation).run(interrupted)
 
 
@@ -81,11 +87,19 @@ def resume(
     pace: float | None = None,
     interrupted: Callable[[], bool] = never,
 ) -> RunRecord:
-    """Go on with the run of a journal and return the record of the whole of it.
+    """Resume the run of a journal and return the record of the complete run.
 
-    The robot goes on from where it was last known to be, and the action that ran begins anew. If
-    the run had ended, its record is made again. Further `events` occur at their times (s), at once
-    if these are over. It may be `interrupted` as in `simulate`.
+    The robot continues from its last known pose, and the action that was running starts again. If
+    the run had ended, its record is made again.
+
+    Args:
+        journal: the open journal.
+        site: the site that the run's spec names, if it is already open.
+        observers: objects that are called with each new entry.
+        events: further events at their times (s); those whose time has passed occur at once.
+        gui: whether the world is shown in a window.
+        pace: as for `simulate`.
+        interrupted: as for `simulate`.
 
     Raises:
         ArgoError: the site, the robot, the mission's file or Argo is not what the run began with,
@@ -117,34 +131,37 @@ def continue_run(
     pace: float | None = None,
     interrupted: Callable[[], bool] = never,
 ) -> RunRecord:
-    """Resume the run of a journal that is known to go on with what it began with."""
+    """Resume the run of a journal that `Journal.require_unchanged` has accepted."""
     spec = journal.header.spec
     machine = make_machine(spec.mission, spec.beginning)
-    told = [journal, *_paced(pace), *observers]
+    all_observers = [journal, *_make_clock(pace), *observers]
     with Simulation(
-        machine, site, spec, past=journal.entries, events=events, observers=told, gui=gui
+        machine, site, spec, past=journal.entries, events=events, observers=all_observers, gui=gui
     ) as simulation:
         return simulation.run(interrupted)
 
 
 class RealTimeClock(Observer):
-    """Lets a run go on no faster than so many simulated seconds a second. Holds when it began."""
+    """Real-time clock that keeps a run from being faster than `pace`; holds the time of its start.
+
+    `pace` is the number of simulated seconds per second of real time.
+    """
 
     def __init__(self, pace: float, sleep: Callable[[float], None] = time.sleep) -> None:
         self._pace = pace
         self._sleep = sleep
-        self._begun: float | None = None
+        self._start_time: float | None = None
 
     def on_step(self, now: float, action: RobotAction | None) -> None:  # noqa: ARG002
-        if self._begun is None:
-            # A run that is resumed does not begin at 0.
-            self._begun = time.monotonic() - now / self._pace
-        self._sleep(max(0.0, self._begun + now / self._pace - time.monotonic()))
+        if self._start_time is None:
+            # A resumed run does not start at 0 s.
+            self._start_time = time.monotonic() - now / self._pace
+        self._sleep(max(0.0, self._start_time + now / self._pace - time.monotonic()))
 
 
-def _paced(pace: float | None) -> tuple[Observer, ...]:
+def _make_clock(pace: float | None) -> tuple[Observer, ...]:
     if pace is None:
         return ()
     if not 0 < pace < math.inf:
-        raise Invalid(f"pace {pace:g}: give the simulated seconds a second, more than 0")
+        raise Invalid(f"pace {pace:g}: give the simulated seconds per second, more than 0")
     return (RealTimeClock(pace),)

@@ -1,4 +1,4 @@
-"""The simulation: the one loop between a machine and what carries its actions out."""
+"""Simulation: the loop between a machine and the robot that carries out its actions."""
 
 import logging
 import math
@@ -53,29 +53,29 @@ from argo_env.run.vehicle import Vehicle
 
 _log = logging.getLogger(__name__)
 
-SAMPLE_PERIOD = 0.5  # s between recorded places of the robot
+SAMPLE_PERIOD = 0.5  # s between points of the recorded path
 
 LoggedEvents = Sequence[tuple[float, LoggedEvent]]
-"""Events and their times (s)."""
+"""Events with their times in s."""
 
 
-_LONGEST = 5_000
-"""steps that are made at once at most"""
-_NOWHERE: Places = np.empty((0, 5))
+_MAX_BATCH = 5_000
+"""maximum number of steps in a batch"""
+_NO_POSES: Places = np.empty((0, 5))
 
 
 def never() -> bool:
-    """A run is not interrupted."""
+    """Return False: the run is not interrupted."""
     return False
 
 
 class Simulation(Closing):
-    """A run under way. Holds the machine, the world and all that has happened; close it.
+    """Simulation of a run, which holds the machine, the robot with its world, and the log.
 
-    `step` lets time pass, `handle` tells the run something between two steps, and `record` says at
-    any moment how it stands. All that happens goes through an entry: to the observers, into the
-    log, then to the machine. So the entries of an earlier run lead to where it stood. One thread at
-    a time may use it.
+    `step` lets time pass, `handle` gives the run a command between two steps, and `record` returns
+    the record so far at any time. All that happens is an entry, which goes to the observers, into
+    the log, and then to the machine. So the entries of an earlier process restore the run's state.
+    Close the simulation when it is no longer needed. One thread at a time may use it.
     """
 
     def __init__(
@@ -109,30 +109,30 @@ class Simulation(Closing):
                 past is not this run's. Conflict for a site or a machine that is not the spec's, or
                 a machine that was used before.
         """
-        known = isinstance(spec, CheckedRun) and spec.site is site
+        is_checked = isinstance(spec, CheckedRun) and spec.site is site
         self._spec = spec = spec.spec if isinstance(spec, CheckedRun) else validate_spec(spec)
         self._observers = tuple(observers)
-        self._hearing = any(
+        self._observes_samples = any(
             observer.wants_samples and overrides(observer, name)
             for observer in observers
             for name in ("on_entry", "on_change")
         )
-        self._more = tuple(events)
-        self._opened = False
+        self._added_events = tuple(events)
+        self._begun = False
         self._closed = False
         self._changing = False
         self._broken = False
         self._ended = False
         self._record: RunRecord | None = None
-        """that of the ended run, once it was asked for"""
-        if not known:
+        """record of the ended run, once it was requested"""
+        if not is_checked:
             require_site(site, spec)
         require_machine(machine, spec)
-        if events or not known:
+        if events or not is_checked:
             check_scheduled_events(
-                [*(() if known else spec.events), *events], spec.mission, site.site
+                [*(() if is_checked else spec.events), *events], spec.mission, site.site
             )
-        if not known and setup is None and robot is None:
+        if not is_checked and setup is None and robot is None:
             check_spec(spec, site.site)
         with ExitStack() as stack:
             self._vehicle: AnyRobot = robot or Vehicle(
@@ -140,7 +140,7 @@ class Simulation(Closing):
             )
             self._state = RunState(machine, self._vehicle, spec)
             time_step = self.setup.drive.time_step
-            self._sampled_every = max(1, round(SAMPLE_PERIOD / time_step))
+            self._steps_per_sample = max(1, round(SAMPLE_PERIOD / time_step))
             for observer in self._observers:
                 observer.on_begin(self.setup, spec)
             self._set_up(past)
@@ -148,12 +148,12 @@ class Simulation(Closing):
 
     @property
     def now(self) -> float:
-        """s of simulated time."""
+        """Simulated time in s."""
         return self._state.now
 
     @property
     def ended(self) -> bool:
-        """Whether the run has ended."""
+        """True if the run has ended."""
         return self._ended
 
     @property
@@ -166,42 +166,44 @@ class Simulation(Closing):
 
     @property
     def setup(self) -> RunSetup:
-        """The world, the drive and the rest, with what the robot knows of the site by now."""
+        """Run setup: world, drive and the rest, with a navigator that knows the found blockages."""
         return self._vehicle.setup
 
     @property
     def pose(self) -> BodyPose:
-        """Where the robot is."""
+        """Pose of the robot."""
         return self.setup.drive.pose
 
     @property
     def silent_since(self) -> float | None:
-        """s, since when nothing was heard of a robot that is somewhere else; None: it is heard."""
+        """Time in s since when a remote robot sends nothing; None if the robot is connected."""
         return self._vehicle.silent_since
 
     @property
     def task(self) -> Task | None:
-        """The task whose action is under way, by hand or not."""
+        """Task whose action is running, by hand or not; None if none is."""
         return self._state.action.task if self._state.action else None
 
     @property
     def taken_over(self) -> bool:
-        """Whether a person has taken the robot over, and not given it back."""
+        """True if a person has taken the robot over, and not given it back."""
         return self._state.supervision.taken_over
 
     @property
     def by_hand(self) -> Task | None:
-        """The task that a person lets the robot carry out."""
+        """Task that the robot carries out by hand, for a person; None if there is none."""
         return self.task if self._state.supervision.acting else None
 
     @property
     def done_by_hand(self) -> tuple[ByHand, ...]:
-        """The mission's tasks that a person let the robot do since they took it over, and how long
-        ago: what `GiveBack` tells the machine if it is given this, now."""
+        """Tasks of the mission done by hand since the take-over, with their ages now.
+
+        It is what a `GiveBack` needs for the machine to count them.
+        """
         return self._state.supervision.results_at(self.now)
 
     def record(self) -> RunRecord:
-        """The record of the run: of the whole of it, or as it stands now."""
+        """Return the record of the run: complete if the run has ended, else up to now."""
         if self._ended:
             if self._record is None:
                 self._record = self._state.record(self._spec)
@@ -212,87 +214,103 @@ class Simulation(Closing):
         return self._state.record(self._spec, present)
 
     def step(self) -> None:
-        """Lets one time step of the drive pass: the robot moves, and the machine hears what
-        happened. The run ends with its mission, with the battery, or after four hours.
+        """Let one time step of the drive pass: the robot moves, and the machine handles events.
 
-        Raises Conflict if it has ended, is closed, or was broken off by an error before.
+        The run ends with its mission, with an empty battery, or after four hours. Raises Conflict
+        if the run has ended, the simulation is closed, or an earlier error has ended it.
         """
-        self._require_going_on()
-        if not self._opened and self._open():
+        self._require_not_ended()
+        if not self._begun and self._ensure_begun():
             return
-        with self._change():
+        with self._lock_out_commands():
             self._advance()
             for observer in self._observers:
                 observer.on_step(self._state.now, self._state.action)
         self.end_if_finished()
 
     def fast_forward(self, until: float = math.inf) -> Places:
-        """Lets time pass up to the next moment at which something may happen, and not beyond
-        `until` (s): many time steps where the robot only drives, measures or stands and surely
-        touches nothing, else one. Observers are told all but the single steps; records are the
-        same as by `step`. Returns where the robot was after each of the steps but the last.
+        """Let time pass up to the next time at which something may happen, but not beyond `until`.
 
-        Raises Conflict as `step` does.
+        This makes many time steps at once if the robot only drives, measures or stands and surely
+        touches nothing, else one. Records are the same as with `step`, and observers receive the
+        same calls except `on_step`.
+
+        Args:
+            until: time in s.
+
+        Returns:
+            The robot's poses after each of the steps but the last.
+
+        Raises:
+            Conflict: as for `step`.
         """
-        self._require_going_on()
-        if not self._opened and self._open():
-            return _NOWHERE
-        with self._change():
-            passed = self._glide(self._quiet_steps(until))
+        self._require_not_ended()
+        if not self._begun and self._ensure_begun():
+            return _NO_POSES
+        with self._lock_out_commands():
+            passed = self._batch_steps(self._count_uneventful_steps(until))
             if passed is None:
                 self._advance()
         self.end_if_finished()
-        return _NOWHERE if passed is None else passed
+        return _NO_POSES if passed is None else passed
 
     def handle(self, event: RunCommand) -> None:
-        """Tells the run something from outside, now.
+        """Execute a command from outside the run, now.
 
-        Raises Conflict if the run has ended, the robot is given back while an action still runs,
-        it can do nothing by hand now, or a fault can't begin now; Invalid, or NotFound, for what
-        makes no sense.
+        Raises:
+            Conflict: the run has ended, the robot is given back while an action still runs, the
+                robot can't act by hand now, or a fault can't begin now.
+            Invalid: the command makes no sense for this run.
+            NotFound: the command names something that the site does not have.
         """
-        self._require_going_on()
-        if self._open():
-            raise Conflict("the mission has ended before the run was told anything")
+        self._require_not_ended()
+        if self._ensure_begun():
+            raise Conflict("the mission had ended before the command")
         match event:
             case StopRun(reason):
                 if not isinstance(reason, str):
                     raise Invalid(f"{reason!r} is no reason: give one in words")
-                self._end(reason)
+                self._end_run(reason)
             case InjectFault(fault):
-                settled = resolve_new_fault(fault, self.setup, self._spec.seed, self.now)
-                self._tell(self._state.entry().model_copy(update={"faults": (settled,)}))
+                resolved = resolve_new_fault(fault, self.setup, self._spec.seed, self.now)
+                self._commit(self._state.entry().model_copy(update={"faults": (resolved,)}))
                 self._vehicle.update_faults(self.now)
             case DoByHand(task):
                 check_by_hand(task, self._spec.mission, self.setup.navigator.site)
                 require_supervised(self._state.supervision, self.machine.running or self.task)
-                self._tell(self._state.entry().model_copy(update={"by_hand": task}))
+                self._commit(self._state.entry().model_copy(update={"by_hand": task}))
             case StopByHand():
                 if self.by_hand is None:
                     raise Conflict("the robot does nothing by hand that could be stopped")
-                self._tell(self._state.entry().model_copy(update={"stop_by_hand": True}))
+                self._commit(self._state.entry().model_copy(update={"stop_by_hand": True}))
             case _:
                 checked = check_event(event, self._spec.mission, self.setup.navigator.site)
                 require_no_action_by_hand(checked, self.by_hand)
                 if isinstance(checked, GiveBack):
                     require_no_action(self.machine)
-                self._tell(self._state.entry([checked]))
+                self._commit(self._state.entry([checked]))
         self.end_if_finished()
 
     def continuation_spec(self, mission: Mission, by_hand: Sequence[ByHand] = ()) -> RunSpec:
-        """The spec of a run that goes on from here with the mission as a person has edited it while
-        they had the robot, and with what they did or skipped `by_hand` until now. In it the robot
-        is given back. What does not fit any more is among its diagnostics.
+        """Return the spec of a run that continues from here with an edited mission.
 
-        Raises Conflict unless the mission is paused and no action runs, DiagnosticError if the
-        edited mission can't go on from here, Invalid for what nobody can have done.
+        In that run the robot has been given back. Its diagnostics name what no longer fits.
+
+        Args:
+            mission: the mission as a person has edited it while they had the robot.
+            by_hand: the tasks that they did or skipped until now.
+
+        Raises:
+            Conflict: the mission is not paused, or an action runs.
+            DiagnosticError: the edited mission can't continue from here.
+            Invalid: a task in `by_hand` can't have been done.
         """
         site = self.setup.navigator.site
         require_no_action_by_hand(GiveBack(), self.by_hand)
         check_event(GiveBack(tuple(by_hand)), self._spec.mission, site)
-        seen = mark_abnormal(site, self._spec.mission, GiveBack(tuple(by_hand)))
-        assert isinstance(seen, GiveBack)
-        progress = progress_now(self.machine, self.now, seen.by_hand)
+        marked = mark_abnormal(site, self._spec.mission, GiveBack(tuple(by_hand)))
+        assert isinstance(marked, GiveBack)
+        progress = progress_now(self.machine, self.now, marked.by_hand)
         progress, diagnostics = match_progress(progress, mission)
         spec = self._spec.model_copy(
             update={
@@ -311,36 +329,37 @@ class Simulation(Closing):
         return validate_spec(spec)
 
     def append_task(self, task: Task) -> None:
-        """Gives the next task to a machine that takes them one by one, an `OpenMachine`. A journal
-        does not hold such tasks, and can't be gone on from.
+        """Append a task to the mission of an `OpenMachine`, which takes its tasks one by one.
 
-        Raises Conflict if the run has ended, the machine is another, or an action runs.
+        A journal does not hold such tasks, so a run with them can't be resumed. Raises Conflict if
+        the run has ended, the machine is no `OpenMachine`, or an action runs.
         """
-        self._require_going_on()
+        self._require_not_ended()
         machine = self.machine
         if not isinstance(machine, OpenMachine):
-            raise Conflict("the tasks of this run are those of its mission")
+            raise Conflict("no task can be appended: the mission of this run is fixed")
         commands = machine.append_task(task)
         self._spec = self._spec.model_copy(update={"mission": machine.mission})
         self._state.execute(commands)
 
     def run(self, interrupted: Callable[[], bool] = never) -> RunRecord:
-        """Goes on to the end of the run; returns its record. A robot that stands still and waits
-        for what will not occur ends the run as well, as nobody can tell it anything meanwhile.
+        """Continue to the end of the run and return its record.
 
-        Where `interrupted` says so between two steps, the record is that of the run as it stands.
+        A robot that stands still and waits for an event that is not scheduled ends the run as well,
+        because no command can arrive. If the function `interrupted` returns True between two steps,
+        the record is that of the run so far.
         """
         if not self.ended:
             self._require_usable()
         step_by_step = interrupted is not never or any(
             overrides(observer, "on_step") for observer in self._observers
         )
-        go_on = self.step if step_by_step else self.fast_forward
-        while not self.ended and not interrupted() and not self._open():
-            if why := self._standstill():
-                self._end(why)
+        advance = self.step if step_by_step else self.fast_forward
+        while not self.ended and not interrupted() and not self._ensure_begun():
+            if why := self._standstill_reason():
+                self._end_run(why)
             else:
-                go_on()
+                advance()
         record = self.record()
         if not self.ended:
             _log.info("the run was interrupted at %g s", self.now)
@@ -349,21 +368,21 @@ class Simulation(Closing):
         return record
 
     def end_if_finished(self) -> None:
-        """Ends the run if its machine has come to its end, or nothing can go on."""
+        """End the run if its machine has finished, or the run can't continue."""
         if self.ended:
             return
         if self._state.machine.finished:
-            self._end(None)
+            self._end_run(None)
         elif why := exhaustion_reason(self._state.now, self._vehicle.supply):
-            self._end(why)
+            self._end_run(why)
 
     def close(self) -> None:
-        """Gives back what the run was carried out with. The record can still be asked for."""
+        """Release the run setup; the record stays available."""
         self._closed = True
         self._stack.close()
 
     def _set_up(self, past: Sequence[Entry]) -> None:
-        """Puts everything to where the run begins, or goes on."""
+        """Set everything to the state in which the run begins or continues."""
         state = self._state
         vehicle, beginning = self._vehicle, self._spec.beginning
         start = self._start_pose()
@@ -375,16 +394,16 @@ class Simulation(Closing):
             state.replay(entry)
         last = state.log.last
         vehicle.place(last.body_pose if last else start, self.now)
-        told = [(k.anomaly, BodyPose(*k.pose)) for k in (beginning.known if beginning else ())]
-        told += [(anomaly, e.body_pose) for e in past for anomaly in e.found]
+        known = [(k.anomaly, BodyPose(*k.pose)) for k in (beginning.known if beginning else ())]
+        known += [(anomaly, e.body_pose) for e in past for anomaly in e.found]
         if beginning or last:
-            vehicle.restore_anomalies(told, self.now)
+            vehicle.restore_anomalies(known, self.now)
         if last is None:
             return
         vehicle.restore(last)
         state.finish_replay()
         if last.ended:
-            self._conclude()
+            self._announce_end()
 
     def _start_pose(self) -> BodyPose:
         navigator, mission = self.setup.navigator, self._spec.mission
@@ -396,39 +415,41 @@ class Simulation(Closing):
                     f"site {navigator.site.name} has no starting area {area}; there are: {known}"
                 )
         if beginning := self._spec.beginning:
-            place = beginning.body_pose
-            navigator.snap(Pose(x=place.x, y=place.y, z=place.z, yaw=place.yaw))
-            return place
+            start = beginning.body_pose
+            navigator.snap(Pose(x=start.x, y=start.y, z=start.z, yaw=start.yaw))
+            return start
         pose = navigator.snap(self._spec.conditions.actual_start_pose(start_pose(mission, docks)))
         return BodyPose(pose.x, pose.y, pose.z, pose.yaw)
 
-    def _open(self) -> bool:
-        """Makes the first entry, if there is none yet of this process; whether the run is over."""
-        if not self._opened:
-            self._opened = True
+    def _ensure_begun(self) -> bool:
+        """Commit the first entry of this process if needed; return True if the run has ended."""
+        if not self._begun:
+            self._begun = True
             state = self._state
             events = []
             if self._spec.beginning and state.log.last is None:
-                # What was told while nothing ran, as that the robot was given back.
+                # Events between the two runs, such as that the robot was given back.
                 events = state.scheduled.take_due(self.now, at_rest=state.machine.running is None)
             resumed = state.log.last is not None and not state.machine.finished
-            first = {"resumed": resumed, "added": self._more}
+            first = {"resumed": resumed, "added": self._added_events}
             entry = state.entry(events, sample=state.is_unsampled, task=state.lost_task_run)
-            self._tell(entry.model_copy(update=first))
+            self._commit(entry.model_copy(update=first))
             self.end_if_finished()
         return self.ended
 
     def _advance(self) -> None:
-        """One step of simulated time."""
+        """Make one step of simulated time."""
         state = self._state
         state.set_steps(state.steps + 1)
         self._react(self._vehicle.advance(state.steps, state.now, state.action))
 
-    def _quiet_steps(self, until: float) -> int:
-        """In how many time steps, up to `until` (s), nothing is told, begins or ends; what the
-        robot notices by itself, and the end of its action, may come before."""
+    def _count_uneventful_steps(self, until: float) -> int:
+        """Return for how many time steps, up to `until` (s), no event or fault can occur.
+
+        What the robot notices by itself, and the end of its action, may come before.
+        """
         state, machine, vehicle = self._state, self._state.machine, self._vehicle
-        if not isinstance(vehicle, Vehicle) or not vehicle.glides:
+        if not isinstance(vehicle, Vehicle) or not vehicle.can_batch_steps:
             return 0
         supervision, deadline = state.supervision, machine.next_deadline
         if supervision.taken_over or supervision.acting:
@@ -436,7 +457,7 @@ class Simulation(Closing):
         if (state.action is None) != (machine.running is None):
             return 0
         if machine.running is None and deadline is None and until == math.inf:
-            return 0  # it waits for what is told
+            return 0  # it waits for an event
         schedule = self.setup.schedule
         next_time = min(
             state.scheduled.next_time,
@@ -446,40 +467,42 @@ class Simulation(Closing):
             until,
         )
         if termination.is_emergency_stopped(self.setup):
-            settled = termination.final_standstill_time(self.setup, state.log)
-            next_time = min(next_time, settled if settled > state.now else math.inf)
+            final = termination.final_standstill_time(self.setup, state.log)
+            next_time = min(next_time, final if final > state.now else math.inf)
         steps = int((next_time - state.now) / self.setup.drive.time_step) - 1
-        return min(steps, _LONGEST)
+        return min(steps, _MAX_BATCH)
 
-    def _glide(self, most: int) -> Places | None:
-        """Makes at most so many steps at once, up to where the robot notices something. Where it
-        was after each of them but the last; None if there are none."""
+    def _batch_steps(self, limit: int) -> Places | None:
+        """Make at most `limit` steps at once, up to the first in which the robot notices something.
+
+        Returns the robot's poses after each of them but the last; None if no step was made.
+        """
         state, vehicle = self._state, self._vehicle
-        if most < 1 or not isinstance(vehicle, Vehicle):
+        if limit < 1 or not isinstance(vehicle, Vehicle):
             return None
-        glide, first = vehicle.glide(state.action, most), state.steps
-        last, every = first + glide.steps, self._sampled_every
-        looks = vehicle.update_steps(glide, first + 1)
+        batch, first = vehicle.batch_steps(state.action, limit), state.steps
+        last, every = first + batch.steps, self._steps_per_sample
+        updates = vehicle.steps_with_updates(batch, first + 1)
         samples = range(first + every - first % every, last + 1, every)
-        for step in sorted({*looks, *samples, last} if glide.steps else ()):
+        for step in sorted({*updates, *samples, last} if batch.steps else ()):
             state.set_steps(step)
-            if step in looks or step == last or self._hearing:
-                glide.go_to(step - first, state.now)
-            sensed = vehicle.look(step, state.now) if step in looks else None
+            if step in updates or step == last or self._observes_samples:
+                batch.advance_to(step - first, state.now)
+            sensed = vehicle.update_watches(step, state.now) if step in updates else None
             if sensed and sensed.found:
                 self._react(sensed)
-                return glide.places(step - first - 1)
-            if step in samples and self._hearing:
-                self._tell(state.entry(sample=True))
-            elif step in samples:  # nobody is to hear of it
-                state.log.sample(state.now, *glide.sample(step - first))
-        return glide.places(glide.steps - 1) if glide.steps else None
+                return batch.poses(step - first - 1)
+            if step in samples and self._observes_samples:
+                self._commit(state.entry(sample=True))
+            elif step in samples:  # no observer needs an entry
+                state.log.sample(state.now, *batch.sample(step - first))
+        return batch.poses(batch.steps - 1) if batch.steps else None
 
     def _react(self, sensed: Sensed) -> None:
-        """The machine hears what has happened by now."""
+        """Commit entries of what a step has led to, and of the events that are due."""
         state, machine = self._state, self._state.machine
         now = state.now
-        # Before the end, so that a reaction to it comes first and no next task is begun.
+        # Anomalies before the action's end: their reactions come first, and no next task starts.
         events: list[Event] = [Occurred(a.kind, a.detail) for a in sensed.found]
         acting, reading = state.supervision.acting, sensed.reading
         run = state.task_run(sensed.end) if sensed.end else None
@@ -487,25 +510,25 @@ class Simulation(Closing):
             events.append(sensed.end)
         elif reading:
             events.append(ReadingGiven(str(reading.checkpoint), reading.value))
-        given = state.scheduled
+        scheduled = state.scheduled
         at_rest = machine.running is None and not acting and not events
-        events += given.take_due(now, at_rest, acting)
-        if not events and given.is_give_back_waiting(now):
+        events += scheduled.take_due(now, at_rest, acting)
+        if not events and scheduled.is_give_back_waiting(now):
             require_taken_over(machine, now)
-        due = state.steps % self._sampled_every == 0
-        if events or due or run:
-            entry = state.entry(events, sample=due, task=run)
+        is_sample = state.steps % self._steps_per_sample == 0
+        if events or is_sample or run:
+            entry = state.entry(events, sample=is_sample, task=run)
             if sensed.found or reading:
-                came = {"found": sensed.found, "reading": reading}
-                entry = entry.model_copy(update=came)
-            self._tell(entry)
+                results = {"found": sensed.found, "reading": reading}
+                entry = entry.model_copy(update=results)
+            self._commit(entry)
         deadline = machine.next_deadline
         if deadline is not None and deadline <= now and not machine.finished:
-            self._tell(state.entry([Tick()]))
+            self._commit(state.entry([Tick()]))
 
-    def _tell(self, entry: Entry) -> None:
-        """Tells an entry of the present moment, and acts on it."""
-        with self._change():
+    def _commit(self, entry: Entry) -> None:
+        """Send an entry of the current time to the observers, and apply it."""
+        with self._lock_out_commands():
             for observer in self._observers:
                 observer.on_entry(entry)
             self._vehicle.clear_reported()
@@ -514,8 +537,8 @@ class Simulation(Closing):
                 observer.on_change(entry, self.machine)
 
     @contextmanager
-    def _change(self) -> Iterator[None]:
-        """While the run changes nobody can tell it anything; once that has failed, never again."""
+    def _lock_out_commands(self) -> Iterator[None]:
+        """Refuse commands while the run changes, and for good after an error in the change."""
         outer, self._changing = self._changing, True
         try:
             yield
@@ -525,7 +548,7 @@ class Simulation(Closing):
         finally:
             self._changing = outer
 
-    def _require_going_on(self) -> None:
+    def _require_not_ended(self) -> None:
         if self.ended:
             raise Conflict(f"the run has ended, at {self.now:g} s: make another simulation")
         self._require_usable()
@@ -535,27 +558,27 @@ class Simulation(Closing):
             raise Conflict("the simulation is closed: make another one")
         if self._broken:
             raise Conflict(
-                f"the simulation broke off by an error, at {self.now:g} s: make another one, or "
+                f"an error has ended the simulation, at {self.now:g} s: make another one, or "
                 "resume the run if it has a journal"
             )
         if self._changing:
-            raise Conflict("an observer can't steer the run that it is told of: between two steps")
+            raise Conflict("an observer can't command its run: give commands between two steps")
 
-    def _standstill(self) -> str | None:
+    def _standstill_reason(self) -> str | None:
         if self._state.scheduled.pending or self._vehicle.supply.charging:
             return None
         acting = self._state.supervision.acting
         return standstill_reason(self.now, self.machine, self.setup, self._state.log, acting)
 
-    def _end(self, stopped: str | None) -> None:
+    def _end_run(self, stopped: str | None) -> None:
         state = self._state
         run = state.stop_action()
         self._vehicle.odometry.close_contacts()
         last = state.entry(sample=state.is_unsampled, task=run)
-        self._tell(last.model_copy(update={"ended": True, "stopped": stopped}))
-        self._conclude()
+        self._commit(last.model_copy(update={"ended": True, "stopped": stopped}))
+        self._announce_end()
 
-    def _conclude(self) -> None:
+    def _announce_end(self) -> None:
         self._ended = True
         _log.info("the run has ended at %g s", self.now)
         for observer in self._observers:

@@ -1,5 +1,4 @@
-"""Spec of a run: all that it depends on, as data; and its conditions, which are as planned unless
-something else is said."""
+"""Spec of a run: all that the run depends on, as data, with its conditions."""
 
 import math
 from typing import Any
@@ -20,7 +19,7 @@ from argo_env.run.record import Reordering
 
 
 class ValueStep(Model):
-    """A value that changes all at once."""
+    """Sudden change of a value at one time."""
 
     at: float = Field(ge=0)
     """s"""
@@ -29,40 +28,46 @@ class ValueStep(Model):
 
 
 class ValueProfile(Model):
-    """How the value that a checkpoint shows changes during a run. It stays on the scale."""
+    """Profile of a value that a checkpoint shows during a run: drift, steps and noise.
+
+    The value stays on the checkpoint's scale.
+    """
 
     drift: float = 0.0
-    """in the checkpoint's unit an hour"""
+    """drift in the checkpoint's unit per hour"""
     steps: tuple[ValueStep, ...] = ()
     noise: float = Field(default=0.0, ge=0)
-    """standard deviation of what flickers, in the checkpoint's unit"""
+    """standard deviation of the noise, in the checkpoint's unit"""
 
 
 class RunConditions(Model):
-    """What the robot does not know, and no fault is: how its world differs from the plan's."""
+    """Conditions of a run: differences from the plan that the robot does not know.
+
+    They are no faults. By default all is as planned.
+    """
 
     ahead: float = Field(default=0.0, ge=-1, le=1)
-    """m that the robot stands ahead of where the mission starts"""
+    """m by which the robot stands ahead of the mission's start pose"""
     left: float = Field(default=0.0, ge=-1, le=1)
-    """m that it stands to the left of there"""
+    """m by which the robot stands to the left of the mission's start pose"""
     turned: float = Field(default=0.0, ge=-180, le=180)
-    """deg that it is turned there, counter-clockwise"""
+    """deg by which the robot is turned there, counter-clockwise"""
     speed: float = Field(default=1.0, gt=0, le=1)
-    """share of its speed that the drive makes"""
+    """share of the commanded speed that the drive reaches"""
     friction: float = Field(default=1.0, gt=0, le=1.3)
-    """beside that of the calibration; for the drive `tracked`, as no other knows forces, and up to
-    where its belts are stable"""
+    """factor of the calibrated friction; only for the drive `tracked`, the only one that simulates
+    forces; above the limit its belts are unstable"""
     charge: float | None = Field(default=None, gt=0, le=1)
-    """of the battery at the start; None: full, or as the run goes on from"""
+    """charge of the battery at the start, 0 to 1; None: full, or that of the initial state"""
     capacity: float = Field(default=1.0, gt=0, le=1)
-    """share of the battery's capacity that is left"""
+    """share of the battery's nominal capacity that remains"""
     sensor_noise: float = Field(default=0.0, ge=0, le=1)
     """standard deviation of readings, as a share of the scale"""
     values: dict[int, ValueProfile] = Field(default_factory=dict)
-    """how values change, by number of the checkpoint"""
+    """profiles of values, by number of the checkpoint"""
 
     def actual_start_pose(self, start: Pose) -> Pose:
-        """Where the robot really stands when it is to stand there."""
+        """Return the robot's actual pose for the planned pose `start`."""
         c, s = math.cos(start.yaw), math.sin(start.yaw)
         return start.model_copy(
             update={
@@ -74,42 +79,45 @@ class RunConditions(Model):
 
 
 AS_PLANNED = RunConditions()
-"""all is as planned"""
+"""conditions of a run in which all is as planned"""
 
 _SETTINGS = {"drive", "sensor", "seed", "values", "events", "faults", "conditions"}
 
 
 class RunSpec(Model):
-    """All that a run depends on. Equal specs give equal runs, on any machine and in any process."""
+    """Spec of a run: all that it depends on.
+
+    Equal specs give equal runs, on any computer and in any process.
+    """
 
     mission: Mission
     site: str = "umad"
-    """what opens the site: its name, the path of its file, or its parameters"""
+    """reference of the site: its name, the path of its file, or its parameters"""
     robot: str = "tracker"
-    """name of the robot that opens the site, where that is not open already"""
+    """name of the robot, with which the site is opened if it is not yet open"""
     drive: str = "kinematic"
     """name of the drive"""
     sensor: str = "ideal"
     """name of the sensor that reads checkpoints"""
     seed: int = Field(default=0, ge=0)
-    """of all that is drawn"""
+    """seed of all random values"""
     values: dict[int, float] = Field(default_factory=dict)
-    """what checkpoints show, by number, where it is not drawn"""
+    """values that checkpoints show, by number; those of other checkpoints are drawn"""
     events: tuple[tuple[float, LoggedEvent], ...] = ()
-    """what the run is told, and when (s)"""
+    """events that occur during the run, with their times in s"""
     faults: tuple[AnyFault, ...] = ()
-    """what goes wrong; the robot finds out by sensing"""
+    """faults, which the robot can only find by sensing"""
     conditions: RunConditions = AS_PLANNED
-    """what is not as planned, and no fault"""
+    """differences from the plan that are no faults"""
     beginning: InitialState | None = None
-    """where another run stood, from which this one goes on; None: the mission begins"""
+    """state of an earlier run from which this one continues; None: the mission begins"""
     diagnostics: tuple[Diagnostic, ...] = ()
-    """what the mission's import had to say, for the record"""
+    """diagnostics of the mission's import, for the record"""
     reordering: Reordering | None = None
-    """for the record, where the mission is in another order than it was written"""
+    """reordering of the mission's tasks, for the record; None: the written order"""
     source: str | None = None
-    """the whole path of the file that the mission was read from, which must not change while the
-    run is to go on from a journal"""
+    """absolute path of the mission's file, which must not change as long as the run may be resumed
+    from a journal"""
 
     @field_validator("events")
     @classmethod
@@ -126,12 +134,15 @@ class RunSpec(Model):
 
     @property
     def settings(self) -> dict[str, Any]:
-        """How the run is carried out, without what and where, as plain data."""
+        """Settings of the run as plain data: how it is carried out, without mission and site."""
         return self.model_dump(mode="json", include=_SETTINGS)
 
 
 def read_spec(content: str | bytes, name: str = "the run's spec") -> RunSpec:
-    """The spec in a JSON text; Invalid, with its `name` and the place in it, if it is none."""
+    """Return the spec in a JSON text.
+
+    Raises Invalid, with the text's `name` and the place in it, if it is no spec.
+    """
     try:
         return RunSpec.model_validate_json(content)
     except ValidationError as error:
@@ -139,8 +150,11 @@ def read_spec(content: str | bytes, name: str = "the run's spec") -> RunSpec:
 
 
 def validate_spec(spec: RunSpec) -> RunSpec:
-    """The spec with the types that its fields have: pydantic's `model_copy` and `model_construct`
-    check nothing. Raises Invalid, with the field, for what is none."""
+    """Return the spec after a check of its fields' types.
+
+    Pydantic's `model_copy` and `model_construct` do not check them. Raises Invalid, with the name
+    of the field, if the spec is invalid.
+    """
     if not isinstance(spec, RunSpec):
         raise Invalid(f"{spec!r} is no spec of a run: make it a RunSpec")
     try:
@@ -152,10 +166,13 @@ def validate_spec(spec: RunSpec) -> RunSpec:
 def _invalid(name: str, error: ValidationError) -> Invalid:
     fault = error.errors(include_url=False)[0]
     place = format_path(fault["loc"])
-    said = message_of(fault, fault["loc"])
-    return Invalid(f"{name}: {place + ': ' if place else ''}{said}")
+    message = message_of(fault, fault["loc"])
+    return Invalid(f"{name}: {place + ': ' if place else ''}{message}")
 
 
 def logged_events(*events: tuple[float, Event]) -> tuple[tuple[float, LoggedEvent], ...]:
-    """Events and their times (s) as specs hold them; Invalid for what is no event."""
+    """Return events with their times (s) in the form of a spec.
+
+    Raises Invalid for an object that is no event.
+    """
     return tuple((t, LoggedEvent.from_event(event)) for t, event in events)

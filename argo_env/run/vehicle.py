@@ -1,8 +1,8 @@
-"""The robot under way: step by step it moves, spends power, and notices things.
+"""Simulated robot: in each time step it moves, uses power, and notices anomalies.
 
-A robot that touches nothing only goes on with what it does for many time steps: it drives along its
-path, measures or stands; nobody tells it anything, and no fault begins or ends. These are made at
-once, and all that adds up is the same as step by step, to the last bit.
+For many time steps a robot that touches nothing only continues what it does: it drives along its
+path, measures or stands, and no event occurs and no fault begins or ends. Such steps are made in
+one batch, with the same results as step by step, to the last bit.
 """
 
 import math
@@ -31,8 +31,8 @@ from argo_env.run.robot import RobotAction, Sensed
 from argo_env.run.run_setup import RunSetup
 
 
-class Glide:
-    """The steps ahead. Holds how many of them have passed."""
+class StepBatch:
+    """Batch of the next time steps; holds how many of them have passed."""
 
     def __init__(
         self,
@@ -40,18 +40,18 @@ class Glide:
         odometry: Odometry,
         supply: PowerSupply,
         action: SimulatedAction | None,
-        most: int,
+        limit: int,
     ) -> None:
-        """At most so many steps; `steps` says how many there are, which may be none."""
+        """Predict the next steps, at most `limit` and perhaps none, with `action` running."""
         self._drive = setup.drive
         self._odometry = odometry
         self._supply = supply
         self._action = action
-        self._passed = 0
+        self._passed_steps = 0
         self._ahead: StepsAhead | None = None
         self._power = NO_STEPS
         self.steps = 0
-        """how many there are"""
+        """number of steps in the batch"""
         if (
             not isinstance(setup.drive, Powertrain)
             or odometry.touching
@@ -62,119 +62,122 @@ class Glide:
         pose = setup.drive.pose
         here = np.array([(pose.x, pose.y, pose.z, pose.yaw, pose.pitch)])
         if action and action.is_driving:
-            self._ahead = setup.drive.steps_ahead(most)
-            self._places = np.concatenate([here, self._ahead.places])
-            # As the odometry adds them up: a root by NumPy may differ in its last bit.
-            points = [*zip(*(self._places[:, k].tolist() for k in range(3)), strict=True)]
-            ways = np.array([*map(math.dist, points[:-1], points[1:])])
-            rises = np.maximum(0.0, np.diff(self._places[:, 2]))
+            self._ahead = setup.drive.steps_ahead(limit)
+            self._poses = np.concatenate([here, self._ahead.places])
+            # By math.dist, as in the odometry: NumPy's square root may differ in the last bit.
+            points = [*zip(*(self._poses[:, k].tolist() for k in range(3)), strict=True)]
+            distances = np.array([*map(math.dist, points[:-1], points[1:])])
+            rises = np.maximum(0.0, np.diff(self._poses[:, 2]))
         else:
-            count = action.count_measuring_steps(most) if action else most
-            self._places = here.repeat(count + 1, axis=0)
-            ways = rises = np.zeros(count)
-        self._distance = _sums(odometry.distance, ways)
-        self._climbed = _sums(odometry.climbed, rises)
+            count = action.count_measuring_steps(limit) if action else limit
+            self._poses = here.repeat(count + 1, axis=0)
+            distances = rises = np.zeros(count)
+        self._distance = _running_sums(odometry.distance, distances)
+        self._climbed = _running_sums(odometry.climbed, rises)
         measuring = action is not None and action.is_measuring
         power, time_step = setup.navigator.robot.power, setup.drive.time_step
-        loads = loads_of_steps(power, ways, self._places, time_step, measuring)
-        self._power = supply.predict(loads, self._places[1:], time_step)
+        loads = loads_of_steps(power, distances, self._poses, time_step, measuring)
+        self._power = supply.predict(loads, self._poses[1:], time_step)
         self.steps = len(self._power)
 
-    def places(self, count: int) -> Places:
-        """Where the robot is after each of the first so many steps; none while it stands."""
-        return self._places[1 : 1 if self._ahead is None else count + 1]
+    def poses(self, count: int) -> Places:
+        """Return the robot's poses after the first `count` steps; no poses if it stands still."""
+        return self._poses[1 : 1 if self._ahead is None else count + 1]
 
     def sample(self, step: int) -> tuple[Place, float | None]:
-        """Where the robot is after so many of the steps, and the charge of its battery, 0 to 1."""
+        """Return the robot's pose after `step` steps, and the battery's charge then, 0 to 1."""
         charge = self._supply.charge_after(self._power, step - 1)
-        return place_of(self._places, step), charge
+        return place_of(self._poses, step), charge
 
     @property
-    def charges(self) -> tuple[float, float]:
-        """The least and the most charge of the battery after the steps, 0 to 1."""
+    def charge_range(self) -> tuple[float, float]:
+        """Least and greatest charge of the battery after the steps, 0 to 1."""
         return self._supply.charge_range(self._power)
 
-    def go_to(self, step: int, now: float) -> None:
-        """So many of the steps have passed by time `now` (s)."""
-        count = step - self._passed
+    def advance_to(self, step: int, now: float) -> None:
+        """Set the robot to its state after `step` steps, at time `now` (s)."""
+        count = step - self._passed_steps
         if self._ahead is not None:
             assert isinstance(self._drive, Powertrain)
-            self._drive.go_on(self._ahead, self._passed, count)
+            self._drive.go_on(self._ahead, self._passed_steps, count)
         if self._action is not None:
             self._action.skip_steps(count, now)
         self._odometry.distance = float(self._distance[step])
         self._odometry.climbed = float(self._climbed[step])
         self._supply.apply(self._power, step - 1)
-        self._passed = step
+        self._passed_steps = step
 
 
-def _sums(first: float, added: NDArray[np.float64]) -> NDArray[np.float64]:
-    """What adds up, before the first step and after each: one by one, to the last bit."""
+def _running_sums(first: float, added: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the sums before the first step and after each, rounded as if added one by one."""
     return np.cumsum(np.concatenate([[first], added]))
 
 
-_NOTHING = Sensed()
+_NOTHING_SENSED = Sensed()
 
 
 class Vehicle:
-    """The simulated robot: what a run is carried out with. Holds the setup and all that adds up on
-    the way."""
+    """Simulated robot, which carries out a run.
+
+    It holds the run setup and all that changes with each step: odometry, power supply, perception
+    and the running action.
+    """
 
     silent_since: float | None = None
 
     def __init__(self, setup: RunSetup) -> None:
         site, robot = setup.navigator.site, setup.navigator.robot
         self.setup = setup
-        """its navigator knows of what was found in the way"""
+        """the run setup; its navigator knows the blockages found so far"""
         self.odometry = Odometry(site)
         self.supply = PowerSupply(setup.battery, robot, site)
         self._action: SimulatedAction | None = None
-        """the one started last"""
+        """the action that was started last"""
         self._perception = Perception(setup.watches, site, setup.drive.time_step)
 
     def place(self, pose: BodyPose, now: float) -> None:
-        """Puts the robot there, at time `now` (s)."""
+        """Set the robot to the pose at time `now` (s), and update the faults."""
         self.setup.drive.place(pose)
         self.update_faults(now)
 
     def apply_initial_state(self, initial: InitialState) -> None:
-        """Goes on from where another run stood."""
+        """Set the state at the start of a run that continues another run."""
         self.odometry.distance, self.odometry.climbed = initial.distance, initial.climbed
         if initial.charge is not None:
             self.supply.reset(initial.charge, initial.body_pose)
-        known = [one.anomaly for one in initial.known]
-        if closed := [b for anomaly in known if (b := blockage_from_anomaly(anomaly))]:
+        anomalies = [known.anomaly for known in initial.known]
+        if closed := [b for anomaly in anomalies if (b := blockage_from_anomaly(anomaly))]:
             self.avoid(closed)
 
     def restore_anomalies(self, reported: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
-        """Goes on at time `now` (s) after these have been found, with the robot at these poses."""
+        """Restore anomalies found before time `now` (s), each with the robot's pose then."""
         self._perception.restore_anomalies(reported, now)
 
     def restore(self, last: Entry) -> None:
-        """Goes on after the entry."""
+        """Restore the odometry and the power supply from the last entry."""
         self.odometry.restore(last)
         self.supply.restore(last)
 
     def update_faults(self, now: float) -> None:
-        """Lets all begin and end that is due at time `now` (s)."""
+        """Begin and end the faults that are due at time `now` (s)."""
         if self.setup.schedule:
             self.setup.schedule.advance(now)
 
     def avoid(self, blockages: Sequence[Blockage]) -> None:
-        """From now on paths keep clear of these as well."""
+        """Make later paths keep clear of these blockages as well."""
         navigator = self.setup.navigator.avoiding(blockages)
         self.setup = replace(self.setup, navigator=navigator)
 
     def start(self, command: StartAction, now: float, arrival_path: Path | None) -> RobotAction:
-        """Starts an action at time `now` (s), after the robot `came` by that path."""
-        way = self.odometry
+        """Start an action at time `now` (s); the robot reached its pose by the arrival path."""
+        odometry = self.odometry
         self._action = SimulatedAction(
-            command, self.setup, now, way.distance, way.climbed, arrival_path
+            command, self.setup, now, odometry.distance, odometry.climbed, arrival_path
         )
         return self._action
 
     def advance(self, step: int, now: float, action: RobotAction | None) -> Sensed:
-        """Lets the time step of that number pass, up to time `now` (s), with `action` under way."""
+        """Let time step number `step` pass, up to time `now` (s), with `action` running."""
         setup, odometry, drive = self.setup, self.odometry, self.setup.drive
         if setup.schedule:
             setup.schedule.advance(now)
@@ -191,32 +194,34 @@ class Vehicle:
         reading = own.reading(now) if own and end else None
         if reading and not reading.normal:
             found = (*found, located_anomaly(reading, setup.navigator.site))
-        return Sensed(end, reading, found) if end or found else _NOTHING
+        return Sensed(end, reading, found) if end or found else _NOTHING_SENSED
 
     @property
-    def glides(self) -> bool:
-        """Whether many steps can be made at once, as nothing can happen to the robot."""
+    def can_batch_steps(self) -> bool:
+        """True if steps can be made in batches, because nothing can happen to the robot."""
         drive = self.setup.drive
         return isinstance(drive, Powertrain) and drive.glides
 
-    def glide(self, action: RobotAction | None, most: int) -> Glide:
-        """The steps ahead, at most so many, in which it only goes on with `action`."""
+    def batch_steps(self, action: RobotAction | None, limit: int) -> StepBatch:
+        """Return the next steps, at most `limit`, in which the robot only continues `action`."""
         own = self._action if action else None
-        return Glide(self.setup, self.odometry, self.supply, own, most)
+        return StepBatch(self.setup, self.odometry, self.supply, own, limit)
 
-    def update_steps(self, glide: Glide, first: int) -> set[int]:
-        """The numbers of the steps of a glide, which begin with the `first`, in which it looks
-        whether there is anything."""
-        last = first + glide.steps - 1
-        return self._perception.update_steps(first, last, glide.charges)
+    def steps_with_updates(self, batch: StepBatch, first: int) -> set[int]:
+        """Return the numbers of the batch's steps in which a watch is updated.
 
-    def look(self, step: int, now: float) -> Sensed:
-        """What it notices in that step of a glide, which ends at `now` (s)."""
+        The first step of the batch has the number `first`.
+        """
+        last = first + batch.steps - 1
+        return self._perception.steps_with_updates(first, last, batch.charge_range)
+
+    def update_watches(self, step: int, now: float) -> Sensed:
+        """Return what the watches notice in step number `step` of a batch, at time `now` (s)."""
         found = self._perception.update(step, now, self.setup.drive.pose)
-        return Sensed(found=found) if found else _NOTHING
+        return Sensed(found=found) if found else _NOTHING_SENSED
 
     def state(self) -> dict[str, Any]:
-        """What an entry tells of it."""
+        """Return the fields of an entry that hold the robot's state."""
         pose, odometry = self.setup.drive.pose, self.odometry
         return {
             "pose": (pose.x, pose.y, pose.z, pose.yaw, pose.pitch),
@@ -229,14 +234,14 @@ class Vehicle:
         }
 
     def clear_reported(self) -> None:
-        """What the last `state` told is not told again."""
+        """Clear the mishaps and ended contacts that `state` has already reported."""
         self.odometry.ended_contacts.clear()
         self.odometry.mishaps.clear()
 
 
 def find_arrival_path(log: RunLog) -> Path | None:
-    """The last piece of the path that the robot came by, from where the log has seen it."""
+    """Return the last part of the path by which the robot reached its pose, from the log."""
     if not log.path:
         return None
-    seen = (Pose(x=s.x, y=s.y, z=s.z, yaw=s.yaw) for s in reversed(log.path))
-    return driven(recent(seen, 2 * RETREAT))
+    poses = (Pose(x=s.x, y=s.y, z=s.z, yaw=s.yaw) for s in reversed(log.path))
+    return driven(recent(poses, 2 * RETREAT))

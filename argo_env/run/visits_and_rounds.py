@@ -1,5 +1,4 @@
-"""From a machine as it goes on, and its trace: how long it stood at tasks, what it waited for, what
-was on time, its rounds and its interruptions."""
+"""Visits of tasks, waits, time windows, rounds and interruptions, from a machine and its trace."""
 
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
@@ -11,7 +10,7 @@ from argo_compiler.il import Action, EventKind, Mission, Task
 from argo_env.run.machine import Machine
 from argo_env.run.record import Interruption, RoundRun, WaitRun, WindowOutcome, WindowRun
 
-MOVES = frozenset(
+VISIT_ENDS = frozenset(
     {
         Cause.CONDITION,
         Cause.REPEAT,
@@ -23,30 +22,32 @@ MOVES = frozenset(
         Cause.END,
     }
 )
-"""what ends a visit"""
-BEGINNINGS = MOVES | {Cause.START, Cause.RESTORE}
-"""what may begin one"""
+"""causes of trace entries that end a visit"""
+VISIT_STARTS = VISIT_ENDS | {Cause.START, Cause.RESTORE}
+"""causes of trace entries that can start a visit"""
 
 
 @dataclass(frozen=True)
 class Visit:
-    """The machine's visit at a task."""
+    """Visit of a task by the machine."""
 
     task: str
     start: float
     """s"""
     end: float | None
-    """s; None: it goes on"""
+    """s; None: the visit has not ended"""
     failure: str | None = None
-    """why the task failed for good, if it did"""
-    left: TraceEntry | None = None
-    """what the trace says of its end"""
+    """why the task failed without a retry; None: it did not"""
+    end_entry: TraceEntry | None = None
+    """the trace's entry of its end"""
 
     @property
-    def done(self) -> bool:
-        """Whether the task has ended, and has not failed; a group's time or a person may end a
-        visit before that."""
-        by_itself = self.left is not None and self.left.cause not in (
+    def is_done(self) -> bool:
+        """True if the task has ended by itself without failing.
+
+        A group's time limit or a person can end a visit before that.
+        """
+        by_itself = self.end_entry is not None and self.end_entry.cause not in (
             Cause.TIMEOUT,
             Cause.CANCEL,
             Cause.END,
@@ -55,9 +56,10 @@ class Visit:
 
 
 def visits_from_trace(trace: Sequence[TraceEntry], since: float = 0.0) -> Iterator[Visit]:
-    """All of them, in the order of time. A round that is not due yet is not begun.
+    """Yield the visits of all tasks in a trace, in the order of time.
 
-    A machine that was restored had stood at its task for `since` (s).
+    The visit of a task that waits for its round to be due begins with the round. The first task of
+    a restored machine had been visited for `since` (s) before.
     """
     task: str | None = None
     start = 0.0
@@ -66,7 +68,7 @@ def visits_from_trace(trace: Sequence[TraceEntry], since: float = 0.0) -> Iterat
             task, start = entry.target, entry.time - since
         elif entry.cause is Cause.ROUND:
             start = entry.time
-        elif entry.cause in MOVES:
+        elif entry.cause in VISIT_ENDS:
             if task is not None:
                 yield Visit(task, start, entry.time, entry.failure, entry)
             task, start = entry.target, entry.time
@@ -75,17 +77,17 @@ def visits_from_trace(trace: Sequence[TraceEntry], since: float = 0.0) -> Iterat
 
 
 def wait_runs(mission: Mission, visits: Sequence[Visit], now: float) -> tuple[WaitRun, ...]:
-    """The visits of WAITs that are no mere places, up to time `now` (s)."""
-    tasks = {t.name: t for t in mission.tasks if t.action is Action.WAIT and not _is_place(t)}
+    """Return the visits, up to time `now` (s), of WAIT tasks that do wait for something."""
+    tasks = {t.name: t for t in mission.tasks if t.action is Action.WAIT and not _is_junction(t)}
     return tuple(
         WaitRun(
             task=visit.task,
-            what=_what_is_awaited(tasks[visit.task]),
+            what=_awaited_in_words(tasks[visit.task]),
             start=visit.start,
             end=now if visit.end is None else visit.end,
             ended=visit.end is not None,
             failure=visit.failure,
-            why=_why(visit),
+            why=_end_reason(visit),
         )
         for visit in visits
         if visit.task in tasks
@@ -93,19 +95,23 @@ def wait_runs(mission: Mission, visits: Sequence[Visit], now: float) -> tuple[Wa
 
 
 def window_runs(
-    mission: Mission, visits: Sequence[Visit], before: Collection[str] = ()
+    mission: Mission, visits: Sequence[Visit], earlier: Collection[str] = ()
 ) -> tuple[WindowRun, ...]:
-    """The visits of tasks with time windows, then those that the mission has not come to, nor had
-    come to `before` these visits."""
+    """Return the visits of tasks with time windows, then the tasks that were not visited.
+
+    Tasks in `earlier` were visited before this run, and are left out if they have no visit in it.
+    """
     tasks = {t.name: t for t in mission.tasks if t.window is not None}
-    found = [_window(tasks[visit.task], visit) for visit in visits if visit.task in tasks]
-    seen = {run.task for run in found}
-    found += [_window(task, None) for name, task in tasks.items() if name not in {*seen, *before}]
-    return tuple(found)
+    runs = [_window_run(tasks[visit.task], visit) for visit in visits if visit.task in tasks]
+    visited = {run.task for run in runs}
+    runs += [
+        _window_run(task, None) for name, task in tasks.items() if name not in {*visited, *earlier}
+    ]
+    return tuple(runs)
 
 
-def _what_is_awaited(task: Task) -> str:
-    """What a WAIT waits for, in words."""
+def _awaited_in_words(task: Task) -> str:
+    """Return what a WAIT task waits for, in words."""
     rule = task.wait
     assert rule is not None
     if rule.duration is not None:
@@ -114,33 +120,33 @@ def _what_is_awaited(task: Task) -> str:
     return awaited(rule) + limit
 
 
-def _is_place(task: Task) -> bool:
-    """Whether nothing is ever waited for: ways meet there."""
+def _is_junction(task: Task) -> bool:
+    """Return True if a WAIT task never waits, and only joins transitions."""
     return task.wait is not None and task.wait.duration == 0 and task.window is None
 
 
-def _why(visit: Visit) -> str | None:
-    """What ended it, in words."""
-    if visit.left is None:
+def _end_reason(visit: Visit) -> str | None:
+    """Return why a visit ended, in words; None if it has not ended."""
+    if visit.end_entry is None:
         return None
-    return visit.failure or visit.left.detail or visit.left.why
+    return visit.failure or visit.end_entry.detail or visit.end_entry.why
 
 
-def _window(task: Task, visit: Visit | None) -> WindowRun:
+def _window_run(task: Task, visit: Visit | None) -> WindowRun:
     window = task.window
     assert window is not None
     end = None if visit is None else visit.end
-    over = end is not None and window.latest is not None and end >= window.latest
-    late = end is not None and window.latest is not None and end > window.latest
-    kept = WindowOutcome.OPEN
+    is_over = end is not None and window.latest is not None and end >= window.latest
+    is_late = end is not None and window.latest is not None and end > window.latest
+    outcome = WindowOutcome.OPEN
     if visit is None:
-        kept = WindowOutcome.NOT_VISITED
+        outcome = WindowOutcome.NOT_VISITED
     elif visit.failure is not None:
-        kept = WindowOutcome.MISSED if window.hard and over else WindowOutcome.FAILED
-    elif visit.done:
-        kept = WindowOutcome.LATE if late else WindowOutcome.KEPT
+        outcome = WindowOutcome.MISSED if window.hard and is_over else WindowOutcome.FAILED
+    elif visit.is_done:
+        outcome = WindowOutcome.LATE if is_late else WindowOutcome.KEPT
     elif end is not None:
-        kept = WindowOutcome.LEFT
+        outcome = WindowOutcome.LEFT
     return WindowRun(
         task=task.name,
         earliest=window.earliest,
@@ -148,84 +154,87 @@ def _window(task: Task, visit: Visit | None) -> WindowRun:
         hard=window.hard,
         visited=None if visit is None else visit.start,
         ended=end,
-        kept=kept,
+        kept=outcome,
     )
 
 
 @dataclass(frozen=True)
-class _Seen:
-    """How a group stood at the last look."""
+class _KnownRound:
+    """Round of a group at the last update."""
 
     round: int
     elapsed: float
-    """s on its clock"""
-    at: int
-    """of its present round in the list"""
+    """s on the group's clock"""
+    index: int
+    """index of the round in the tracker's list"""
 
 
 class RoundTracker:
-    """Notes the rounds of all groups. Holds those that it has seen."""
+    """Tracker of the rounds of all groups; holds the rounds seen so far."""
 
     def __init__(self) -> None:
         self._rounds: list[RoundRun] = []
-        self._groups: dict[str, _Seen] = {}
-        self._steps = 0  # of the trace
+        self._groups: dict[str, _KnownRound] = {}
+        self._trace_length = 0  # entries of the trace that were handled
         self._hfsm: Hfsm | None = None
         self._rules: dict[str, RepeatRule] = {}
 
     def update(self, machine: Machine, now: float) -> None:
-        """Takes note of how the machine stands at time `now` (s), after each of its steps."""
-        new = machine.trace[self._steps :]
-        self._steps += len(new)
+        """Record the state of the machine at time `now` (s); to be called after each step of it."""
+        new = machine.trace[self._trace_length :]
+        self._trace_length += len(new)
         if machine.hfsm is not self._hfsm:
             self._hfsm = machine.hfsm
             self._rules = {c.name: c.repeat for c in machine.hfsm.composites[1:] if c.repeat}
-        moved = max((e.time for e in new if e.cause in BEGINNINGS), default=None)
+        moved = max((e.time for e in new if e.cause in VISIT_STARTS), default=None)
         begun = max((e.time for e in new if e.cause is Cause.ROUND), default=None)
         if not self._rules or (moved is None and begun is None):
             return
         progress = machine.progress()
         inside = {} if progress.outcome else {g.group: g for g in progress.groups}
-        first = next(e for e in new if e.cause in BEGINNINGS or e.cause is Cause.ROUND)
-        # The round that was waited for may have ended in the moment in which it began.
-        due = first.time if first.cause is Cause.ROUND else None
+        first = next(e for e in new if e.cause in VISIT_STARTS or e.cause is Cause.ROUND)
+        # The awaited round may have ended at the same time at which it began.
+        awaited_start = first.time if first.cause is Cause.ROUND else None
         for name in [name for name in self._groups if name not in inside]:
-            self._end(self._groups.pop(name).at, now if moved is None else moved, due)
+            self._end(self._groups.pop(name).index, now if moved is None else moved, awaited_start)
         for name, group in inside.items():
-            seen, waits = self._groups.get(name), progress.round_of == name
+            known, waits = self._groups.get(name), progress.round_of == name
             if moved is not None and (
-                seen is None or group.round != seen.round or group.elapsed < seen.elapsed
+                known is None or group.round != known.round or group.elapsed < known.elapsed
             ):
-                if seen is not None:
-                    self._end(seen.at, moved, due)
-                self._rounds.append(_entered(group, self._rules[name], moved, now, waits))
-                at = len(self._rounds) - 1
-            elif seen is None:
+                if known is not None:
+                    self._end(known.index, moved, awaited_start)
+                self._rounds.append(_new_round(group, self._rules[name], moved, now, waits))
+                index = len(self._rounds) - 1
+            elif known is None:
                 continue
             else:
-                at = seen.at
-                if self._rounds[at].began is None and not waits and begun is not None:
-                    self._update(at, due=begun, began=begun)
-            self._groups[name] = _Seen(group.round, group.elapsed, at)
+                index = known.index
+                if self._rounds[index].began is None and not waits and begun is not None:
+                    self._set_times(index, due=begun, began=begun)
+            self._groups[name] = _KnownRound(group.round, group.elapsed, index)
 
-    def all(self) -> tuple[RoundRun, ...]:
-        """All of them, in the order in which they could begin."""
+    def rounds(self) -> tuple[RoundRun, ...]:
+        """Return all rounds, in the order in which they could begin."""
         return tuple(self._rounds)
 
-    def _end(self, at: int, now: float, begun: float | None) -> None:
-        if begun is not None and self._rounds[at].began is None:
-            self._update(at, due=begun, began=begun)
-        self._update(at, ended=now)
+    def _end(self, index: int, now: float, begun: float | None) -> None:
+        if begun is not None and self._rounds[index].began is None:
+            self._set_times(index, due=begun, began=begun)
+        self._set_times(index, ended=now)
 
-    def _update(self, at: int, **times: float) -> None:
-        self._rounds[at] = self._rounds[at].model_copy(update=times)
+    def _set_times(self, index: int, **times: float) -> None:
+        self._rounds[index] = self._rounds[index].model_copy(update=times)
 
 
-def _entered(
+def _new_round(
     group: GroupProgress, rule: RepeatRule, since: float, now: float, waits: bool
 ) -> RoundRun:
-    """A round that could begin at `since`, and `waits` until it is due, as seen at `now` (s)."""
-    # How long it has been due by now, on the group's clock.
+    """Return a round that could begin at `since` (s), at time `now` (s).
+
+    `waits` states that the machine still waits until the round is due.
+    """
+    # Seconds since the round was due, on the group's clock; negative before.
     overdue = group.elapsed - (group.round - 1) * rule.every
     due = now - overdue if waits else min(now - overdue, since)
     return RoundRun(
@@ -238,30 +247,30 @@ def _entered(
 
 
 class InterruptionTracker:
-    """Notes each pause and each reaction. Holds the one that goes on."""
+    """Tracker of pauses and reactions; holds the ended ones and the current one."""
 
     def __init__(self) -> None:
-        self._over: list[Interruption] = []
-        self._by: EventKind | None = None
+        self._ended: list[Interruption] = []
+        self._event: EventKind | None = None
         self._since: float | None = None
-        self._steps = 0  # of the trace
+        self._trace_length = 0  # entries of the trace that were handled
 
     def update(self, machine: Machine, now: float) -> None:
-        """Takes note of how the machine stands at time `now` (s), after each of its steps."""
-        new = machine.trace[self._steps :]
-        self._steps += len(new)
+        """Record the state of the machine at time `now` (s); to be called after each step of it."""
+        new = machine.trace[self._trace_length :]
+        self._trace_length += len(new)
         interrupted = not machine.finished and (machine.paused or machine.reaction is not None)
-        by = None if machine.paused else machine.reaction
-        if self._since is not None and (not interrupted or by is not self._by):
-            limit = any(e.cause is Cause.LIMIT and e.event is self._by for e in new)
-            over = Interruption(start=self._since, end=now, event=self._by, limit_over=limit)
-            self._over.append(over)
+        event = None if machine.paused else machine.reaction
+        if self._since is not None and (not interrupted or event is not self._event):
+            limit = any(e.cause is Cause.LIMIT and e.event is self._event for e in new)
+            ended = Interruption(start=self._since, end=now, event=self._event, limit_over=limit)
+            self._ended.append(ended)
             self._since = None
         if interrupted and self._since is None:
-            self._by, self._since = by, now
+            self._event, self._since = event, now
 
-    def all(self, now: float) -> tuple[Interruption, ...]:
-        """All of them, the one that goes on up to `now` (s)."""
+    def interruptions(self, now: float) -> tuple[Interruption, ...]:
+        """Return all interruptions, the current one up to time `now` (s)."""
         if self._since is None:
-            return tuple(self._over)
-        return (*self._over, Interruption(start=self._since, end=now, event=self._by))
+            return tuple(self._ended)
+        return (*self._ended, Interruption(start=self._since, end=now, event=self._event))

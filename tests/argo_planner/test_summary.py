@@ -88,8 +88,8 @@ def test_each_thing_that_the_headline_counts_has_a_line(record: RunRecord) -> No
     lines = text[text.index("11:40 of") :].splitlines()
     assert lines[1:-1] == [
         "  pressure gauge 2 (#3) abnormal: 9.5 bar",
-        "  gas leak at 01:00 (no reaction answers it), over at 01:30, told while the robot was on "
-        "floor 1 at (1.00, 2.00, 0.00): a hiss",
+        "  gas leak at 01:00 (no reaction answers it), over at 01:30, reported while the robot was "
+        "on floor 1 at (1.00, 2.00, 0.00): a hiss",
         "  contact at 00:12: forearm with floor 2 railing 7, 12 mm deep",
     ]
     assert lines[-1] == (

@@ -72,7 +72,7 @@ def test_faults_that_make_no_sense(argo, folder, text, says):
 
 
 def test_a_drive_without_a_world_finds_no_brick(argo, folder):
-    assert "take another drive" in refused(argo(*RUN, "--drive", "route", cwd=folder))
+    assert "choose another drive" in refused(argo(*RUN, "--drive", "route", cwd=folder))
 
 
 def test_the_schema(argo):

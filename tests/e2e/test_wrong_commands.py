@@ -268,7 +268,7 @@ SAID = {
     "run s.txt --faults kindless.yaml": "it has no `kind`",
     "run s.txt --faults bare.yaml": "begin with `faults:`",
     "run s.txt --faults none.yaml": "begin with `faults:`",
-    "run s.txt --drive route --faults brick.yaml": "take another drive",
+    "run s.txt --drive route --faults brick.yaml": "choose another drive",
     "run s.txt --faults folder": "folder: can't be read: is a directory",
     "run s.txt --faults gas_leak": "gas_leak: can't be read: it does not exist",
     # requirements of a route

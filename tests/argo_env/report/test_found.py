@@ -81,7 +81,7 @@ def test_the_headline_counts_the_rows_and_says_what_came_of_them(simple, site):
     table = section(text, "anomalies")
     assert table.count('class="mark finding"') == 1
     assert "<td>no reaction answers it, over at 00:09</td>" in table
-    assert "<td>told while the robot was on floor 1 at (1.00, 2.00, 0.00)</td>" in table
+    assert "<td>reported while the robot was on floor 1 at (1.00, 2.00, 0.00)</td>" in table
     assert '<td data-name="found by">told</td>' in table
 
 

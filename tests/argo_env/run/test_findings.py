@@ -64,7 +64,7 @@ class TestEventsFromOutside:
         assert (finding.is_reported, finding.answered, finding.floor) == (True, False, 1)
         (sample,) = [s for s in record.path if s.t == 3.0]
         assert finding.noticed_from == (sample.x, sample.y, sample.z)
-        assert "told while the robot was on floor 1 at (" in finding.whereabouts
+        assert "reported while the robot was on floor 1 at (" in finding.whereabouts
         assert (record.result.success, record.headline.tone) == (True, Tone.NOTICE)
         said = "Done, 1 finding: gas leak at 00:03 (no reaction answers it)."
         assert str(record.headline) == said

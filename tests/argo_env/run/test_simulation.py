@@ -224,8 +224,8 @@ class TestSteering:
     @pytest.mark.parametrize(
         ("event", "kind", "says"),
         [
-            (InjectFault(Brick(floor=1)), Conflict, "from the run's start or not at all"),
-            (InjectFault(LowBattery(charge=0.3)), Conflict, "from the run's start or not at all"),
+            (InjectFault(Brick(floor=1)), Conflict, "can only begin with the run"),
+            (InjectFault(LowBattery(charge=0.3)), Conflict, "can only begin with the run"),
             (InjectFault(GasLeakFault(place=(2.0, 2.0, 1.0))), Conflict, "`route` has no world"),
             (
                 InjectFault(ConnectionLoss(until=0.5)), Invalid,
@@ -424,7 +424,7 @@ class TestOpenMachine:
             steps(simulation, 20)
             assert (simulation.task, simulation.ended) == (None, False)
             simulation.append_task(measure(2))
-            with pytest.raises(Conflict, match="'MEASURE 2' is still under way"):
+            with pytest.raises(Conflict, match="'MEASURE 2' is still running"):
                 simulation.append_task(measure(3))
             until(simulation, lambda: simulation.task is None)
             simulation.handle(Pause())
@@ -589,7 +589,7 @@ class TestObservers:
             with pytest.raises(OSError, match="no room"):
                 simulation.run()
             for use in (simulation.step, simulation.run, lambda: simulation.handle(Pause())):
-                with pytest.raises(Conflict, match="broke off by an error, at 2 s"):
+                with pytest.raises(Conflict, match="an error has ended the simulation, at 2 s"):
                     use()
 
     def test_what_is_refused_breaks_nothing(self, site):

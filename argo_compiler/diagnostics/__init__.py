@@ -1,17 +1,16 @@
-"""What the compiler has to say about its input: diagnostics with a place in the source.
+"""Diagnostics: messages of the compiler about its input, with positions in the source.
 
-`Diagnostic` is one of them; `to_text`, `to_json` and `to_sarif` show them to people, programs and
-code hosts. `CODES` explains every code there is.
+`to_text`, `to_json` and `to_sarif` write diagnostics for people, programs and code hosts. `CODES`
+explains all codes.
 """
 
-from argo_compiler.diagnostics.as_json import to_json
 from argo_compiler.diagnostics.codes import CODES
 from argo_compiler.diagnostics.codes.code import Severity
 from argo_compiler.diagnostics.diagnostic import (
     MAX_EXCERPT,
     Diagnostic,
     Span,
-    by_place,
+    by_position,
     count,
     diagnostic_of,
     has_errors,
@@ -20,6 +19,7 @@ from argo_compiler.diagnostics.diagnostic import (
     with_excerpts,
 )
 from argo_compiler.diagnostics.error import DiagnosticError
+from argo_compiler.diagnostics.json_format import to_json
 from argo_compiler.diagnostics.sarif import to_sarif
 from argo_compiler.diagnostics.text import to_text
 
@@ -30,7 +30,7 @@ __all__ = [
     "DiagnosticError",
     "Severity",
     "Span",
-    "by_place",
+    "by_position",
     "count",
     "diagnostic_of",
     "has_errors",

@@ -1,6 +1,6 @@
-"""`python -m argo_compiler.diagnostics` prints the codes as they stand in `docs/diagnostics.md`.
+"""Command `python -m argo_compiler.diagnostics`: print the tables of `docs/diagnostics.md`.
 
-With the path of that page as its argument it writes them there, between the marks.
+With the path of that page as its argument, it writes the tables there, between the marks.
 """
 
 import sys

@@ -1,4 +1,4 @@
-"""One diagnostic about some input: what is wrong, how bad it is, and where."""
+"""Diagnostics about an input: code, severity, message and position."""
 
 from collections.abc import Iterable, Sequence
 
@@ -11,11 +11,11 @@ from argo_compiler.diagnostics.codes import CODES
 from argo_compiler.diagnostics.codes.code import Severity
 
 MAX_EXCERPT = 200
-"""characters of the longest source line that is shown with a diagnostic"""
+"""largest length of a source line that is shown with a diagnostic, in characters"""
 
 
 class Span(Model):
-    """A stretch of one source line. Lines and columns count from 1, in characters."""
+    """Range in one source line. Lines and columns count from 1, in characters."""
 
     line: int
     column: int
@@ -27,7 +27,7 @@ _fill = object.__setattr__
 
 
 def span_at(line: int, column: int, length: int) -> Span:
-    """A span of numbers that need no check: a script has very many, and this is far faster."""
+    """Return a span without checking the numbers: much faster, as a script has very many spans."""
     new = object.__new__(Span)
     _fill(new, "__dict__", {"line": line, "column": column, "length": length})
     _fill(new, "__pydantic_fields_set__", _CHECKED.__pydantic_fields_set__)
@@ -37,23 +37,23 @@ def span_at(line: int, column: int, length: int) -> Span:
 
 
 class Diagnostic(Model):
-    """One diagnostic. `code` is stable and explained in `docs/diagnostics.md`."""
+    """Diagnostic of a mission or script. `docs/diagnostics.md` explains the stable codes."""
 
     code: str
     severity: Severity
     message: str
     span: Span | None = None
     excerpt: str | None = None
-    """the source line that the span lies in"""
+    """source line that contains the span"""
     hint: str | None = None
-    """the way out"""
+    """how to resolve the problem"""
     subject: str | None = None
-    """what it is about, as a path into the mission that goes by names, such as
+    """part of the mission concerned, as a path by names, such as
     `tasks['MEASURE 4'].transitions[0]`; see `argo_compiler.diagnostics.subject`"""
     remedies: tuple[Remedy, ...] = Field(default=(), exclude=True)
-    """how to take the way out, for front ends that add their own words"""
+    """machine-readable remedies, for front ends that name their own options"""
     choice: SkipJsonSchema[RemedyChoice | None] = Field(default=None, exclude=True)
-    """what the hint lets one choose by the remedy, where it says that"""
+    """the values that the hint offers for a remedy, if any"""
 
 
 def diagnostic_of(
@@ -65,7 +65,7 @@ def diagnostic_of(
     severity: Severity | None = None,
     choice: RemedyChoice | None = None,
 ) -> Diagnostic:
-    """Return a diagnostic; without a severity it is as bad as its code is."""
+    """Return a diagnostic; without `severity` it has that of its code."""
     return Diagnostic(
         code=code,
         severity=severity or CODES[code].severity,
@@ -79,20 +79,22 @@ def diagnostic_of(
 
 
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
-    """Whether there is an error among them."""
+    """Return True if at least one diagnostic is an error."""
     return any(diagnostic.severity is Severity.ERROR for diagnostic in diagnostics)
 
 
-def by_place(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """All in the source's order, at one place errors before warnings and notes, then by code. Those
-    without a place come last, in the order in which they are given."""
-    return tuple(sorted(diagnostics, key=_place))
+def by_position(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Return the diagnostics sorted by position in the source, then by severity and code.
+
+    Diagnostics without a span come last, in their given order.
+    """
+    return tuple(sorted(diagnostics, key=_sort_key))
 
 
 _RANKS = tuple(Severity)
 
 
-def _place(diagnostic: Diagnostic) -> tuple[bool, int, int, int, str]:
+def _sort_key(diagnostic: Diagnostic) -> tuple[bool, int, int, int, str]:
     span = diagnostic.span
     if span is None:
         return (True, 0, 0, 0, "")
@@ -103,9 +105,9 @@ def _place(diagnostic: Diagnostic) -> tuple[bool, int, int, int, str]:
 def with_excerpts(
     diagnostics: Iterable[Diagnostic], lines: Sequence[str]
 ) -> tuple[Diagnostic, ...]:
-    """The diagnostics with the source's lines that they point at."""
+    """Return the diagnostics with the source lines of their spans as excerpts."""
 
-    def shown(diagnostic: Diagnostic) -> Diagnostic:
+    def with_excerpt(diagnostic: Diagnostic) -> Diagnostic:
         span = diagnostic.span
         if span is None or span.line > len(lines):
             return diagnostic
@@ -113,16 +115,16 @@ def with_excerpts(
         excerpt = line if len(line) <= MAX_EXCERPT else None
         return diagnostic.model_copy(update={"excerpt": excerpt})
 
-    return tuple(shown(diagnostic) for diagnostic in diagnostics)
+    return tuple(with_excerpt(diagnostic) for diagnostic in diagnostics)
 
 
 def count(diagnostics: Iterable[Diagnostic], severity: Severity) -> int:
-    """How many of them are of that severity."""
+    """Return the number of diagnostics of a severity."""
     return sum(diagnostic.severity is severity for diagnostic in diagnostics)
 
 
 def summary(diagnostics: Iterable[Diagnostic]) -> str:
-    """How many there are, such as `2 errors, 5 warnings`."""
+    """Return the numbers of diagnostics by severity, such as `2 errors, 5 warnings`."""
     diagnostics = tuple(diagnostics)
     counts = ((count(diagnostics, severity), severity) for severity in Severity)
     parts = (f"{number} {severity}{'' if number == 1 else 's'}" for number, severity in counts)

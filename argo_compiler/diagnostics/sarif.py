@@ -1,4 +1,4 @@
-"""Diagnostics as SARIF 2.1.0 (OASIS), which editors and code hosts show beside the source."""
+"""Diagnostics as SARIF 2.1.0 (OASIS), which editors and code hosts show next to the source."""
 
 import hashlib
 import json
@@ -16,7 +16,7 @@ SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 
 def to_sarif(diagnostics: Sequence[Diagnostic], source_name: str) -> str:
-    """A SARIF log of one run with the diagnostics about one file, as a JSON text."""
+    """Return a SARIF log of one run with the diagnostics about one file, as JSON text."""
     codes = sorted({diagnostic.code for diagnostic in diagnostics})
     log = {
         "$schema": SCHEMA,
@@ -57,10 +57,10 @@ def _results(
     diagnostics: Sequence[Diagnostic], codes: Sequence[str], uri: str
 ) -> Iterator[dict[str, Any]]:
     index = {code: i for i, code in enumerate(codes)}
-    seen: Counter[str] = Counter()
+    occurrences: Counter[str] = Counter()
     for diagnostic in diagnostics:
         fingerprint = _fingerprint(diagnostic)
-        seen[fingerprint] += 1
+        occurrences[fingerprint] += 1
         yield {
             "ruleId": diagnostic.code,
             "ruleIndex": index[diagnostic.code],
@@ -68,7 +68,7 @@ def _results(
             "message": {"text": _message(diagnostic)},
             "locations": [_location(diagnostic, uri)],
             "partialFingerprints": {
-                "primaryLocationLineHash": f"{fingerprint}:{seen[fingerprint]}"
+                "primaryLocationLineHash": f"{fingerprint}:{occurrences[fingerprint]}"
             },
         }
 
@@ -79,7 +79,7 @@ def _message(diagnostic: Diagnostic) -> str:
 
 def _location(diagnostic: Diagnostic, uri: str) -> dict[str, Any]:
     span = diagnostic.span
-    region: dict[str, Any] = {"startLine": 1}  # code hosts ask for a region, known or not
+    region: dict[str, Any] = {"startLine": 1}  # code hosts require a region even if it is unknown
     if span:
         region = {
             "startLine": span.line,
@@ -98,7 +98,7 @@ def _location(diagnostic: Diagnostic, uri: str) -> dict[str, Any]:
 
 
 def _fingerprint(diagnostic: Diagnostic) -> str:
-    """What stays the same when lines before the diagnostic come and go."""
+    """Return a hash that does not change when lines before the diagnostic are added or removed."""
     line = " ".join((diagnostic.excerpt or diagnostic.message).split())
     return hashlib.sha256(f"{diagnostic.code}\n{line}".encode("utf-8", "replace")).hexdigest()[:16]
 

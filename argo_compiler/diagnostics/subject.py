@@ -1,9 +1,9 @@
-"""How a diagnostic names what it is about: a path whose tasks, groups and reactions go by name.
+"""Subjects of diagnostics: paths into a mission with tasks, groups and reactions by name.
 
-`tasks['MEASURE 4'].transitions[0].target`: a position changes when something is added before it, a
-name does not. Names stand in single quotes with the escapes of normalised paths in JSONPath
-(RFC 9535, 2.7). What has no name of its own, as the second task of one name, goes by its position
-from 0.
+An example is `tasks['MEASURE 4'].transitions[0].target`: a position changes when something is added
+before it, a name does not. Names are in single quotes with the escapes of normalised paths in
+JSONPath (RFC 9535, 2.7). An item without a unique name, such as the second task of one name, is
+identified by its position from 0.
 """
 
 import json
@@ -18,36 +18,36 @@ _ESCAPES = {
 
 
 @dataclass(frozen=True, slots=True)
-class Named:
-    """The step of a path to the item of this name in a list."""
+class NamedItem:
+    """Step of a path to the item of this name in a list."""
 
     name: str
 
 
-SubjectPath = tuple[str | int | Named, ...]
-"""fields, positions in lists and names in lists, from the outermost inward"""
+SubjectPath = tuple[str | int | NamedItem, ...]
+"""fields, positions in lists and names in lists, from the outermost to the innermost"""
 
 
 def subject_of(field: str, name: str, rest: str = "") -> str:
-    """What stands under a name in a list of the mission: `tasks['A']`, and `rest` of the path."""
+    """Return the path of the item of this name in a list, `tasks['A']`, followed by `rest`."""
     return f"{field}['{_CONTROL.sub(_escaped, name)}']{rest}"
 
 
 def parse_subject(text: str) -> SubjectPath:
-    """The steps of a path that `subject_of` or `format_path` wrote."""
-    return tuple(_step(found) for found in _STEP.finditer(text))
+    """Parse a path that `subject_of` or `format_path` wrote."""
+    return tuple(_step(match) for match in _STEP.finditer(text))
 
 
-def _step(found: re.Match[str]) -> str | int | Named:
-    position, name, field = found.groups()
+def _step(match: re.Match[str]) -> str | int | NamedItem:
+    position, name, field = match.groups()
     if position is not None:
         return int(position)
     if name is not None:
-        written = name.replace(r"\'", "'").replace('"', r"\"")
-        return Named(json.loads(f'"{written}"', strict=False))
+        escaped = name.replace(r"\'", "'").replace('"', r"\"")
+        return NamedItem(json.loads(f'"{escaped}"', strict=False))
     return field
 
 
-def _escaped(found: re.Match[str]) -> str:
-    character = found[0]
+def _escaped(match: re.Match[str]) -> str:
+    character = match[0]
     return _ESCAPES.get(character) or f"\\u{ord(character):04x}"

@@ -10,10 +10,10 @@ _INDENT = "    "
 
 
 def to_text(diagnostics: Sequence[Diagnostic], source_name: str) -> str:
-    """All diagnostics, the source line with a mark below each, and how many there are.
+    """Return all diagnostics with marked source lines, and their numbers.
 
-    Beside errors a warning takes one line only: what stops the work should be seen first. A note
-    always does.
+    If there are errors, a warning takes only one line, so that the errors are seen first. A note
+    always takes one line.
     """
     brief = has_errors(diagnostics)
     lines = []
@@ -29,10 +29,10 @@ def to_text(diagnostics: Sequence[Diagnostic], source_name: str) -> str:
 
 def _headline(diagnostic: Diagnostic, source_name: str) -> str:
     span = diagnostic.span
-    place = f"{source_name}:{span.line}:{span.column}" if span else source_name
+    location = f"{source_name}:{span.line}:{span.column}" if span else source_name
     subject = "" if span or not diagnostic.subject else f"{diagnostic.subject}: "
     return _printable(
-        f"{place}: {diagnostic.severity}: {subject}{diagnostic.message} [{diagnostic.code}]"
+        f"{location}: {diagnostic.severity}: {subject}{diagnostic.message} [{diagnostic.code}]"
     )
 
 
@@ -53,14 +53,14 @@ def _details(diagnostic: Diagnostic) -> list[str]:
 
 
 def _printable(text: str) -> str:
-    """The text without characters that would steer the terminal; each stands for one."""
+    """Return the text with a replacement for each character that would control the terminal."""
     return "".join(
         c if c.isprintable() or _width(c) == 0 else "\N{REPLACEMENT CHARACTER}" for c in text
     )
 
 
 def _width(text: str) -> int:
-    """Columns that the text takes on a terminal: two for wide characters, none for marks."""
+    """Return the terminal columns of the text: two for wide characters, none for marks."""
     return sum(
         0
         if unicodedata.category(c) in {"Mn", "Me"}

@@ -11,7 +11,7 @@ from argo_compiler.diagnostics import (
     Diagnostic,
     DiagnosticError,
     Span,
-    by_place,
+    by_position,
 )
 from argo_compiler.files.atomic_write import write_atomically
 from argo_compiler.files.json_places import (
@@ -65,7 +65,7 @@ class MissionFile:
             UnplacedDiagnostic(d, None if d.subject is None else path(d.subject))
             for d in diagnostics
         )
-        return by_place(_add_places(self.text, unplaced))
+        return by_position(_add_places(self.text, unplaced))
 
 
 def read_mission(path: Path) -> Mission:

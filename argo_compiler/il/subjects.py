@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from functools import cached_property
 
-from argo_compiler.diagnostics.subject import Named, parse_subject, subject_of
+from argo_compiler.diagnostics.subject import NamedItem, parse_subject, subject_of
 from argo_compiler.il.mission import Mission
 
 
@@ -35,7 +35,7 @@ class Subjects:
         """
         steps: list[str | int] = []
         for step in parse_subject(text):
-            if not isinstance(step, Named):
+            if not isinstance(step, NamedItem):
                 steps.append(step)
                 continue
             lists = {"tasks": self._tasks, "groups": self._groups, "reactions": self._reactions}

@@ -11,7 +11,7 @@ from argo_compiler.diagnostics import (
     Diagnostic,
     DiagnosticError,
     Severity,
-    by_place,
+    by_position,
     has_errors,
     summary,
     to_json,
@@ -66,7 +66,7 @@ def check_source(
         if site is not None:
             found += tuple(unseen_from_poses(loaded.mission, site))
             found += tuple(too_fast(loaded.mission, site.robot))
-    return by_place((*loaded.diagnostics, *loaded.placed(found)))
+    return by_position((*loaded.diagnostics, *loaded.placed(found)))
 
 
 def _too_many_places(places: int) -> Diagnostic:

@@ -16,7 +16,7 @@ from argo_compiler.checks import check
 from argo_compiler.diagnostics import (
     Diagnostic,
     DiagnosticError,
-    by_place,
+    by_position,
     has_errors,
     with_excerpts,
 )
@@ -186,7 +186,7 @@ def import_mission(
     loaded = load(upload, site.catalog, start_area, end_area)
     found = check(loaded.mission, site.catalog)
     found += tuple(too_fast(loaded.mission, site.robot))
-    found = by_place((*loaded.diagnostics, *loaded.placed(found)))
+    found = by_position((*loaded.diagnostics, *loaded.placed(found)))
     if has_errors(found):
         raise DiagnosticError(upload.name, found)
     return ImportedMission(loaded.mission, upload.name, loaded.diagnostics, found)

@@ -1,7 +1,7 @@
-"""Every code that a diagnostic can have: how bad it is, what it means, and the way out.
+"""Registry of all diagnostic codes with severity, meaning and remedy.
 
-The one place where codes are explained, a file for each part of Argo. SARIF's rules are made from
-it, and so are the tables in `docs/diagnostics.md`, which `make generated` writes.
+Codes are explained only here, in one file for each part of Argo. SARIF's rules and the tables in
+`docs/diagnostics.md`, which `make generated` writes, are made from this registry.
 """
 
 from argo_compiler.diagnostics.codes.analysis import ANALYSIS
@@ -34,7 +34,7 @@ CODES: dict[str, Code] = {
     **ROUTE,
     **EDIT,
 }
-"""by the code's name"""
+"""explanations by the code's name"""
 
 
 BEGIN, END = "<!-- codes -->", "<!-- end of codes -->"
@@ -42,7 +42,7 @@ BEGIN, END = "<!-- codes -->", "<!-- end of codes -->"
 
 
 def as_markdown() -> str:
-    """The codes as Markdown tables, one for each part of Argo."""
+    """Return the codes as Markdown tables, one for each part of Argo."""
     parts: dict[str, list[str]] = {}
     for name, code in CODES.items():
         row = f"| `{name}` | {code.severity} | {code.meaning} | {code.remedy} |"

@@ -1,12 +1,15 @@
-"""What a code stands for."""
+"""Severity and explanation of a diagnostic code."""
 
 from dataclasses import dataclass
 from enum import StrEnum
 
 
 class Severity(StrEnum):
-    """How bad it is: an error stops the compiler, a warning is shown and the work goes on, and so
-    is a note, which says what has no effect and need not be looked after."""
+    """Severity of a diagnostic.
+
+    An error stops the compiler. A warning is shown, and the compiler continues. A note only reports
+    something without effect; it needs no action.
+    """
 
     ERROR = "error"
     WARNING = "warning"
@@ -15,24 +18,24 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Code:
-    """What a code stands for. Both texts are whole sentences."""
+    """Severity and explanation of a code. Both texts are whole sentences."""
 
     severity: Severity
     meaning: str
     remedy: str
-    """the way out"""
+    """how to resolve it"""
 
 
 def error(meaning: str, remedy: str) -> Code:
-    """What an error's code stands for."""
+    """Return the explanation of an error."""
     return Code(Severity.ERROR, meaning, remedy)
 
 
 def warning(meaning: str, remedy: str) -> Code:
-    """What a warning's code stands for."""
+    """Return the explanation of a warning."""
     return Code(Severity.WARNING, meaning, remedy)
 
 
 def note(meaning: str, remedy: str) -> Code:
-    """What a note's code stands for."""
+    """Return the explanation of a note."""
     return Code(Severity.NOTE, meaning, remedy)

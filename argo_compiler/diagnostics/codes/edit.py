@@ -1,4 +1,4 @@
-"""The codes of what stands in the way of an edit."""
+"""Codes of the reasons why an edit is refused."""
 
 from argo_compiler.diagnostics.codes.code import error
 
@@ -8,69 +8,69 @@ EDIT = {
         "Give each task a name of its own first.",
     ),
     "edit.beginning": error(
-        "Without the task the mission would begin with another one than it should.",
-        "Lead a START task to where it is to begin, or move that task to the front.",
+        "Without the task the mission would begin with the wrong task.",
+        "Lead a START task to the right task, or move that task to the front.",
     ),
     "edit.ends-by-condition": error(
-        "The mission ends after the task, and a transition with conditions leads to it; without "
-        "the task that condition would have to end the mission, which no condition can.",
+        "The mission ends after the task, and a conditional transition leads to it. Without the "
+        "task the condition would have to end the mission, which no condition can.",
         "Lead that transition to another task first.",
     ),
     "edit.ends-round": error(
-        "Another task would end the rounds of a group, and they can't end with it: a task of the "
+        "Another task would end the rounds of a group, but they can't end with it: a task of the "
         "group leads elsewhere.",
-        "Lead only the unconditional transition of the task before the group's last to that one, "
+        "Lead only the unconditional transition of the last task but one to the group's last task, "
         "or end the group elsewhere.",
     ),
     "edit.group-name": error(
         "A group's own name is empty or has a `/`.",
-        "Give it a name without `/`: that of the group around it is put before it.",
+        "Give it a name without `/`: the name of the group around it is added as a prefix.",
     ),
     "edit.group-order": error(
-        "A group is to end before it starts.",
+        "A group would end before it starts.",
         "Swap its start and end, or move a task.",
     ),
     "edit.group-overlap": error(
-        "A group would overlap another one, or no longer lie where its name says.",
-        "Let one lie in the other as a whole, or dissolve the other one first.",
+        "A group would overlap another one, or its position would contradict its name.",
+        "Nest one completely in the other, or dissolve the other one first.",
     ),
     "edit.last-task": error(
         "The only task of a mission can't be removed.",
         "Add another one first; a mission that does nothing has a START task only.",
     ),
     "edit.leaves-group": error(
-        "By way of the task another one leaves a group and enters it anew; without it that would "
-        "be a jump inside the round.",
+        "Through the task another one leaves a group and enters it again; without the task it "
+        "would jump inside the round.",
         "Lead the other task elsewhere first.",
     ),
     "edit.name-taken": error(
-        "The name that something is to have is that of another task or group.",
+        "The new name is already that of another task or group.",
         "Choose another name, or rename the other one.",
     ),
     "edit.not-beside-group": error(
-        "A task is to stand in a group that does not reach to its place.",
-        "Choose a place beside a task of the group.",
+        "A task is added to a group that does not extend to its position.",
+        "Choose a position next to a task of the group.",
     ),
     "edit.place": error(
-        "The place for a task is given twice, or as before or after itself.",
-        "Name one other task before or after which it is to stand.",
+        "The position of a task is given twice, or relative to the task itself.",
+        "Name one other task that it comes before or after.",
     ),
     "edit.second-default": error(
         "A task would have two unconditional transitions.",
         "Give one of them a condition, or remove one.",
     ),
     "edit.second-reaction": error(
-        "There is a reaction to this event already.",
-        "Change that one, or remove it first.",
+        "A reaction to this event already exists.",
+        "Change that reaction, or remove it first.",
     ),
     "edit.start-in-group": error(
-        "A START task would lie in a group.",
-        "Move START before the group: it is not repeated.",
+        "A START task would be in a group.",
+        "Move START before the group: START can't be repeated.",
     ),
     "edit.starts-round": error(
-        "The task begins the rounds of a group and leads to another task than the one behind it, "
-        "with which they would begin.",
-        "Lead it to the task behind it first, or change where the group starts.",
+        "The task starts the rounds of a group, but does not lead to the next task of the list, "
+        "with which they would start without it.",
+        "Lead it to the next task first, or change where the group starts.",
     ),
     "edit.unknown-condition": error(
         "A transition has no condition at this position.",

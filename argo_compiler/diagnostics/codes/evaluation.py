@@ -1,4 +1,4 @@
-"""The codes of diagnostics about files of evaluations."""
+"""Codes of diagnostics about files of evaluations."""
 
 from argo_compiler.diagnostics.codes.code import error
 
@@ -7,10 +7,10 @@ EVALUATION = {
         "A mapping in the file of an evaluation has the same key twice.", "Remove one of the two."
     ),
     "evaluation.not-yaml": error(
-        "The file of an evaluation is no YAML.", "Correct the file at the mark."
+        "The file of an evaluation is not YAML.", "Correct the file at the mark."
     ),
     "evaluation.wrong-field": error(
-        "A field of the evaluation is unknown, missing, or has a value that makes no sense.",
+        "A field of the evaluation is unknown, missing, or has an invalid value.",
         "Correct the field; docs/evaluating.md lists them.",
     ),
 }

@@ -1,4 +1,4 @@
-"""The codes of diagnostics about what an exporter's target can't say."""
+"""Codes of diagnostics about parts of a mission that an export format can't express."""
 
 from argo_compiler.diagnostics.codes.code import error
 
@@ -9,7 +9,7 @@ EXPORT = {
         "Put the tasks in between into a group.",
     ),
     "export.every": error(
-        "A group begins its rounds at set times, which this format can't say.",
+        "A group starts its rounds at set times, which this format can't express.",
         "Let the rounds follow each other, or export SCXML.",
     ),
     "export.isar-empty": error(
@@ -20,57 +20,58 @@ EXPORT = {
         "Limit its groups, and lead no transition back.",
     ),
     "export.isar-group": error(
-        "A group is repeated other than a number of times; for isar, rounds can only be counted.",
+        "A group is not limited by a number of rounds; isar has no other limit.",
         "Limit it by `max_repeat_count`.",
     ),
     "export.isar-mode": error(
-        "The mission is supervisory; isar has autonomous missions only.", "Plan it as autonomous."
+        "The mission is supervisory; isar has only autonomous missions.", "Plan it as autonomous."
     ),
     "export.isar-no-target": error(
-        "The place of a checkpoint is not known, and isar needs a point to look at.",
+        "The position of a checkpoint is unknown, and isar needs a point to look at.",
         "Export with the site that has the checkpoint.",
     ),
     "export.isar-reaction": error(
-        "A reaction has no place in isar's missions.", "Remove it; isar's own state machine reacts."
+        "isar's missions have no reactions.", "Remove it; isar's own state machine reacts."
     ),
     "export.isar-task": error(
-        "A task has something that isar's tasks do not have.",
-        "Remove it, or export to a format that has it.",
+        "A task has a property that isar's tasks do not have.",
+        "Remove the property, or export to a format that has it.",
     ),
     "export.isar-waypoint": error(
         "A task only drives; isar's tasks are inspections.",
         "Remove it, or measure a checkpoint there.",
     ),
     "export.name": error(
-        "BehaviorTree.CPP would take a name for something else than text.",
+        "BehaviorTree.CPP would not read a name as text.",
         "Choose a name without braces, semicolons and `json:`.",
     ),
     "export.not-text": error(
-        "A text of the mission can't be written as UTF-8.", "Remove what is no character."
+        "A text of the mission can't be written as UTF-8.", "Remove the invalid characters."
     ),
     "export.number-too-large": error(
         "A number does not fit into the field of the message.", "Use a smaller number."
     ),
     "export.reaction": error(
-        "A reaction can't be said in this format.",
+        "A reaction can't be expressed in this format.",
         "Let the robot's own tree or behaviour react, with the mission's inside it.",
     ),
     "export.velocity": error(
-        "A message has the velocity of the way on from a task, and those of the ways differ.",
+        "A message has one velocity for all drives from a task, but the tasks that follow have "
+        "different ones.",
         "Give all tasks that may follow the same task one velocity.",
     ),
     "export.supervisory": error(
-        "The mission begins paused, which this format can't say.", "Plan it as autonomous."
+        "The mission starts paused, which this format can't express.", "Plan it as autonomous."
     ),
     "export.too-long": error(
-        "A duration is longer than a node of BehaviorTree.CPP takes.", "Shorten it."
+        "A duration is longer than a node of BehaviorTree.CPP allows.", "Shorten it."
     ),
     "export.wait": error(
-        "A task waits for an event or for conditions, which this format can't say.",
+        "A task waits for an event or for conditions, which this format can't express.",
         "Wait for a time, or export SCXML.",
     ),
     "export.window": error(
-        "A task has a window that this format can't say.",
+        "A task has a window that this format can't express.",
         "Make it soft, or export SCXML.",
     ),
 }

@@ -1,18 +1,18 @@
-"""The codes of diagnostics about mission files."""
+"""Codes of diagnostics about mission files."""
 
 from argo_compiler.diagnostics.codes.code import error, warning
 
 FILE = {
-    "file.directory": error("A folder stands where a file is read.", "Name the file in it."),
+    "file.directory": error("A folder is given instead of a file.", "Name the file in it."),
     "file.duplicate-key": error(
         "An object of the JSON file has the same field twice; readers would disagree on which "
         "one counts.",
         "Remove one of the two.",
     ),
     "file.meaning-changed": warning(
-        "The file has an older version of the mission format, and says something that does not "
-        "mean the same any more.",
-        "Look at what is named, and save the mission anew.",
+        "The file has an older version of the mission format, and one of its fields has another "
+        "meaning now.",
+        "Check the field in the message, and save the mission again.",
     ),
     "file.missing": error("There is no such file.", "Check the path."),
     "file.not-a-mission": error(
@@ -20,7 +20,7 @@ FILE = {
         "Name a file that an import or the planner has written.",
     ),
     "file.not-json": error(
-        "The file is no JSON: a comma, quote or bracket is missing, or a number or text is not "
+        "The file is not JSON: a comma, quote or bracket is missing, or a number or text is not "
         "allowed.",
         "Correct the file at the mark.",
     ),
@@ -36,11 +36,11 @@ FILE = {
     "file.unreadable": error("The file can't be read.", "Check the path and its permissions."),
     "file.unsupported-version": error(
         "The file has a version of the mission format that this Argo does not know.",
-        "Use a newer Argo, or save the mission anew.",
+        "Use a newer Argo, or save the mission again.",
     ),
-    "file.unwritable": error("The file can't be written.", "Choose another place to write to."),
+    "file.unwritable": error("The file can't be written.", "Choose another path."),
     "file.wrong-field": error(
         "A field of the mission is unknown, missing, or has a value of the wrong kind.",
-        "Correct the field; the JSON Schema of missions says what it may hold.",
+        "Correct the field; the JSON Schema of missions states its valid values.",
     ),
 }

@@ -1,17 +1,17 @@
-"""The codes of diagnostics about the structure of missions."""
+"""Codes of diagnostics about the structure of missions."""
 
 from argo_compiler.diagnostics.codes.code import error, warning
 
 IL = {
     "il.battery-level": error(
-        "A reaction has a level of the battery, and its event is not LOW_BATTERY.",
-        "Leave `battery_below` out, or let the reaction answer `low_battery`.",
+        "A reaction has a battery level, but its event is not LOW_BATTERY.",
+        "Leave `battery_below` out, or let the reaction respond to `low_battery`.",
     ),
     "il.before-itself": error(
-        "Tasks are to come before each other in a circle.", "Take one of the pairs out of `before`."
+        "Pairs of `before` form a circle.", "Remove one of the pairs from `before`."
     ),
     "il.branch-without-target": error(
-        "A task is to go on elsewhere when it has failed, and does not say where.",
+        "A task leads elsewhere when it has failed, but has no target for this case.",
         "Give it a `failure_target`, or another `on_failure`.",
     ),
     "il.condition-bound": error(
@@ -22,7 +22,7 @@ IL = {
         "Two groups have the same name.", "Give each group a name of its own."
     ),
     "il.duplicate-reaction": error(
-        "Two reactions answer the same event.", "Keep one reaction for each event."
+        "Two reactions respond to the same event.", "Keep one reaction for each event."
     ),
     "il.duplicate-task": error(
         "Two tasks have the same name, by which transitions and groups refer to them.",
@@ -40,12 +40,12 @@ IL = {
     ),
     "il.equal-priority": warning(
         "Two reactions have the same priority: the one whose event occurs later waits until the "
-        "other is over.",
+        "other has ended.",
         "Give the more urgent one the higher `priority`; ABORT and the reaction to an emergency "
         "stop need none.",
     ),
     "il.group-duration": error(
-        "The time of a group with `stop` hard is up before any action could be carried out.",
+        "The time of a group with `stop` hard ends before any action could be executed.",
         "Allow it at least a millisecond, or 0 for no limit.",
     ),
     "il.group-name": error(
@@ -57,48 +57,49 @@ IL = {
         "Swap its start and end, or reorder the tasks.",
     ),
     "il.group-outside-parent": error(
-        "A group reaches beyond the group that its name puts it in.",
+        "A group extends beyond the outer group in its name.",
         "Keep its tasks within those of the outer group.",
     ),
     "il.group-overlap": error(
-        "Two groups share tasks, and neither name says that one lies in the other.",
+        "Two groups share tasks, and neither name states that one is inside the other.",
         "Name the inner one `Outer/Inner`, or separate their tasks.",
     ),
     "il.group-parent": error(
-        "A group is to lie in one that does not exist.",
-        "Add the group around it, or take the `/` out of its name.",
+        "The outer group in a group's name does not exist.",
+        "Add the outer group, or remove the `/` from its name.",
     ),
     "il.group-period": error(
-        "The rounds of a group are to follow each other faster than any could be over.",
-        "Give `every` a second at least, or 0 for rounds without a pause.",
+        "The rounds of a group would start faster than any could end.",
+        "Set `every` to at least one second, or to 0 for rounds without a pause.",
     ),
     "il.group-same-range": error(
-        "Two groups have the same tasks, and neither name says which one lies inside.",
+        "Two groups have the same tasks, and neither name states which one is the inner one.",
         "Name the inner one `Outer/Inner`.",
     ),
     "il.instant-loop": error(
-        "Nothing on a way that leads round in a circle takes any time, so the mission might never "
-        "come to the next moment.",
-        "Let a WAIT on it last, give the group `every` or few rounds, or take a hard window away.",
+        "Nothing in a loop takes any time, so the mission might run through it for ever at one "
+        "moment.",
+        "Give a WAIT in it a duration, give the group `every` or few rounds, or remove a hard "
+        "window.",
     ),
     "il.joint-states": error(
-        "The joints and positions, velocities or efforts of a task's joint states do not belong "
-        "to each other.",
-        "Give exactly one for each joint, or none at all, and each joint once.",
+        "A task's joint states have no values, not one value for each joint, or a joint twice.",
+        "Give one position, velocity or effort for each joint, or none of that kind, and name each "
+        "joint once.",
     ),
     "il.leaves-round": warning(
-        "A branch leaves a repeated group before the end of its round, and with it the rounds that "
-        "are left.",
-        "Lead it to the group's end if the round is to be completed; else nothing is to be done.",
+        "A branch leaves a repeated group before the end of a round; its remaining rounds are "
+        "skipped.",
+        "Lead it to the group's end if the rounds are to be completed; otherwise do nothing.",
     ),
     "il.left-out": warning(
-        "Tasks were taken away when the mission's order was chosen, as they did not fit into its "
-        "time.",
-        "Allow more time and choose the order anew, or make another mission of them.",
+        "Tasks were left out when the mission's order was chosen, because they did not fit into "
+        "its time.",
+        "Allow more time and choose the order again, or make another mission of them.",
     ),
     "il.many-retries": warning(
         "A failed action would be tried again so often that the mission seems to hang.",
-        "A few retries are enough; let `on_failure` say what comes then.",
+        "A few retries are enough; define by `on_failure` what follows.",
     ),
     "il.many-starts": error(
         "There is more than one START task.", "Remove all START tasks but one."
@@ -108,39 +109,39 @@ IL = {
         "Keep one and give the others conditions.",
     ),
     "il.measure-without-object": error(
-        "A MEASURE task does not say what it measures.",
+        "A MEASURE task does not state what it measures.",
         "Give it the checkpoint's number as `object_id`.",
     ),
     "il.never-measured": warning(
-        "A condition compares a checkpoint that no task measures, so it never holds.",
+        "A condition compares a checkpoint that no task measures, so it is never true.",
         "Measure the checkpoint before the task with the condition.",
     ),
     "il.no-dock": error(
-        "The robot is to return after a failure or an event, but the mission has no `dock`.",
+        "The robot has to return after a failure or an event, but the mission has no `dock`.",
         "Give the mission the pose of the docking station as `dock`.",
     ),
     "il.no-unconditional": warning(
-        "The mission ends after a task if none of its conditions hold.",
-        "Add an unconditional transition if it is to go on.",
+        "The mission ends after a task if none of its conditions is true.",
+        "Add an unconditional transition if the mission is to continue.",
     ),
     "il.order-broken": warning(
-        "A task that is to come before another one can come after it. An error in a precise order "
-        "where it always does.",
-        "Move one of them, have the order chosen anew, or take the pair out of `before`.",
+        "A task that must come before another one can come after it. An error if the order is "
+        "precise and it always comes after it.",
+        "Move one of them, have the order chosen again, or remove the pair from `before`.",
     ),
     "il.other-site": error(
-        "The mission was planned for another site, so its poses and checkpoints mean others here.",
+        "The mission was planned for another site, so its poses and checkpoints are wrong here.",
         "Choose the mission's site.",
     ),
     "il.reserved-name": error(
-        "A task has a name that the machine needs for the drives of failures and reactions.",
+        "A task has a name that Argo reserves for drives after failures and for reactions.",
         "Give the task another name.",
     ),
     "il.safe-area-without-pose": error(
-        "A SAFE_AREA reaction does not say where the safe area is.", "Give the reaction a `pose`."
+        "A SAFE_AREA reaction does not state where the safe area is.", "Give the reaction a `pose`."
     ),
     "il.stale-without-age": error(
-        "A STALE condition does not say from which age on a value is stale.",
+        "A STALE condition does not state from which age on a value is stale.",
         "Give it a `max_age` in seconds.",
     ),
     "il.start-as-target": error(
@@ -148,14 +149,14 @@ IL = {
         "Lead it to the task that follows START.",
     ),
     "il.start-condition": warning(
-        "A conditional transition of START is never taken, as nothing has been measured yet.",
+        "A conditional transition of START is never taken, because nothing has been measured yet.",
         "Remove it.",
     ),
     "il.start-in-group": error(
-        "The START task lies in a group, but is not repeated.", "Move START before the group."
+        "The START task is in a group, but can't be repeated.", "Move START before the group."
     ),
     "il.time-up-without-limit": warning(
-        "A reaction waits for TIME_UP, which never occurs, as the mission has no `max_duration`.",
+        "A reaction waits for TIME_UP, which never occurs without a `max_duration` of the mission.",
         "Give the mission a `max_duration`, or use another event.",
     ),
     "il.unknown-area": error(
@@ -164,14 +165,14 @@ IL = {
     ),
     "il.unknown-before": error(
         "A pair of `before` names a task that the mission does not have.",
-        "Name a task, or take the pair out.",
+        "Name a task, or remove the pair.",
     ),
     "il.unknown-current": warning(
         "`current` names no task of the mission.",
         "Name a task or leave `current` out; only the planner uses it.",
     ),
     "il.unknown-group-task": error(
-        "A group begins or ends with what is no task of the mission.",
+        "A group starts or ends with a task that the mission does not have.",
         "Use names of tasks as the group's start and end.",
     ),
     "il.unknown-object": error(
@@ -179,37 +180,37 @@ IL = {
         "Use the number of a checkpoint of the site.",
     ),
     "il.unknown-target": error(
-        "A transition leads to what is no task of the mission.",
+        "A transition leads to a task that the mission does not have.",
         "Add such a task, or lead the transition to another one.",
     ),
     "il.until-answered": warning(
-        "A reaction waits for an event that has a reaction of higher priority of its own, which is "
-        "carried out instead.",
+        "A reaction waits for an event that itself has a reaction of higher priority, which is "
+        "executed instead.",
         "Wait for another event, or give this reaction the higher priority.",
     ),
     "il.until-itself": error(
-        "A reaction waits for the very event that it answers; while it is active, that event "
-        "changes nothing.",
-        "Wait for an event that tells that the danger is over, such as all_clear.",
+        "A reaction waits for the same event that it responds to; while it is active, that event "
+        "has no effect.",
+        "Wait for an event that ends the danger, such as all_clear.",
     ),
     "il.unused-field": warning(
         "A field is given where it has no effect.",
-        "Remove it, or change what it should have an effect on.",
+        "Remove it, or change the part that it should have an effect on.",
     ),
     "il.wait-rule": error(
-        "A WAIT does not say how long it lasts, or says it in two ways.",
+        "A WAIT does not state how long it lasts, or states it in two ways.",
         "Give its `wait` a `duration`, or else an `event`, `conditions` or both.",
     ),
     "il.wait-without-limit": warning(
-        "A WAIT for an event or a value has no limit: if that never comes, it lasts for ever.",
+        "A WAIT for an event or a value has no limit: it may last for ever.",
         "Give its `wait` a `limit`, and the task an `on_failure`.",
     ),
     "il.window-order": error(
         "A time window ends before it begins, so the task can't be done in it.",
-        "`latest` comes after `earliest`; both count from the mission's start in seconds.",
+        "Set `latest` to a time after `earliest`; both count from the mission's start in seconds.",
     ),
     "il.waypoint-without-pose": error(
-        "A WAYPOINT task does not say where it leads.", "Give it a `pose`."
+        "A WAYPOINT task does not state where it leads.", "Give it a `pose`."
     ),
     "il.within-bounds": error(
         "A WITHIN condition has no upper bound, or no value lies between its bounds.",

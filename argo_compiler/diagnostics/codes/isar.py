@@ -1,4 +1,4 @@
-"""The codes of diagnostics about missions of isar."""
+"""Codes of diagnostics about missions of isar."""
 
 from argo_compiler.diagnostics.codes.code import error, warning
 
@@ -8,17 +8,18 @@ ISAR = {
         "Check whether the mission is complete without it.",
     ),
     "isar.home": error(
-        "The isar mission does not say where home is.", "Give the pose of home in the site's frame."
+        "The isar mission does not state where home is.",
+        "Give the pose of home in the site's frame.",
     ),
     "isar.inspection": error(
-        "A task of the isar mission has no inspection.", "Say what is to be inspected."
+        "A task of the isar mission has no inspection.", "State what is to be inspected."
     ),
     "isar.inspection-type": error(
         "The isar mission asks for an inspection other than an image.",
         "Argo reads checkpoints in images: use one of those types.",
     ),
     "isar.tag": error(
-        "An inspection has no tag, so it is not said which checkpoint it is of.",
+        "An inspection has no tag, so its checkpoint is unknown.",
         "Give it the checkpoint's tag.",
     ),
     "isar.wrong-field": error(

@@ -1,18 +1,18 @@
-"""The codes of diagnostics about the requirements of an order."""
+"""Codes of diagnostics about the requirements of an order."""
 
 from argo_compiler.diagnostics.codes.code import error
 
 ROUTE = {
     "route.duplicate-key": error(
-        "A key stands twice in one mapping of a file of requirements.",
+        "A mapping in a file of requirements has the same key twice.",
         "Remove one of the two.",
     ),
     "route.not-yaml": error(
-        "A file of requirements is no YAML.",
+        "A file of requirements is not YAML.",
         "Correct it at the mark.",
     ),
     "route.wrong-field": error(
-        "A field of a file of requirements is missing, unknown or has an impossible value.",
-        "See `docs/routes.md` for what there is.",
+        "A field of a file of requirements is missing, unknown or has an invalid value.",
+        "Correct the field; docs/routes.md lists them.",
     ),
 }

@@ -1,4 +1,4 @@
-"""The codes of diagnostics about mission scripts."""
+"""Codes of diagnostics about mission scripts."""
 
 from argo_compiler.diagnostics.codes.code import error, note, warning
 
@@ -8,24 +8,24 @@ SCRIPT = {
         "Move the return to the end.",
     ),
     "script.after-done": error(
-        "A line comes after the protocol has said that it is done.",
+        "A line comes after `Done!`, the end of the protocol.",
         "Move it up, or remove the earlier `Done!`.",
     ),
     "script.always-holds": warning(
-        "A condition holds for every value that is measured.",
+        "A condition is true for every measured value.",
         "Write `and` for `or` if a range is meant, or correct its bounds.",
     ),
     "script.ambiguous-all": error(
-        "All of it can mean what was done so far, or all checkpoints of the site.",
+        "A word such as `everything` can mean all steps so far, or all checkpoints of the site.",
         "Write `repeat everything once more`, or `check all checkpoints`.",
     ),
     "script.ambiguous-and-or": error(
-        "`And` and `or` stand in one list, which can be read in two ways.",
+        "A list contains both `and` and `or`, and can be read in two ways.",
         "Write it as one of the two readings in the message.",
     ),
     "script.ambiguous-case": error(
-        "What stands behind a case can be meant for this case only, or for any.",
-        "Write `, then ...` for the first, a sentence of its own for the second.",
+        "An order after a condition can belong to the condition, or be unconditional.",
+        "Write `, then ...` if it belongs to the condition, else a sentence of its own.",
     ),
     "script.ambiguous-cell": error(
         "A cell of a table can be read in two ways.", "Write it as the hint shows."
@@ -35,92 +35,92 @@ SCRIPT = {
     ),
     "script.ambiguous-cut": error(
         "A word cut by text recognition can be read in more than one way.",
-        "Write it without the tab as it is meant.",
+        "Write the word or words without the tab.",
     ),
     "script.ambiguous-demand": error(
-        "A demand can be one on what is measured before, or ask for it once more.",
-        "Say it where the checkpoint is measured.",
+        "A requirement can apply to an earlier measurement, or ask for another one.",
+        "Write it where the checkpoint is measured.",
     ),
     "script.ambiguous-duration": error(
-        "A duration can be read in two ways, or be that of each or of all together.",
-        "Write its units, as in `10 min 30 s`, or what it is said of in a sentence of its own.",
+        "A duration can be read in two ways, or apply to each part or to all parts together.",
+        "Write its units, as in `10 min 30 s`, or a separate sentence that names the part.",
     ),
     "script.ambiguous-edit": error(
-        "An edit fits more than one step of the plan.", "Say which of them is meant."
+        "An edit fits more than one step of the plan.", "Name one of the steps."
     ),
     "script.ambiguous-event": error(
-        "An obstacle may stand in the way, or be a part of the way that is missing.",
+        "An obstacle may be a thing on the path, or a hole in the path.",
         "Write `a positive obstacle` or `a negative obstacle`.",
     ),
     "script.ambiguous-exception": error(
-        "What stands behind an exception can be left out as well, or be done as well.",
-        "Write what is left out at the end, or a sentence for each.",
+        "The words after an exception can be part of the exception, or be done as well.",
+        "Write the exception at the end, or two sentences.",
     ),
     "script.ambiguous-floor": error(
-        "A number behind a floor can be another floor or something else.",
-        "Write `floors 1 and 2`, or name what else is meant.",
+        "A number after a floor can be another floor or something else.",
+        "Write `floors 1 and 2`, or name the other thing.",
     ),
     "script.ambiguous-manner": error(
-        "A clause can be meant for the last of several orders only, or for each of them.",
-        "Write it behind a list of what it is said of, or in two sentences.",
+        "A clause can apply only to the last of several orders, or to each of them.",
+        "Write it after a list of the things it applies to, or write two sentences.",
     ),
     "script.ambiguous-measure": error(
-        "What was just measured is to be read, which may be meant as the same or as once more.",
+        "A reading is requested right after the same measurement: the same one, or another one.",
         "Leave it out, or write `check it again`.",
     ),
     "script.ambiguous-number": error(
         "A number can be read in two ways, such as `1.200`.", "Write it as the hint shows."
     ),
     "script.ambiguous-or": error(
-        "Checkpoints that are to be measured are joined by `or`.",
-        "Write `and` for all of them, or name the one that is meant.",
+        "Checkpoints to be measured are joined by `or`.",
+        "Write `and` for all of them, or name one.",
     ),
     "script.ambiguous-order": error(
-        "A kind is said to come first or last; that may be a step, or the order of the others.",
-        "Write `check all ...` as a step, or the steps in the order that is meant.",
+        "`First` or `last` with a kind of checkpoint can be a step, or the order of other lines.",
+        "Write `check all ...` as a step, or write the steps in the right order.",
     ),
     "script.ambiguous-otherwise": error(
         "`Otherwise` can belong to the last of several conditions or to all of them.",
         "Write `otherwise, if ...`, or each condition in a step of its own.",
     ),
     "script.ambiguous-place": error(
-        "The names of two places of the site differ in capitals or small words only, or a place "
-        "may be where something is done or where the robot goes to.",
-        "Write the coordinates of the one that is meant, or the sentence as the hint shows.",
+        "The names of two places of the site differ only in capitals or small words, or a place "
+        "may be where an action takes place or where the robot goes.",
+        "Write the coordinates of the right place, or the sentence as the hint shows.",
     ),
     "script.ambiguous-priority": error(
-        "Numbers of priorities can be counted from the most important one, or from the least.",
-        "Write `high`, `medium` or `low`, or over a table's column which number is the highest.",
+        "It is unclear whether priority 1 is the highest or the lowest.",
+        "Write `high`, `medium` or `low`, or state the number of the highest one over the column.",
     ),
     "script.ambiguous-pronoun": error(
-        "A word such as `it` can mean several checkpoints.", "Name the one."
+        "A word such as `it` can mean several checkpoints.", "Name the checkpoint."
     ),
     "script.ambiguous-quote": error(
-        "Some orders stand in lines of a letter that is answered, others do not.",
-        "Leave out those that are not to be done, and `>` before those that are.",
+        "Some orders are in quoted lines of a letter that is answered, others are not.",
+        "Remove the lines that are not to be done, and the `>` before those that are.",
     ),
     "script.ambiguous-remark": error(
-        "What looks like a remark may take something back, or say when or how it is done.",
-        "Write the sentence as it is meant, or leave the remark out.",
+        "A remark may withdraw an order, or state when or how it is done.",
+        "Write it as an order, or leave the remark out.",
     ),
     "script.ambiguous-repeat": error(
-        "How often something is done can be read in two ways.",
+        "The number of repetitions can be read in two ways.",
         "Write it as one of the two readings in the message.",
     ),
     "script.ambiguous-step": error(
-        "More than one step has the number that is named.",
-        "Number the steps anew, or name the task.",
+        "More than one step has the given number.",
+        "Renumber the steps, or name the task.",
     ),
     "script.ambiguous-title": error(
-        "A line over steps may be their title or an order, or say that they are not to be done.",
+        "A line over steps may be a title or an order, or state that they are not to be done.",
         "Write `Designation: ...` for a title, a numbered step for an order, and leave steps out "
         "that are not to be done.",
     ),
     "script.ambiguous-word": error(
-        "A small word may change what is meant where it stands.", "Write it as the hint shows."
+        "A small word in this position may change the meaning.", "Write it as the hint shows."
     ),
     "script.area-choice": error(
-        "The script leaves the starting area to be chosen during preparation.",
+        "The script does not fix the starting area; it is chosen during preparation.",
         "Choose the areas to start and to end in.",
     ),
     "script.area-conflict": error(
@@ -132,11 +132,11 @@ SCRIPT = {
         "Choose one that the script names.",
     ),
     "script.battery": error(
-        "A level of the battery is no share of its charge, or not one that it drops below.",
+        "A battery condition does not state a charge in % that the battery drops below.",
         "Write, say, `if the battery drops below 30 %`.",
     ),
     "script.bound-task": error(
-        "A task that belongs to a condition is to be moved, replaced or taken out.",
+        "An edit moves, replaces or removes a task that belongs to a condition.",
         "Change the line that asks for it.",
     ),
     "script.checkpoint-mismatch": error(
@@ -144,16 +144,16 @@ SCRIPT = {
         "Correct the number or the name.",
     ),
     "script.condition": error(
-        "A condition is asked for that missions do not have.",
+        "Missions do not have a condition of this kind.",
         "Compare one checkpoint: less than, greater than, or between two values.",
     ),
     "script.coordinates": error("Coordinates are two or three numbers.", "Write `(12.5, 3, 2.5)`."),
     "script.deep-rounds": error(
-        "Too many repetitions lie in one another.",
+        "Too many repetitions are nested.",
         "Repeat the steps more often in one of them.",
     ),
     "script.dock-assumed": warning(
-        "The script does not say which docking station, and one was assumed.",
+        "The script does not name the docking station; one was assumed.",
         "Name its starting area.",
     ),
     "script.duration": error(
@@ -164,11 +164,11 @@ SCRIPT = {
         "The script is empty.", "Name a file with a mission sheet or a mission protocol."
     ),
     "script.empty-name": error(
-        "The quotation marks in front of a command have nothing between them.",
+        "The quotation marks before a command are empty.",
         "Write a name there, or leave them out.",
     ),
     "script.empty-floor": warning(
-        "On one of several floors there is nothing of the kind that is to be done there.",
+        "One of several floors has no checkpoint of the requested kind.",
         "Leave the floor out, or name another one.",
     ),
     "script.empty-range": error(
@@ -176,141 +176,140 @@ SCRIPT = {
         "Write the lower number first.",
     ),
     "script.empty-step": error(
-        "The mission is to go on at a step that plans nothing.",
+        "The mission has to continue at a step that plans nothing.",
         "Name a step that measures or drives.",
     ),
     "script.endless-patrol": error(
-        "A patrol would never end.", "Say for how long or how often it is driven."
+        "A patrol would never end.", "State for how long or how often it is driven."
     ),
     "script.endless-repeat": error(
         "A repetition would never end.",
-        "Say for how long or how often, or `endlessly` where a condition leaves it.",
+        "State for how long or how often, or `endlessly` if a condition ends it.",
     ),
     "script.fact": error(
-        "A mission ends in a docking station by a certain time, not at a place.",
+        "A time limit for the return needs a docking station, not another place.",
         "Name the starting area.",
     ),
     "script.failure": error(
-        "What is to happen after a failure is not what a mission can do then.",
+        "A mission can't do this after a failure.",
         "Use one of the forms in the hint.",
     ),
     "script.field": error(
-        "A field of the header has a value that it can't have.",
-        "Write one of those that the hint names.",
+        "A field of the header has an invalid value.",
+        "Write one of the values in the hint.",
     ),
     "script.healed": warning(
-        "A word that text recognition had cut was put together again.",
+        "A word that text recognition had split was joined again.",
         "Check that it is read as it is meant.",
     ),
     "script.height": error(
-        "The height of a place is missing, or contradicts its floor.",
-        "Say the floor or the height that is meant.",
+        "The height of a position is missing, or contradicts its floor.",
+        "State the floor or the height.",
     ),
     "script.instead": error(
-        "Something is to be done instead of something else that is not said.",
-        "Write it behind `otherwise`, or behind what is done if a task fails.",
+        "The script does not state what an `instead` replaces.",
+        "Write it after `otherwise`, or after the orders for the failure of a task.",
     ),
     "script.listed-twice": warning(
         "A list names the same checkpoint more than once.",
-        "Leave it out if it is to be done once.",
+        "Name it once if it is to be done once.",
     ),
-    "script.long-line": error("A line or cell is too long to be a script's.", "Shorten it."),
+    "script.long-line": error("A line or cell is too long for a script.", "Shorten it."),
     "script.long-wait": warning(
-        "A wait takes as long as the whole mission may take, or longer.",
-        "Wait for a shorter time, or give the mission more.",
+        "A wait takes as long as the maximum duration of the mission, or longer.",
+        "Wait for a shorter time, or give the mission more time.",
     ),
     "script.needless-exception": warning(
-        "What is left out of some checkpoints is none of them anyway.",
-        "Name the one that is meant, or leave the exception away.",
+        "An exception names a checkpoint that is not one of the others anyway.",
+        "Name the right checkpoint, or remove the exception.",
     ),
     "script.no-area": error(
         "The sheet names no starting area.",
         "Name one in the sheet, or choose the areas to start and to end in.",
     ),
     "script.no-checkpoint": error(
-        "An exception leaves no checkpoint.", "Name those that are left."
+        "An exception leaves no checkpoint.", "Name the remaining checkpoints."
     ),
     "script.no-effect": note(
-        "Words such as a title, a greeting or a remark ask for nothing: the mission is the same "
-        "without them.",
-        "Nothing has to be done; if they are meant to ask for something, say it in other words.",
+        "Words such as a title, a greeting or a remark have no effect on the mission.",
+        "No action is needed; if they are an order, write it in other words.",
     ),
     "script.no-start": error(
-        "The protocol does not say where the robot starts.", "Set a starting point."
+        "The protocol does not state where the robot starts.", "Set a starting point."
     ),
     "script.no-task": error(
-        "Something is said of the task before, and there is none.",
-        "Write it behind the task that it belongs to.",
+        "A line refers to the task before it, but there is none.",
+        "Write it after the task that it belongs to.",
     ),
     "script.not-measured": warning(
-        "A condition asks for a checkpoint that is not measured before it.",
-        "Measure it before, unless somebody else tells its value.",
+        "A condition compares a checkpoint that is not measured before it.",
+        "Measure it before, unless its value comes from elsewhere.",
     ),
     "script.no-time-limit": warning(
-        "Something is done if there is time, and nothing says how much time there is.",
+        "An order applies if there is time, but the mission has no time limit.",
         "Give the mission a maximum duration.",
     ),
     "script.not-first": error(
-        "Something is to be done first, and something else stands before it.",
-        "Write what is done first above the others.",
+        "An order has to be done first, but another one comes before it.",
+        "Write the first order above the others.",
     ),
     "script.not-last": error(
-        "Something is to be done at the end, and more stands behind it.",
-        "Write what is done at the end below the others.",
+        "An order has to be done at the end, but others come after it.",
+        "Write the last order below the others.",
     ),
     "script.not-planned": error(
-        "An edit names what is not in the plan at this point.",
-        "Ask for it before the edit, or correct the name.",
+        "An edit names a step that is not in the plan at this point.",
+        "Add the step before the edit, or correct the name.",
     ),
     "script.not-understood": error(
-        "A line has no form that Argo knows.", "Write a line such as the one in the hint."
+        "Argo does not understand a line.", "Write a line such as the one in the hint."
     ),
     "script.nothing-to-do": error(
-        "The script asks for nothing to be done.", "Add a step, such as a checkpoint to read."
+        "The script contains no order.", "Add a step, such as a checkpoint to read."
     ),
     "script.number": error("A number is too large.", "Correct the number."),
     "script.once-more": warning(
-        "Steps that are to be repeated once are taken to be done once more.",
+        "`Repeat once` is read as: do the steps once more.",
         "Write `once more`, or `once in total`.",
     ),
     "script.one-checkpoint": error(
-        "Several checkpoints are named where there can be one.", "Name one of them."
+        "Several checkpoints are named where only one is possible.", "Name one of them."
     ),
     "script.one-name": error(
-        "One name stands before several tasks.", "Give each task a line and a name."
+        "One name is given to several tasks.", "Give each task its own line and name."
     ),
     "script.order-taken": note(
-        "What does not fit is left out, and nothing is said of the order: it is taken to be free.",
+        "Tasks that do not fit are left out, and no order is stated: it is assumed to be free.",
         "Write `Order: precise` if it is not.",
     ),
     "script.other-site": warning(
-        "The script says that it is for another site than the one that it is read with.",
-        "Check the chosen site, or the script's.",
+        "The script names another site than the one that it is imported for.",
+        "Check the chosen site, or correct the script.",
     ),
     "script.otherwise": error(
-        "What is said for all other cases stands behind no condition, or leads nowhere.",
-        "Write it behind the condition whose other case it is.",
+        "An `otherwise` follows no condition, or leads nowhere.",
+        "Write it after the condition that it belongs to.",
     ),
     "script.overlap": error(
-        "Two repetitions have some of their steps in common.",
-        "Let one lie in the other as a whole, or separate them.",
+        "Two repetitions overlap in some of their steps.",
+        "Nest one completely in the other, or separate them.",
     ),
     "script.partly-free": error(
-        "Only some of the tasks are to be done in any order.",
-        "Say that the order is free, and what has to come before what.",
+        "Only some of the tasks may be done in any order.",
+        "State that the order is free, and which tasks have to come before others.",
     ),
     "script.pause": error(
-        "A pause is asked for between rounds that have conditions, or no known end.",
-        "Write the tasks and the waits out as often as they are done.",
+        "A pause is requested between rounds that have conditions, or no known end.",
+        "Write all tasks and waits of all rounds one after the other.",
     ),
     "script.precedence": error(
-        "The order that is written does not keep to what has to come before what. A warning where "
-        "the order is free.",
-        "Move a task, or take the requirement back.",
+        "The written order breaks the rule that a task comes before another. A warning if the "
+        "order is free.",
+        "Move a task, or remove the rule.",
     ),
     "script.priority-taken": note(
-        "An importance in words is taken as a number.",
-        "Write `with priority 7` if another one is meant.",
+        "A priority in words is converted to a number.",
+        "Write `with priority 7` for another one.",
     ),
     "script.quantity": warning(
         "The script asks for a quantity that this kind of checkpoint does not show.",
@@ -324,14 +323,14 @@ SCRIPT = {
         "A range of checkpoints does not go from a number to a number.", "Name each of them."
     ),
     "script.reaction": error(
-        "A reaction has a response that does not exist, or two of them.",
-        "Write one of those in the hint.",
+        "A reaction has an unknown response, or two responses.",
+        "Write one of the responses in the hint.",
     ),
     "script.remark": warning(
-        "A remark asks for something, and is not planned.",
-        "Write it without the word that makes it a remark, if it is an order.",
+        "A remark contains an order, which is not planned.",
+        "If it is an order, remove the word that makes it a remark.",
     ),
-    "script.repeated-field": error("A field or title stands twice.", "Leave one of the two out."),
+    "script.repeated-field": error("A field or title occurs twice.", "Leave one of the two out."),
     "script.repeated-limit": error(
         "A repetition is limited twice in the same way.", "Leave one out."
     ),
@@ -339,83 +338,82 @@ SCRIPT = {
         "More than one task has the same name.", "Give each task a name of its own."
     ),
     "script.repeated-there": warning(
-        "Steps are repeated where they stand, not at the line that says so.",
-        "Write `repeat step 2 again` for doing them at that line once more.",
+        "Steps are repeated at their own position, not at the line with the repetition.",
+        "Write `repeat step 2 again` to do them once more at that line.",
     ),
     "script.respelled": warning(
-        "A misspelt word was taken for one that is known.", "Check that it is read as it is meant."
+        "A misspelt word was read as a known one.", "Check that it is read as it is meant."
     ),
-    "script.rounds": error("A patrol has no rounds.", "Let it have at least one."),
+    "script.rounds": error("A patrol has no rounds.", "Give it at least one round."),
     "script.route": error(
-        "What follows a condition is not what a mission can do in one case only.",
-        "Go to a step, drive or measure.",
+        "A mission can't do this only under a condition.",
+        "Write it as a step of its own, or go to a step, drive or measure.",
     ),
     "script.second-reaction": error(
-        "Two lines say what to do in the same event.", "Leave one of the two out."
+        "Two lines define the reaction to the same event.", "Leave one of the two out."
     ),
     "script.second-route": error(
-        "Where no condition holds, the mission is to go on in two ways.",
+        "If no condition is true, the mission has two next steps.",
         "Leave one out, or give it a condition.",
     ),
     "script.second-start": error(
         "The protocol sets a second starting point.", "Keep one of them, or edit the first."
     ),
-    "script.self-move": error("A step is to stand before or after itself.", "Name another place."),
+    "script.self-move": error(
+        "A step can't be placed before or after itself.", "Name another step."
+    ),
     "script.several-floors": error(
-        "The robot is sent to several floors at a time.", "Write an order for each of them."
+        "The robot is sent to several floors in one order.", "Write an order for each of them."
     ),
     "script.several-places": error(
-        "Two places are named where one is meant.", "Leave one of the two out."
+        "Two places are named where only one is possible.", "Leave one of the two out."
     ),
-    "script.speed": error("A speed is zero or no number.", "Write, say, `at 0.3 m/s`."),
+    "script.speed": error("A speed is zero or not a number.", "Write, say, `at 0.3 m/s`."),
     "script.speed-shared": warning(
-        "A speed holds for every way that leads to a task, not only for the one that the script "
-        "says it of.",
-        "Plan a waypoint in between if the other ways are to be driven at another speed.",
+        "A speed applies to every drive to a task, not only to the one in the script.",
+        "Add a waypoint in between if the other drives are to have another speed.",
     ),
     "script.speed-unused": warning(
-        "A task is to be left at a speed, but the mission ends with it.",
-        "Give the speed to the task that the way leads to.",
+        "A speed is given for the drive from a task, but the mission ends with this task.",
+        "Give the speed to the task that the drive leads to.",
     ),
     "script.spared": error(
-        "A checkpoint is asked for, and elsewhere the script says that it is not to be checked.",
-        "Leave one of the two out.",
+        "The script asks for a checkpoint, and elsewhere states that it is not to be checked.",
+        "Remove one of the two statements.",
     ),
     "script.start": error(
         "A mission starts at a place, not on a floor.", "Name a starting area or a place."
     ),
     "script.step-number": warning(
-        "The numbers of the steps are not one after the other.",
-        "Check whether a line is missing or in the wrong place.",
+        "The numbers of the steps are not consecutive.",
+        "Check whether a line is missing or in the wrong position.",
     ),
     "script.step-range": error(
-        "Steps are named the wrong way round, or several where one is meant.",
-        "Write the earlier one first, or name one.",
+        "A range of steps is reversed, or several steps are named where only one is possible.",
+        "Write the earlier step first, or name one step.",
     ),
     "script.stray-clause": error(
-        "A part of the line belongs to nothing before it.", "Write it behind what it belongs to."
+        "A part of the line belongs to no order.", "Write it after the order that it belongs to."
     ),
     "script.title": note(
-        "A line over the script is taken for its title, which is the mission's designation.",
-        "Write what is to be done as a sentence; nothing else has to be done.",
+        "A line over the script is read as its title, which is the mission's designation.",
+        "If it is an order, write it as a sentence; otherwise no action is needed.",
     ),
     "script.too-late": error(
-        "What is done if it is too late follows no task that is due by a certain time.",
-        "Write it behind such a task.",
+        "An order for the case of a missed time limit does not follow a task with a time limit.",
+        "Write it after such a task.",
     ),
     "script.too-long": error("The script has too many lines.", "Divide the mission."),
     "script.too-many-errors": error(
-        "The rest of the script is not looked at, as too much of it is wrong.",
-        "Correct what was found so far, and check that it is the right file.",
+        "The rest of the script is not checked, because there are too many errors.",
+        "Correct the reported errors, and check that it is the right file.",
     ),
-    "script.two-speeds": error("Two speeds are asked for on one way.", "Leave one of them out."),
+    "script.two-speeds": error("Two speeds are given for one drive.", "Leave one of them out."),
     "script.unclear-cut": warning(
-        "Argo can't tell whether a tab cuts a word; it was read as two words.",
+        "Argo can't decide whether a tab splits a word; it was read as two words.",
         "Write the words without the tab.",
     ),
-    "script.unfinished": error(
-        "The line ends before it has said all.", "Complete it as in the hint."
-    ),
+    "script.unfinished": error("The line is incomplete.", "Complete it as in the hint."),
     "script.unit": error(
         "A value has another unit than the checkpoint.", "Write it in the checkpoint's unit."
     ),
@@ -423,7 +421,7 @@ SCRIPT = {
         "The site has no such starting area.", "Use one of the site's starting areas."
     ),
     "script.unknown-checkpoint": error(
-        "The site has no such checkpoint.", "Use the number or name of one that it has."
+        "The site has no such checkpoint.", "Use the number or name of an existing one."
     ),
     "script.unknown-floor": error("The site has no such floor.", "Use one of the site's floors."),
     "script.unknown-label": error(
@@ -434,23 +432,25 @@ SCRIPT = {
         "The site has no such place.", "Use one of the site's places or starting areas."
     ),
     "script.unknown-step": error(
-        "There is no step or task of that number or name.", "Name one of those in the hint."
+        "No step or task has this number or name.", "Use one of those in the hint."
     ),
     "script.unreadable": error(
-        "The script's file can't be read, or is no text.", "Check the path, and save it as UTF-8."
+        "The script's file can't be read, or is not text.", "Check the path, and save it as UTF-8."
     ),
     "script.unwritable": error(
-        "A part of the mission can't be said in a script.",
-        "Keep the mission as JSON, or change what is named.",
+        "A part of the mission can't be expressed in a script.",
+        "Keep the mission as JSON, or change the named part.",
     ),
     "script.visit": error(
-        "The robot is sent to a checkpoint, and nothing is said of what to do there.",
+        "The robot is sent to a checkpoint, but the script does not state what to do there.",
         "Write `check checkpoint 4`.",
     ),
     "script.wait": error(
-        "A wait does not say how long or for what, or says more than one wait can.",
+        "A wait has no duration, event or condition, or too many of them.",
         "Write `wait 90 s`, `wait until #1 is below 3` or `wait for the all-clear`.",
     ),
-    "script.which-checkpoint": error("It is not said which checkpoint is compared.", "Name it."),
-    "script.which-place": error("It is not said which place `there` is.", "Name the floor."),
+    "script.which-checkpoint": error(
+        "A condition does not name its checkpoint.", "Name the checkpoint."
+    ),
+    "script.which-place": error("The place that `there` refers to is unknown.", "Name the floor."),
 }

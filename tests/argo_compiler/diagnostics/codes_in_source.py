@@ -1,8 +1,8 @@
-"""Which codes the source can give to a finding, found by reading it.
+"""Codes that the source code can give to diagnostics, by static analysis.
 
-A function that makes a `Diagnostic` with a code from one of its parameters passes codes on, and so
-does one that calls such a function with a parameter of its own. What they are called with, in the
-same part of a package, are the codes.
+A function passes codes on if it makes a `Diagnostic` with a code from one of its parameters, or
+calls such a function with one of its own parameters. The arguments of their calls in the same part
+of a package are the codes.
 """
 
 import ast
@@ -10,14 +10,14 @@ from collections import defaultdict
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from tests.source import trees
+from tests.code_parameter import trees
 
 SHARED = frozenset(["diagnostic_of", "parse_yaml", "refusal"])
-"""functions that pass codes on for other folders as well"""
+"""functions that pass codes on and are called from other folders as well"""
 
 
-class Source(NamedTuple):
-    """A way to a code: a function, and the place of the code among its arguments."""
+class CodeParameter(NamedTuple):
+    """Parameter of a function that takes a code."""
 
     folder: str
     function: str
@@ -30,48 +30,52 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 class Call(NamedTuple):
-    """A call of a function or method, with the folder and the function that it stands in."""
+    """Call of a function or method, with the folder and the function that contain it."""
 
     folder: str
-    inside: Function | None
+    caller: Function | None
     node: ast.Call
 
 
 def codes_in_source() -> set[str]:
     calls = all_calls()
     codes: set[str] = set()
-    ahead = [Source("", "Diagnostic", "code", -1, "")]
-    known = set(ahead)
-    while ahead:
-        source = ahead.pop()
-        for call in calls[source.function]:
-            if source.folder and call.folder != source.folder and source.function not in SHARED:
+    pending = [CodeParameter("", "Diagnostic", "code", -1, "")]
+    known = set(pending)
+    while pending:
+        code_parameter = pending.pop()
+        for call in calls[code_parameter.function]:
+            if (
+                code_parameter.folder
+                and call.folder != code_parameter.folder
+                and code_parameter.function not in SHARED
+            ):
                 continue
-            for code, variable, prefix in arguments(call.node, source):
+            for code, variable, prefix in arguments(call.node, code_parameter):
                 if variable is None:
-                    codes.add(source.prefix + code)
-                elif call.inside and variable in (names := parameters(call.inside)):
-                    passing = Source(
+                    codes.add(code_parameter.prefix + code)
+                elif call.caller and variable in (names := parameters(call.caller)):
+                    next_parameter = CodeParameter(
                         call.folder,
-                        call.inside.name,
+                        call.caller.name,
                         variable,
                         names.index(variable),
-                        source.prefix + prefix,
+                        code_parameter.prefix + prefix,
                     )
-                    if passing not in known:
-                        known.add(passing)
-                        ahead.append(passing)
+                    if next_parameter not in known:
+                        known.add(next_parameter)
+                        pending.append(next_parameter)
     return codes
 
 
 def all_calls() -> dict[str, list[Call]]:
-    """All calls in the packages, by the name of what is called."""
-    found: dict[str, list[Call]] = defaultdict(list)
+    """Return all calls in the packages, by the name of the called function."""
+    calls: dict[str, list[Call]] = defaultdict(list)
 
     def search(node: ast.AST, folder: str, function: Function | None) -> None:
         match node:
             case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name)):
-                found[name].append(Call(folder, function, node))
+                calls[name].append(Call(folder, function, node))
             case ast.FunctionDef() | ast.AsyncFunctionDef():
                 function = node
         for child in ast.iter_child_nodes(node):
@@ -79,7 +83,7 @@ def all_calls() -> dict[str, list[Call]]:
 
     for path, tree in trees().items():
         search(tree, "/".join(path.parent.parts[:2]), None)
-    return found
+    return calls
 
 
 def parameters(function: Function) -> list[str]:
@@ -87,18 +91,20 @@ def parameters(function: Function) -> list[str]:
     return names[1:] if names[:1] in (["self"], ["cls"]) else names
 
 
-def arguments(call: ast.Call, source: Source) -> Iterator[tuple[str, str | None, str]]:
-    """What stands for the code: a text, or the name of a variable with a text before it."""
-    given = [k.value for k in call.keywords if k.arg == source.parameter]
-    if not given and 0 <= source.position < len(call.args):
-        given = [call.args[source.position]]
-    ahead: list[ast.expr] = given
-    while ahead:
-        match ahead.pop():
+def arguments(
+    call: ast.Call, code_parameter: CodeParameter
+) -> Iterator[tuple[str, str | None, str]]:
+    """Yield the values of the code argument: a text, or a variable's name with a prefix."""
+    expressions = [k.value for k in call.keywords if k.arg == code_parameter.parameter]
+    if not expressions and 0 <= code_parameter.position < len(call.args):
+        expressions = [call.args[code_parameter.position]]
+    pending: list[ast.expr] = expressions
+    while pending:
+        match pending.pop():
             case ast.Constant(value=str(code)):
                 yield code, None, ""
             case ast.IfExp(body=body, orelse=other):
-                ahead += [body, other]
+                pending += [body, other]
             case ast.Name(id=name):
                 yield "", name, ""
             case ast.JoinedStr(

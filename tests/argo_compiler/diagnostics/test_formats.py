@@ -1,4 +1,4 @@
-"""Findings for other programs: JSON, and SARIF as the standard and code hosts ask for it."""
+"""Diagnostics for other programs: JSON, and SARIF as the standard and code hosts require it."""
 
 import json
 
@@ -28,7 +28,7 @@ FINDINGS = st.lists(
 
 
 def record(required="", **properties):
-    """An object with these properties and no others."""
+    """Return the schema of an object with these properties and no others."""
     return {
         "type": "object",
         "required": required.split(),
@@ -102,7 +102,7 @@ SARIF = record(
     version={"const": "2.1.0"},
     runs=listed(RUN, minItems=1),
 )
-"""What of the SARIF 2.1.0 standard Argo writes, with what GitHub's code scanning requires of it."""
+"""the parts of SARIF 2.1.0 that Argo writes, as GitHub's code scanning requires them"""
 
 
 @settings(max_examples=60)

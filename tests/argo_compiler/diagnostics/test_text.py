@@ -8,7 +8,7 @@ from argo_compiler.diagnostics import (
     DiagnosticError,
     Severity,
     Span,
-    by_place,
+    by_position,
     summary,
     to_text,
 )
@@ -19,7 +19,7 @@ def finding(severity=Severity.ERROR, code="il.x", **fields):
 
 
 def columns(text: str) -> int:
-    """What a terminal makes of it, by the standard's annex 11 and its combining classes."""
+    """Return the terminal columns by Unicode's annex 11 and its combining classes."""
     return sum(
         (1 + (unicodedata.east_asian_width(c) in "WF")) * (not unicodedata.combining(c))
         for c in text
@@ -75,7 +75,7 @@ def test_findings_come_by_place_errors_first_and_are_counted():
         finding(code="il.first"),
     ]
     ordered = ["il.z", "il.b", "il.a", "il.c", "il.last", "il.first"]
-    assert [f.code for f in by_place(found)] == ordered
+    assert [f.code for f in by_position(found)] == ordered
     caught = DiagnosticError("f", found)
     assert [f.code for f in caught.diagnostics] == ordered
     assert str(caught).endswith("\nf: 4 errors, 2 warnings")

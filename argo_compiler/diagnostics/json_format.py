@@ -1,4 +1,4 @@
-"""Diagnostics as JSON, for other programs. The shape is documented in `docs/diagnostics.md`."""
+"""Diagnostics as JSON, for other programs. `docs/diagnostics.md` documents the format."""
 
 import json
 from collections.abc import Sequence
@@ -8,11 +8,11 @@ from argo_compiler.diagnostics.codes.code import Severity
 from argo_compiler.diagnostics.diagnostic import Diagnostic, count
 
 VERSION = 1
-"""of this shape"""
+"""version of this format"""
 
 
 def to_json(diagnostics: Sequence[Diagnostic], source_name: str) -> str:
-    """The diagnostics and how many there are, as a JSON text."""
+    """Return the diagnostics and their numbers by severity as JSON text."""
     data = {
         "version": VERSION,
         "source": source_name,

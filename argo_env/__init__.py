@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from argo_env.evaluation.folder import read_results
     from argo_env.evaluation.results import EvaluationResults
     from argo_env.evaluation.worlds import Variation
-    from argo_env.faults.reading import read_faults
+    from argo_env.faults.loading import read_faults
     from argo_env.navigation import Navigator
     from argo_env.pictures import write_film, write_overview
     from argo_env.planning import OpenedSite, open_site
@@ -67,7 +67,7 @@ else:
             "evaluation.folder": ["read_results"],
             "evaluation.results": ["EvaluationResults"],
             "evaluation.worlds": ["Variation"],
-            "faults.reading": ["read_faults"],
+            "faults.loading": ["read_faults"],
             "navigation": ["Navigator"],
             "pictures": ["write_film", "write_overview"],
             "planning": ["OpenedSite", "open_site"],

@@ -42,7 +42,7 @@ EXPORTS = ("scxml", "btcpp", "flexbe", "ros", "isar", "mermaid", "dot")
 def records(drive: str) -> Iterator[tuple[str, bytes]]:
     """The name of each run with a drive, and its record."""
     from argo_compiler.hfsm import Resume
-    from argo_env.faults.reading import read_faults
+    from argo_env.faults.loading import read_faults
     from argo_env.planning import open_site
     from argo_env.run.session import simulate
     from argo_env.run.spec import RunSpec, logged_events

@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 from argo_env.evaluation.file import decode_evaluation
-from argo_env.faults.reading import decode_distribution, decode_faults
+from argo_env.faults.loading import decode_distribution, decode_faults
 from argo_env.planning import OpenedSite
 from argo_env.site import make_site
 from argo_env.site.site_file import parse_site_spec

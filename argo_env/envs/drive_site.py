@@ -10,7 +10,7 @@ from argo_env.drives.tracked.body import TrackedBody
 from argo_env.envs.guide import Guide
 from argo_env.envs.options import LONGEST, check_floors
 from argo_env.faults.fault import Fault
-from argo_env.faults.kinds import KINDS, AnyFault, changed_site, settle
+from argo_env.faults.kinds import KINDS, AnyFault, resolve_faults, site_with_faults
 from argo_env.faults.robot import DriveDysfunction
 from argo_env.navigation import Navigator
 from argo_env.pictures.camera import Camera
@@ -20,7 +20,9 @@ from argo_env.planning import open_site
 from argo_env.robot.pose import BodyPose
 from argo_env.world.world import World
 
-ON_THE_WAY = tuple(k for k, fault in KINDS.items() if fault.changed is not Fault.changed)
+ON_THE_WAY = tuple(
+    k for k, fault in KINDS.items() if fault.changed_elements is not Fault.changed_elements
+)
 """kinds of faults that change the site"""
 DYSFUNCTION = "drive_dysfunction"
 _PICTURE = (640, 360)  # px
@@ -42,8 +44,8 @@ class DriveSite(Closing):
                 )
         navigator = open_site(scenario).prepare().navigator
         site = navigator.site
-        settled = settle(faults, site, 0)
-        real = changed_site(site, settled)
+        resolved = resolve_faults(faults, site, 0)
+        real = site_with_faults(site, resolved)
         if real.elements != site.elements:
             # The way shown and the progress made are those of the site as it is.
             navigator = Navigator(real, navigator.robot)
@@ -51,7 +53,7 @@ class DriveSite(Closing):
         self.robot = navigator.robot
         self.navigator = navigator
         self.guide = Guide(navigator)
-        self.dysfunctions = tuple(f for f in settled if isinstance(f, DriveDysfunction))
+        self.dysfunctions = tuple(f for f in resolved if isinstance(f, DriveDysfunction))
         self._real = real
         self.world = World(site, self.robot, elements=real.elements, drawn=False)
         self.body = TrackedBody(self.world, self.robot)
@@ -71,7 +73,7 @@ class DriveSite(Closing):
         shares = [
             f.speed or 0.0
             for f in self.dysfunctions
-            if f.begins <= now and (f.ends is None or now < f.ends)
+            if f.start_time <= now and (f.end_time is None or now < f.end_time)
         ]
         return min(shares, default=1.0)
 

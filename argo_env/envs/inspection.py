@@ -36,7 +36,7 @@ from argo_env.envs.options import (
     check_whole,
     read_options,
 )
-from argo_env.faults.kinds import KINDS, AnyFault, settle
+from argo_env.faults.kinds import KINDS, AnyFault, resolve_faults
 from argo_env.faults.robot import EmergencyStop
 from argo_env.planning import open_site
 from argo_env.run.drives_and_sensors import DRIVES, ROUTE
@@ -82,7 +82,7 @@ def draw_faults(
 def _fits(kind: str, site: Site) -> bool:
     """Whether the site has what such a fault needs, such as a pump or stairs."""
     try:
-        settle([cast("AnyFault", KINDS[kind].model_validate({}))], site, 0)
+        resolve_faults([cast("AnyFault", KINDS[kind].model_validate({}))], site, 0)
     except ArgoError:
         return False
     return True

@@ -24,14 +24,14 @@ def may_be_of(anomaly: Anomaly, fault: AnyFault, record: RunRecord, site: Site) 
     sign = fault.sign
     if sign is None or (anomaly.kind, anomaly.source) != (sign.event, sign.source):
         return False
-    if anomaly.t < fault.begins or (
-        fault.ends is not None and anomaly.t > fault.ends + sign.outlasts
+    if anomaly.t < fault.start_time or (
+        fault.end_time is not None and anomaly.t > fault.end_time + sign.outlasts
     ):
         return False
     if isinstance(fault, AbnormalValue):
         reading = reading_of(anomaly, record)
         return reading is not None and reading.checkpoint == fault.checkpoint
-    return fault.is_at(anomaly.place, anomaly.noticed_from, site)
+    return fault.can_explain(anomaly.place, anomaly.noticed_from, site)
 
 
 def reading_of(anomaly: Anomaly, record: RunRecord) -> Reading | None:
@@ -60,8 +60,8 @@ def detections(record: RunRecord, site: Site) -> tuple[FaultDetection, ...]:
     """
     assigned: set[tuple[str, int]] = set()
     found = []
-    occurred = [f for f in record.faults if f.begins <= record.result.duration]
-    for fault in sorted(occurred, key=lambda one: one.begins):
+    occurred = [f for f in record.faults if f.start_time <= record.result.duration]
+    for fault in sorted(occurred, key=lambda one: one.start_time):
         if fault.sign is None:
             continue
         delay = None
@@ -69,9 +69,9 @@ def detections(record: RunRecord, site: Site) -> tuple[FaultDetection, ...]:
             is_free = (fault.kind, number) not in assigned
             if is_free and may_be_of(anomaly, fault, record, site):
                 assigned.add((fault.kind, number))
-                delay = round(anomaly.t - fault.begins, 3)
+                delay = round(anomaly.t - fault.start_time, 3)
                 break
-        found.append(FaultDetection(fault=fault.kind, began=fault.begins, delay=delay))
+        found.append(FaultDetection(fault=fault.kind, began=fault.start_time, delay=delay))
     return tuple(found)
 
 
@@ -123,7 +123,7 @@ class _GroundTruth:
             return True
         # A faulty camera may misread any value.
         may_misread = finding.is_reading and fault.kind == "sensor_dysfunction"
-        return may_misread and fault.begins <= finding.t
+        return may_misread and fault.start_time <= finding.t
 
 
 _TRUE_WITHOUT_FAULT: dict[EventKind, Callable[[_GroundTruth, Finding], bool]] = {

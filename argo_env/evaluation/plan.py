@@ -14,7 +14,7 @@ from argo_compiler.base.version import __version__
 from argo_env.evaluation.case import EvaluationCase, PlanName
 from argo_env.evaluation.requirement import RateRequirement
 from argo_env.evaluation.worlds import NO_VARIATION, Variation
-from argo_env.faults.reading import NOTHING
+from argo_env.faults.loading import NOTHING
 from argo_env.run.spec import RunSpec
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Model
-from argo_env.faults.reading import FaultDistribution
+from argo_env.faults.loading import FaultDistribution
 from argo_env.run.run_setup import true_values
 from argo_env.run.spec import RunConditions, RunSpec, ValueProfile, ValueStep
 from argo_env.seeding import generator
@@ -126,14 +126,14 @@ class Variation(_Ranges):
         }
         if start_values:
             update["values"] = {**start_values, **spec.values}
-        drawn = self.faults.drawn(seed) if self.faults is not None else None
+        drawn = self.faults.draw(seed) if self.faults is not None else None
         if drawn is not None:
             update["faults"] = (*spec.faults, *drawn.faults)
         return spec.model_copy(update=update)
 
     def drawn_faults(self, seed: int) -> str | None:
         """Return the name of the faults drawn for the world of a seed; None if none are drawn."""
-        drawn = self.faults.drawn(seed) if self.faults is not None else None
+        drawn = self.faults.draw(seed) if self.faults is not None else None
         return None if drawn is None else drawn.name
 
     def drawn(self, seed: int) -> dict[str, float]:

@@ -1,1 +1,1 @@
-"""What goes wrong during a run: faults with a time, a place and a seed, and what they act on."""
+"""Faults of runs, each with a time, a place and a seed, and the parts of a run that they change."""

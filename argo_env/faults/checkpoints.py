@@ -1,4 +1,4 @@
-"""Faults at checkpoints: values out of their nominal range, and checkpoints that were moved."""
+"""Faults at checkpoints: values outside of their nominal range, and displaced checkpoints."""
 
 import math
 from typing import TYPE_CHECKING, ClassVar, Literal, Self
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 MAX_OFFSET = 0.1  # m (thesis 1.2)
 MAX_TURN = 90.0  # deg (thesis 1.2)
-_CLEARLY = 0.1  # of the scale that a drawn value lies beyond the nominal range, where there is room
+_CLEARLY = 0.1  # of the scale: drawn values are this far outside the nominal range, if possible
 
 
 class CheckpointFault(TimedFault):
@@ -45,7 +45,7 @@ class AbnormalValue(CheckpointFault):
     value: float | None = None
     """in the checkpoint's unit"""
 
-    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
         checkpoint = self._at_checkpoint(site, rng)
         drawn = _abnormal(checkpoint, rng)
         value = drawn if self.value is None else self.value
@@ -57,34 +57,34 @@ class AbnormalValue(CheckpointFault):
             )
         if nominal.contains(value):
             raise Invalid(
-                f"{value:g} {checkpoint.unit} is nothing abnormal at checkpoint {checkpoint.id} "
-                f"({checkpoint.name}): nominal are {nominal.low:g} to {nominal.high:g}"
+                f"{value:g} {checkpoint.unit} is not abnormal at checkpoint {checkpoint.id} "
+                f"({checkpoint.name}): its nominal range is {nominal.low:g} to {nominal.high:g}"
             )
-        return super().settled(site, rng)._with(checkpoint=checkpoint.id, value=value)
+        return super().resolve(site, rng)._copy_with(checkpoint=checkpoint.id, value=value)
 
-    def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.checkpoint is not None
         assert self.value is not None
-        targets.show(self.checkpoint, self.value)
+        targets.show_value(self.checkpoint, self.value)
 
-    def end(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def revert(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.checkpoint is not None
-        targets.show(self.checkpoint, targets.usual[self.checkpoint])
+        targets.show_value(self.checkpoint, targets.fault_free_values[self.checkpoint])
 
 
 class DisplacedCheckpoint(CheckpointFault):
-    """A checkpoint is not where the plan of the site has it."""
+    """A checkpoint is not at its planned pose."""
 
-    sign: ClassVar[None] = None  # it is read all the same
+    sign: ClassVar[None] = None  # nothing reports it: the checkpoint can still be read
     kind: Literal["displaced_checkpoint"] = "displaced_checkpoint"
     at: float | None = Field(default=0.0, ge=0)
-    """s, when it is moved; as a rule before the run"""
+    """s, when it is moved; usually before the run"""
     offset: Vector | None = None
-    """m along the site's axes, at most 0.1 in all"""
+    """m along the site's axes, with a length of 0.1 at most"""
     turn: float | None = Field(default=None, ge=-MAX_TURN, le=MAX_TURN)
     """deg about the vertical, counter-clockwise seen from above"""
     roll: float | None = Field(default=None, ge=-MAX_TURN, le=MAX_TURN)
-    """deg about the normal of its face, clockwise; a level gauge has none"""
+    """deg about the normal of its face, clockwise; a level gauge has no roll"""
 
     @model_validator(mode="after")
     def _near(self) -> Self:
@@ -93,19 +93,19 @@ class DisplacedCheckpoint(CheckpointFault):
             raise ValueError(f"the offset is {away:.3f} m, and may be at most {MAX_OFFSET:g} m")
         return self
 
-    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
         checkpoint = self._at_checkpoint(site, rng)
         upright = checkpoint.kind is CheckpointKind.LIQUID_LEVEL_GAUGE
         if upright and self.roll:
-            raise Invalid(f"checkpoint {checkpoint.id} is a level gauge, which is never rolled")
+            raise Invalid(f"checkpoint {checkpoint.id} is a level gauge, which can't have a `roll`")
         drawn = draw_placement(rng, upright)
-        # Towards the plan: rounded to the nearest, some would be farther away than may be.
+        # Round towards zero, since an offset that is rounded up might exceed the limit.
         x, y, z = (math.trunc(v * 1e4) / 1e4 for v in drawn.offset)
         turn, roll = (round(math.degrees(angle), 1) for angle in (drawn.turn, drawn.roll))
-        settled = super().settled(site, rng)._with(checkpoint=checkpoint.id)
-        return settled._filled(offset=(x, y, z), turn=turn, roll=roll)
+        resolved = super().resolve(site, rng)._copy_with(checkpoint=checkpoint.id)
+        return resolved._fill_unset(offset=(x, y, z), turn=turn, roll=roll)
 
-    def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.checkpoint is not None
         assert self.offset is not None
         assert self.turn is not None
@@ -113,13 +113,13 @@ class DisplacedCheckpoint(CheckpointFault):
         placement = Placement(self.offset, math.radians(self.turn), math.radians(self.roll))
         targets.world.displace(self.checkpoint, placement)
 
-    def end(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def revert(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.checkpoint is not None
         targets.world.displace(self.checkpoint, AS_PLANNED)
 
 
 def _abnormal(checkpoint: SiteCheckpoint, rng: np.random.Generator) -> float:
-    """A value on the scale outside the nominal range, clearly so where there is room."""
+    """Return a random value on the scale, outside the nominal range, and clearly so if possible."""
     scale, nominal = checkpoint.range, checkpoint.nominal
     below, above = math.nextafter(nominal.low, -math.inf), math.nextafter(nominal.high, math.inf)
 
@@ -133,8 +133,8 @@ def _abnormal(checkpoint: SiteCheckpoint, rng: np.random.Generator) -> float:
     free = beyond(_CLEARLY * (scale.high - scale.low)) or beyond(0.0)
     if not free:
         raise Invalid(
-            f"checkpoint {checkpoint.id} ({checkpoint.name}) shows nothing abnormal: its whole "
-            "scale is nominal"
+            f"checkpoint {checkpoint.id} ({checkpoint.name}) can't show an abnormal value: its "
+            "whole scale is nominal"
         )
     lengths = np.array([high - low for low, high in free]) + 1e-9
     low, high = free[int(rng.choice(len(free), p=lengths / lengths.sum()))]

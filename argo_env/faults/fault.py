@@ -1,4 +1,4 @@
-"""What all faults have in common: when they are there, and how the seed draws what is left out."""
+"""Base classes of faults: start, end and effect, and fields that a seed draws."""
 
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
@@ -11,84 +11,90 @@ from argo_env.seeding import draw
 from argo_env.site import Site
 from argo_env.site.shapes import Element, Vector
 
-if TYPE_CHECKING:  # the models of faults are read by much that runs no simulation
+if TYPE_CHECKING:  # many modules load the models of faults without running a simulation
     from argo_env.faults.targets import FaultTargets
 
 LATEST = 120.0
-"""s, up to which the seed draws the time of a fault that has none"""
+"""s, latest start of a fault whose start the seed draws"""
 
 
 class Sign(NamedTuple):
-    """What a fault shows as."""
+    """Detection that a fault leads to."""
 
     event: EventKind
     source: str
-    """the name of the watch that finds it, or `reading`"""
+    """name of the watch that detects the fault, or `reading`"""
     outlasts: float = 1.0
-    """s after the fault's end in which it may still be found"""
+    """s after the fault's end within which it may still be detected"""
 
 
 class Fault(Model):
-    """Something that goes wrong. Fields that are None are drawn by the seed."""
+    """A fault. The seed draws the fields that are None."""
 
     kind: str
     seed: int | None = Field(default=None, ge=0)
-    """draws what is left out; None: the run's seed"""
+    """seed that draws the fields that are not given; None: the run's seed"""
 
     sign: ClassVar[Sign | None]
-    """as what it is found; None: nothing finds it"""
+    """detection that it leads to; None: it is not detected"""
     needs_world: ClassVar[bool] = False
-    """whether only a drive with a world has anything that shows it"""
+    """True if it can be detected only with a drive that has a world"""
     adds_up: ClassVar[bool] = False
-    """whether its effect is its own, and stays when another fault of its kind ends"""
+    """True if its effect is independent of other faults of its kind, and stays when they end"""
 
     @model_serializer(mode="wrap")
     def _with_kind(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        # Also where defaults are left out: without it nobody knows what it is.
+        # Written even if defaults are left out, since a fault can't be parsed without its kind.
         return {"kind": self.kind, **handler(self)}
 
     @property
-    def begins(self) -> float:
-        """When it begins (s)."""
+    def start_time(self) -> float:
+        """Time in s at which it begins."""
         return 0.0
 
     @property
-    def ends(self) -> float | None:
-        """When it ends (s); None: never."""
+    def end_time(self) -> float | None:
+        """Time in s at which it ends, or None if it never ends."""
         return None
 
-    def settled(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
-        """The same fault, with all that was left out drawn.
+    def resolve(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
+        """Return the fault with all its fields set: those that are None are drawn.
 
-        Raises ArgoError if the site has no such place, checkpoint or pump.
+        Raises ArgoError if the site does not have the place, checkpoint or pump of the fault.
         """
         return self
 
-    def changed(self, site: Site) -> tuple[Element, ...]:
-        """The site's elements as they are with this fault."""
+    def changed_elements(self, site: Site) -> tuple[Element, ...]:
+        """Return the site's elements with this fault, which must be resolved."""
         return site.elements
 
-    def is_at(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
-        """Return whether the settled fault may be what was found at a place of the site, or was
-        noticed from one; both are in m, and None where the finding tells none.
+    def can_explain(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
+        """Return True if the resolved fault may be the cause of a finding.
+
+        Args:
+            place: position of the finding in m; None if it is unknown.
+            noticed_from: position of the robot in m; None if the finding has none.
+            site: site of the run.
         """
         return True
 
-    def begin(self, targets: "FaultTargets", now: float) -> None:
-        """Takes effect at time `now` (s).
+    def apply(self, targets: "FaultTargets", now: float) -> None:
+        """Apply the fault's effect at time `now` (s).
 
-        One that does not add up does so again each time that another one of its kind has ended.
+        A fault that does not add up is applied again when another fault of its kind has ended.
         """
 
-    def end(self, targets: "FaultTargets", now: float) -> None:
-        """Takes the effect back; one that does not add up, that of all of its kind."""
+    def revert(self, targets: "FaultTargets", now: float) -> None:
+        """Revert the effect; without `adds_up`, revert that of all faults of its kind."""
 
-    def _with(self, **fields: Any) -> Self:
+    def _copy_with(self, **fields: Any) -> Self:
         return self.model_copy(update=fields)
 
-    def _filled(self, **drawn: Any) -> Self:
-        """The same fault, with what was `drawn` for the fields that are None."""
-        return self._with(**{name: v for name, v in drawn.items() if getattr(self, name) is None})
+    def _fill_unset(self, **drawn: Any) -> Self:
+        """Return the fault with the `drawn` values in those fields that are None."""
+        return self._copy_with(
+            **{name: v for name, v in drawn.items() if getattr(self, name) is None}
+        )
 
 
 class TimedFault(Fault):
@@ -97,7 +103,7 @@ class TimedFault(Fault):
     at: float | None = Field(default=None, ge=0)
     """s, when it begins; None: the seed draws it, up to 120 s"""
     until: float | None = Field(default=None, gt=0)
-    """s, when it ends; None: it stays"""
+    """s, when it ends; None: it never ends"""
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
@@ -106,14 +112,14 @@ class TimedFault(Fault):
         return self
 
     @property
-    def begins(self) -> float:
+    def start_time(self) -> float:
         return self.at or 0.0
 
     @property
-    def ends(self) -> float | None:
+    def end_time(self) -> float | None:
         return self.until
 
-    def settled(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
+    def resolve(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
         latest = LATEST if self.until is None else min(LATEST, self.until)
         drawn = draw(rng, 0.0, latest, 1)
-        return self._filled(at=max(0.0, min(drawn, latest - 0.1)))
+        return self._fill_unset(at=max(0.0, min(drawn, latest - 0.1)))

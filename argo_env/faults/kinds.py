@@ -1,6 +1,6 @@
-"""All kinds of faults, and what a file of faults may say.
+"""All kinds of faults, the model of a file of faults, and functions that resolve lists of faults.
 
-A new kind is a class in one of the files beside this, and is listed here; its words for the page
+A new kind is a class in another module of this package, and is listed here; its names for the page
 are in `argo_planner/page/src/texts/run.ts`.
 """
 
@@ -44,7 +44,7 @@ AnyFault = Annotated[
     | DriveDysfunction,
     Field(discriminator="kind"),
 ]
-"""any fault: this union is the list of the kinds"""
+"""Any fault; this union is the list of all kinds."""
 
 KINDS: dict[str, type[Fault]] = {
     str(model.model_fields["kind"].default): model for model in get_args(get_args(AnyFault)[0])
@@ -56,44 +56,45 @@ class FaultFile(Model):
     """A file of faults."""
 
     faults: tuple[AnyFault, ...]
-    """what goes wrong; each by its `kind`, and what is left out is drawn by the seed"""
+    """faults, each with its `kind`; the seed draws the fields that are not given"""
 
 
-def settle(faults: Sequence[AnyFault], site: Site, seed: int) -> tuple[AnyFault, ...]:
-    """The faults with all that was left out drawn: each by its own seed, or by the run's.
+def resolve_faults(faults: Sequence[AnyFault], site: Site, seed: int) -> tuple[AnyFault, ...]:
+    """Return the faults with all fields set; each is drawn by its own seed, or by the run's `seed`.
 
-    Raises ArgoError, with the place in the list, for what the site does not have.
+    Raises ArgoError, with the fault's number in the list, if the site does not have the place,
+    checkpoint or pump of a fault.
     """
-    return tuple(_settled(fault, number, site, seed) for number, fault in enumerate(faults))
+    return tuple(_resolve_in_list(fault, number, site, seed) for number, fault in enumerate(faults))
 
 
-def settle_one(fault: AnyFault, number: int, site: Site, seed: int) -> AnyFault:
-    """The fault as `settle` would have it at that place of a list."""
+def resolve_fault(fault: AnyFault, number: int, site: Site, seed: int) -> AnyFault:
+    """Return the fault that `resolve_faults` would return for this number in a list."""
     own = seed if fault.seed is None else fault.seed
     rng = generator(own, "fault", fault.kind, number if fault.seed is None else 0)
-    return fault.settled(site, rng)
+    return fault.resolve(site, rng)
 
 
-def misfits(faults: Sequence[AnyFault], site: Site, seed: int) -> dict[int, str]:
-    """What the site does not have of each fault, by its number in the list."""
-    found = {}
+def find_site_errors(faults: Sequence[AnyFault], site: Site, seed: int) -> dict[int, str]:
+    """Return an error for each fault that does not fit the site, by its number in the list."""
+    errors = {}
     for number, fault in enumerate(faults):
         try:
-            _settled(fault, number, site, seed)
+            _resolve_in_list(fault, number, site, seed)
         except ArgoError as error:
-            found[number] = str(error)
-    return found
+            errors[number] = str(error)
+    return errors
 
 
-def _settled(fault: AnyFault, number: int, site: Site, seed: int) -> AnyFault:
+def _resolve_in_list(fault: AnyFault, number: int, site: Site, seed: int) -> AnyFault:
     try:
-        return settle_one(fault, number, site, seed)
+        return resolve_fault(fault, number, site, seed)
     except ArgoError as error:
         raise type(error)(f"faults[{number}] ({fault.kind}): {error}") from None
 
 
-def changed_site(site: Site, faults: Sequence[AnyFault]) -> Site:
-    """The site as it really is with settled faults: bricks lie on it, and plates are missing."""
+def site_with_faults(site: Site, faults: Sequence[AnyFault]) -> Site:
+    """Return the site with resolved faults: bricks lie on it, and plates are missing."""
     for fault in faults:
-        site = site.with_elements(fault.changed(site))
+        site = site.with_elements(fault.changed_elements(site))
     return site

@@ -1,4 +1,4 @@
-"""Faults of the process: gas that leaks, parts that run hot, pumps that run badly, the alarm."""
+"""Faults of the process: gas leaks, hot spots, pumps with a defect, and the platform alarm."""
 
 import math
 from typing import TYPE_CHECKING, ClassVar, Literal, Self
@@ -19,27 +19,27 @@ if TYPE_CHECKING:
     from argo_env.faults.targets import FaultTargets
 
 _BESIDE, _ABOVE, _BELOW = 5.0, 10.0, 1.0
-"""m beside the ground, above the highest floor and below the ground, within which there may be
-something that leaks or glows"""
-_GAS_REACHES = 25.0  # m
-_SPOT_OFF = 2.5  # m that the place of a hot spot is wrong at most
-_BEHIND = 0.2  # m behind the face of a checkpoint, where the pipe or vessel is that carries it
+"""m beside the ground, above the highest floor and below the ground, within which a leak or a hot
+spot may lie"""
+_GAS_REACH = 25.0  # m from a leak within which its gas or its hiss may be noticed
+_SPOT_ERROR = 2.5  # m, error of a hot spot's detected position at most
+_BEHIND = 0.2  # m behind the face of a checkpoint, in the pipe or vessel that carries it
 
 
 class ProcessFault(TimedFault):
-    """A fault that the surroundings show: a source of gas, heat or sound."""
+    """A fault that adds a source of gas, heat or sound to the surroundings."""
 
     needs_world: ClassVar[bool] = True
     adds_up: ClassVar[bool] = True
 
     def source(self) -> Source:
-        """What it puts there."""
+        """Return the source that the fault adds."""
         raise NotImplementedError
 
-    def begin(self, targets: "FaultTargets", now: float) -> None:
+    def apply(self, targets: "FaultTargets", now: float) -> None:
         targets.surroundings.add(self.source(), now)
 
-    def end(self, targets: "FaultTargets", now: float) -> None:
+    def revert(self, targets: "FaultTargets", now: float) -> None:
         targets.surroundings.remove(self.source(), now)
 
 
@@ -53,13 +53,13 @@ class GasLeakFault(ProcessFault):
     rate: float | None = Field(default=None, gt=0, le=1.0)
     """kg/s"""
 
-    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
         _check_place(site, self.place)
         place, rate = _near_equipment(site, rng, 0.0), draw(rng, 0.01, 0.04, 4)
-        return super().settled(site, rng)._filled(place=place, rate=rate)
+        return super().resolve(site, rng)._fill_unset(place=place, rate=rate)
 
-    def is_at(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
-        return _within(_GAS_REACHES, self.place, noticed_from)
+    def can_explain(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
+        return _is_within(_GAS_REACH, self.place, noticed_from)
 
     def source(self) -> Source:
         assert self.place is not None
@@ -68,7 +68,7 @@ class GasLeakFault(ProcessFault):
 
 
 class HotSpotFault(ProcessFault):
-    """A part of the equipment is hot."""
+    """A part of the equipment is too hot."""
 
     sign: ClassVar[Sign] = Sign(EventKind.HOT_SPOT, "heat")
     kind: Literal["hot_spot"] = "hot_spot"
@@ -79,14 +79,14 @@ class HotSpotFault(ProcessFault):
     radius: float = Field(default=0.15, gt=0, le=1.0)
     """m"""
 
-    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
         _check_place(site, self.place)
         place = _near_equipment(site, rng, 0.3)
         temperature = draw(rng, 80.0, 150.0, 1)
-        return super().settled(site, rng)._filled(place=place, temperature=temperature)
+        return super().resolve(site, rng)._fill_unset(place=place, temperature=temperature)
 
-    def is_at(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
-        return _within(_SPOT_OFF, self.place, place)
+    def can_explain(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
+        return _is_within(_SPOT_ERROR, self.place, place)
 
     def source(self) -> Source:
         assert self.place is not None
@@ -95,16 +95,16 @@ class HotSpotFault(ProcessFault):
 
 
 class AbnormalPump(ProcessFault):
-    """A running pump sounds wrong."""
+    """A running pump sounds abnormal."""
 
     sign: ClassVar[Sign] = Sign(EventKind.ABNORMAL_SOUND, "pumps")
     kind: Literal["abnormal_pump"] = "abnormal_pump"
     pump: str | None = None
     """name of the pump"""
     defect: PumpFault | None = None
-    """what it sounds like"""
+    """defect that it sounds like"""
 
-    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
         known = [pump.name for floor in site.spec.floors for pump in floor.pumps]
         if not known:
             raise NotFound(f"site {site.name} has no pump")
@@ -113,16 +113,16 @@ class AbnormalPump(ProcessFault):
             raise NotFound(
                 f"site {site.name} has no pump `{self.pump}`; there are: {', '.join(known)}"
             )
-        return super().settled(site, rng)._filled(pump=pump, defect=defect)
+        return super().resolve(site, rng)._fill_unset(pump=pump, defect=defect)
 
-    def is_at(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
-        # It is heard at the pump that is nearest.
+    def can_explain(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
+        # The watch reports the position of the pump that it hears.
         from argo_env.sensing.signals.microphone import pump_positions  # loads all watches
 
         if place is None:
             return False
-        places = pump_positions(site)
-        return min(places, key=lambda name: math.dist(places[name], place)) == self.pump
+        positions = pump_positions(site)
+        return min(positions, key=lambda name: math.dist(positions[name], place)) == self.pump
 
     def source(self) -> Source:
         assert self.pump is not None
@@ -142,7 +142,7 @@ class PlatformAlarm(ProcessFault):
         return Alarm(self.level)
 
 
-def _within(reach: float, place: Vector | None, other: Vector | None) -> bool:
+def _is_within(reach: float, place: Vector | None, other: Vector | None) -> bool:
     return place is not None and other is not None and math.dist(place, other) <= reach
 
 
@@ -163,9 +163,9 @@ def _check_place(site: Site, place: Vector | None) -> None:
 
 
 def _near_equipment(site: Site, rng: np.random.Generator, up: float) -> Vector:
-    """A place on the equipment behind one of the checkpoints, `up` m above it."""
+    """Return a random position on the equipment behind a checkpoint, `up` m above it."""
     if not site.checkpoints:
-        raise NotFound(f"site {site.name} has no checkpoint: give the place")
+        raise NotFound(f"site {site.name} has no checkpoint: give the `place`")
     checkpoint = site.checkpoints[int(rng.integers(len(site.checkpoints)))]
     x, y, z = checkpoint.position
     return (

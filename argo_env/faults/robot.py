@@ -1,4 +1,4 @@
-"""Faults of the robot itself and of what it depends on: battery, network, drive and sensor."""
+"""Faults of the robot and its network: battery, connection, emergency stop, sensor and drive."""
 
 from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
@@ -17,39 +17,39 @@ if TYPE_CHECKING:
 
 
 class LowBattery(Fault):
-    """The robot sets off with little charge."""
+    """The robot starts with a low charge."""
 
     sign: ClassVar[Sign] = Sign(EventKind.LOW_BATTERY, "battery")
     kind: Literal["low_battery"] = "low_battery"
     charge: float | None = Field(default=None, gt=0, le=1)
-    """share of the capacity that is there at the start, unless there is less anyway"""
+    """share of the capacity at the start, unless the charge is lower anyway"""
 
-    def settled(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
-        return self._filled(charge=draw(rng, 0.1, 0.25, 3))
+    def resolve(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
+        return self._fill_unset(charge=draw(rng, 0.1, 0.25, 3))
 
-    def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.charge is not None
         targets.battery.charge = min(targets.battery.charge, self.charge)
 
 
 class WornBattery(Fault):
-    """The battery holds less than it did when it was new."""
+    """The battery has a lower capacity than a new one."""
 
     sign: ClassVar[Sign] = Sign(EventKind.LOW_BATTERY, "battery")
     kind: Literal["worn_battery"] = "worn_battery"
     capacity: float | None = Field(default=None, gt=0, le=1)
-    """share of the capacity that is left"""
+    """share of the capacity that remains"""
 
-    def settled(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
-        return self._filled(capacity=draw(rng, 0.2, 0.6, 3))
+    def resolve(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
+        return self._fill_unset(capacity=draw(rng, 0.2, 0.6, 3))
 
-    def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.capacity is not None
         targets.battery.wear(self.capacity)
 
 
 class ConnectionLoss(TimedFault):
-    """There is no signal in a part of the site; without `rect` and `floor`, nowhere."""
+    """A part of the site has no radio signal; without `rect` and `floor`, the whole site."""
 
     sign: ClassVar[Sign] = Sign(EventKind.CONNECTION_LOST, "connection")
     adds_up: ClassVar[bool] = True
@@ -57,30 +57,30 @@ class ConnectionLoss(TimedFault):
     rect: Rect | None = None
     """m, [x0, y0, x1, y1]; None: the whole floor"""
     floor: int | None = Field(default=None, ge=1)
-    """None: every floor"""
+    """number of the floor; None: every floor"""
 
-    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
         if self.floor is not None:
             site.floor(self.floor)
-        return super().settled(site, rng)
+        return super().resolve(site, rng)
 
-    def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         targets.network.shadows.append(Shadow(self.rect, self.floor))
 
-    def end(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def revert(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         targets.network.shadows.remove(Shadow(self.rect, self.floor))
 
 
 class EmergencyStop(TimedFault):
-    """Someone presses the emergency stop, and releases it again if it ends."""
+    """Someone presses the emergency stop, and releases it at the fault's end."""
 
     sign: ClassVar[Sign] = Sign(EventKind.EMERGENCY_STOP, "emergency stop")
     kind: Literal["emergency_stop"] = "emergency_stop"
 
-    def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         targets.drive.pressed = True
 
-    def end(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def revert(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         targets.drive.pressed = False
 
 
@@ -90,40 +90,40 @@ class SensorDysfunction(TimedFault):
     sign: ClassVar[Sign] = Sign(EventKind.DYSFUNCTION, "camera")
     kind: Literal["sensor_dysfunction"] = "sensor_dysfunction"
     effect: Literal["fails", "noise"] | None = None
-    """whether there are no readings at all, or readings with noise"""
+    """`fails`: no readings; `noise`: readings with noise"""
     noise: float = Field(default=0.1, gt=0, le=1)
-    """with noise: standard deviation of readings, as a share of the scale"""
+    """standard deviation of the noise, as a share of the scale"""
 
-    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
         drawn = "fails" if rng.uniform() < 0.5 else "noise"
-        return super().settled(site, rng)._filled(effect=drawn)
+        return super().resolve(site, rng)._fill_unset(effect=drawn)
 
-    def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         if self.effect == "fails":
             targets.sensor.failed = True
         else:
             targets.sensor.noise = self.noise
 
-    def end(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def revert(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         targets.sensor.failed, targets.sensor.noise = False, targets.sensor.usual_noise
 
 
 class DriveDysfunction(TimedFault):
-    """The drive makes only a part of its speed, or none. Of several the worst counts."""
+    """The drive has only a part of its speed, or none. With several faults, the slowest counts."""
 
-    # The way made is compared with the way planned over 10 s.
+    # The watch compares the distance driven with the planned one over 10 s.
     sign: ClassVar[Sign] = Sign(EventKind.DYSFUNCTION, "drive", outlasts=11.0)
     kind: Literal["drive_dysfunction"] = "drive_dysfunction"
     speed: float | None = Field(default=None, ge=0, lt=1)
-    """share of the speed that is left; 0: it stops"""
+    """share of the speed that remains; 0: the robot stops"""
 
-    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
         drawn = draw(rng, 0.0, 0.5, 2)
-        return super().settled(site, rng)._filled(speed=drawn)
+        return super().resolve(site, rng)._fill_unset(speed=drawn)
 
-    def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.speed is not None
         targets.drive.share = min(targets.drive.share, self.speed)
 
-    def end(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def revert(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         targets.drive.share = targets.drive.usual_share

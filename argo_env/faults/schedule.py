@@ -1,4 +1,4 @@
-"""When faults begin and end, and which of them count where several meet."""
+"""Schedule of faults: it applies and reverts them, also where faults of a kind overlap."""
 
 import math
 from collections.abc import Sequence
@@ -8,68 +8,72 @@ from argo_env.faults.kinds import AnyFault
 from argo_env.faults.targets import FaultTargets
 
 
-class Schedule:
-    """Lets faults begin and end at their times. Holds how far it has come, and what has begun."""
+class FaultSchedule:
+    """Schedule that starts and ends faults at their times. It holds the active faults.
+
+    Attributes:
+        faults: All faults of the schedule.
+    """
 
     def __init__(self, faults: Sequence[AnyFault], targets: FaultTargets) -> None:
-        """The faults must be settled."""
+        """`faults` must be resolved."""
         self.faults = tuple(faults)
         self._targets = targets
-        self._moments = _moments(faults)
+        self._changes = _changes(faults)
         self._next = 0
         self._active: list[AnyFault] = []  # in the order in which they began
 
     @property
     def pending(self) -> bool:
-        """Whether anything is still to begin or to end."""
-        return self._next < len(self._moments)
+        """True if a fault is still to begin or to end."""
+        return self._next < len(self._changes)
 
     @property
     def next_change(self) -> float:
-        """When something begins or ends next (s); infinite if nothing does."""
-        return self._moments[self._next][0] if self.pending else math.inf
+        """Time in s at which the next fault begins or ends; infinite if there is none."""
+        return self._changes[self._next][0] if self.pending else math.inf
 
     @property
     def last_change(self) -> float:
-        """When something began or ended last (s); 0 if nothing has."""
-        return self._moments[self._next - 1][0] if self._next else 0.0
+        """Time in s at which the last fault began or ended; 0 if there is none."""
+        return self._changes[self._next - 1][0] if self._next else 0.0
 
     def add(self, fault: AnyFault) -> None:
-        """One more, settled, of which nothing is over yet."""
+        """Add a resolved fault that begins at the present time or later."""
         self.faults = (*self.faults, fault)
-        ahead = [*self._moments[self._next :], *_moments([fault])]
-        self._moments[self._next :] = sorted(ahead, key=_order)
+        upcoming = [*self._changes[self._next :], *_changes([fault])]
+        self._changes[self._next :] = sorted(upcoming, key=_change_key)
 
     def advance(self, now: float) -> None:
-        """Carries out all that is due at time `now` (s)."""
-        while self.pending and self._moments[self._next][0] <= now + 1e-9:
-            at, begins, fault = self._moments[self._next]
+        """Start and end all faults that are due at time `now` (s)."""
+        while self.pending and self._changes[self._next][0] <= now + 1e-9:
+            at, begins, fault = self._changes[self._next]
             self._next += 1
             if begins:
                 self._active.append(fault)
-                fault.begin(self._targets, at)
+                fault.apply(self._targets, at)
             else:
                 self._active.remove(fault)
-                fault.end(self._targets, at)
+                fault.revert(self._targets, at)
                 self._renew(type(fault), at)
 
     def _renew(self, kind: type[Fault], now: float) -> None:
-        """Lets those of a kind that have not ended take effect again after one that has."""
+        """Apply the active faults of a kind again, after one of them has ended."""
         for fault in self._active:
             if type(fault) is kind and not kind.adds_up:
-                fault.begin(self._targets, now)
+                fault.apply(self._targets, now)
 
 
-_Moment = tuple[float, bool, AnyFault]
-"""When (s), whether it begins then rather than ends, and what."""
+_Change = tuple[float, bool, AnyFault]
+"""Time (s), True for the start of a fault and False for its end, and the fault."""
 
 
-def _moments(faults: Sequence[AnyFault]) -> list[_Moment]:
-    moments: list[_Moment] = [(f.begins, True, f) for f in faults]
-    moments += [(f.ends, False, f) for f in faults if f.ends is not None]
-    return sorted(moments, key=_order)
+def _changes(faults: Sequence[AnyFault]) -> list[_Change]:
+    changes: list[_Change] = [(f.start_time, True, f) for f in faults]
+    changes += [(f.end_time, False, f) for f in faults if f.end_time is not None]
+    return sorted(changes, key=_change_key)
 
 
-def _order(moment: _Moment) -> tuple[float, bool]:
-    # Of one time, ends come first; else they are in the order of the list.
-    return moment[:2]
+def _change_key(change: _Change) -> tuple[float, bool]:
+    # At equal times ends come first; otherwise the order is that of the list.
+    return change[:2]

@@ -1,4 +1,4 @@
-"""What faults act on: the parts of a run that can go wrong."""
+"""Targets of faults: the parts of a run that faults act on."""
 
 from dataclasses import dataclass, field
 
@@ -12,23 +12,23 @@ from argo_env.world.without_physics import AnyWorld
 
 @dataclass(frozen=True)
 class FaultTargets:
-    """The parts of one run. They change as faults begin and end; the set of them does not."""
+    """Parts of one run that faults change. The parts themselves are never replaced."""
 
     world: AnyWorld
     truth: dict[int, float]
-    """what each checkpoint shows, in its unit"""
+    """value that each checkpoint shows, in its unit, by the checkpoint's number"""
     surroundings: Surroundings
     drive: Powertrain
     sensor: OnboardSensor
     battery: Battery
     network: RadioNetwork
-    usual: dict[int, float] = field(init=False)
-    """what each checkpoint shows without a fault"""
+    fault_free_values: dict[int, float] = field(init=False)
+    """value that each checkpoint shows without a fault"""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "usual", dict(self.truth))
+        object.__setattr__(self, "fault_free_values", dict(self.truth))
 
-    def show(self, checkpoint: int, value: float) -> None:
-        """From now on the checkpoint shows that value, in its unit."""
+    def show_value(self, checkpoint: int, value: float) -> None:
+        """Make a checkpoint show a value in its unit from now on."""
         self.truth[checkpoint] = value
         self.world.show_value(checkpoint, value)

@@ -1,7 +1,7 @@
-"""Faults of the way: bricks on the walkway, missing ground plates, blocked stairs.
+"""Faults of walkways: bricks, missing ground plates and blocked stairs.
 
-They are there from the run's start: they change the site's solids before the world is made, so that
-rays, contacts, pictures and dynamics all meet the same thing.
+They exist from the start of the run: they change the site's solids before the world is made, so
+that rays, contacts, pictures and dynamics all use the same solids.
 """
 
 import cmath
@@ -22,20 +22,20 @@ from argo_env.site.spec import FlightSpec, FloorSpec, Point, Rect, TowerSpec
 from argo_env.site.stairs import flight_run
 
 PLATE = 0.6  # m, edge of a ground plate
-BARRIER = (0.06, 1.0)  # m, thickness and height of what blocks stairs
+BARRIER = (0.06, 1.0)  # m, thickness and height of a barrier
 _BARRIER_DISTANCE = 0.25  # m from the nosing to the barrier
-_FROM_RIM = 0.35  # m that a drawn place is away from the rim of its walkway, where there is room
+_RIM_DISTANCE = 0.35  # m from a drawn position to the rim of its walkway, if possible
 _TOUCHING = 1e-6  # m
-_BESIDE = 0.5  # m beside an obstacle, or the edge of a hole, that may be taken for it
-_DRAWS = 100  # places that are drawn until one is free
-_ROOM = 0.65  # m about the middle of a docked robot that it needs to turn
-_STATION = 0.6  # m before the middle of a docked robot, where its station stands
-_SAME_LEVEL = 1.0  # m between a floor and the ground under which a dock is in the way
-_Length = Annotated[float, Field(gt=0, le=1.5)]  # m; what is larger does not get onto a walkway
+_BESIDE = 0.5  # m beside an obstacle or the edge of a hole within which it may be detected
+_DRAWS = 100  # positions that are drawn at most until one is free
+_TURNING_ROOM = 0.65  # m about the middle of a docked robot, which it needs to turn
+_STATION = 0.6  # m ahead of the middle of a docked robot, where its station is
+_SAME_LEVEL = 1.0  # m between a floor and the ground, up to which docks are on the floor
+_Length = Annotated[float, Field(gt=0, le=1.5)]  # m; larger things don't fit on a walkway
 
 
 class Brick(Fault):
-    """Something solid lies on the walkway."""
+    """A solid object lies on a walkway."""
 
     sign: ClassVar[Sign] = Sign(EventKind.POSITIVE_OBSTACLE, "terrain")
     needs_world: ClassVar[bool] = True
@@ -43,31 +43,31 @@ class Brick(Fault):
     floor: int | None = Field(default=None, ge=1)
     """number of the floor that it lies on"""
     place: Point | None = None
-    """m, x and y of its middle; needs `floor`"""
+    """m, x and y of its middle; `floor` must be given too"""
     size: tuple[_Length, _Length, _Length] = (0.3, 0.2, 0.2)
     """m, along its own axes, at most 1.5"""
     yaw: float | None = None
     """deg"""
 
-    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
         for _ in range(1 if self.place else _DRAWS):
-            floor, place = _place(site, rng, self.floor, self.place, lowest=1)
-            if not any(_holds(r, place) for r in floor.walkways.values()):
+            floor, place = _choose_position(site, rng, self.floor, self.place, lowest=1)
+            if not any(_contains(r, place) for r in floor.walkways.values()):
                 raise Invalid(f"there is no walkway at ({place[0]:g}, {place[1]:g}) of floor "
                                 f"{floor.number}")  # fmt: skip
             yaw = draw(rng, -90.0, 90.0, 1)
-            settled = self._with(floor=floor.number, place=place)._filled(yaw=yaw)
-            area = settled._over_dock(site, floor)
+            resolved = self._copy_with(floor=floor.number, place=place)._fill_unset(yaw=yaw)
+            area = resolved._covered_dock(site, floor)
             if area is None:
-                return settled
+                return resolved
         raise Invalid(
             f"a brick at ({place[0]:g}, {place[1]:g}) of floor {floor.number} lies over the dock "
             f"of starting area {area}, where the robot has to stand: give another `place`, or a "
             "smaller `size`"
         )
 
-    def _over_dock(self, site: Site, floor: FloorSpec) -> int | None:
-        """The starting area whose dock it lies over, if there is one."""
+    def _covered_dock(self, site: Site, floor: FloorSpec) -> int | None:
+        """Return the starting area whose dock the brick blocks, or None."""
         assert self.place is not None
         assert self.yaw is not None
         if abs(floor.z - site.spec.ground_z) > _SAME_LEVEL:
@@ -76,16 +76,19 @@ class Brick(Fault):
         half_length, half_width = self.size[0] / 2, self.size[1] / 2
         for area, dock in site.docks.items():
             for ahead in (0.0, _STATION):
-                at = complex(dock.x, dock.y) + cmath.rect(ahead, dock.yaw) - complex(*self.place)
-                own = at * turn  # in the axes of the brick
-                away = math.hypot(
-                    max(abs(own.real) - half_length, 0.0), max(abs(own.imag) - half_width, 0.0)
+                offset = (
+                    complex(dock.x, dock.y) + cmath.rect(ahead, dock.yaw) - complex(*self.place)
                 )
-                if away < _ROOM:
+                in_brick_axes = offset * turn
+                distance = math.hypot(
+                    max(abs(in_brick_axes.real) - half_length, 0.0),
+                    max(abs(in_brick_axes.imag) - half_width, 0.0),
+                )
+                if distance < _TURNING_ROOM:
                     return area
         return None
 
-    def changed(self, site: Site) -> tuple[Element, ...]:
+    def changed_elements(self, site: Site) -> tuple[Element, ...]:
         assert self.floor is not None
         assert self.place is not None
         assert self.yaw is not None
@@ -93,8 +96,8 @@ class Brick(Fault):
         box = Box((*self.place, z), self.size, (0.0, 0.0, math.radians(self.yaw)))
         return (*site.elements, Element(_new_name(site, "brick"), Role.STRUCTURE, (box,), "brick"))
 
-    def is_at(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
-        return _stands_at(self, place, site)
+    def can_explain(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
+        return _is_beside_added_solids(self, place, site)
 
 
 class MissingPlate(Fault):
@@ -106,35 +109,35 @@ class MissingPlate(Fault):
     floor: int | None = Field(default=None, ge=1)
     """number of the floor; the lowest has no plates"""
     rect: Rect | None = None
-    """m, [x0, y0, x1, y1]; needs `floor`; drawn: a square of 0.6 m"""
+    """m, [x0, y0, x1, y1]; `floor` must be given too; drawn: a square of 0.6 m"""
 
-    def settled(self, site: Site, rng: np.random.Generator) -> Self:
-        middle = None
+    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
+        centre = None
         if self.rect is not None:
             x0, y0, x1, y1 = self.rect
-            middle = ((x0 + x1) / 2, (y0 + y1) / 2)
-        floor, (x, y) = _place(site, rng, self.floor, middle, lowest=2)
+            centre = ((x0 + x1) / 2, (y0 + y1) / 2)
+        floor, (x, y) = _choose_position(site, rng, self.floor, centre, lowest=2)
         if not floor.railed:
             raise Invalid(f"floor {floor.number} is a slab on the ground and has no plates")
         half = PLATE / 2
         drawn = tuple(round(v, 3) for v in (x - half, y - half, x + half, y + half))
-        settled = self._with(floor=floor.number, rect=self.rect or drawn)
-        if settled.changed(site) == site.elements:
+        resolved = self._copy_with(floor=floor.number, rect=self.rect or drawn)
+        if resolved.changed_elements(site) == site.elements:
             raise Invalid(f"there is no deck at ({x:g}, {y:g}) of floor {floor.number}")
-        return settled
+        return resolved
 
-    def changed(self, site: Site) -> tuple[Element, ...]:
+    def changed_elements(self, site: Site) -> tuple[Element, ...]:
         assert self.floor is not None
         assert self.rect is not None
         z, rect = site.floor(self.floor).z, self.rect
         return tuple(
-            replace(e, solids=tuple(p for s in e.solids for p in _without(s, rect, z)))
+            replace(e, solids=tuple(p for s in e.solids for p in _cut_out(s, rect, z)))
             if e.role is Role.DECK
             else e
             for e in site.elements
         )
 
-    def is_at(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
+    def can_explain(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
         if place is None or self.rect is None:
             return False
         (x, y, z), (x0, y0, x1, y1) = place, self.rect
@@ -143,7 +146,7 @@ class MissingPlate(Fault):
 
 
 class BlockedStairs(Fault):
-    """Barriers stand across both ends of a stairway from one floor to the next."""
+    """Barriers block both ends of a stairway from one floor to the next."""
 
     sign: ClassVar[Sign] = Sign(EventKind.POSITIVE_OBSTACLE, "terrain")
     needs_world: ClassVar[bool] = True
@@ -153,7 +156,7 @@ class BlockedStairs(Fault):
     floor: int | None = Field(default=None, ge=1)
     """the lower one of the two floors"""
 
-    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
         towers, floors = [t.name for t in site.spec.towers], site.spec.floors[:-1]
         if not towers or not floors:
             raise NotFound(f"site {site.name} has no stairs")
@@ -166,35 +169,34 @@ class BlockedStairs(Fault):
             )
         if self.floor is not None and self.floor not in [f.number for f in floors]:
             raise NotFound(f"site {site.name} has no stairs up from floor {self.floor}")
-        return self._filled(tower=tower, floor=floor)
+        return self._fill_unset(tower=tower, floor=floor)
 
-    def changed(self, site: Site) -> tuple[Element, ...]:
+    def changed_elements(self, site: Site) -> tuple[Element, ...]:
         assert self.floor is not None
         tower = next(t for t in site.spec.towers if t.name == self.tower)
         barriers = _barriers(tower, site.floor(self.floor).z)
         name = _new_name(site, f"barrier of the {self.tower}")
         return (*site.elements, Element(name, Role.STRUCTURE, barriers, "brick"))
 
-    def is_at(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
-        return _stands_at(self, place, site)
+    def can_explain(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
+        return _is_beside_added_solids(self, place, site)
 
 
-def _stands_at(fault: Fault, place: Vector | None, site: Site) -> bool:
-    """Return whether the place is inside the boxes about what the fault adds to the site, or just
-    beside one."""
+def _is_beside_added_solids(fault: Fault, place: Vector | None, site: Site) -> bool:
+    """Return True if a point is in or near the bounding box of a solid that the fault adds."""
     if place is None:
         return False
-    middle, planned = np.array(place), {element.name for element in site.elements}
+    centre, planned = np.array(place), {element.name for element in site.elements}
     return any(
-        bool(np.all(np.abs(middle - solid.center) <= half_extents(solid) + _BESIDE))
-        for element in fault.changed(site)
+        bool(np.all(np.abs(centre - solid.center) <= half_extents(solid) + _BESIDE))
+        for element in fault.changed_elements(site)
         if element.name not in planned
         for solid in element.solids
     )
 
 
 def _barriers(tower: TowerSpec, base: float) -> tuple[Solid, ...]:
-    """One across the foot of the lowest flight and one across the top of the highest."""
+    """Return barriers across the foot of the lowest flight and the top of the highest one."""
     first = min(tower.flights, key=lambda f: f.foot[2])
     last = max(tower.flights, key=lambda f: f.foot[2] + f.risers * f.rise)
     return (
@@ -204,7 +206,7 @@ def _barriers(tower: TowerSpec, base: float) -> tuple[Solid, ...]:
 
 
 def _barrier(flight: FlightSpec, base: float, along: float, up: float) -> Solid:
-    """A panel across a flight, `along` m from its first nosing, on what lies `up` m above that."""
+    """Return a panel across a flight, `along` m from its first nosing and `up` m above it."""
     yaw, (thickness, height) = math.radians(flight.yaw), BARRIER
     x, y, z = flight.foot
     center = (
@@ -213,47 +215,51 @@ def _barrier(flight: FlightSpec, base: float, along: float, up: float) -> Solid:
     return Box(center, (thickness, flight.width, height), (0.0, 0.0, yaw))
 
 
-def _without(solid: Solid, rect: Rect, z: float) -> tuple[Solid, ...]:
-    """The plate with its top at `z` less the rectangle, in up to four parts; all else as it is."""
+def _cut_out(solid: Solid, rect: Rect, z: float) -> tuple[Solid, ...]:
+    """Cut the rectangle out of a plate with its top at `z`, which leaves up to four parts.
+
+    Other solids are returned unchanged.
+    """
     if not isinstance(solid, Box) or solid.rpy != (0.0, 0.0, 0.0):
         return (solid,)
-    (x, y, middle), (length, width, thickness) = solid.center, solid.size
-    if abs(middle + thickness / 2 - z) > _TOUCHING:
+    (x, y, centre), (length, width, thickness) = solid.center, solid.size
+    if abs(centre + thickness / 2 - z) > _TOUCHING:
         return (solid,)
     x0, y0, x1, y1 = x - length / 2, y - width / 2, x + length / 2, y + width / 2
     a0, b0, a1, b1 = max(x0, rect[0]), max(y0, rect[1]), min(x1, rect[2]), min(y1, rect[3])
     if a1 - a0 <= _TOUCHING or b1 - b0 <= _TOUCHING:
         return (solid,)
-    left = ((x0, y0, x1, b0), (x0, b1, x1, y1), (x0, b0, a0, b1), (a1, b0, x1, b1))
+    remaining = ((x0, y0, x1, b0), (x0, b1, x1, y1), (x0, b0, a0, b1), (a1, b0, x1, b1))
     return tuple(
-        Box(((c0 + c1) / 2, (d0 + d1) / 2, middle), (c1 - c0, d1 - d0, thickness))
-        for c0, d0, c1, d1 in left
+        Box(((c0 + c1) / 2, (d0 + d1) / 2, centre), (c1 - c0, d1 - d0, thickness))
+        for c0, d0, c1, d1 in remaining
         if c1 - c0 > _TOUCHING and d1 - d0 > _TOUCHING
     )
 
 
-def _place(
+def _choose_position(
     site: Site, rng: np.random.Generator, number: int | None, place: Point | None, lowest: int
 ) -> tuple[FloorSpec, Point]:
-    """The floor and the place on one of its walkways: as given, or drawn."""
+    """Return the given floor and position on a walkway, or drawn ones."""
     floors = [f for f in site.spec.floors if f.number >= lowest]
     if not floors:
         raise NotFound(f"site {site.name} has no upper floor")
     drawn = floors[int(rng.integers(len(floors)))]
     if number is None and place is not None:
-        raise Invalid("a place without a floor: give the `floor` as well")
+        raise Invalid("a position needs a floor: give the `floor` as well")
     floor = drawn if number is None else site.floor(number)
     x0, y0, x1, y1 = list(floor.walkways.values())[int(rng.integers(len(floor.walkways)))]
     x, y = (
         float(rng.uniform(a + m, b - m))
         for a, b, m in (
-            (x0, x1, min(_FROM_RIM, (x1 - x0) / 2)), (y0, y1, min(_FROM_RIM, (y1 - y0) / 2)),
+            (x0, x1, min(_RIM_DISTANCE, (x1 - x0) / 2)),
+            (y0, y1, min(_RIM_DISTANCE, (y1 - y0) / 2)),
         )
     )  # fmt: skip
     return floor, (round(x, 3), round(y, 3)) if place is None else place
 
 
-def _holds(rect: Rect, place: Point) -> bool:
+def _contains(rect: Rect, place: Point) -> bool:
     return rect[0] <= place[0] <= rect[2] and rect[1] <= place[1] <= rect[3]
 
 

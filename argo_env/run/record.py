@@ -500,13 +500,13 @@ class RunRecord(Model):
     @property
     def missed_faults(self) -> tuple[AnyFault, ...]:
         """Faults that did not happen because the run ended before they began."""
-        return tuple(fault for fault in self.faults if fault.begins > self.result.duration)
+        return tuple(fault for fault in self.faults if fault.start_time > self.result.duration)
 
     def explain_missed(self, fault: AnyFault) -> str:
         """Return a text that says why a missed fault did not happen."""
         return (
-            f"fault {fault.kind.replace('_', ' ')} did not happen: begins at {fault.begins:g} s, "
-            f"the mission ended at {round(self.result.duration, 1):g} s"
+            f"fault {fault.kind.replace('_', ' ')} did not happen: begins at "
+            f"{fault.start_time:g} s, the mission ended at {round(self.result.duration, 1):g} s"
         )
 
     def _finding(self, anomaly: Anomaly, number: int | None, later: Sequence[Anomaly]) -> Finding:

@@ -19,7 +19,7 @@ from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.hfsm.handover import match
 from argo_compiler.il import Action, Mission, Task
 from argo_env.faults.fault import Fault, TimedFault
-from argo_env.faults.kinds import AnyFault, settle_one
+from argo_env.faults.kinds import AnyFault, resolve_fault
 from argo_env.run.log import Entry, LoggedEvent, require_event_time, require_external
 from argo_env.run.machine import Machine
 from argo_env.run.record import TaskRun
@@ -265,7 +265,7 @@ def resolve_new_fault(fault: AnyFault, setup: RunSetup, seed: int, now: float) -
         raise Invalid(f"{kind} would end at {fault.until:g} s, and it is {now:g} s already")
     begins = now if fault.at is None else max(now, fault.at)
     try:
-        return settle_one(
+        return resolve_fault(
             fault.model_copy(update={"at": begins}),
             len(setup.schedule.faults),
             setup.navigator.site,

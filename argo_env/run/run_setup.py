@@ -12,9 +12,9 @@ from argo_env.drives.battery import Battery
 from argo_env.drives.drive import Drive
 from argo_env.drives.powertrain import Powertrain
 from argo_env.drives.timed_drive import RouteDrive
-from argo_env.faults.kinds import changed_site, settle
-from argo_env.faults.reading import FaultText
-from argo_env.faults.schedule import Schedule
+from argo_env.faults.kinds import resolve_faults, site_with_faults
+from argo_env.faults.loading import FaultText
+from argo_env.faults.schedule import FaultSchedule
 from argo_env.faults.targets import FaultTargets
 from argo_env.navigation import Navigator
 from argo_env.run.drives_and_sensors import DRIVES, IDEAL, ROUTE, SENSORS, WORLD_DRIVES
@@ -49,7 +49,7 @@ class Instruments:
         self._site = site
         self._seed = seed
         self._profiles = {site.checkpoint(id).id: profile for id, profile in profiles.items()}
-        self._first = {id: targets.usual[id] for id in self._profiles}
+        self._first = {id: targets.fault_free_values[id] for id in self._profiles}
 
     def update(self, checkpoint_id: int, now: float) -> None:
         """Set the value that the checkpoint displays at time `now` (s), before it is read."""
@@ -59,10 +59,12 @@ class Instruments:
             return
         checkpoint = self._site.checkpoint(checkpoint_id)
         value = displayed_value(checkpoint, self._first[checkpoint_id], profile, self._seed, now)
-        has_no_fault = self._targets.truth[checkpoint_id] == self._targets.usual[checkpoint_id]
-        self._targets.usual[checkpoint_id] = value
+        has_no_fault = (
+            self._targets.truth[checkpoint_id] == self._targets.fault_free_values[checkpoint_id]
+        )
+        self._targets.fault_free_values[checkpoint_id] = value
         if has_no_fault:
-            self._targets.show(checkpoint_id, value)
+            self._targets.show_value(checkpoint_id, value)
 
 
 def displayed_value(
@@ -99,7 +101,7 @@ class RunSetup:
     """watches that notice anomalies"""
     battery: Battery | None = None
     """None: the robot's power never ends"""
-    schedule: Schedule | None = None
+    schedule: FaultSchedule | None = None
     """schedule of the faults; None: there are none"""
     instruments: Instruments | None = None
     """displays of values that change over time; None: the values are constant"""
@@ -133,7 +135,7 @@ def make_run_setup(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitSt
     """
     site, robot, seed = navigator.site, navigator.robot, spec.seed
     truth = true_values(site, seed, spec.values)
-    faults = settle(spec.faults, site, seed)
+    faults = resolve_faults(spec.faults, site, seed)
     surroundings = Surroundings(site)
     world: AnyWorld
     watches: tuple[Watch, ...] = ()
@@ -144,7 +146,7 @@ def make_run_setup(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitSt
         inner: Drive = RouteDrive(robot)
         camera: Sensor = IdealSensor(world, robot, truth)
     else:
-        real = changed_site(site, faults).elements
+        real = site_with_faults(site, faults).elements
         is_drawn = spec.sensor != IDEAL  # other sensors take pictures
         world = stack.enter_context(World(site, robot, gui, real, is_drawn))
         inner = WORLD_DRIVES[spec.drive](world, robot, spec.conditions.friction)
@@ -165,7 +167,7 @@ def make_run_setup(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitSt
     level = next((r.battery_below for r in spec.mission.reactions if r.battery_below), None)
     watches += onboard_watches(robot, battery, network, drive, sensor, level)
     instruments = Instruments(targets, site, seed, conditions.values)
-    schedule = Schedule(faults, targets)
+    schedule = FaultSchedule(faults, targets)
     return RunSetup(world, navigator, drive, sensor, watches, battery, schedule, instruments)
 
 
@@ -189,7 +191,7 @@ def check_spec(spec: RunSpec, site: Site, fault_text: FaultText | None = None) -
     for id in spec.conditions.values:
         site.checkpoint(id)
     if not fault_text:
-        settle(spec.faults, site, spec.seed)
+        resolve_faults(spec.faults, site, spec.seed)
     unseen = [f.kind for f in spec.faults if f.needs_world]
     if spec.drive == ROUTE and unseen:
         raise Invalid(

@@ -11,7 +11,7 @@ from rich.markup import escape
 
 from argo_compiler.base.errors import Invalid
 from argo_compiler.files.loading import read_bytes
-from argo_env.faults.reading import MAX_BYTES, decode_faults
+from argo_env.faults.loading import MAX_BYTES, decode_faults
 from argo_env.files.folders import make_folder
 from argo_env.planning.opening import open_site
 from argo_env.run.drives_and_sensors import DRIVES, SENSORS

@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from argo_compiler.base.errors import ArgoError
-from argo_env.faults.kinds import changed_site
+from argo_env.faults.kinds import site_with_faults
 from argo_env.report.files import PAGE
 from argo_env.robot.spec import RobotSpec
 from argo_env.run.record import RunRecord
@@ -104,7 +104,9 @@ class Conclusion:
                 progress.update(bar, completed=share)
 
             try:
-                write_film(record, changed_site(site, record.faults), robot, file, progress=go_on)
+                write_film(
+                    record, site_with_faults(site, record.faults), robot, file, progress=go_on
+                )
             except ArgoError:
                 # The encoder gets Ctrl-C as well.
                 self.interruption.require_none()

@@ -18,7 +18,7 @@ from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.evaluation.pool.backends import make_backend
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.faults.kinds import AnyFault
-from argo_env.faults.reading import (
+from argo_env.faults.loading import (
     MAX_BYTES,
     NOTHING,
     FaultDistribution,
@@ -201,8 +201,8 @@ def _fault_sets(file: EvaluationFile, folder: Path) -> Iterator[FaultSet]:
         if not file.faults.strata:
             yield FaultSet("drawn")
             return
-        if drawn.nothing:
-            yield FaultSet(NOTHING, weight=drawn.nothing)
+        if drawn.fault_free_probability:
+            yield FaultSet(NOTHING, weight=drawn.fault_free_probability)
         for chance in drawn.chances:
             yield FaultSet(chance.name, chance.faults, chance.probability)
         return

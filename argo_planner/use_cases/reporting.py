@@ -4,7 +4,7 @@ import tempfile
 from pathlib import Path
 
 from argo_compiler.base.stages import stage
-from argo_env.faults.kinds import changed_site
+from argo_env.faults.kinds import site_with_faults
 from argo_env.pictures import write_overview
 from argo_env.report.files import PAGE, RECORD, write_report
 from argo_env.robot.spec import RobotSpec
@@ -25,5 +25,7 @@ def report_files(record: RunRecord, site: Site, robot: RobotSpec) -> dict[str, b
         with stage("writing the report"):
             write_report(record, site, folder)
         with stage("drawing the site"):
-            write_overview(record, changed_site(site, record.faults), robot, folder / "site.png")
+            write_overview(
+                record, site_with_faults(site, record.faults), robot, folder / "site.png"
+            )
         return {name: (folder / name).read_bytes() for name in REPORT_FILES}

@@ -74,7 +74,7 @@ def _that_pump(fault: AnyFault, anomaly: Anomaly, _: Site) -> bool:
 
 def _stands_there(fault: AnyFault, anomaly: Anomaly, site: Site) -> bool:
     before = {element.name for element in site.elements}
-    added = [e for e in fault.changed(site) if e.name not in before]
+    added = [e for e in fault.changed_elements(site) if e.name not in before]
     place = anomaly.place
     return place is not None and any(
         isinstance(solid, Box)
@@ -180,7 +180,9 @@ def _may_fail(run: TaskRun, record: RunRecord) -> bool:
     obstacles = {EventKind.POSITIVE_OBSTACLE, EventKind.NEGATIVE_OBSTACLE}
     in_the_way = any(a.kind in obstacles and a.t <= run.end for a in record.anomalies)
     for fault in record.faults:
-        lasts = fault.begins <= run.end and (fault.ends is None or fault.ends >= run.start)
+        lasts = fault.start_time <= run.end and (
+            fault.end_time is None or fault.end_time >= run.start
+        )
         match fault:
             case DisplacedCheckpoint():
                 if lasts and str(fault.checkpoint) == run.object_id:
@@ -225,7 +227,9 @@ def _was_over(record: RunRecord, number: int) -> bool:
     faults = record.faults
     match anomaly.source:
         case "gas":
-            return any(isinstance(f, GasLeakFault) and (f.ends or math.inf) <= now for f in faults)
+            return any(
+                isinstance(f, GasLeakFault) and (f.end_time or math.inf) <= now for f in faults
+            )
         case "alarm":
             return not any(isinstance(f, PlatformAlarm) and _there(f, now) for f in faults)
         case "connection":
@@ -234,7 +238,11 @@ def _was_over(record: RunRecord, number: int) -> bool:
                 for f in faults
                 if isinstance(f, ConnectionLoss) and f.rect is None and f.floor is None
             ]
-            return all(f.ends is not None and f.ends <= now for f in everywhere if f.begins <= now)
+            return all(
+                f.end_time is not None and f.end_time <= now
+                for f in everywhere
+                if f.start_time <= now
+            )
         case _:
             near = min(record.path, key=lambda sample: abs(sample.t - now))
             return near.charge is not None and near.charge > 0.9
@@ -246,7 +254,7 @@ def _told_again(record: RunRecord, site: Site) -> list[str]:
     for source in sorted(_TOLD_ONCE):
         own = [a for a in record.anomalies if a.source == source and not a.over]
         for k, anomaly in enumerate(own):
-            begun = {c.begins for a in own[: k + 1] for c in causes_of(a, record.faults, site)}
+            begun = {c.start_time for a in own[: k + 1] for c in causes_of(a, record.faults, site)}
             if k >= len(begun) > 0:
                 said.append(f"{anomaly.t:g} s: told again: {anomaly.detail}")
     return said
@@ -254,7 +262,9 @@ def _told_again(record: RunRecord, site: Site) -> list[str]:
 
 def _there(fault: AnyFault, now: float, lag: float = 0.0) -> bool:
     """Whether a fault is there at `now` (s), or ended at most `lag` s ago."""
-    return fault.begins <= now and (fault.ends is None or now <= fault.ends + lag + _STEP)
+    return fault.start_time <= now and (
+        fault.end_time is None or now <= fault.end_time + lag + _STEP
+    )
 
 
 def _apart(place: Sequence[float] | None, other: Sequence[float]) -> float:

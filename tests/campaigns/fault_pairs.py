@@ -29,7 +29,7 @@ from argo_compiler.hfsm import Executor, Resume, lower
 from argo_compiler.il import Afterwards, EventKind, Mission, Reaction, Response
 from argo_env.drives.kinematic import KinematicDrive
 from argo_env.drives.timed_drive import RouteDrive
-from argo_env.faults.kinds import KINDS, FaultFile, misfits
+from argo_env.faults.kinds import KINDS, FaultFile, find_site_errors
 from argo_env.planning import open_site
 from argo_env.run.drives_and_sensors import DRIVES
 from argo_env.run.log import Entry
@@ -130,7 +130,7 @@ def draw(number: int, drive: str, missions: Sequence[tuple[str, int]] = MISSIONS
             faults=faults,
             events=logged_events(*((t, Resume()) for t in _OPERATOR)),
         )
-        if not misfits(faults, open_site(site).site, number):
+        if not find_site_errors(faults, open_site(site).site, number):
             return FaultPair(number, spec, float(rng.random()) if rng.random() < 0.25 else None)
 
 

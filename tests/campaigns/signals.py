@@ -160,7 +160,7 @@ def obstacle(kind: str, site: Site, tracks: Sequence[Track], number: int) -> Fou
     backwards = (
         math.cos(pose.yaw) * (pose.x - before.x) + math.sin(pose.yaw) * (pose.y - before.y) < 0
     )
-    with World(site, load_robot(), elements=fault.changed(site)) as world:
+    with World(site, load_robot(), elements=fault.changed_elements(site)) as world:
         for _, at, detection in detections(world, Surroundings(site), way, number, ("terrain",)):
             right = (detection.kind is EventKind.POSITIVE_OBSTACLE) == (kind == "brick")
             if detection.place is None or not right:
@@ -186,9 +186,12 @@ def blocked_stairs(site: Site, tracks: Sequence[Track], number: int) -> Found:
     pose = track[moment][1]
     tower = "west tower" if pose.x < 5 else "east tower"
     fault = BlockedStairs(tower=tower, floor=site.floor_at(pose.z))
-    with World(site, load_robot(), elements=fault.changed(site)) as world:
+    with World(site, load_robot(), elements=fault.changed_elements(site)) as world:
         barriers = [
-            s for e in fault.changed(site) if e.name.startswith("barrier") for s in e.solids
+            s
+            for e in fault.changed_elements(site)
+            if e.name.startswith("barrier")
+            for s in e.solids
         ]
         start = max(0, moment - 900)
         for _, at, detection in detections(

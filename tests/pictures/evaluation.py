@@ -20,7 +20,7 @@ from argo_env.evaluation.plots import (
 )
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.worlds import Variation
-from argo_env.faults.reading import read_faults
+from argo_env.faults.loading import read_faults
 from argo_env.planning.opening import open_site
 from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
 from argo_planner.use_cases.routing import suggest_order

@@ -5,7 +5,7 @@ import random
 import pytest
 
 from argo_env.envs.inspection_run import Inspection, beginning
-from argo_env.faults.reading import decode_faults
+from argo_env.faults.loading import decode_faults
 from argo_env.planning.opening import open_site
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunConditions, RunSpec

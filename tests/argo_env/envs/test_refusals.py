@@ -13,7 +13,7 @@ from argo_env.envs.drive import DriveEnv
 from argo_env.envs.inspection import InspectEnv, draw_faults
 from argo_env.envs.route import RouteEnv
 from argo_env.envs.route_batch import RouteVectorEnv
-from argo_env.faults.kinds import settle
+from argo_env.faults.kinds import resolve_faults
 from argo_env.planning.opening import forget_sites, open_site
 from tests.argo_env.envs import rollouts
 
@@ -36,7 +36,7 @@ def test_faults_that_are_drawn_fit_the_site():
     for seed in range(30):
         faults = draw_faults(8, "kinematic", site, np.random.default_rng(seed))
         assert len({fault.kind for fault in faults}) == 8
-        settle(faults, site, seed)
+        resolve_faults(faults, site, seed)
 
 
 def test_observations_do_not_depend_on_what_the_process_has_kept(yard_file):

@@ -13,7 +13,7 @@ from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome, row_without_end
 from argo_env.evaluation.store import RowStore, read_rows
 from argo_env.evaluation.worlds import Variation
-from argo_env.faults.reading import decode_faults
+from argo_env.faults.loading import decode_faults
 from argo_env.run.spec import RunSpec
 from argo_env.worker_processes import context_with
 from tests.argo_env.evaluation import work

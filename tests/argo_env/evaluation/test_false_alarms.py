@@ -5,7 +5,7 @@ import pytest
 from argo_env.evaluation.case import EvaluationCase
 from argo_env.evaluation.detection import detections, false_alarms
 from argo_env.evaluation.evaluating import WorkOrder, carry_out
-from argo_env.faults.reading import decode_faults
+from argo_env.faults.loading import decode_faults
 from argo_env.files import resources
 from argo_env.planning.opening import open_site
 from argo_env.run.session import simulate

@@ -6,7 +6,7 @@ from argo_compiler.base.errors import Conflict, Invalid
 from argo_env.evaluation.plan import parse_seeds
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.worlds import Variation
-from argo_env.faults.reading import FaultDistribution
+from argo_env.faults.loading import FaultDistribution
 from argo_env.run.spec import RunSpec
 from tests.processes import run_python
 
@@ -143,7 +143,7 @@ def test_faults_come_as_often_as_they_are_probable(mission):
     kinds = [tuple(f.kind for f in variation.applied(spec, s).faults) for s in range(3_000)]
     assert kinds.count(("brick",)) / 3_000 == pytest.approx(0.2, abs=0.025)
     assert kinds.count(("low_battery",)) / 3_000 == pytest.approx(0.1, abs=0.02)
-    assert drawn_from.nothing == pytest.approx(0.7)
+    assert drawn_from.fault_free_probability == pytest.approx(0.7)
     with pytest.raises(ValueError, match=r"add up to 1\.1"):
         FaultDistribution.model_validate(
             {"chances": [{**chances[0], "probability": 1.0}, chances[1]]}

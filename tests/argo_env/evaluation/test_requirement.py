@@ -11,7 +11,7 @@ from argo_env.evaluation.plan import Stopping
 from argo_env.evaluation.rates import Decision
 from argo_env.evaluation.report.sections import other_rates
 from argo_env.evaluation.requirement import parse_requirement
-from argo_env.faults.reading import decode_faults
+from argo_env.faults.loading import decode_faults
 from tests.argo_env.evaluation import conftest
 from tests.argo_env.evaluation.conftest import came_to
 

@@ -4,7 +4,7 @@ import pytest
 
 from argo_compiler.base.errors import NotFound
 from argo_compiler.il import Action, Group, Mission, Task
-from argo_env.faults.reading import decode_faults
+from argo_env.faults.loading import decode_faults
 from argo_env.planning.opening import open_site
 from argo_env.run.journal import open_journal
 from argo_env.run.session import resume, simulate

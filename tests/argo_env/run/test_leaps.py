@@ -17,7 +17,7 @@ from argo_compiler.il import (
     Task,
     WaitRule,
 )
-from argo_env.faults.reading import decode_faults
+from argo_env.faults.loading import decode_faults
 from argo_env.planning.opening import open_site
 from argo_env.run.observer import Observer
 from argo_env.run.session import simulate

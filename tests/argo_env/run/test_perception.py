@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import Cause, Occurred, Outcome, Resume
 from argo_compiler.il import Afterwards, EventKind, OnFailure, Reaction, Response
-from argo_env.faults.schedule import Schedule
+from argo_env.faults.schedule import FaultSchedule
 from argo_env.navigation import Blockage
 from argo_env.robot.pose import BodyPose
 from argo_env.run.action import TURNS
@@ -450,15 +450,15 @@ def test_a_schedule_begins_and_ends_in_order():
 
     class Loud:
         def __init__(self, name, begins, ends):
-            self.name, self.begins, self.ends = name, begins, ends
+            self.name, self.start_time, self.end_time = name, begins, ends
 
-        def begin(self, _, now):
+        def apply(self, _, now):
             told.append((now, self.name, "begins"))
 
-        def end(self, _, now):
+        def revert(self, _, now):
             told.append((now, self.name, "ends"))
 
-    schedule = Schedule((Loud("a", 1.0, 3.0), Loud("b", 3.0, None), Loud("c", 0.0, 1.0)), None)
+    schedule = FaultSchedule((Loud("a", 1.0, 3.0), Loud("b", 3.0, None), Loud("c", 0.0, 1.0)), None)
     for now in (0.0, 0.5, 2.0):
         schedule.advance(now)
     assert told == [(0.0, "c", "begins"), (1.0, "c", "ends"), (1.0, "a", "begins")]

@@ -10,7 +10,7 @@ from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.files.mission_file import mission_text
 from argo_compiler.hfsm import Hfsm, Occurred, Pause
 from argo_compiler.il import EventKind, Order
-from argo_env.faults.reading import decode_faults
+from argo_env.faults.loading import decode_faults
 from argo_env.planning import open_site
 from argo_env.report.files import PAGE
 from argo_env.run.record import RunRecord

@@ -1,7 +1,7 @@
 """Missions as ROS messages and bags, for ROS 1 and ROS 2, without a ROS installation.
 
-`argo_mission_msgs/` is the package of the messages as ROS builds it; its files say what each field
-means.
+`argo_mission_msgs/` is the ROS package of the messages; its files describe the meaning of each
+field.
 """
 
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""Missions in bags: ROS 1 bags, rosbag2 folders, and the files of their storages."""
+"""Reading and writing of missions in ROS 1 bags, rosbag2 folders, and single storage files."""
 
 import os
 import tempfile
@@ -18,37 +18,39 @@ from argo_compiler.ros.compression import (
     check_metadata,
     check_ros1_chunks,
 )
-from argo_compiler.ros.messages import Received, from_message, refuse, to_message
+from argo_compiler.ros.messages import Received, from_message, raise_error, to_message
 from argo_compiler.ros.package import SPECIFICATION
-from argo_compiler.ros.recognition import MAGIC, MCAP, ROS1, SQLITE, beginning, first_bytes
+from argo_compiler.ros.recognition import MAGIC, MCAP, ROS1, SQLITE, first_bytes, read_first_bytes
 from argo_compiler.ros.types import RosTypes, ros1_types, ros2_types
 
 TOPIC = "/mission"
 STAMP = 1_000_000_000
-"""ns; when the only message was published. Fixed, so that equal missions make equal bags; not 0,
-which ROS 1 takes for unset."""
+"""Time in ns at which the only message was published.
+
+The time is fixed so that equal missions give equal bags; it is not 0, which means unset in ROS 1.
+"""
 
 MAX_BYTES = 50_000_000
-"""of a message, as of a mission's file"""
+"""Largest size of a message, the same as for a mission's file."""
 
 _UNPACK = "unpack it first: rosbag decompress, or ros2 bag convert"
 _MAX_MESSAGES = 1000
-"""that may repeat the same mission"""
-_SHOWN = 8
-"""topics that a message lists"""
+"""Largest number of messages that may repeat the same mission."""
+_MAX_LISTED_TOPICS = 8
+"""Number of topics that an error lists."""
 
 
 class Storage(StrEnum):
-    """What holds the messages of a rosbag2."""
+    """Storage format of a rosbag2."""
 
     SQLITE3 = "sqlite3"
     MCAP = "mcap"
 
 
 def to_ros1_bag(mission: Mission) -> bytes:
-    """A ROS 1 bag (format 2.0) with the mission on /mission, latched.
+    """Return a ROS 1 bag (format 2.0) with the mission on the latched topic /mission.
 
-    Raises ArgoError where `rosbags` is not installed, DiagnosticError as `to_message` does.
+    Raises ArgoError if `rosbags` is not installed, and DiagnosticError as `to_message` does.
     """
     types = ros1_types()
     content = types.encode(to_message(mission, types))
@@ -65,8 +67,11 @@ def to_ros1_bag(mission: Mission) -> bytes:
 
 
 def to_ros2_bag(mission: Mission, storage: Storage = Storage.SQLITE3) -> dict[str, bytes]:
-    """The files of a rosbag2 folder (metadata version 8) with the mission on /mission, transient
-    local and reliable. Raises as `to_ros1_bag`."""
+    """Return the files of a rosbag2 folder with the mission on the topic /mission.
+
+    The metadata have version 8; the topic is transient local and reliable. Raises the same errors
+    as `to_ros1_bag`.
+    """
     types = ros2_types()
     content = types.encode(to_message(mission, types))
     from rosbags.rosbag2 import StoragePlugin, Writer
@@ -75,13 +80,13 @@ def to_ros2_bag(mission: Mission, storage: Storage = Storage.SQLITE3) -> dict[st
         path = Path(folder) / "mission"
         with Writer(path, version=8, storage_plugin=StoragePlugin[storage.name]) as writer:
             connection = writer.add_connection(
-                TOPIC, SPECIFICATION, typestore=types.store, offered_qos_profiles=[_latched()]
+                TOPIC, SPECIFICATION, typestore=types.store, offered_qos_profiles=[_latched_qos()]
             )
             writer.write(connection, STAMP, content)
         return {file.name: file.read_bytes() for file in sorted(path.iterdir())}
 
 
-def _latched() -> Any:
+def _latched_qos() -> Any:
     from rosbags.interfaces import (
         Qos,
         QosDurability,
@@ -106,51 +111,53 @@ def _latched() -> Any:
 
 
 def read_bag(path: Path, source_name: str | None = None) -> Received:
-    """The mission on the topic /mission of a ROS 1 bag, a rosbag2 folder, or one of its files.
+    """Return the mission on the topic /mission of a ROS 1 bag, a rosbag2 folder, or its file.
 
-    The same mission may be there several times, as it is when a latched topic is recorded.
-    Messages call the bag `source_name`, or else by its path.
+    The bag may contain the same mission several times, as happens when a latched topic is recorded.
+    Messages call the bag `source_name`, or by its path if that is None.
 
     Raises:
-        DiagnosticError: the file is no such bag, or holds no mission or different ones.
+        DiagnosticError: The file is not such a bag, or contains no mission or different missions.
         ArgoError: `rosbags` is not installed.
     """
     name = str(path) if source_name is None else source_name
     is_folder = os.path.isdir(path)
     if is_folder and not os.path.isfile(path / "metadata.yaml"):
-        hint = "name the script, mission or bag in it; a rosbag2 folder has a metadata.yaml"
-        refuse(name, "file.directory", "is a directory", hint)
+        hint = "choose the script, mission or bag in it; a rosbag2 folder has a metadata.yaml"
+        raise_error(name, "file.directory", "is a directory", hint)
     try:
-        first = b"" if is_folder else beginning(path)
+        first = b"" if is_folder else read_first_bytes(path)
     except FileError as error:
-        refuse(name, f"file.{error.problem}", error.message, error.hint)
+        raise_error(name, f"file.{error.problem}", error.message, error.hint)
     if not is_folder and not first.startswith(MAGIC):
-        refuse(name, "ros.not-a-bag", "is no bag", "name a ROS 1 bag or a rosbag2 folder")
+        raise_error(name, "ros.not-a-bag", "is not a bag", "choose a ROS 1 bag or a rosbag2 folder")
     types = ros1_types() if first.startswith(ROS1) else ros2_types()
-    # rosbags raises whatever the broken bytes lead to: errors of its own, of SQLite, of struct, of
-    # YAML, of the decompressors, KeyError, AssertionError.
+    # For broken bytes, rosbags raises errors of many types: its own, those of SQLite, struct, YAML
+    # and the decompressors, KeyError, AssertionError.
     try:
-        with _open(path, first) as reader:
-            content = _read(name, reader, types)
+        with _open_reader(path, first) as reader:
+            content = _read_message(name, reader, types)
         message = types.decode(content)
     except DiagnosticError:
         raise
     except TooLargeError as error:
-        refuse(name, "ros.compressed", f"is not unpacked: {error}", _UNPACK)
+        raise_error(name, "ros.compressed", f"is not unpacked: {error}", _UNPACK)
     except Exception as error:
         reason = " ".join(str(error).split())[:200] or type(error).__name__
-        refuse(
-            name, "ros.broken-bag", f"can't be read as a bag: {reason}", "record or copy it anew"
+        raise_error(
+            name, "ros.broken-bag", f"can't be read as a bag: {reason}", "record or copy it again"
         )
     return from_message(message, types, name)
 
 
 def decode_bag(content: bytes | Mapping[str, bytes], source_name: str) -> Received:
-    """The same of a bag's bytes, or of the files of a rosbag2 folder by their names. Raises as
-    `read_bag`, and Invalid for names that lead out of the folder."""
+    """Return the mission in a bag's bytes, or in the files of a rosbag2 folder by their names.
+
+    Raises the same errors as `read_bag`, and Invalid for names that lead out of the folder.
+    """
     with tempfile.TemporaryDirectory() as folder:
         if isinstance(content, bytes):
-            # The suffix matters to rosbags: it picks the storage.
+            # rosbags chooses the storage by the suffix.
             first = content[: len(SQLITE)]
             suffix = ".bag" if first.startswith(ROS1) else ".mcap"
             suffix = ".db3" if first.startswith(SQLITE) else suffix
@@ -159,19 +166,21 @@ def decode_bag(content: bytes | Mapping[str, bytes], source_name: str) -> Receiv
             return read_bag(path, source_name)
         for name, part in content.items():
             if Path(name).name != name or name in {"", ".", ".."} or "\0" in name:
-                raise Invalid(f"{source_name}: `{name}` is no name of a file in a rosbag2 folder")
+                raise Invalid(
+                    f"{source_name}: `{name}` is not a valid file name in a rosbag2 folder"
+                )
             (Path(folder) / name).write_bytes(part)
         return read_bag(Path(folder), source_name)
 
 
 @contextmanager
-def _open(path: Path, first: bytes) -> Iterator[Any]:
+def _open_reader(path: Path, first: bytes) -> Iterator[Any]:
     if first.startswith(ROS1):
         from rosbags.rosbag1 import Reader as Ros1Reader
 
         with Ros1Reader(path) as reader:
-            wanted = {c.id for c in reader.connections if c.topic == TOPIC}
-            check_ros1_chunks(reader, wanted)
+            connections = {c.id for c in reader.connections if c.topic == TOPIC}
+            check_ros1_chunks(reader, connections)
             yield reader
     else:
         from rosbags.rosbag2 import Reader as Ros2Reader
@@ -185,46 +194,49 @@ def _open(path: Path, first: bytes) -> Iterator[Any]:
             yield reader
 
 
-def _read(name: str, reader: Any, types: RosTypes) -> bytes:
+def _read_message(name: str, reader: Any, types: RosTypes) -> bytes:
+    """Return the content of the topic's message, which may be repeated but not differ."""
     connections = [c for c in reader.connections if c.topic == TOPIC]
     if not connections:
         topics = sorted({c.topic for c in reader.connections})
-        more = ", ..." if len(topics) > _SHOWN else ""
-        listed = f"only {', '.join(topics[:_SHOWN])}{more}" if topics else "no topic at all"
-        refuse(name, "ros.no-mission", f"has no topic {TOPIC}, {listed}", f"record {TOPIC}")
+        more = ", ..." if len(topics) > _MAX_LISTED_TOPICS else ""
+        listed = (
+            f"only {', '.join(topics[:_MAX_LISTED_TOPICS])}{more}" if topics else "no topic at all"
+        )
+        raise_error(name, "ros.no-mission", f"has no topic {TOPIC}, {listed}", f"record {TOPIC}")
     for connection in connections:
         if connection.msgtype != SPECIFICATION:
-            refuse(
+            raise_error(
                 name,
                 "ros.wrong-type",
                 f"has messages of the type {connection.msgtype} on {TOPIC}",
-                f"a mission is a {SPECIFICATION}",
+                f"the type of a mission is {SPECIFICATION}",
             )
-        # Bags from before ROS 2 Iron, and MCAP files by themselves, hold no type hash.
+        # Bags from before ROS 2 Iron, and single MCAP files, have no type hash.
         if connection.digest and connection.digest != types.digest():
-            refuse(
+            raise_error(
                 name,
                 "ros.other-definitions",
                 f"was written with other definitions of {SPECIFICATION}: {connection.digest}",
-                f"this Argo's are {types.digest()}: build its ros-package and record anew",
+                f"this Argo uses {types.digest()}: build its ros-package and record again",
             )
-    found: set[bytes] = set()
+    contents: set[bytes] = set()
     for count, (_, _, raw) in enumerate(reader.messages(connections=connections), 1):
         if len(raw) > MAX_BYTES:
-            refuse(
+            raise_error(
                 name,
                 "file.too-large",
                 f"has a message larger than {MAX_BYTES // 1_000_000} MB",
                 "a mission is far smaller: is this the right bag?",
             )
-        found.add(bytes(raw))
-        if len(found) > 1 or count > _MAX_MESSAGES:
-            refuse(
+        contents.add(bytes(raw))
+        if len(contents) > 1 or count > _MAX_MESSAGES:
+            raise_error(
                 name,
                 "ros.several-missions",
-                f"holds more than one mission on {TOPIC}",
+                f"contains more than one mission on {TOPIC}",
                 "keep one of them: rosbag filter, or ros2 bag convert",
             )
-    if not found:
-        refuse(name, "ros.no-mission", f"has no message on {TOPIC}", f"record {TOPIC} again")
-    return found.pop()
+    if not contents:
+        raise_error(name, "ros.no-mission", f"has no message on {TOPIC}", f"record {TOPIC} again")
+    return contents.pop()

@@ -1,6 +1,6 @@
-"""Whether what a bag has compressed is of a bearable size, found out before it is unpacked.
+"""Limits for the size of compressed parts of a bag, checked before the bag is read.
 
-rosbags unpacks a chunk in one go, whatever comes out of it; a few kilobytes may become terabytes.
+rosbags unpacks a chunk in one step without a limit; a few kilobytes may become terabytes.
 """
 
 import bz2
@@ -12,16 +12,16 @@ from typing import Any
 import yaml
 
 MAX_CHUNK_BYTES = 100_000_000
-"""of a chunk, unpacked; recorders begin a new one after a few megabytes"""
+"""Largest size of an unpacked chunk; recorders start a new chunk after a few megabytes."""
 MAX_METADATA_BYTES = 1_000_000
 
 
 class TooLargeError(Exception):
-    """Something compressed becomes too large, or could; the message says what."""
+    """Raised when a compressed part is too large, or might be; the message names the part."""
 
 
 def check_ros1_chunks(reader: Any, connections: set[int]) -> None:
-    """Raises TooLargeError for a chunk with messages of those connections that is too large."""
+    """Raise TooLargeError if a chunk with messages of the given connections is too large."""
     for info in reader.chunk_infos:
         chunk = reader.chunks[info.pos]
         if connections.isdisjoint(info.connection_counts):
@@ -31,13 +31,15 @@ def check_ros1_chunks(reader: Any, connections: set[int]) -> None:
 
 
 def check_mcap_chunks(path: Path) -> None:
-    """Raises TooLargeError for a chunk of an MCAP file that is too large. Broken files pass: they
-    are for the reader."""
+    """Raise TooLargeError if a chunk of an MCAP file is too large.
+
+    A broken file is not an error here, as its reader reports it.
+    """
     with path.open("rb") as file:
         file.seek(8)
         size = path.stat().st_size
-        while len(head := file.read(9)) == 9:
-            record, length = struct.unpack("<BQ", head)
+        while len(header := file.read(9)) == 9:
+            record, length = struct.unpack("<BQ", header)
             end = file.tell() + length
             if end > size:
                 return
@@ -50,7 +52,7 @@ def check_mcap_chunks(path: Path) -> None:
 
 
 def check_metadata(folder: Path) -> None:
-    """Raises TooLargeError where a rosbag2 folder is compressed as a whole or by message."""
+    """Raise TooLargeError if a rosbag2 folder is compressed by file or by message."""
     path = folder / "metadata.yaml"
     if path.stat().st_size > MAX_METADATA_BYTES:
         raise TooLargeError(f"its metadata.yaml is larger than {MAX_METADATA_BYTES // 1000} kB")
@@ -61,13 +63,13 @@ def check_metadata(folder: Path) -> None:
 
 
 def _check(compression: str, content: bytes) -> None:
-    decompress = _bounded(compression)
+    decompress = _bounded_decompressor(compression)
     if decompress and len(decompress(content, MAX_CHUNK_BYTES + 1)) > MAX_CHUNK_BYTES:
         raise TooLargeError(f"a chunk has more than {MAX_CHUNK_BYTES // 1_000_000} MB")
 
 
-def _bounded(compression: str) -> Callable[[bytes, int], bytes] | None:
-    """What unpacks up to a number of bytes; None where the content is not compressed."""
+def _bounded_decompressor(compression: str) -> Callable[[bytes, int], bytes] | None:
+    """Return a function that unpacks a limited number of bytes; None if nothing is compressed."""
     if "bz2" in compression:
         return bz2.BZ2Decompressor().decompress
     if "lz4" in compression:

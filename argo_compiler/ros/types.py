@@ -1,4 +1,4 @@
-"""The messages as Python objects and as bytes: made by `rosbags` from their definitions."""
+"""Messages as Python objects and as bytes; `rosbags` makes their types from the definitions."""
 
 from collections.abc import Iterator
 from enum import Enum
@@ -13,7 +13,7 @@ E = TypeVar("E", bound=Enum)
 
 
 class RosTypes:
-    """The messages of one version of ROS, 1 or 2."""
+    """Message types of one version of ROS, 1 or 2."""
 
     def __init__(self, version: int) -> None:
         try:
@@ -28,16 +28,16 @@ class RosTypes:
             self.store.register(get_types_from_msg(text, name))
 
     def new(self, message: str, /, **fields: Any) -> Any:
-        """A message of `argo_mission_msgs`; fields that are not given are 0 or empty."""
+        """Return a new message of `argo_mission_msgs`; omitted fields are 0 or empty."""
         return self._make(f"{PACKAGE}/msg/{message}", fields)
 
     def fields(self, message: str) -> Iterator[tuple[str, str]]:
-        """The fields of a message, each with its type."""
+        """Yield the name and the type of each field of a message."""
         for name, (_, detail) in self.store.fielddefs[f"{PACKAGE}/msg/{message}"][1]:
             yield name, str(detail[0])
 
     def pose(self, x: float, y: float, z: float, qz: float, qw: float) -> Any:
-        """A geometry_msgs/Pose, turned about z only."""
+        """Return a geometry_msgs/Pose with a rotation about z."""
         return self._make(
             "geometry_msgs/msg/Pose",
             {
@@ -53,50 +53,55 @@ class RosTypes:
         velocities: tuple[float, ...] = (),
         efforts: tuple[float, ...] = (),
     ) -> Any:
-        """A sensor_msgs/JointState without a header."""
+        """Return a sensor_msgs/JointState without a header."""
         import numpy as np
 
         values = {"position": positions, "velocity": velocities, "effort": efforts}
-        arrays = {name: np.array(given, dtype=np.float64) for name, given in values.items()}
+        arrays = {name: np.array(numbers, dtype=np.float64) for name, numbers in values.items()}
         return self._make("sensor_msgs/msg/JointState", {"name": list(names), **arrays})
 
-    def numbers(self, message: str, values: type[E], prefix: str = "") -> dict[E, int]:
-        """The constants that a message has for the members of an enumeration."""
-        return {v: self.constant(message, prefix + v.name) for v in values}
+    def enum_constants(self, message: str, enumeration: type[E], prefix: str = "") -> dict[E, int]:
+        """Return the message's constants for the members of an enumeration."""
+        return {m: self.constant(message, prefix + m.name) for m in enumeration}
 
     def constant(self, message: str, name: str) -> int:
-        """A constant of a message, by its name there."""
+        """Return the value of a message's constant."""
         return int(getattr(self.store.types[f"{PACKAGE}/msg/{message}"], name))
 
     def encode(self, mission: Any) -> bytes:
-        """A MissionSpecification as bytes: CDR in ROS 2."""
+        """Return a MissionSpecification as bytes, encoded for the ROS version (ROS 2: CDR)."""
         serialize = self.store.serialize_ros1 if self.version == 1 else self.store.serialize_cdr
         return bytes(serialize(mission, SPECIFICATION))
 
     def decode(self, content: bytes) -> Any:
-        """A MissionSpecification from bytes. What is raised for bytes that are none is up to
-        rosbags."""
+        """Return the MissionSpecification in the bytes.
+
+        For other bytes, rosbags raises exceptions of many types.
+        """
         if self.version == 1:
             return self.store.deserialize_ros1(content, SPECIFICATION)
         return self.store.deserialize_cdr(content, SPECIFICATION)
 
     def digest(self) -> str:
-        """By which ROS compares definitions: the MD5 sum in ROS 1, the type hash in ROS 2."""
+        """Return the digest of the definition by which ROS compares it.
+
+        It is the MD5 sum in ROS 1 and the type hash in ROS 2.
+        """
         if self.version == 1:
             return self.store.generate_msgdef(SPECIFICATION)[1]
         return self.store.hash_rihs01(SPECIFICATION)
 
     def _make(self, typename: str, fields: dict[str, Any]) -> Any:
-        described = self.store.fielddefs[typename][1]
+        field_types = self.store.fielddefs[typename][1]
         return self.store.types[typename](
-            *(fields[name] if name in fields else self._default(desc) for name, desc in described)
+            *(fields[name] if name in fields else self._default(t) for name, t in field_types)
         )
 
-    def _default(self, description: Any) -> Any:
+    def _default(self, field_type: Any) -> Any:
         import numpy as np
         from rosbags.interfaces import Nodetype
 
-        kind, detail = description
+        kind, detail = field_type
         if kind is Nodetype.NAME:
             return self._make(detail, {})
         if kind is Nodetype.BASE:
@@ -110,11 +115,11 @@ class RosTypes:
 
 @cache
 def ros1_types() -> RosTypes:
-    """The messages of ROS 1. Raises ArgoError where `rosbags` is not installed."""
+    """Return the message types of ROS 1. Raises ArgoError if `rosbags` is not installed."""
     return RosTypes(1)
 
 
 @cache
 def ros2_types() -> RosTypes:
-    """The messages of ROS 2. Raises ArgoError where `rosbags` is not installed."""
+    """Return the message types of ROS 2. Raises ArgoError if `rosbags` is not installed."""
     return RosTypes(2)

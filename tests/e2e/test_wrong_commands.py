@@ -224,7 +224,7 @@ SAID = {
     "run notes.rtf": "notes.rtf: error: is a document (RTF), not plain text",
     "check latin1.txt": "latin1.txt: error: is not UTF-8 (byte 3, line 1)",
     "run letter.txt": "letter.txt:2:16: error: `gauge 1` can be read as",
-    "run mission.bag": "mission.bag: error: is no bag",
+    "run mission.bag": "mission.bag: error: is not a bag",
     "run folder": "folder: error: is a directory",
     "run .": "directory",
     # results as scripts

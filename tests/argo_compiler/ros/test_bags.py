@@ -1,4 +1,4 @@
-"""Missions in bags, and what is said of bags that hold none."""
+"""Tests of missions in bags, and of the errors for bags without a mission."""
 
 import sys
 from contextlib import suppress
@@ -61,38 +61,38 @@ def _bag(form):
     return _make(form, PLAN)
 
 
-def refusal(path):
+def read_error(path):
     with pytest.raises(DiagnosticError) as caught:
         read_bag(path)
-    (finding,) = caught.value.diagnostics
+    (diagnostic,) = caught.value.diagnostics
     assert str(caught.value).startswith(f"{path}: error: ")
-    assert finding.hint
-    return finding
+    assert diagnostic.hint
+    return diagnostic
 
 
 @pytest.mark.parametrize("form", FORMS)
 @settings(max_examples=examples(8))
 @given(mission=carried_missions())
-def test_every_mission_comes_back_unchanged(tmp_path_factory, form, mission):
+def test_reading_a_bag_returns_the_written_mission(tmp_path_factory, form, mission):
     path = write(tmp_path_factory.mktemp("bag"), form, mission)
     assert is_bag(path)
     assert read_bag(path).mission.model_dump_json() == mission.model_dump_json()
 
 
 @pytest.mark.parametrize("form", FORMS)
-def test_equal_missions_make_equal_bags(form):
+def test_equal_missions_give_equal_bags(form):
     assert _make(form, PLAN) == _make(form, PLAN)
 
 
 @pytest.mark.parametrize("storage", Storage)
-def test_files_of_a_rosbag2_are_read_by_themselves(tmp_path, storage):
+def test_a_single_file_of_a_rosbag2_can_be_read(tmp_path, storage):
     (data,) = write(tmp_path, storage).glob("mission.*")
     assert is_bag(data)
     assert read_bag(data).mission == PLAN
 
 
 @pytest.mark.parametrize("storage", Storage)
-def test_ros_2_players_latch_it(tmp_path, storage):
+def test_the_topic_is_latched_in_ros_2(tmp_path, storage):
     with Ros2Reader(write(tmp_path, storage)) as reader:
         (connection,) = reader.connections
         (qos,) = connection.ext.offered_qos_profiles
@@ -100,7 +100,7 @@ def test_ros_2_players_latch_it(tmp_path, storage):
     assert (qos.durability.name, qos.reliability.name) == ("TRANSIENT_LOCAL", "RELIABLE")
 
 
-def test_what_is_recognised_as_a_bag(tmp_path):
+def test_bags_are_recognised_by_suffix_or_first_bytes(tmp_path):
     (tmp_path / "plan.json").write_text("{}")
     (tmp_path / "renamed").write_bytes(to_ros1_bag(PLAN))
     assert not is_bag(tmp_path / "plan.json")
@@ -110,16 +110,16 @@ def test_what_is_recognised_as_a_bag(tmp_path):
     assert read_bag(tmp_path / "renamed").mission == PLAN
 
 
-def test_what_is_no_bag(tmp_path):
+def test_paths_that_are_no_bag_are_refused(tmp_path):
     text = tmp_path / "text.bag"
     text.write_text("Starting area 1")
-    assert refusal(text).code == "ros.not-a-bag"
-    assert refusal(tmp_path / "missing.bag").code == "file.missing"
-    assert refusal(tmp_path).code == "file.directory"
+    assert read_error(text).code == "ros.not-a-bag"
+    assert read_error(tmp_path / "missing.bag").code == "file.missing"
+    assert read_error(tmp_path).code == "file.directory"
     (tmp_path / "metadata.yaml").write_text("[" * 2000)
-    assert refusal(tmp_path).code == "ros.broken-bag"
+    assert read_error(tmp_path).code == "ros.broken-bag"
     (tmp_path / "metadata.yaml").write_text("#" * (compression.MAX_METADATA_BYTES + 1))
-    assert refusal(tmp_path).code == "ros.compressed"
+    assert read_error(tmp_path).code == "ros.compressed"
 
 
 def ros1_bag(path, contents, topic="/mission", **connection):
@@ -137,36 +137,36 @@ def encoded(mission):
     return ros1_types().encode(to_message(mission, ros1_types()))
 
 
-def test_bags_without_a_mission(tmp_path):
+def test_bags_without_a_mission_are_refused(tmp_path):
     other = ros1_bag(tmp_path / "1.bag", [encoded(PLAN)], topic="/plan")
-    assert refusal(other).message == "has no topic /mission, only /plan"
+    assert read_error(other).message == "has no topic /mission, only /plan"
     empty = ros1_bag(tmp_path / "2.bag", [])
-    assert refusal(empty).message == "has no message on /mission"
+    assert read_error(empty).message == "has no message on /mission"
     typed = ros1_bag(tmp_path / "3.bag", [b""], msgtype="std_msgs/msg/Empty")
-    assert "type std_msgs/msg/Empty on /mission" in refusal(typed).message
+    assert "type std_msgs/msg/Empty on /mission" in read_error(typed).message
 
 
-def test_bags_of_other_definitions(tmp_path):
+def test_bags_with_other_definitions_are_refused(tmp_path):
     other = ros1_bag(tmp_path / "1.bag", [b""], msgdef="uint8 x\n", md5sum="0" * 32)
-    finding = refusal(other)
-    assert finding.code == "ros.other-definitions"
-    assert "0" * 32 in finding.message
-    assert ros1_types().digest() in finding.hint
+    diagnostic = read_error(other)
+    assert diagnostic.code == "ros.other-definitions"
+    assert "0" * 32 in diagnostic.message
+    assert ros1_types().digest() in diagnostic.hint
 
 
 def test_several_missions_are_refused_and_repetitions_are_not(tmp_path):
     repeated = ros1_bag(tmp_path / "1.bag", [encoded(PLAN)] * 3)
     assert read_bag(repeated).mission == PLAN
     several = ros1_bag(tmp_path / "2.bag", [encoded(PLAN), encoded(Mission())])
-    assert refusal(several).code == "ros.several-missions"
+    assert read_error(several).code == "ros.several-missions"
 
 
-def test_a_wrong_field_in_a_bag_is_named(tmp_path):
+def test_the_error_names_a_wrong_field_in_a_bag(tmp_path):
     types = ros1_types()
     message = to_message(PLAN, types)
     message.tasks[1].velocity = -1.0
     path = ros1_bag(tmp_path / "1.bag", [types.encode(message)])
-    assert refusal(path).message.startswith("tasks[1].velocity: ")
+    assert read_error(path).message.startswith("tasks[1].velocity: ")
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -180,10 +180,10 @@ def test_broken_bags_end_in_a_message(tmp_path_factory, form, data):
         del content[data.draw(st.integers(0, len(content) - 1)) :]
     else:
         for _ in range(data.draw(st.integers(1, 4))):
-            place = data.draw(st.integers(0, len(content) - 1))
-            content[place] = data.draw(st.integers(0, 255))
+            position = data.draw(st.integers(0, len(content) - 1))
+            content[position] = data.draw(st.integers(0, 255))
     file.write_bytes(content)
-    # A byte may have been changed in a text, or not at all: then it is a mission.
+    # If the change is within a text, or changes nothing, the bag still contains a mission.
     with suppress(DiagnosticError):
         assert isinstance(read_bag(path).mission, Mission)
 
@@ -195,11 +195,11 @@ def test_truncated_bags_are_refused(tmp_path, form):
     content = file.read_bytes()
     for size in (20, len(content) // 2, len(content) * 9 // 10):
         file.write_bytes(content[:size])
-        assert refusal(path).code == "ros.broken-bag"
+        assert read_error(path).code == "ros.broken-bag"
 
 
 @pytest.mark.parametrize("format", Ros1Writer.CompressionFormat)
-def test_compressed_ros_1_bags_are_read_if_they_do_not_burst(tmp_path, monkeypatch, format):
+def test_compressed_ros_1_bags_are_read_up_to_a_size(tmp_path, monkeypatch, format):
     path = tmp_path / "mission.bag"
     writer = Ros1Writer(path)
     writer.set_compression(format)
@@ -208,7 +208,7 @@ def test_compressed_ros_1_bags_are_read_if_they_do_not_burst(tmp_path, monkeypat
         writer.write(connection, 1, encoded(PLAN))
     assert read_bag(path).mission == PLAN
     monkeypatch.setattr(compression, "MAX_CHUNK_BYTES", 100)
-    assert refusal(path).code == "ros.compressed"
+    assert read_error(path).code == "ros.compressed"
 
 
 @pytest.mark.parametrize("mode", [CompressionMode.FILE, CompressionMode.MESSAGE])
@@ -218,10 +218,10 @@ def test_rosbag2_compressed_as_a_whole_is_refused(tmp_path, mode):
     writer.set_compression(mode, CompressionFormat.ZSTD)
     with writer:
         writer.add_connection("/mission", SPECIFICATION, typestore=ros2_types().store)
-    assert refusal(path).message.endswith(f"it is compressed by {mode.name.lower()}")
+    assert read_error(path).message.endswith(f"it is compressed by {mode.name.lower()}")
 
 
-def test_compressed_mcap_chunks_are_read_if_they_do_not_burst(tmp_path, monkeypatch):
+def test_compressed_mcap_chunks_are_read_up_to_a_size(tmp_path, monkeypatch):
     path = tmp_path / "bag"
     writer = Ros2Writer(path, version=8, storage_plugin=StoragePlugin.MCAP)
     writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
@@ -232,11 +232,11 @@ def test_compressed_mcap_chunks_are_read_if_they_do_not_burst(tmp_path, monkeypa
     assert b"zstd" in (path / "bag.mcap").read_bytes()
     assert read_bag(path).mission == PLAN
     monkeypatch.setattr(compression, "MAX_CHUNK_BYTES", 100)
-    assert refusal(path).code == "ros.compressed"
-    assert refusal(path / "bag.mcap").code == "ros.compressed"
+    assert read_error(path).code == "ros.compressed"
+    assert read_error(path / "bag.mcap").code == "ros.compressed"
 
 
-def test_without_rosbags_the_way_to_get_it_is_told(monkeypatch, tmp_path):
+def test_without_rosbags_the_error_gives_the_install_command(monkeypatch, tmp_path):
     path = write(tmp_path, "ros1")
     monkeypatch.setitem(sys.modules, "rosbags", None)
     monkeypatch.setitem(sys.modules, "rosbags.typesys", None)

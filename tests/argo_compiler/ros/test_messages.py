@@ -1,4 +1,4 @@
-"""Missions as messages: nothing is lost, and the definitions stay what they are."""
+"""Tests that messages preserve missions, and that the message definitions do not change."""
 
 import math
 import re
@@ -46,7 +46,7 @@ MD5 = {
     "MissionWait": "512b5531cbafc73bf63f3925a8b25653",
     "MissionWindow": "f61671b5696223a94cb58f0e3cf0ab2f",
 }
-"""As rosbags computes them from the same files."""
+"""MD5 sums that rosbags computes from the same files."""
 TYPE_HASH = "RIHS01_93351fa09eb7333bfae6019df14af63b2af606db84ec9c584121c2b5024952a6"
 
 
@@ -54,14 +54,14 @@ TYPE_HASH = "RIHS01_93351fa09eb7333bfae6019df14af63b2af606db84ec9c584121c2b50249
 @settings(max_examples=examples(60))
 @given(mission=carried_missions())
 @example(mission=Mission())
-def test_every_mission_comes_back_unchanged(types, mission):
+def test_decoding_a_message_returns_the_encoded_mission(types, mission):
     content = types.encode(to_message(mission, types))
     back = from_message(types.decode(content), types, "bag").mission
     assert back == mission
     assert back.model_dump_json() == mission.model_dump_json()  # the sign of 0, int and float
 
 
-def test_ros_1_and_ros_2_bytes_say_the_same():
+def test_ros_1_bytes_convert_to_ros_2_bytes_of_the_same_mission():
     mission = Mission(
         tasks=(Task(name="A", action=Action.WAYPOINT, pose=Pose(x=1, y=2, z=3, yaw=4)),),
         reactions=(Reaction(event=EventKind.GAS_LEAK, response=Response.ABORT),),
@@ -74,22 +74,22 @@ def test_ros_1_and_ros_2_bytes_say_the_same():
 
 
 @pytest.mark.parametrize("message", MD5)
-def test_definitions_have_the_sums_that_ros_1_knows_them_by(message):
+def test_definitions_keep_their_md5_sums_of_ros_1(message):
     name = f"argo_mission_msgs/msg/{message}"
     assert ros1_types().store.generate_msgdef(name)[1] == MD5[message]
 
 
-def test_definitions_have_the_hash_that_ros_2_knows_them_by():
+def test_definitions_keep_their_type_hash_of_ros_2():
     assert ros2_types().digest() == TYPE_HASH
     assert ros1_types().digest() == MD5["MissionSpecification"]
 
 
-def test_definitions_keep_the_rules_of_both_versions():
+def test_definitions_are_valid_in_both_versions():
     assert {name.rpartition("/")[2] for name in definitions()} == set(MD5)
     for text in definitions().values():
         lines = [line.split("#")[0].strip() for line in text.splitlines()]
         for line in filter(None, lines):
-            # ROS 2 is the stricter one about names; a string constant would swallow a comment.
+            # ROS 2 has the stricter rules for names; a string constant would include a comment.
             assert re.fullmatch(
                 r"(bool|uint8|u?int64|float64|string|geometry_msgs/Pose|sensor_msgs/JointState"
                 r"|Mission[A-Z][a-z]+)(\[\])? ([a-z](_?[a-z0-9]+)*|[A-Z](_?[A-Z0-9]+)*=\d+)",
@@ -113,7 +113,7 @@ def test_package_lists_its_messages():
 @example(yaw=3 * math.pi, x=1e308)
 @example(yaw=5e-324, x=-0.0)
 @example(yaw=1e300, x=0.0)
-def test_poses_keep_their_last_digit_and_whole_turns(yaw, x):
+def test_poses_keep_last_digits_and_full_turns_of_headings(yaw, x):
     types = ros2_types()
     mission = Mission(dock=Pose(x=x, y=0, z=0, yaw=yaw))
     message = to_message(mission, types)
@@ -128,7 +128,7 @@ def test_poses_keep_their_last_digit_and_whole_turns(yaw, x):
     sign=st.sampled_from([1, -1]),
     planned=st.floats(-10, 10),
 )
-def test_the_orientation_counts_where_the_heading_is_another(yaw, size, sign, planned):
+def test_the_orientation_is_used_if_the_heading_disagrees(yaw, size, sign, planned):
     types = ros2_types()
     message = to_message(Mission(dock=Pose(x=0, y=0, z=0, yaw=yaw)), types)
     message.dock.orientation.z *= sign * size
@@ -176,7 +176,7 @@ def plan():
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message_start"),
     [
         (lambda m: setattr(m, "version", 0), "has version 0 of the messages"),
         (lambda m: setattr(m, "version", 2), "has version 2 of the messages"),
@@ -195,16 +195,16 @@ def plan():
         (lambda m: setattr(m.reactions[0], "until", 99), "reactions[0].until: is 99"),
     ],
 )
-def test_what_a_mission_can_not_hold_is_refused_by_its_place(change, said):
+def test_the_error_names_a_value_that_a_mission_cannot_have(change, message_start):
     message, types = plan()
     change(message)
     with pytest.raises(DiagnosticError) as caught:
         from_message(message, types, "bag")
-    (finding,) = caught.value.diagnostics
-    assert finding.message.startswith(said)
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.message.startswith(message_start)
 
 
-def test_flags_decide_whether_a_field_counts():
+def test_a_field_is_ignored_if_its_flag_is_false():
     message, types = plan()
     message.current, message.start_area, message.tasks[0].source_line = "A", 3, 7
     message.tasks[0].has_object_id = False
@@ -214,21 +214,21 @@ def test_flags_decide_whether_a_field_counts():
 
 
 @pytest.mark.parametrize(
-    ("task", "said"),
+    ("task", "message_start"),
     [
         (
             Task(name="A", action=Action.START, source=Span(line=2**63, column=1, length=1)),
             "tasks['A'].source.line: 9223372",
         ),
-        (Task(name="A", action=Action.START, group="\ud800"), "tasks['A'].group: is no text"),
+        (Task(name="A", action=Action.START, group="\ud800"), "tasks['A'].group: is not text"),
     ],
 )
-def test_what_a_message_can_not_hold_is_refused_by_its_place(task, said):
+def test_the_error_names_a_value_that_a_message_cannot_have(task, message_start):
     with pytest.raises(DiagnosticError) as caught:
         to_message(Mission(tasks=(task,)), ros1_types())
-    (finding,) = caught.value.diagnostics
-    assert finding.code.startswith("export.")
-    assert finding.message.startswith(said)
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code.startswith("export.")
+    assert diagnostic.message.startswith(message_start)
 
 
 def test_the_largest_numbers_fit():
@@ -247,7 +247,7 @@ START = start("S", "A")
 
 
 @pytest.mark.rule("T6")
-def test_velocities_in_a_message_are_those_of_the_way_on():
+def test_velocities_in_a_message_apply_to_the_path_to_the_next_task():
     types = ros2_types()
     mission = Mission(
         tasks=(START, drive("A", "B", velocity=0.5), drive("B", "C", velocity=0.25), drive("C"))
@@ -276,18 +276,18 @@ def test_velocities_in_a_message_are_those_of_the_way_on():
             (Group(name="G", start="A", end="A", max_repeat_count=2),),
             "B",
         ),
-        ((START, drive("A"), drive("B", velocity=0.5)), (), "B"),  # nothing leads there
+        ((START, drive("A"), drive("B", velocity=0.5)), (), "B"),  # no task leads there
     ],
 )
-def test_velocities_that_differ_by_what_follows_are_refused(tasks, groups, named):
+def test_velocities_that_depend_on_the_next_task_are_refused(tasks, groups, named):
     with pytest.raises(DiagnosticError) as caught:
         to_message(Mission(tasks=tasks, groups=groups), ros1_types())
-    (finding,) = caught.value.diagnostics
-    assert finding.code == "export.velocity"
-    assert finding.message.startswith(f"tasks['{named}'].velocity: ")
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "export.velocity"
+    assert diagnostic.message.startswith(f"tasks['{named}'].velocity: ")
 
 
-def test_a_task_that_is_driven_to_at_several_velocities_has_the_slowest_and_a_warning():
+def test_the_lowest_of_several_velocities_is_used_with_a_warning():
     types = ros2_types()
     message = to_message(Mission(tasks=(START, drive("A", "B"), drive("B", "B"))), types)
     message.tasks[1].velocity, message.tasks[2].velocity = 0.5, 0.25

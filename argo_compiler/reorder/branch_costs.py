@@ -21,7 +21,7 @@ Probabilities = Mapping[tuple[int, int], float]
 
 
 @dataclass(frozen=True)
-class _Exit:
+class _Branch:
     """Transition from a leaf of a unit."""
 
     target: int | None
@@ -89,44 +89,46 @@ class BranchCosts:
         leaving: Callable[[int], Row],
     ) -> Row:
         """Return the costs after the end of the entry; `leaving` gives those from the last leaf."""
-        exits = {leaf: self._exits(leaf, inside, level, costs, probabilities) for leaf in inside}
-        order, back = _depth_first(entry, {k: [o.target for o in v] for k, v in exits.items()})
+        branches = {
+            leaf: self._branches(leaf, inside, level, costs, probabilities) for leaf in inside
+        }
+        order, back = _depth_first(entry, {k: [o.target for o in v] for k, v in branches.items()})
         values: dict[int, Row] = {}
         for leaf in order:
             options: list[tuple[Row, float | None]] = []
-            for exit_ in exits[leaf]:
-                if exit_.target is None:
-                    options.append((exit_.extra + leaving(leaf), exit_.probability))
-                elif (leaf, exit_.target) not in back:
-                    step = costs[leaf, exit_.target] + exit_.extra
-                    options.append((step + values[exit_.target], exit_.probability))
+            for branch in branches[leaf]:
+                if branch.target is None:
+                    options.append((branch.extra + leaving(leaf), branch.probability))
+                elif (leaf, branch.target) not in back:
+                    step = costs[leaf, branch.target] + branch.extra
+                    options.append((step + values[branch.target], branch.probability))
             values[leaf] = _combined(options, np.full_like(leaving(leaf), -np.inf))
         return values[entry]
 
-    def _exits(
+    def _branches(
         self,
         leaf: int,
         inside: frozenset[int],
         level: int,
         costs: Costs,
         probabilities: Probabilities,
-    ) -> list[_Exit]:
-        gates = self._chain.early_exits
+    ) -> list[_Branch]:
+        early_exits = self._chain.early_exits
         by_target: dict[int, float | None] = {
             target: probabilities.get((leaf, target))
             for _, target in self._chain.flow.leaves[leaf].conditional
-            if (leaf, target) not in gates
+            if (leaf, target) not in early_exits
         }
-        exits = [
-            _Exit(t if t in inside else None, 0.0, probability)
+        branches = [
+            _Branch(t if t in inside else None, 0.0, probability)
             for t, probability in by_target.items()
         ]
         node, extra = self._tail(leaf, level, costs)
-        if node is not None and (leaf, node) not in gates:
+        if node is not None and (leaf, node) not in early_exits:
             known = [p for p in by_target.values() if p is not None]
             rest = max(0.0, 1.0 - sum(known)) if len(known) == len(by_target) else None
-            exits.append(_Exit(node if node in inside else None, extra, rest))
-        return exits
+            branches.append(_Branch(node if node in inside else None, extra, rest))
+        return branches
 
     def _tail(self, leaf: int, level: int, costs: Costs) -> tuple[int | None, float]:
         """Return the unconditional target after all groups that end here, and their extra cost.

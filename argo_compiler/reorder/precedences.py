@@ -83,7 +83,7 @@ def _mission_precedences(visits: Visits) -> Iterator[Precedence]:
 
 def required_name_pairs(visits: Visits, requirements: Requirements) -> tuple[tuple[str, str], ...]:
     """Return the precedences of the requirements as pairs of task names, as in `Mission.before`."""
-    names = [visits.chain.name(stop.entry) for stop in visits.task_units]
+    names = [visits.chain.name(unit.entry) for unit in visits.task_units]
     return tuple(
         dict.fromkeys(
             (names[i], names[j])
@@ -115,11 +115,11 @@ def _repeated_measurements(visits: Visits) -> Iterator[Precedence]:
 def _decisions(visits: Visits) -> Iterator[Precedence]:
     """Yield precedences that keep measurements before or after the conditions that compare them."""
     flow = visits.chain.flow
-    for number, stop in enumerate(visits.task_units):
-        own = flow.leaves[stop.entry].measures
+    for number, unit in enumerate(visits.task_units):
+        own = flow.leaves[unit.entry].measures
         compared = dict.fromkeys(
             condition.object_id
-            for leaf in stop.leaves
+            for leaf in unit.leaves
             for condition in visits.chain.conditions_after[leaf]
         )
         for object_id in compared:
@@ -139,16 +139,16 @@ def _decisions(visits: Visits) -> Iterator[Precedence]:
 def _early_ends(visits: Visits) -> Iterator[Precedence]:
     """Yield precedences that keep visits on their side of a task that may end the mission."""
     leaves = {leaf for leaf, _ in visits.chain.early_exits}
-    gates = sorted({visits.visit_of_leaf[leaf] for leaf in leaves if leaf in visits.visit_of_leaf})
-    for gate, low, high in zip(
-        gates, [-1, *gates], [*gates[1:], len(visits.task_units)], strict=False
+    exits = sorted({visits.visit_of_leaf[leaf] for leaf in leaves if leaf in visits.visit_of_leaf})
+    for exit_, low, high in zip(
+        exits, [-1, *exits], [*exits[1:], len(visits.task_units)], strict=False
     ):
-        name = visits.names[gate]
+        name = visits.names[exit_]
         before = f"{name} may end the mission: what is written before it stays before it"
         after = f"{name} may end the mission: what is written after it stays after it"
-        yield from (Precedence((k, gate), before) for k in range(low + 1, gate))
+        yield from (Precedence((k, exit_), before) for k in range(low + 1, exit_))
         until = high + 1 if high < len(visits.task_units) else high
-        yield from (Precedence((gate, k), after) for k in range(gate + 1, until))
+        yield from (Precedence((exit_, k), after) for k in range(exit_ + 1, until))
 
 
 def _last_units(visits: Visits) -> Iterator[Precedence]:

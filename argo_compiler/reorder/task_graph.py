@@ -125,8 +125,8 @@ class TaskGraph:
         for i in self.own_leaves:
             if not reached[i]:
                 raise Invalid(
-                    f"no transition leads to task '{flow.leaves[i].name}', so it can't be part of "
-                    "an order: remove it, or lead a transition to it; a check gives details",
+                    f"no path leads to task '{flow.leaves[i].name}', so it can't be part of "
+                    "an order: remove it, or add a transition to it; a check gives details",
                     remedies=(Remedy.CHECK_MISSION,),
                 )
         if not reached[flow.done]:

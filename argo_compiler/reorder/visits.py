@@ -56,8 +56,8 @@ class Visits:
     def is_optional(self, visit: int) -> bool:
         """Return True if all tasks of a visit may be left out."""
         tasks = [self.task(leaf) for leaf in self.task_units[visit].leaves]
-        return all(task.is_optional or task.action is Action.WAIT for task in tasks) and any(
-            task.is_optional for task in tasks
+        return all(task.optional or task.action is Action.WAIT for task in tasks) and any(
+            task.optional for task in tasks
         )
 
     def name(self, leaf: int) -> str:

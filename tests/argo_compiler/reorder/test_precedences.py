@@ -216,7 +216,7 @@ def test_the_time_of_a_group_does_not_begin_before_what_goes_along_is_done():
     time = np.full((6, 5), 10.0)
     time[0, 1] = 500.0
     planned = make_problem(mission, time)
-    assert evaluate(planned.problem, planned.changed).duration >= 500 + 60
+    assert evaluate(planned.problem, planned.written).duration >= 500 + 60
 
 
 def test_times_are_those_of_the_worst_way():
@@ -266,7 +266,7 @@ def test_what_is_asked_for_of_tasks_is_written_into_the_mission():
     # A measurement takes 2 itself: its latest start is 2 before its latest end.
     assert windows(planned) == [(0, None), (60, 118), (5, None)]
     assert prizes(planned) == [(False, 3), (True, 0), (True, 0)]
-    first, second, third, _ = apply_route(planned, planned.changed).tasks
+    first, second, third, _ = apply_route(planned, planned.written).tasks
     assert (first.optional, first.priority, first.window) == (True, 3, None)
     assert second.window == TimeWindow(earliest=60, latest=120, missed_target="DOCK")
     assert (second.optional, second.priority) == (False, 4)
@@ -284,7 +284,7 @@ def test_a_mission_says_what_is_optional_and_when():
     planned = make_problem(mission)
     assert prizes(planned) == [(False, 7), (True, 0), (True, 0)]
     assert windows(planned) == [(0, None), (20, 38), (0, None)]
-    assert list(late_visits(planned, planned.changed)) == [
+    assert list(late_visits(planned, planned.written)) == [
         "checkpoint 3 is done at 32 s, after its soft time window: 30 s"
     ]
 
@@ -313,7 +313,7 @@ def test_a_wait_for_an_event_counts_with_its_limit():
         sequence(measure(1), wait("W", event=EventKind.ALL_CLEAR, limit=30), measure(2))
     )
     assert planned.reasons == ("'W' is assumed to take its whole limit",)
-    assert evaluate(planned.problem, planned.changed).duration == 10 + 30 + 10 + 10
+    assert evaluate(planned.problem, planned.written).duration == 10 + 30 + 10 + 10
 
 
 def test_a_wait_before_all_else_stays_there():
@@ -344,7 +344,7 @@ def test_a_time_limit_rules_out_no_way_as_a_further_attempt_goes_on_from_there()
     time = np.full((4, 3), 10.0)
     time[3, 0] = 30.0  # from the start to M1
     planned = make_problem(sequence(measure(1, time_limit=20), measure(2)), time)
-    assert evaluate(planned.problem, planned.changed).duration == 30 + 10 + 10
+    assert evaluate(planned.problem, planned.written).duration == 30 + 10 + 10
     assert planned.reasons == (
         "'M1' may take longer than its time limit, 20 s, depending on where the robot comes from: "
         "computed as if it had none",
@@ -394,7 +394,7 @@ def test_a_mission_can_not_charge():
         ),
     )  # fmt: skip
     assert planned.problem.battery.capacity == 25
-    assert not evaluate(planned.problem, planned.changed).feasible
+    assert not evaluate(planned.problem, planned.written).feasible
     with pytest.raises(ArgoError, match="charges at docking station 1 when the robot has done"):
         apply_route(planned, Tour((0, 1), {1: 0}))
 
@@ -418,7 +418,7 @@ def test_a_task_is_come_to_at_its_own_speed_in_any_order():
 
 
 def test_what_no_way_leads_to_has_no_place():
-    with pytest.raises(ArgoError, match="no transition leads to task 'M2'"):
+    with pytest.raises(ArgoError, match="no path leads to task 'M2'"):
         make_problem(sequence(measure(1, Transition(target="DOCK")), measure(2)))
 
 

@@ -436,22 +436,22 @@ def _time_refusals(task: Task) -> Iterator[Diagnostic]:
             task.source,
         )
     if window is not None and window.earliest and (wait is not None or task.time_limit is not None):
-        what = "waits" if wait is not None else "has a time limit"
+        use = "waits" if wait is not None else "has a time limit"
         yield refusal(
             "window",
-            f"task '{task.name}' {what} and has a window with an earliest time: a behaviour tree "
+            f"task '{task.name}' {use} and has a window with an earliest time: a behaviour tree "
             "can't express both together",
             "remove one of the two, or export SCXML",
             task.source,
         )
-    for what, seconds in (
+    for duration_name, seconds in (
         ("the time limit", task.time_limit),
         ("the wait", None if wait is None else wait.duration),
     ):
         if seconds is not None and seconds * 1000 > MAX_MSEC:
             yield refusal(
                 "too-long",
-                f"{what} of task '{task.name}' is longer than a node allows: at most "
+                f"{duration_name} of task '{task.name}' is longer than a node allows: at most "
                 f"{MAX_MSEC / 1000:g} s",
                 span=task.source,
             )

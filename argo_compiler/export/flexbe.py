@@ -203,9 +203,9 @@ class _Behavior:
             self._add_route_state("route", composite, [*outcomes, *ends], ends)
         else:
             limit = composite.repeat.duration if composite.timeout else 0.0
-            leave = [*outcomes, "round", "left"]
-            self._add_route_state("enter", composite, leave, {}, limit)
-            self._add_route_state("route", composite, leave, {})
+            all_outcomes = [*outcomes, "round", "left"]
+            self._add_route_state("enter", composite, all_outcomes, {}, limit)
+            self._add_route_state("route", composite, all_outcomes, {})
         for child in composite.children:
             if leaf := self.leaves.get(child):
                 self._add_task(leaf)
@@ -268,17 +268,17 @@ class _Behavior:
         end: str,
         fails: bool = False,
     ) -> None:
-        ways = []
+        choices = []
         for transition in transitions:
             to = self._target(transition, end)
             conditions = [_condition(c) for c in transition.conditions]
-            ways.append((self._outcome(leaf.parent, to), to, conditions))
-        outcomes = sorted({outcome for outcome, _, _ in ways})
-        leave = "route" if leaf.parent == MISSION else "left"
+            choices.append((self._outcome(leaf.parent, to), to, conditions))
+        outcomes = sorted({outcome for outcome, _, _ in choices})
+        exit_target = "route" if leaf.parent == MISSION else "left"
         self._add_state(
             label,
-            f"DecideState(outcomes={outcomes!r}, ways={ways!a}, fails={fails!r})",
-            {outcome: leave if outcome == "left" else outcome for outcome in outcomes},
+            f"DecideState(outcomes={outcomes!r}, ways={choices!a}, fails={fails!r})",
+            {outcome: exit_target if outcome == "left" else outcome for outcome in outcomes},
         )
 
     def _action_state(self, leaf: Leaf) -> str:

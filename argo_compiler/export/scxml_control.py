@@ -382,7 +382,7 @@ _DYNAMIC = {
     Given.SOME_WAITS: ("", ""),
     Given.HIGHER_WAITS: ("", ""),
 }
-"""Guards for what is known only during the run: that it is so, and that it is not."""
+"""Guards for conditions that are known only during the run: first for true, then for false."""
 
 
 def _conjunction(conds: Sequence[str]) -> str | None:

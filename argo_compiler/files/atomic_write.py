@@ -54,10 +54,11 @@ def check_writable(file: Path) -> None:
 
 
 def write_atomically(path: Path, content: str | bytes) -> None:
-    """Write bytes, or text as UTF-8 with Unix line ends; the file is then old or new, never mixed.
+    """Write bytes, or text as UTF-8 with Unix line ends; on an error, the old file stays.
 
-    The content is written to a draft on the same disk, which then replaces the file. A link stays a
-    link. A stream such as a terminal is written to directly. Raises OSError.
+    The content is written to a draft on the same disk, which then replaces the file, so nobody ever
+    sees a part of it. A link stays a link. A stream such as a terminal is written to directly.
+    Raises OSError.
     """
     data = content.encode("utf-8") if isinstance(content, str) else content
     with atomic_draft(path) as draft, draft.open("ab") as file:

@@ -79,9 +79,10 @@ def read_bytes(path: Path, kind: str, max_bytes: int, magic: bytes = b"") -> byt
 
 @contextmanager
 def open_file(path: Path, kind: str) -> Iterator[BinaryIO]:
-    """Yield a file that is open for reading; messages call it a `kind`.
+    """Yield a file that is open for reading.
 
-    Raises FileError if the file can't be opened, or if reading fails inside the block.
+    `kind` is what the file should be, such as `script`; for messages. Raises FileError if the file
+    can't be opened, or if reading fails inside the block.
     """
     try:
         if os.path.isdir(path):
@@ -113,12 +114,16 @@ def _read_at_most(file: BinaryIO, count: int) -> bytes:
 
 
 def read_text(path: Path, kind: str, max_bytes: int) -> str:
-    """Return the text of a file; messages call it a `kind`. Raises FileError if it has no text."""
+    """Return the text of a file.
+
+    `kind` is what the file should be, such as `script`; for messages. Raises FileError if the file
+    can't be read, is too large, or is not text.
+    """
     return decode_text(read_bytes(path, kind, max_bytes), path, kind)
 
 
 def require_size(content: bytes, name: object, kind: str, max_bytes: int) -> None:
-    """Raise UnreadableFile if the content is larger than any `kind` of file may be."""
+    """Raise UnreadableFile if the content is too large; `name` and `kind` are for the message."""
     if len(content) > max_bytes:
         raise UnreadableFile(
             name,
@@ -129,9 +134,10 @@ def require_size(content: bytes, name: object, kind: str, max_bytes: int) -> Non
 
 
 def decode_text(content: bytes, name: object, kind: str) -> str:
-    """Return the text of a file's content; messages call the file a `kind`.
+    """Return the text of a file's content.
 
-    The content may be UTF-8 with or without a byte order mark, UTF-32 with such a mark, or UTF-16,
+    `name` is the file, and `kind` what it should be, such as `script`; both are for messages. The
+    content may be UTF-8 with or without a byte order mark, UTF-32 with such a mark, or UTF-16,
     which Windows calls Unicode. Raises UnreadableFile if it is binary or in another encoding.
     """
     for first_bytes, document in _DOCUMENTS.items():

@@ -1,7 +1,7 @@
 """Validation of a mission file's data with bounded effort, however many errors there are.
 
 A file of 50 MB may contain tens of millions of errors, and pydantic would describe each of them. So
-the lists of a mission are validated in portions, until a limited number of errors has been fault.
+the lists of a mission are validated in portions, until a limited number of errors has been found.
 """
 
 import json

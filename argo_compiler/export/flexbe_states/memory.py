@@ -41,7 +41,7 @@ def is_satisfied(condition, memory, now):
 def time_up(depth, memory, now):
     """Return the target after the time-out of a containing group, or None if no time is up.
 
-    `depth` is the number of groups to look at, from the outermost. If the time of several groups is
+    `depth` is the number of groups to check, from the outermost. If the time of several groups is
     up, the group whose time ended first determines the target.
     """
     ends = [

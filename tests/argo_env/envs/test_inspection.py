@@ -182,7 +182,7 @@ class TestOneLoop:
         env = make(scenario=yard_file, faults=0, time_limit=40.0)
         env.reset(seed=4)
         env.step(0)
-        assert "not at its end" in env.record().result.verdict
+        assert "has not ended after" in env.record().result.verdict
         truncated = False
         while not truncated:
             truncated = env.step(1)[3]

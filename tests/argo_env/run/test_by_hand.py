@@ -1,4 +1,4 @@
-"""A person has taken the robot over, and lets it drive and measure by hand."""
+"""Actions by hand: a person who has taken the robot over lets it drive and measure."""
 
 import pytest
 
@@ -30,14 +30,14 @@ THERE = waypoint("there", 5.05, 2.05)
 
 @pytest.fixture
 def simulation(site):
-    """Taken over at rest, on the way to the first gauge."""
+    """Yield a simulation whose robot was taken over on its path to the first gauge, and rests."""
     with simulation_of(SPEC, site) as simulation:
         take_over(simulation, after=20)
         yield simulation
 
 
-def let(simulation, *tasks):
-    """The robot does these by hand, one after the other."""
+def do_by_hand(simulation, *tasks):
+    """Let the robot do the tasks by hand, one after the other."""
     for task in tasks:
         simulation.handle(DoByHand(task))
         to_rest(simulation)
@@ -45,7 +45,7 @@ def let(simulation, *tasks):
 
 class TestDoing:
     def test_what_was_done_counts_once_the_robot_is_given_back(self, simulation):
-        let(simulation, SECOND, THERE)
+        do_by_hand(simulation, SECOND, THERE)
         assert (simulation.pose.x, simulation.pose.y) == pytest.approx((5.05, 2.05))
         (done,) = simulation.done_by_hand
         reading, run = simulation.record().readings[0], simulation.record().tasks[-2]
@@ -62,7 +62,7 @@ class TestDoing:
         assert record.result.verdict == "the mission was completed; done by hand: MEASURE 2"
 
     def test_what_is_not_given_is_done_again(self, simulation):
-        let(simulation, FIRST)
+        do_by_hand(simulation, FIRST)
         simulation.handle(Resume())
         record = simulation.run()
         assert [t.outcome_in_words for t in record.tasks if t.task == "MEASURE 1"] == [
@@ -71,7 +71,7 @@ class TestDoing:
         assert record.result.verdict == "everything was done as planned"
 
     def test_a_person_adds_what_they_skip(self, simulation):
-        let(simulation, FIRST)
+        do_by_hand(simulation, FIRST)
         skipped = ByHand(task="MEASURE 2", skipped=True)
         simulation.handle(GiveBack((*simulation.done_by_hand, skipped)))
         assert simulation.run().result.verdict == (
@@ -80,7 +80,7 @@ class TestDoing:
 
     @pytest.mark.rule("C3", "C8")
     def test_the_machine_knows_what_was_read_at_once(self, simulation):
-        let(simulation, GAUGE_3)
+        do_by_hand(simulation, GAUGE_3)
         (reading,) = simulation.machine.progress().readings
         assert (reading.object_id, reading.age) == ("3", 0.0)
         record = simulation.record()
@@ -93,7 +93,7 @@ class TestDoing:
         spec = SPEC.model_copy(update={"faults": (AbnormalValue(checkpoint=1, value=9.0),)})
         with simulation_of(spec, site) as simulation:
             take_over(simulation, after=20)
-            let(simulation, FIRST)
+            do_by_hand(simulation, FIRST)
             assert simulation.done_by_hand[0].abnormal
             assert simulation.machine.progress().readings[0].abnormal
             (finding,) = simulation.record().findings
@@ -101,14 +101,14 @@ class TestDoing:
 
     def test_the_mission_stands_still_meanwhile(self, simulation):
         before = simulation.machine.progress()
-        let(simulation, THERE)
+        do_by_hand(simulation, THERE)
         after = simulation.machine.progress()
         assert (after.active, after.tallies) == (before.active, before.tallies)
         assert after.paused
         assert after.actions == before.actions
 
     def test_what_fails_by_hand_is_no_failure_of_the_mission(self, simulation):
-        let(simulation, waypoint("off the slab", 50.0, 50.0))
+        do_by_hand(simulation, waypoint("off the slab", 50.0, 50.0))
         assert simulation.record().tasks[-1].outcome_in_words == "failed by hand"
         assert simulation.done_by_hand == ()
         simulation.handle(GiveBack())
@@ -132,7 +132,7 @@ class TestStopping:
         assert (run.outcome_in_words, run.reason) == ("cancelled by hand", "a person stopped it")
         assert simulation.by_hand is None
         assert simulation.done_by_hand == ()
-        let(simulation, SECOND)
+        do_by_hand(simulation, SECOND)
         assert simulation.done_by_hand
 
     def test_there_is_nothing_to_stop(self, simulation):
@@ -209,7 +209,7 @@ def content(site, tmp_path_factory):
     path = tmp_path_factory.mktemp("by_hand") / "run.journal"
     with journaled(path, SPEC, site) as simulation:
         take_over(simulation, after=20)
-        let(simulation, SECOND)
+        do_by_hand(simulation, SECOND)
         simulation.handle(DoByHand(FIRST))
         steps(simulation, 12)
         simulation.handle(StopByHand())
@@ -241,7 +241,7 @@ class TestJournal:
                 assert simulation.pose == kept[-1].body_pose
                 names = [done.task for done in simulation.done_by_hand]
                 assert names == ([] if killed == "acting" else ["MEASURE 2"])
-                let(simulation, FIRST)
+                do_by_hand(simulation, FIRST)
                 simulation.handle(GiveBack(simulation.done_by_hand))
                 record = simulation.run()
         hows = [(t.task, t.outcome_in_words) for t in record.tasks]

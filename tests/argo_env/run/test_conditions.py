@@ -1,4 +1,4 @@
-"""Conditions that are not as planned: what becomes of them in a run."""
+"""Run conditions that are not as planned, and their effects on a run."""
 
 import pytest
 
@@ -15,8 +15,8 @@ START = open_site("umad").site.docks[1]
 GAUGE = open_site("umad").site.checkpoint(4)
 
 
-def rounds(count: int) -> Mission:
-    """One gauge, read so many times."""
+def mission_of_rounds(count: int) -> Mission:
+    """Return a mission that reads one gauge `count` times."""
     return from_place(
         START,
         Task(name="GAUGE", action=Action.MEASURE, object_id="4", group="Again"),
@@ -26,54 +26,54 @@ def rounds(count: int) -> Mission:
 
 
 def run(count=1, mission=None, faults=(), seed=0, drive="route", journal=None, **conditions):
-    given = RunConditions.model_validate(conditions)
+    run_conditions = RunConditions.model_validate(conditions)
     spec = RunSpec(
-        mission=mission or rounds(count), drive=drive, values={4: 2.0}, faults=faults, seed=seed,
-        conditions=given,
+        mission=mission or mission_of_rounds(count), drive=drive, values={4: 2.0}, faults=faults,
+        seed=seed, conditions=run_conditions,
     )  # fmt: skip
     return simulate(spec, journal=journal)
 
 
-def shown(record):
+def timed_values(record):
     return [(reading.t, reading.value) for reading in record.readings]
 
 
 def test_without_any_all_is_as_planned():
-    assert [value for _, value in shown(run(3))] == [2.0, 2.0, 2.0]
+    assert [value for _, value in timed_values(run(3))] == [2.0, 2.0, 2.0]
 
 
 def test_a_value_drifts_steps_and_stays_on_its_scale():
     profile = {"drift": 3.6, "steps": [{"at": 150.0, "change": -0.5}]}
-    readings = shown(run(6, values={4: profile}))
+    readings = timed_values(run(6, values={4: profile}))
     assert len(readings) == 6
     assert readings[0][0] < 150 < readings[-1][0]
     for t, value in readings:
         assert value == pytest.approx(2.0 + 0.001 * t - (0.5 if t >= 150 else 0.0), abs=0.0006)
-    assert shown(run(1, values={4: {"drift": 1e6}}))[0][1] == GAUGE.range.high
+    assert timed_values(run(1, values={4: {"drift": 1e6}}))[0][1] == GAUGE.range.high
 
 
 def test_what_flickers_is_drawn_by_the_moment():
     flickers = {4: {"noise": 0.05}}
-    values = [value for _, value in shown(run(6, values=flickers))]
+    values = [value for _, value in timed_values(run(6, values=flickers))]
     assert len(set(values)) > 3
-    assert values == [value for _, value in shown(run(6, values=flickers))]
-    assert values[:3] == [value for _, value in shown(run(3, values=flickers))]
-    assert values != [value for _, value in shown(run(6, values=flickers, seed=1))]
+    assert values == [value for _, value in timed_values(run(6, values=flickers))]
+    assert values[:3] == [value for _, value in timed_values(run(3, values=flickers))]
+    assert values != [value for _, value in timed_values(run(6, values=flickers, seed=1))]
 
 
 def test_a_fault_of_a_value_comes_before_its_profile():
     high = 45.0
     fault = f"faults: [{{kind: abnormal_value, checkpoint: 4, value: {high}, at: 0, until: 150}}]"
     faults = decode_faults(fault.encode(), "test").faults
-    for t, value in shown(run(6, faults=faults, values={4: {"drift": 3.6}})):
+    for t, value in timed_values(run(6, faults=faults, values={4: {"drift": 3.6}})):
         assert value == pytest.approx(high if t < 150 else 2.0 + 0.001 * t, abs=0.0006)
 
 
 def test_a_sensor_with_noise_reads_the_same_whatever_was_read_before():
-    values = [value for _, value in shown(run(4, sensor_noise=0.01))]
+    values = [value for _, value in timed_values(run(4, sensor_noise=0.01))]
     assert len(set(values)) > 1
     assert all(abs(value - 2.0) < 0.06 * (GAUGE.range.high - GAUGE.range.low) for value in values)
-    assert values[:2] == [value for _, value in shown(run(2, sensor_noise=0.01))]
+    assert values[:2] == [value for _, value in timed_values(run(2, sensor_noise=0.01))]
 
 
 def test_the_robot_stands_elsewhere_and_gets_there_all_the_same():
@@ -102,7 +102,7 @@ def test_a_run_that_was_killed_goes_on_in_the_same_conditions(tmp_path):
     whole = run(4, journal=tmp_path / "whole", **conditions)
     cut(tmp_path / "whole", to=tmp_path / "part")
     resumed = resume(open_journal(tmp_path / "part"))
-    assert shown(resumed)[:2] == shown(whole)[:2]
+    assert timed_values(resumed)[:2] == timed_values(whole)[:2]
     assert len(resumed.readings) == 4
 
 

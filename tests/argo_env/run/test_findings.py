@@ -1,4 +1,4 @@
-"""What was out of the ordinary in a run, what came of it, and the headline that counts it."""
+"""Findings of a run, the mission's answers to them, and the headline that counts them."""
 
 import json
 
@@ -31,16 +31,16 @@ SHELTER = shelter(3.05, 1.55)
 
 @pytest.fixture(scope="module")
 def quiet(yard):
-    """The record of a run in which nothing happened."""
+    """Return the record of a run without findings."""
     return run(yard, PLAN)
 
 
-def answering(*reactions):
+def plan_with_reactions(*reactions):
     return PLAN.model_copy(update={"reactions": reactions})
 
 
 def with_anomalies(record, *found):
-    """The record with these anomalies: kinds, the watches that found them and times (s)."""
+    """Return the record with these anomalies: times (s), kinds and sources."""
     return record.model_copy(
         update={
             "anomalies": tuple(
@@ -70,7 +70,7 @@ class TestEventsFromOutside:
         assert str(record.headline) == said
 
     def test_with_a_reaction_it_says_which_and_that_it_is_over(self, yard):
-        record = run(yard, answering(SHELTER), (4.0, LEAK), (60.0, CLEAR))
+        record = run(yard, plan_with_reactions(SHELTER), (4.0, LEAK), (60.0, CLEAR))
         (finding,) = record.findings
         assert (finding.answered, finding.over_at) == (True, 60.0)
         assert str(record.headline) == (
@@ -80,11 +80,11 @@ class TestEventsFromOutside:
     @pytest.mark.parametrize("response", [Response.REPORT, Response.ABORT])
     def test_answers_that_do_not_interrupt(self, yard, response):
         reaction = Reaction(event=EventKind.GAS_LEAK, response=response)
-        (finding,) = run(yard, answering(reaction), (4.0, LEAK)).findings
+        (finding,) = run(yard, plan_with_reactions(reaction), (4.0, LEAK)).findings
         assert finding.answer == f"answered by reaction: {response}"
 
     def test_a_reaction_that_did_not_begin_answers_nothing(self, yard):
-        record = run(yard, answering(SHELTER), (3.0, Pause()), (4.0, LEAK))
+        record = run(yard, plan_with_reactions(SHELTER), (3.0, Pause()), (4.0, LEAK))
         (finding,) = record.findings
         assert (finding.answered, finding.answer) == (False, "the reaction to it did not begin")
         assert record.headline.word == "No success"
@@ -92,7 +92,7 @@ class TestEventsFromOutside:
 
     def test_what_was_written_down_gives_the_same(self, yard):
         kept, events = Entries(), logged_events((3.0, LEAK), (5.0, CLEAR))
-        plan = answering()
+        plan = plan_with_reactions()
         record = run_with(plan, fast_setup(yard, {1: 9.0}), events=events, observers=[kept])
         spec = RunSpec(mission=plan, site="yard", events=events)
         setup = fast_setup(yard, {1: 9.0})
@@ -122,7 +122,7 @@ class TestReadings:
 
 
 class TestOver:
-    def over(self, record):
+    def end_times(self, record):
         return [finding.over_at for finding in record.findings]
 
     def test_a_watch_tells_the_end_of_what_it_found_itself(self, quiet):
@@ -135,7 +135,7 @@ class TestOver:
             (5.0, EventKind.BATTERY_CHARGED, "battery"),
             (6.0, EventKind.GAS_LEAK, "gas"),
         )
-        assert self.over(record) == [4.0, None, 5.0, None]
+        assert self.end_times(record) == [4.0, None, 5.0, None]
         assert record.headline.word == "Done, 4 findings"
         assert record.headline.text.endswith("; and 1 more")
 
@@ -146,7 +146,7 @@ class TestOver:
             (2.0, EventKind.NEGATIVE_OBSTACLE, "terrain"),
             (3.0, EventKind.ALL_CLEAR, "told"),
         )
-        assert self.over(record) == [3.0, None]
+        assert self.end_times(record) == [3.0, None]
 
     def test_an_end_alone_is_no_finding(self, quiet):
         record = with_anomalies(quiet, (1.0, EventKind.ALL_CLEAR, "told"))

@@ -1,4 +1,4 @@
-"""Pauses, reactions and cancellations while a mission runs: what the robot does, and the record."""
+"""Pauses, reactions and cancellations of a mission: the robot's behaviour, and the record."""
 
 import math
 import re
@@ -18,7 +18,7 @@ from argo_env.report.rounds import waits
 from argo_env.run.record import RunRecord
 from argo_env.run.spec import logged_events
 from argo_env.run.verdict_line import Tone
-from tests.argo_env.run.test_at_the_place import foggy
+from tests.argo_env.run.test_actions import foggy
 from tests.conftest import examples
 from tests.mission_writing import reaction as react
 from tests.yard import fast_setup, measure, mission, run, run_with, simulated, waypoint
@@ -28,11 +28,11 @@ SHELTER = Pose(x=3.05, y=1.55, z=0.02)
 NOWHERE = Pose(x=30.0, y=30.0, z=0.02)
 
 
-def names(record):
+def outcomes_of_tasks(record):
     return [(t.task, t.outcome) for t in record.tasks]
 
 
-def where(record, t):
+def position_at(record, t):
     sample = min(record.path, key=lambda s: abs(s.t - t))
     return sample.x, sample.y
 
@@ -42,7 +42,7 @@ MEASURE = mission(measure(1))
 
 @pytest.fixture(scope="module")
 def arrival(yard):
-    """When the robot has arrived at the first checkpoint (s)."""
+    """Return the time in s at which the robot has arrived at the first checkpoint."""
     record = run(yard, MEASURE)
     return record.result.duration - yard.robot.sensor.measuring_time
 
@@ -67,7 +67,7 @@ class TestCleanUp:
     @pytest.mark.parametrize("after", [5.5, 7.0, 7.9])
     def test_a_value_that_has_been_seen_counts(self, yard, arrival, after):
         record = run(yard, MEASURE, (arrival + after, Cancel()))
-        assert names(record) == [("MEASURE 1", "done")]
+        assert outcomes_of_tasks(record) == [("MEASURE 1", "done")]
         assert [r.value for r in record.readings] == [2.5]
         assert record.result.outcome is Outcome.CANCELLED
         assert record.result.duration == pytest.approx(arrival + 8.0)
@@ -90,12 +90,12 @@ class TestCleanUp:
 class TestPersons:
     def test_pause_and_resume(self, yard):
         record = run(yard, MEASURE, (3.0, Pause()), (20.0, Resume()))
-        assert names(record) == [("MEASURE 1", "interrupted"), ("MEASURE 1", "done")]
+        assert outcomes_of_tasks(record) == [("MEASURE 1", "interrupted"), ("MEASURE 1", "done")]
         assert record.tasks[0].reason == "the mission is paused"
         assert record.tasks[1].start == 20.0
         (interruption,) = record.interruptions
         assert (interruption.start, interruption.end, interruption.event) == (3.0, 20.0, None)
-        assert where(record, 4.0) == where(record, 19.5)
+        assert position_at(record, 4.0) == position_at(record, 19.5)
         assert record.result.success
         causes = [step.cause for step in record.trace]
         assert any("pause" in c for c in causes)
@@ -125,11 +125,11 @@ class TestReactions:
             yard, plan, (4.0, Occurred(EventKind.GAS_LEAK, "a hiss")),
             (60.0, Occurred(EventKind.ALL_CLEAR)),
         )  # fmt: skip
-        assert names(record) == [
+        assert outcomes_of_tasks(record) == [
             ("MEASURE 1", "interrupted"), ("react to gas_leak", "done"), ("MEASURE 1", "done"),
             ("A", "done"),
         ]  # fmt: skip
-        assert math.dist(where(record, 50.0), (SHELTER.x, SHELTER.y)) < 0.1
+        assert math.dist(position_at(record, 50.0), (SHELTER.x, SHELTER.y)) < 0.1
         assert record.tasks[2].start == 60.0
         (interruption,) = record.interruptions
         assert (interruption.start, interruption.end) == (4.0, 60.0)
@@ -196,7 +196,7 @@ class TestReactions:
         pause = react(EventKind.ABNORMAL_READING, Response.PAUSE)
         plan = mission(measure(1), measure(2), reactions=(pause,))
         record = run(yard, plan, (90.0, Resume()), values={1: value})
-        assert names(record) == [("MEASURE 1", "done"), ("MEASURE 2", "done")]
+        assert outcomes_of_tasks(record) == [("MEASURE 1", "done"), ("MEASURE 2", "done")]
         assert [(r.value, r.normal) for r in record.readings] == [(value, False), (3.5, True)]
         assert record.tasks[1].start == 90.0
         (interruption,) = record.interruptions
@@ -216,7 +216,7 @@ class TestReactions:
         back = react(EventKind.TIME_UP, Response.RETURN)
         plan = mission(measure(1), measure(2), reactions=(back,), dock=DOCK, max_duration=20.0)
         record = run(yard, plan)
-        assert names(record) == [
+        assert outcomes_of_tasks(record) == [
             ("MEASURE 1", "done"), ("MEASURE 2", "interrupted"), ("react to time_up", "done"),
         ]  # fmt: skip
         assert record.interruptions[0].start == 20.0
@@ -224,7 +224,7 @@ class TestReactions:
         assert "of at most 20 s" in record.result.verdict
 
     def test_velocity_of_the_way_after_an_interruption(self, yard):
-        """The way is still that to the same task, and a reaction has the planning speed."""
+        """The path still leads to the same task, and a reaction drives at the planning speed."""
         shelter = react(
             EventKind.GAS_LEAK, Response.SAFE_AREA, pose=SHELTER, afterwards=Afterwards.RESUME
         )
@@ -284,13 +284,13 @@ def given_events(draw):
 
 @st.composite
 def reactions(draw):
-    found = []
+    drawn = []
     for event in draw(st.lists(st.sampled_from(EventKind), max_size=4, unique=True)):
         response = draw(st.sampled_from(Response))
         interrupts = response in {Response.PAUSE, Response.RETURN, Response.SAFE_AREA}
         until = draw(st.none() | st.sampled_from(EventKind)) if interrupts else None
         drives = response in {Response.RETURN, Response.SAFE_AREA}
-        found.append(
+        drawn.append(
             react(
                 event,
                 response,
@@ -300,24 +300,26 @@ def reactions(draw):
                 priority=draw(st.integers(0, 2)),
             )
         )
-    return tuple(found)
+    return tuple(drawn)
 
 
 def check_findings(record, plan, events):
-    """All that occurred is found or over, each thing once, and only then the headline is amber."""
+    """Each event is a finding or the end of one, and only findings make the headline amber."""
     occurred = [(t, e.event) for t, e in events if isinstance(e, Occurred)]
-    told = [(a.t, a.kind) for a in record.anomalies if a.is_reported]
-    assert not Counter(kind for _, kind in told) - Counter(kind for _, kind in occurred)
-    assert all(kind in [k for _, k in told] for t, kind in occurred if t < record.result.duration)
+    reported = [(a.t, a.kind) for a in record.anomalies if a.is_reported]
+    assert not Counter(kind for _, kind in reported) - Counter(kind for _, kind in occurred)
+    assert all(
+        kind in [k for _, k in reported] for t, kind in occurred if t < record.result.duration
+    )
     abnormal = [r for r in record.readings if not r.normal]
-    overs = [a for a in record.anomalies if a.is_end]
-    assert len(record.findings) == len(told) - len(overs) + len(abnormal)
+    ends = [a for a in record.anomalies if a.is_end]
+    assert len(record.findings) == len(reported) - len(ends) + len(abnormal)
     answerable = {reaction.event for reaction in plan.reactions}
     assert not [f for f in record.findings if f.answered and f.kind not in answerable]
     headline = record.headline
     assert (headline.tone is Tone.GOOD) == (record.result.success and not record.findings)
-    said = re.findall(r"(\d+) findings?:", str(headline))
-    assert said == [str(len(record.findings))] * bool(record.findings)
+    counts = re.findall(r"(\d+) findings?:", str(headline))
+    assert counts == [str(len(record.findings))] * bool(record.findings)
     assert RunRecord.model_validate_json(record.model_dump_json()).headline == headline
 
 
@@ -352,12 +354,15 @@ def test_whatever_occurs(yard, events, answers, limit):
 
 
 def test_in_the_world(yard):
-    """The same with drive, sensor and contacts of the simulation."""
+    """A reaction does the same with the simulated drive, sensor and contacts."""
     plan = mission(
         measure(1), dock=DOCK, reactions=(react(EventKind.LOW_BATTERY, Response.RETURN),)
     )
     events = logged_events((8.0, Occurred(EventKind.LOW_BATTERY)))
     record = simulated(plan, yard, events=events)
-    assert names(record) == [("MEASURE 1", "interrupted"), ("react to low_battery", "done")]
+    assert outcomes_of_tasks(record) == [
+        ("MEASURE 1", "interrupted"),
+        ("react to low_battery", "done"),
+    ]
     assert record.result.outcome is Outcome.RETURNED
     assert math.dist((record.path[-1].x, record.path[-1].y), (DOCK.x, DOCK.y)) < 0.1

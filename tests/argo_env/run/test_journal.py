@@ -1,4 +1,4 @@
-"""Journals: wherever a run is cut short, it goes on, and nothing is lost or done twice."""
+"""Journals: a run that is cut short anywhere continues, and nothing is lost or done twice."""
 
 import os
 import resource
@@ -79,8 +79,10 @@ def header(yard, plan=PLAN, events=EVENTS, source=None):
     return Header.from_run(opened(yard), spec)
 
 
-def go_on(yard, journal, plan=PLAN, events=EVENTS, observe=None, announce=None, **options):
-    """The record of a run from where the journal ends."""
+def continue_journal(
+    yard, journal, plan=PLAN, events=EVENTS, observe=None, announce=None, **options
+):
+    """Run from the end of the journal and return the record."""
     return run_with(
         plan, fast_setup(yard, {2: 5.5}), journal=journal, observers=[Watching(observe, announce)],
         seed=1, events=logged_events(*events), **options,
@@ -88,11 +90,11 @@ def go_on(yard, journal, plan=PLAN, events=EVENTS, observe=None, announce=None, 
 
 
 def resumed(yard, path):
-    """Goes on with a journal to the end; the record and what was announced on the way."""
-    told = []
+    """Continue the run of a journal to its end; return the record and the announced readings."""
+    announced = []
     with open_journal(path) as journal:
-        record = go_on(yard, journal, announce=told.append)
-    return record, told
+        record = continue_journal(yard, journal, announce=announced.append)
+    return record, announced
 
 
 @pytest.fixture
@@ -101,34 +103,34 @@ def path(tmp_path):
     return tmp_path / "run.journal"
 
 
-class Whole:
-    """A journal's content, and the record of its run. Says little when a test fails."""
+class CompleteRun:
+    """Content of a journal and the record of its run, with a short text for failed tests."""
 
     def __init__(self, content, record):
         self.content = content
         self.record = record
 
     def __repr__(self):
-        return "whole"
+        return "complete run"
 
 
 @pytest.fixture(scope="module")
-def whole(yard, tmp_path_factory):
-    """The journal of a run that was never cut short, and its record."""
-    path = tmp_path_factory.mktemp("whole") / "run.journal"
-    told = []
+def complete(yard, tmp_path_factory):
+    """Return the journal of a run that was never cut short, and its record."""
+    path = tmp_path_factory.mktemp("complete") / "run.journal"
+    announced = []
     with create_journal(path, header(yard)) as journal:
-        record = go_on(yard, journal, announce=told.append)
-    assert tuple(told) == record.readings
-    return Whole(path.read_bytes(), record)
+        record = continue_journal(yard, journal, announce=announced.append)
+    assert tuple(announced) == record.readings
+    return CompleteRun(path.read_bytes(), record)
 
 
-def done(record):
+def done_tasks(record):
     return [t.task for t in record.tasks if t.outcome == "done"]
 
 
 def require_the_same_mission(record, reference):
-    """The same was done, and read; only how long an action took may differ."""
+    """Require the same tasks and readings; only the durations of actions may differ."""
     assert record.result.outcome is reference.result.outcome
     assert record.result.success is reference.result.success
     assert record.result.verdict == reference.result.verdict
@@ -137,8 +139,8 @@ def require_the_same_mission(record, reference):
         (r.task, r.value, r.normal) for r in reference.readings
     ]
     for name in ("MEASURE 1", "MEASURE 2", "MEASURE 3"):
-        assert done(record).count(name) == 1
-    assert done(record).count("react to gas_leak") == 1
+        assert done_tasks(record).count(name) == 1
+    assert done_tasks(record).count("react to gas_leak") == 1
     assert [i.event for i in record.interruptions] == [i.event for i in reference.interruptions]
     driven = sum(t.distance for t in record.tasks)
     assert driven == pytest.approx(record.result.distance, abs=0.01)
@@ -153,7 +155,7 @@ def require_the_same_mission(record, reference):
 
 
 def require_a_continuation(record, reference, reached):
-    """Up to the time `reached` (s) the record is the reference's, and so is what it leads to."""
+    """Require the reference's record up to the time `reached` (s), and its results after that."""
     require_the_same_mission(record, reference)
     for name, at in (("tasks", "end"), ("readings", "t"), ("path", "t")):
         before = [x for x in getattr(reference, name) if getattr(x, at) <= reached]
@@ -161,22 +163,22 @@ def require_a_continuation(record, reference, reached):
     assert record.resumed == (reached,)
 
 
-def test_the_reference_has_all_that_may_happen(whole):
-    record = whole.record
+def test_the_reference_has_all_that_may_happen(complete):
+    record = complete.record
     assert record.result.outcome is Outcome.COMPLETED
     assert {t.outcome for t in record.tasks} == {"done", "interrupted", "cancelled"}
-    assert "react to gas_leak" in done(record)
+    assert "react to gas_leak" in done_tasks(record)
     assert [i.event for i in record.interruptions] == [EventKind.GAS_LEAK, None]
     assert [r.normal for r in record.readings] == [True, False, True]
 
 
-def test_a_journal_changes_nothing(yard, whole):
-    record = whole.record
-    assert go_on(yard, None) == record
+def test_a_journal_changes_nothing(yard, complete):
+    record = complete.record
+    assert continue_journal(yard, None) == record
 
 
-def test_cut_at_every_line_end(yard, whole, path):
-    content, reference = whole.content, whole.record
+def test_cut_at_every_line_end(yard, complete, path):
+    content, reference = complete.content, complete.record
     ends = [k + 1 for k, byte in enumerate(content) if byte == ord("\n")]
     assert len(ends) > 100
     for end in sample(ends, 5):
@@ -195,15 +197,15 @@ def test_cut_at_every_line_end(yard, whole, path):
             assert record == reference
 
 
-def test_interrupted_after_any_step(yard, whole, path):
-    """The record is the reference's so far, and the journal goes on to all of it."""
-    reference = whole.record
+def test_interrupted_after_any_step(yard, complete, path):
+    """The record equals the reference's so far, and the journal leads to the complete one."""
+    reference = complete.record
     steps = round(reference.result.duration / 0.1)
     for n in sample(range(steps), 101):
         path.unlink(missing_ok=True)
-        looks = count()
+        calls = count()
         with create_journal(path, header(yard)) as journal:
-            record = go_on(yard, journal, interrupted=lambda: next(looks) >= n)  # noqa: B023
+            record = continue_journal(yard, journal, interrupted=lambda: next(calls) >= n)  # noqa: B023
         assert not record.result.ended
         assert not record.result.success
         assert record.result.verdict == f"the mission has not ended after {n / 10:.0f} s"
@@ -214,73 +216,73 @@ def test_interrupted_after_any_step(yard, whole, path):
         with open_journal(path) as journal:
             assert not journal.ended
             reached = journal.entries[-1].t if journal.entries else None
-        gone_on, told = resumed(yard, path)
-        assert (*record.readings, *told) == gone_on.readings
+        continued, announced = resumed(yard, path)
+        assert (*record.readings, *announced) == continued.readings
         if reached is None:
-            assert gone_on == reference
+            assert continued == reference
         else:
             assert record.result.duration - reached <= SAMPLE_PERIOD
-            require_a_continuation(gone_on, reference, reached)
+            require_a_continuation(continued, reference, reached)
 
 
 def test_an_interruption_is_told_and_the_simulation_can_go_on(yard):
-    told, looks = [], iter([False] * 20 + [True])
+    records, answers = [], iter([False] * 20 + [True])
 
-    class Told(Observer):
+    class RecordKeeper(Observer):
         def on_interrupted(self, record):
-            told.append(record)
+            records.append(record)
 
     spec = RunSpec(mission=PLAN, site="yard")
     with simulation_of(
-        spec, opened(yard), observers=[Told()], setup=fast_setup(yard)
+        spec, opened(yard), observers=[RecordKeeper()], setup=fast_setup(yard)
     ) as simulation:
-        record = simulation.run(lambda: next(looks))
-        assert told == [record]
+        record = simulation.run(lambda: next(answers))
+        assert records == [record]
         assert record.result.duration == 2.0
-        whole = simulation.run()
-        assert told == [record]
-    assert whole.result.ended
-    assert whole == run_with(PLAN, fast_setup(yard))
+        complete = simulation.run()
+        assert records == [record]
+    assert complete.result.ended
+    assert complete == run_with(PLAN, fast_setup(yard))
 
 
-def test_a_run_that_has_ended_can_be_told_nothing(yard, whole, path):
-    path.write_bytes(whole.content)
+def test_a_run_that_has_ended_can_be_told_nothing(yard, complete, path):
+    path.write_bytes(complete.content)
     with (
         open_journal(path) as journal,
         pytest.raises(Conflict, match=r"run\.journal: the run has ended, at") as caught,
     ):
         resume(journal, opened(yard), events=logged_events((5.0, Pause())))
     assert caught.value.remedies == (Remedy.RUN_ANEW,)
-    assert path.read_bytes() == whole.content
+    assert path.read_bytes() == complete.content
 
 
 @pytest.mark.long
 def test_cut_at_every_byte_of_the_last_lines(yard, path):
-    """The end of a short run: its last lines hold the end of an action and that of the run."""
+    """The last lines of a short run hold the ends of its action and of the run itself."""
     plan = mission(measure(1))
 
     def to_the_end():
         with open_journal(path) as journal:
-            return go_on(yard, journal, plan, ())
+            return continue_journal(yard, journal, plan, ())
 
     with create_journal(path, header(yard, plan, ())) as journal:
-        reference = go_on(yard, journal, plan, ())
+        reference = continue_journal(yard, journal, plan, ())
     content = path.read_bytes()
     first = len(content) - sum(map(len, content.splitlines(keepends=True)[-4:]))
-    to_go_on = set(sample(range(first, len(content)), 10))
+    to_continue = set(sample(range(first, len(content)), 10))
     for cut in range(first, len(content)):
         path.write_bytes(content[:cut])
         with open_journal(path) as journal:
             assert 1 + len(journal.entries) == content[:cut].count(b"\n")
         assert path.read_bytes() == content[: content.rindex(b"\n", 0, cut) + 1]
-        if cut not in to_go_on:
+        if cut not in to_continue:
             continue
         path.write_bytes(content[:cut])
         record = to_the_end()
-        assert done(record) == ["MEASURE 1"]
+        assert done_tasks(record) == ["MEASURE 1"]
         assert [r.value for r in record.readings] == [r.value for r in reference.readings]
         assert record.result.verdict == reference.result.verdict
-        # Now it is whole, and ends as it has ended.
+        # Now the journal is complete, and a second run changes nothing.
         ended = path.read_bytes()
         assert to_the_end() == record
         assert path.read_bytes() == ended
@@ -288,9 +290,9 @@ def test_cut_at_every_byte_of_the_last_lines(yard, path):
 
 @settings(max_examples=examples(10), deadline=None)
 @given(st.lists(st.floats(0.0, 1.0), min_size=1, max_size=4))
-def test_cut_again_and_again(yard, whole, tmp_path_factory, places):
-    """Each time it goes on to the end, and is cut at any byte behind the first line."""
-    content, reference = whole.content, whole.record
+def test_cut_again_and_again(yard, complete, tmp_path_factory, places):
+    """A run continues to its end each time its journal is cut at any byte after the first line."""
+    content, reference = complete.content, complete.record
     path = tmp_path_factory.mktemp("again") / "run.journal"
     path.write_bytes(content)
     least = content.index(b"\n") + 1
@@ -300,9 +302,9 @@ def test_cut_again_and_again(yard, whole, tmp_path_factory, places):
         path.write_bytes(content[:cut])
         with open_journal(path) as journal:
             certain = [e.reading for e in journal.entries if e.reading]
-        record, told = resumed(yard, path)
+        record, announced = resumed(yard, path)
         require_the_same_mission(record, reference)
-        assert [*certain, *told] == list(record.readings)
+        assert [*certain, *announced] == list(record.readings)
         assert list(record.resumed) == sorted(record.resumed)
 
 
@@ -319,12 +321,12 @@ def test_a_reading_is_on_disk_when_it_is_told(yard, path):
 
     plan = mission(measure(1), measure(2))
     with create_journal(path, header(yard, plan, ())) as journal:
-        go_on(yard, journal, plan, (), observe, announce)
+        continue_journal(yard, journal, plan, (), observe, announce)
     assert seen == [True, True]
 
 
 class Scraping(EmptyWorld):
-    """A world in which the robot scrapes along something for a part of its way."""
+    """World in which the robot scrapes along a crate on a part of its path."""
 
     def __init__(self, drive):
         super().__init__()
@@ -419,7 +421,7 @@ class TestRefusals:
             create_journal(Path("/proc/j"), header(yard))
 
     def test_killed_while_the_first_line_was_written(self, yard, path, tmp_path):
-        """The draft of the first line that another process has left is no obstacle."""
+        """A new journal can be written although another process has left a draft of a header."""
         (tmp_path / "run.journal.new").write_bytes(b"0123 half a li" * 1000)
         create_journal(path, header(yard)).close()
         with open_journal(path) as journal:
@@ -469,8 +471,8 @@ class TestRefusals:
         with pytest.raises(ArgoError, match="has version 7 of the journal's format"):
             open_journal(path)
 
-    def test_damage_in_the_middle(self, whole, path):
-        content = whole.content
+    def test_damage_in_the_middle(self, complete, path):
+        content = complete.content
         lines = content.splitlines(keepends=True)
         bad = bytes([lines[20][40] ^ 1])
         lines[20] = lines[20][:40] + bad + lines[20][41:]
@@ -491,8 +493,8 @@ class TestRefusals:
             (b"\r\n", b"", "CR LF"),
         ],
     )
-    def test_more_damage_than_a_kill_leaves(self, whole, path, line_end, more, says):
-        content = whole.content.replace(b"\n", line_end) + more
+    def test_more_damage_than_a_kill_leaves(self, complete, path, line_end, more, says):
+        content = complete.content.replace(b"\n", line_end) + more
         path.write_bytes(content)
         with pytest.raises(ArgoError, match=says):
             open_journal(path)
@@ -526,18 +528,18 @@ class TestRefusals:
             source.unlink()
             journal.require_unchanged(opened(yard))
 
-    def test_entries_of_another_mission(self, yard, whole, path):
-        content = whole.content
+    def test_entries_of_another_mission(self, yard, complete, path):
+        content = complete.content
         other = mission(waypoint("A", 2.05, 2.05))
         create_journal(path, header(yard, other)).close()
         path.write_bytes(path.read_bytes() + content.split(b"\n", 1)[1])
         with open_journal(path) as journal, pytest.raises(ArgoError, match="does not fit"):
-            go_on(yard, journal, other)
+            continue_journal(yard, journal, other)
 
 
 @contextmanager
 def files_up_to(size):
-    """No file gets larger than so many bytes."""
+    """Limit the size of files to `size` bytes."""
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     try:
@@ -548,13 +550,13 @@ def files_up_to(size):
         signal.signal(signal.SIGXFSZ, ignored)
 
 
-def test_a_full_disk(yard, whole, path):
-    """The run ends with a message, nothing written is lost, and it goes on when there is room."""
-    reference = whole.record
+def test_a_full_disk(yard, complete, path):
+    """A run without room ends with a message, and continues from its journal when there is room."""
+    reference = complete.record
     with create_journal(path, header(yard)) as journal:
         further = r"can't be written any further"
         with files_up_to(20_000), pytest.raises(ArgoError, match=further) as caught:
-            go_on(yard, journal)
+            continue_journal(yard, journal)
         assert caught.value.remedies == (Remedy.RESUME,)
     assert 19_000 < path.stat().st_size <= 20_000
     with open_journal(path) as journal:

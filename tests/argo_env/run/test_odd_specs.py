@@ -1,4 +1,4 @@
-"""Specs that are made in code, of whatever: a run gives a record or raises an ArgoError."""
+"""Specs made in code of arbitrary values: a run returns a record or raises an ArgoError."""
 
 import math
 from contextlib import suppress

@@ -1,4 +1,4 @@
-"""Watches in a run: called at their periods, their findings told once, obstacles driven around."""
+"""Watches in a run: updates at their periods, findings reported once, detours around obstacles."""
 
 import math
 from dataclasses import replace
@@ -45,7 +45,7 @@ DOCK = Pose(x=1.05, y=1.05, z=0.02)
 
 
 class Scripted:
-    """A watch that finds what it is told to, from a time on, once."""
+    """Watch that makes each of the given detections once, at its time (s) or later."""
 
     name = "scripted"
 
@@ -161,7 +161,7 @@ class TestObstacles:
         looks = []
 
         class Turned:
-            """A checkpoint that can't be read from the first view."""
+            """Sensor for a checkpoint that can't be read from the first view."""
 
             name = "turned"
 
@@ -172,7 +172,7 @@ class TestObstacles:
                 return Measurement(4.0, 1.0)
 
         class OnTheWay(Scripted):
-            """Finds something ahead as soon as the robot is on its way to the next view."""
+            """Watch that finds an obstacle ahead once the robot drives to the next view."""
 
             def update(self, _, pose):
                 if not looks or self._left:
@@ -255,7 +255,7 @@ def whole(yard, tmp_path_factory):
 
 
 class TestResumed:
-    """After a resume the watches are new, and find again what is there."""
+    """Resumed runs, whose new watches find the same things again."""
 
     def look(self, yard, told, finding, now):
         perception = Perception((Scripted((0.0, finding), period=0.1),), yard.site, 0.1)
@@ -354,7 +354,7 @@ LOST = Reaction(
 
 
 class TestResumedWhileItWaits:
-    """With the drive `route`: cut where a reaction waits for what ends it."""
+    """Resumed runs with the drive `route`, cut while a reaction waits for its end."""
 
     LOW = Reaction(
         event=EventKind.LOW_BATTERY, response=Response.RETURN, until=EventKind.BATTERY_CHARGED,
@@ -362,7 +362,7 @@ class TestResumedWhileItWaits:
     )  # fmt: skip
 
     def cut_where(self, yard, tmp_path, reaction, faults, wanted):
-        """The record of the whole run, and of one that is cut at the wanted entry and resumed."""
+        """Return the records of the complete run and of one cut at the wanted entry and resumed."""
         path = tmp_path / "run.journal"
         plan = mission(waypoint("A", 5.05, 2.55), reactions=(reaction,), dock=DOCK)
         whole = simulated(plan, yard, drive="route", faults=faults_of(*faults), journal=path)

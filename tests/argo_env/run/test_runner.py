@@ -1,4 +1,4 @@
-"""Runs of missions on UMAD: what may be asked for, what the record says, and what the robot did."""
+"""Runs of missions on UMAD: settings of a run, its record, and the robot's motion."""
 
 import math
 from itertools import pairwise
@@ -205,7 +205,7 @@ def test_unknown_checkpoint_fails_with_a_reason(navigator):
 
 def test_measurement_that_is_not_possible_fails(navigator):
     class Dreamer(Stub):
-        """Thinks that every checkpoint can be read from where the robot is."""
+        """Navigator for which every checkpoint can be read from the robot's pose."""
 
         def plan_to_view(self, start, *_):
             return Path(start, ())
@@ -290,7 +290,7 @@ def test_round_that_is_counted(navigator):
 
 
 class Stub:
-    """A navigator but for what a test replaces."""
+    """Navigator of which a test replaces some methods."""
 
     def __init__(self, navigator):
         self._navigator = navigator
@@ -300,7 +300,7 @@ class Stub:
 
 
 class Blind(Stub):
-    """Plans straight ahead, whatever is in the way."""
+    """Navigator that plans a straight path, even through obstacles."""
 
     def plan(self, start, goal):
         return Path(start, (Motion(start, goal),))
@@ -313,7 +313,7 @@ THROUGH_THE_FENCE = (
 
 
 def test_contacts_are_counted(navigator):
-    """Straight through the fence at y = 0.1, 4 cm thick, with the hull from -0.39 m to 0.35 m."""
+    """The robot drives through a fence at y = 0.1, 4 cm thick; its hull spans -0.39 to 0.35 m."""
     record = simulated(mission(*THROUGH_THE_FENCE), Blind(navigator))
     assert record.tasks[0].outcome == "done"
     assert {c.element for c in record.contacts} == {"floor 1 fence south-west"}
@@ -433,7 +433,7 @@ BRICK = Brick(floor=2, place=(12.2958, 5.05), yaw=22.05)
 
 
 class KilledError(Exception):
-    """The process is gone."""
+    """Error that ends the process of a run."""
 
 
 @pytest.mark.long

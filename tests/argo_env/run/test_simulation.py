@@ -1,4 +1,4 @@
-"""A simulation stepped and steered: by hand, by `simulate` and by an environment it is the same."""
+"""A simulation stepped and commanded: by hand, by `simulate` and by an environment alike."""
 
 import json
 import pickle
@@ -97,7 +97,7 @@ class TestTheSameWhoeverSteps:
         assert len(record.interruptions) == 1
 
     def test_by_tasks_given_one_by_one(self, site, drive):
-        """As environments give them: each when the one before it has ended."""
+        """Environments append each task when the previous one has ended."""
         start = PLAN.tasks[0].pose
         spec = spec_of(drive, mission=beginning(site, start), faults=FAULTS)
         given, whole = Entries(), Entries()
@@ -120,14 +120,14 @@ class TestTheSameWhoeverSteps:
 
 @pytest.fixture(scope="module")
 def whole(site):
-    """The readings of the runs without a pause, and how many steps the runs take."""
-    found = {}
+    """Return the readings of runs without a pause, and their numbers of steps, by drive."""
+    runs = {}
     for drive in PLANS:
         with simulation_of(spec_of(drive), site) as simulation:
             record = simulation.run()
-            found[drive] = read(record), round(simulation.now / simulation.setup.drive.time_step)
+            runs[drive] = read(record), round(simulation.now / simulation.setup.drive.time_step)
             assert record.readings
-    return found
+    return runs
 
 
 class TestPausing:
@@ -190,7 +190,7 @@ class TestRecordAtAnyMoment:
                     so_far = getattr(record, name)
                     assert so_far == getattr(reference, name)[: len(so_far)]
                 if not simulation.ended:
-                    assert "not at its end" in record.result.verdict
+                    assert "has not ended after" in record.result.verdict
                     assert (record.result.success, record.result.outcome) == (False, None)
             assert simulation.record() == reference
         assert RunRecord.model_validate_json(record.model_dump_json()) == record
@@ -294,7 +294,7 @@ class TestSteering:
         ],
     )
     def test_the_verdict_tells_what_a_person_did(self, site, done, verdict):
-        """Also where the robot had begun with it."""
+        """A task counts as done by hand or skipped even if the robot had begun it."""
         spec = RunSpec(mission=mission(measure(1), measure(2)), site="yard", drive="route")
         with simulation_of(spec, site) as simulation:
             until(simulation, lambda: simulation.task.name == done[0]["task"])
@@ -441,7 +441,7 @@ class TestOpenMachine:
 
 @pytest.fixture(scope="module")
 def steered(site, tmp_path_factory):
-    """The journal of a run that was told things from outside, and its record."""
+    """Return the record of a run with commands from outside, and the path of its journal."""
     path = tmp_path_factory.mktemp("steered") / "run.journal"
     spec = spec_of("route")
     with journaled(path, spec, site) as simulation:
@@ -512,7 +512,7 @@ class TestSpec:
             read_spec(b"{", "spec.json")
 
     def test_a_worker_runs_it(self, site, tmp_path):
-        """What a worker process is sent opens the site by its reference."""
+        """A worker process opens the site by the reference in the spec."""
         file = write_site(tmp_path / "yard.yaml")
         spec = spec_of("route", site=file)
         sent = pickle.loads(pickle.dumps((run, spec)))
@@ -558,33 +558,33 @@ class TestWhatDoesNotFitTogether:
             Simulation(machine, site, spec_of("route"))
 
 
-def meddling(told, deed):
-    """An observer that does something when it is told of the run by the method `told`."""
+def observer_that_acts(method, action):
+    """Return an observer that calls `action` in its method of this name."""
     observer = Observer()
-    setattr(observer, told, lambda *_: deed())
+    setattr(observer, method, lambda *_: action())
     return observer
 
 
 class TestObservers:
-    @pytest.mark.parametrize("told", ["on_entry", "on_change", "on_step"])
+    @pytest.mark.parametrize("method", ["on_entry", "on_change", "on_step"])
     @pytest.mark.parametrize(
-        "deed", [lambda s: s.handle(Pause()), lambda s: s.step(), lambda s: s.run()]
+        "action", [lambda s: s.handle(Pause()), lambda s: s.step(), lambda s: s.run()]
     )
-    def test_they_can_not_steer(self, site, told, deed):
-        observer = meddling(told, lambda: deed(simulation))
+    def test_they_can_not_steer(self, site, method, action):
+        observer = observer_that_acts(method, lambda: action(simulation))
         with (
             simulation_of(spec_of("route"), site, observers=[observer]) as simulation,
             pytest.raises(Conflict, match="between two steps"),
         ):
             steps(simulation, 20)
 
-    @pytest.mark.parametrize("told", ["on_entry", "on_change", "on_step"])
-    def test_what_they_raise_breaks_the_run_off(self, site, told):
+    @pytest.mark.parametrize("method", ["on_entry", "on_change", "on_step"])
+    def test_what_they_raise_breaks_the_run_off(self, site, method):
         def fail():
             if simulation.now == 2.0:
                 raise OSError("no room")
 
-        observer = meddling(told, fail)
+        observer = observer_that_acts(method, fail)
         with simulation_of(spec_of("route"), site, observers=[observer]) as simulation:
             with pytest.raises(OSError, match="no room"):
                 simulation.run()
@@ -603,9 +603,9 @@ class TestObservers:
 def test_a_closed_simulation_is_of_no_use(site, drive):
     simulation = simulation_of(spec_of(drive), site)
     steps(simulation, 3)
-    standing = simulation.record()
+    record = simulation.record()
     simulation.close()
     for use in (simulation.step, simulation.run, lambda: simulation.handle(Pause())):
         with pytest.raises(Conflict, match="is closed"):
             use()
-    assert simulation.record() == standing
+    assert simulation.record() == record

@@ -1,4 +1,4 @@
-"""What takes its time: waits, planned rounds, time windows; what the robot does, and the record."""
+"""Waits, planned rounds and time windows: the robot's behaviour, and the record."""
 
 import pytest
 
@@ -301,7 +301,7 @@ def test_what_a_person_read_is_abnormal_outside_the_nominal_range(yard):
 @pytest.mark.rule("H2")
 @pytest.mark.parametrize("until", [3.0, 30.0, 60.0, 95.0, 110.0, 135.0, 150.0])
 def test_a_run_goes_on_in_a_wait_before_a_round_and_in_a_window(yard, tmp_path, until):
-    """At these times it rests, drives, waits for a round, for a window, and for a value."""
+    """At these times the robot rests, drives, waits for a round, for a window, and for a value."""
     group = Group(name="Watch", start="A", end="B", max_repeat_count=2, every=70.0)
     told = wait("TOLD", conditions=(above("3", 4.0),), limit=100.0)
     plan = mission(
@@ -314,8 +314,8 @@ def test_a_run_goes_on_in_a_wait_before_a_round_and_in_a_window(yard, tmp_path, 
     events = logged_events((140.0, ReadingGiven("3", 9.0)))
     whole = simulated(plan, yard, drive="route", events=events, journal=path)
     with open_journal(path) as journal:
-        kept = sum(entry.t <= until for entry in journal.entries)
-    cut_after(path, kept)
+        count = sum(entry.t <= until for entry in journal.entries)
+    cut_after(path, count)
     record = resumed(path, yard)
     assert record.resumed or until > whole.result.duration
     assert record.result.verdict == whole.result.verdict

@@ -1,5 +1,7 @@
-"""Runs go from event to event where the robot touches nothing: the record, and the journal, are
-those of a run that goes step by step, to the last bit."""
+"""Runs with batches of steps: record and journal equal those of a run that goes step by step.
+
+They are equal to the last bit.
+"""
 
 import random
 
@@ -52,14 +54,14 @@ EVENTS = (Occurred(EventKind.GAS_LEAK), Pause(), Resume(), TakeOver(), GiveBack(
 
 
 class StepByStep(Observer):
-    """Wants to be told of each step."""
+    """Observer of single steps, which rules batches out."""
 
     def on_step(self, now, action):
-        """Nothing is done with it."""
+        """Do nothing."""
 
 
 def mission_of(chosen: random.Random) -> Mission:
-    """Some gauges, places, waits and rounds, with reactions and limits."""
+    """Return a random mission of gauges, waypoints, waits and rounds, with reactions and limits."""
     gauges = [str(c.id) for c in SITE.site.checkpoints]
     docks = SITE.site.docks
     tasks = [("START", {"action": Action.START, "pose": docks[chosen.choice([1, 2])]})]
@@ -119,13 +121,13 @@ def spec_of(seed: int, drive: str = "route") -> RunSpec:
         drive=drive,
         seed=seed,
         faults=decode_faults(text.encode(), "test").faults,
-        events=logged_events(*sorted(events, key=lambda one: one[0])),
+        events=logged_events(*sorted(events, key=lambda timed: timed[0])),
         conditions=conditions,
     )
 
 
 def outcome(spec, **options) -> str:
-    """The record as text, or what was wrong with what the run was told."""
+    """Return the record as a text, or the message of the event that was refused."""
     try:
         return simulate(spec, SITE, **options).model_dump_json()
     except Conflict as error:

@@ -1,4 +1,4 @@
-"""What a task says of its action at the place: where to stand, how long to read, what joints do."""
+"""Attributes of a task for its action: pose, time limit for reading, joint states."""
 
 import math
 
@@ -22,7 +22,7 @@ AWAY = Pose(x=5.55, y=1.55, z=0.02, yaw=0.0)
 
 
 class Fog:
-    """Sees nothing the first times, and from nowhere else either."""
+    """Sensor whose first `failures` measurements fail, from whatever pose."""
 
     name = "fog"
 
@@ -41,12 +41,12 @@ def foggy(yard, failures, error=MeasurementError):
     return type(setup)(setup.world, setup.navigator, setup.drive, Fog(failures, error))
 
 
-def ends(plan, setup):
-    """The ends of actions that the machine was told, and the record."""
+def action_ends(plan, setup):
+    """Return the events of actions' ends in a run, and its record."""
     entries = Entries()
     record = run_with(plan, setup, observers=[entries])
     kinds = ("succeeded", "failed", "stopped")
-    return [e for one in entries.all for e in one.events if e.kind in kinds], record
+    return [e for entry in entries.all for e in entry.events if e.kind in kinds], record
 
 
 class TestOwnPose:
@@ -69,7 +69,7 @@ class TestOwnPose:
 
     def test_where_it_can_not_stand_it_fails_with_a_reason(self, yard):
         nowhere = Pose(x=30.0, y=0.0, z=0.0)
-        (end,), record = ends(mission(measure(1, pose=nowhere)), fast_setup(yard))
+        (end,), record = action_ends(mission(measure(1, pose=nowhere)), fast_setup(yard))
         assert "no place that the robot can reach" in record.tasks[0].reason
         assert not end.unreadable
 
@@ -77,20 +77,20 @@ class TestOwnPose:
 class TestReadings:
     @pytest.mark.rule("C3")
     def test_a_look_that_fails_is_unreadable(self, yard):
-        (end,), _ = ends(mission(measure(1)), foggy(yard, 1))
+        (end,), _ = action_ends(mission(measure(1)), foggy(yard, 1))
         assert (end.kind, end.unreadable) == ("failed", True)
 
     def test_from_several_places_as_well(self, yard):
-        (end,), _ = ends(mission(measure(1)), foggy(yard, 9, PoorViewError))
+        (end,), _ = action_ends(mission(measure(1)), foggy(yard, 9, PoorViewError))
         assert (end.kind, end.unreadable) == ("failed", True)
 
     def test_a_place_that_is_not_reached_is_not(self, yard):
-        (end,), _ = ends(mission(waypoint("A", 30, 30)), fast_setup(yard))
+        (end,), _ = action_ends(mission(waypoint("A", 30, 30)), fast_setup(yard))
         assert (end.kind, end.unreadable) == ("failed", False)
 
     @pytest.mark.parametrize(("value", "abnormal"), [(4.9, False), (5.1, True)])
     def test_values_outside_the_nominal_range_are_abnormal(self, yard, value, abnormal):
-        (end,), record = ends(mission(measure(1)), fast_setup(yard, {1: value}))
+        (end,), record = action_ends(mission(measure(1)), fast_setup(yard, {1: value}))
         assert (end.value, end.abnormal) == (value, abnormal)
         assert [a.kind.value for a in record.anomalies] == ["abnormal_reading"] * abnormal
 
@@ -99,15 +99,17 @@ class TestReadingLimit:
     @pytest.mark.rule("T10")
     def test_it_is_unreadable_after_that_long(self, yard):
         plan = mission(measure(1, reading_limit=1.0), waypoint("A", 2.05, 2.05))
-        (failed, _), record = ends(plan, fast_setup(yard))
+        (failed, _), record = action_ends(plan, fast_setup(yard))
         assert (failed.kind, failed.unreadable) == ("failed", True)
         run = record.tasks[0]
         assert run.reason == "not read within 1 s"
         assert run.measuring_duration == pytest.approx(2.0, abs=0.2), "the arm is stowed again"
 
     def test_the_robot_looks_from_elsewhere_as_long_as_there_is_time(self, yard):
-        (patient,), slow = ends(mission(measure(1)), foggy(yard, 1, PoorViewError))
-        (hasty,), fast = ends(mission(measure(1, reading_limit=6.5)), foggy(yard, 1, PoorViewError))
+        (patient,), slow = action_ends(mission(measure(1)), foggy(yard, 1, PoorViewError))
+        (hasty,), fast = action_ends(
+            mission(measure(1, reading_limit=6.5)), foggy(yard, 1, PoorViewError)
+        )
         assert (patient.kind, hasty.kind) == ("succeeded", "failed")
         assert hasty.unreadable
         assert fast.result.duration < slow.result.duration

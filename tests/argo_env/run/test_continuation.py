@@ -1,4 +1,4 @@
-"""A run that goes on from where another one stood, with the mission as it was or as edited."""
+"""Runs that continue another run, with the same mission or an edited one."""
 
 from collections import Counter
 
@@ -32,31 +32,31 @@ def spec_of(plan, **fields):
     return RunSpec(mission=plan, site="yard", drive="route", seed=3, **fields)
 
 
-def stopped_after(simulation, reached):
-    """Taken over and at rest, once the record has so many tasks that are done."""
+def take_over_after(simulation, reached):
+    """Take the robot over once the record has `reached` done tasks, and let it come to rest."""
     while sum(t.outcome == "done" for t in simulation.record().tasks) < reached:
         simulation.step()
     take_over(simulation, after=3)
 
 
-def handed_over(site, plan, reached, **fields):
-    """A simulation that was stopped there and closed, and the spec of how its plan goes on."""
+def make_continuation(site, plan, reached, **fields):
+    """Return a closed simulation with `reached` done tasks, and the spec that continues it."""
     with simulation_of(spec_of(plan, **fields), site) as first:
-        stopped_after(first, reached)
+        take_over_after(first, reached)
         return first, first.continuation_spec(plan)
 
 
-def ended(progress):
+def tallies_by_task(progress):
     return {t.task: (t.done + t.by_hand, t.failed) for t in progress.tallies}
 
 
-def values(progress):
+def readings_by_object(progress):
     return {r.object_id: (r.kind, r.value, r.abnormal) for r in progress.readings}
 
 
 @st.composite
 def plans(draw):
-    """A few tasks in some order, perhaps with a group of two or three rounds around some."""
+    """Draw a mission of a few tasks in some order, perhaps with a group of two or three rounds."""
     tasks = draw(st.permutations(PARTS))[: draw(st.integers(2, 5))]
     first = draw(st.integers(0, len(tasks) - 1))
     last = draw(st.integers(first, len(tasks) - 1))
@@ -70,7 +70,7 @@ def plans(draw):
 @settings(max_examples=examples(15), deadline=None)
 @given(plans(), st.integers(1, 900), st.data())
 def test_before_by_hand_and_after_are_the_whole_mission(site, how, plan, at, data):
-    """Of the mission as it was, or as it was edited meanwhile."""
+    """The tasks before, by hand and after are those of the mission, edited or not."""
     edited = plan
     if how == "edited":
         last = waypoint("LAST", 5.05, 2.05)
@@ -82,7 +82,7 @@ def test_before_by_hand_and_after_are_the_whole_mission(site, how, plan, at, dat
         assume(not first.ended)
         take_over(first)
         assume(not first.ended)
-        done = done_and_skipped(data, plan, first)
+        done = do_some_by_hand(data, plan, first)
         if how == "given back":
             first.handle(GiveBack(done))
             records = (first.run(),)
@@ -98,8 +98,8 @@ def test_before_by_hand_and_after_are_the_whole_mission(site, how, plan, at, dat
             assert records[1].result.duration >= records[1].began == spec.beginning.at
     with simulation_of(spec_of(edited), site) as whole:
         expected = whole.run()
-        assert ended(last) == ended(whole.machine.progress())
-        assert values(last) == values(whole.machine.progress())
+        assert tallies_by_task(last) == tallies_by_task(whole.machine.progress())
+        assert readings_by_object(last) == readings_by_object(whole.machine.progress())
     assert records[-1].result.success is expected.result.success is True
     # Each visit was made once, by whomever.
     made = Counter(t.task for r in records for t in r.tasks if t.outcome == "done")
@@ -107,21 +107,25 @@ def test_before_by_hand_and_after_are_the_whole_mission(site, how, plan, at, dat
     assert made == Counter(t.task for t in expected.tasks)
 
 
-def done_and_skipped(data, plan, simulation):
-    """Some of the tasks that are left, done by hand in any order; one may be skipped."""
-    left = list(names_left(plan, simulation))
-    names = data.draw(st.lists(st.sampled_from(left), max_size=3, unique=True)) if left else []
+def do_some_by_hand(data, plan, simulation):
+    """Do some of the remaining tasks by hand in any order, and perhaps skip one; return them."""
+    remaining = list(remaining_tasks(plan, simulation))
+    names = (
+        data.draw(st.lists(st.sampled_from(remaining), max_size=3, unique=True))
+        if remaining
+        else []
+    )
     for name in names:
         simulation.handle(DoByHand(plan.task(name)))
         to_rest(simulation)
-    skipped = data.draw(st.sampled_from(["", *(n for n in left if not n.startswith("M"))]))
+    skipped = data.draw(st.sampled_from(["", *(n for n in remaining if not n.startswith("M"))]))
     more = [ByHand(task=skipped, skipped=True)] if skipped and skipped not in names else []
     return (*simulation.done_by_hand, *more)
 
 
-def names_left(plan, simulation):
-    """The tasks whose visits have not all ended, the present one among them."""
-    counts = ended(simulation.machine.progress())
+def remaining_tasks(plan, simulation):
+    """Yield the tasks whose visits have not all ended, the current one included."""
+    counts = tallies_by_task(simulation.machine.progress())
     group = plan.groups[0]
     names = [t.name for t in plan.tasks[1:]]
     inside = names[names.index(group.start) : names.index(group.end) + 1]
@@ -133,7 +137,7 @@ def names_left(plan, simulation):
 
 class TestRecord:
     def test_the_verdict_tells_what_was_done_before(self, site):
-        first, spec = handed_over(site, PLAN, 2)
+        first, spec = make_continuation(site, PLAN, 2)
         record = simulate(spec, site)
         assert record.result.outcome is Outcome.COMPLETED
         assert record.result.verdict == (
@@ -149,7 +153,7 @@ class TestRecord:
         off = waypoint("off the slab", 50.0, 50.0)
         plan = mission(off, measure(1), measure(2))
         with simulation_of(spec_of(plan), site) as first:
-            stopped_after(first, 1)
+            take_over_after(first, 1)
             spec = first.continuation_spec(plan)
             edited = first.continuation_spec(mission(measure(1), measure(2)))
         for one in (spec, edited):
@@ -161,7 +165,7 @@ class TestRecord:
         window = TimeWindow(earliest=60.0)
         plan = mission(measure(1), measure(2), waypoint("B", 2.05, 1.55, window=window),
                        max_duration=65.0)  # fmt: skip
-        _, spec = handed_over(site, plan, 1)
+        _, spec = make_continuation(site, plan, 1)
         record = simulate(spec, site)
         run = record.tasks[-1]
         assert run.end == pytest.approx(60.0, abs=0.2)
@@ -173,7 +177,7 @@ class TestRecord:
     def test_a_window_that_was_kept_before_is_not_said_to_be_open(self, site):
         window = TimeWindow(earliest=0.0, latest=500.0)
         plan = mission(measure(1, window=window), measure(2, window=window))
-        _, spec = handed_over(site, plan, 1)
+        _, spec = make_continuation(site, plan, 1)
         (run,) = simulate(spec, site).windows
         assert (run.task, run.kept) == ("MEASURE 2", WindowOutcome.KEPT)
 
@@ -182,7 +186,7 @@ class TestEdited:
     def test_new_tasks_are_done_and_old_ones_are_not(self, site):
         edited = mission(measure(1), measure(3), waypoint("B", 2.05, 1.55))
         with simulation_of(spec_of(PLAN), site) as first:
-            stopped_after(first, 1)
+            take_over_after(first, 1)
             # It stands at a task that the edit must keep.
             with pytest.raises(DiagnosticError, match="which the plan does not have"):
                 first.continuation_spec(edited)
@@ -194,7 +198,7 @@ class TestEdited:
     def test_what_is_put_in_before_is_passed_over(self, site):
         early = mission(waypoint("EARLY", 2.05, 2.05), *PLAN.tasks[1:])
         with simulation_of(spec_of(PLAN), site) as first:
-            stopped_after(first, 2)
+            take_over_after(first, 2)
             spec = first.continuation_spec(early)
         assert simulate(spec, site).result.verdict == (
             "the mission was completed; done before this run: MEASURE 1, A; passed over: EARLY"
@@ -218,7 +222,7 @@ class TestEdited:
 
     def test_what_does_not_fit_is_told(self, site):
         with simulation_of(spec_of(PLAN), site) as first:
-            stopped_after(first, 1)
+            take_over_after(first, 1)
             shorter = mission(measure(1), waypoint("A", 4.05, 2.05))
             spec = first.continuation_spec(shorter, [ByHand(task="MEASURE 2", value=3.0)])
         assert [d.code for d in spec.diagnostics] == ["handover.by-hand-gone"]
@@ -227,7 +231,7 @@ class TestEdited:
 
 def test_what_was_found_before_is_known(site):
     fault = AbnormalValue(checkpoint=1, value=9.0)
-    first, spec = handed_over(site, PLAN, 1, faults=(fault,))
+    first, spec = make_continuation(site, PLAN, 1, faults=(fault,))
     (known,) = spec.beginning.known
     assert known.anomaly == first.record().anomalies[0]
     told = Anomaly(t=1.0, kind=EventKind.POSITIVE_OBSTACLE, detail="a box", source="camera",
@@ -236,7 +240,7 @@ def test_what_was_found_before_is_known(site):
     beginning = spec.beginning.model_copy(update={"known": more})
     with simulation_of(spec.model_copy(update={"beginning": beginning}), site) as rest:
         (closed,) = rest.setup.navigator.blockages
-        stopped_after(rest, 1)
+        take_over_after(rest, 1)
         assert rest.continuation_spec(PLAN).beginning.known[:2] == more
     assert closed.rect[0] < 2.9 < 3.1 < closed.rect[2]
 
@@ -257,12 +261,12 @@ class TestRefusals:
 
     def test_what_nobody_did(self, site):
         with simulation_of(spec_of(PLAN), site) as first:
-            stopped_after(first, 1)
+            take_over_after(first, 1)
             with pytest.raises(Invalid, match="MEASURE 9"):
                 first.continuation_spec(PLAN, [ByHand(task="MEASURE 9")])
 
     def test_another_machine(self, site):
-        _, spec = handed_over(site, PLAN, 1)
+        _, spec = make_continuation(site, PLAN, 1)
         with pytest.raises(Conflict, match="machine"):
             Simulation(Executor(lower(PLAN)), site, spec)
         machine = Executor(lower(PLAN, spec.beginning.progress))
@@ -272,7 +276,7 @@ class TestRefusals:
 
 @pytest.mark.parametrize("share", [0.2, 0.5, 0.8, 1.0])
 def test_its_journal_goes_on_from_anywhere(site, tmp_path, share):
-    _, spec = handed_over(site, PLAN, 1)
+    _, spec = make_continuation(site, PLAN, 1)
     path = tmp_path / "run.journal"
     with journaled(path, spec, site) as rest:
         record = rest.run()

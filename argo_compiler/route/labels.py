@@ -1,10 +1,11 @@
 """Dynamic programming over labels with two measures: time, and energy used or travel.
 
-The earliest time is not always best if the battery is charged on the way, or if waiting costs
-nothing. So each set and last node has several labels that do not dominate each other in the two
-measures. Labels that cannot lead to a better route than the best known one are dropped, by a lower
-bound on their remaining cost from the problem without windows and battery. Beam searches of
-increasing width find routes; one that drops no label for its width proves the best route.
+Energy counts since the last charge. The earliest time is not always best if the battery is charged
+on the way, or if waiting costs nothing. So each set and last node has several labels that do not
+dominate each other in the two measures. Labels that cannot lead to a better route than the best
+known one are dropped, by a lower bound on their remaining cost from the problem without windows and
+battery. Beam searches of increasing width find routes; one that drops no label for its width proves
+the best route.
 """
 
 from collections.abc import Iterable

@@ -1,13 +1,12 @@
-"""Rounds as single steps: in which ways a round can be made, and what each takes from anywhere.
+"""Rounds as single steps with modes: orders of their members, with times, energies and exits.
 
-A round is left where it was entered to leave, and nothing comes between its members. So for the
-rest of the route it is one step with some modes: an order of its members, the time and energy that
-all of its rounds take from each place that it may be entered from, and where it ends.
+No other visit comes between the members of a round. So for the rest of the route a round is one
+step with some modes. A mode is an order of the members, with the time and energy of all repetitions
+after each possible drive to the first member, and the possible locations of the robot at the end.
 
-To be done sooner, with less energy, where the robot may then be in fewer places, is never worse for
-what follows, with one exception: a round around it that lasts for a time. That makes one more pass
-where a shorter one ends before the time is over. So ways are dropped for better ones only where no
-such round is around them.
+An order that ends earlier, with less energy and at fewer possible locations, is never worse for
+the rest of the route, with one exception: inside a round with a duration. There an earlier end may
+lead to one more repetition. So orders are dropped by dominance only outside of such rounds.
 """
 
 from collections.abc import Callable
@@ -22,45 +21,47 @@ from argo_compiler.route.problem import NEVER, Round, RouteProblem
 Vector = NDArray[np.int64]
 
 MOST_MEMBERS = 9
-"""of a round, those inside others counted as one, up to which its best orders are known"""
+"""highest number of a round's parts (members and inner rounds) for which its best orders are
+computed"""
 MOST_ORDERS = 5040
-"""of a round with a duration in it or around it, which are all weighed: those of seven members"""
+"""highest number of orders of a round with a duration in it or around it, which are all compared:
+those of seven members"""
 _FEW = 3
-"""orders that are weighed also when the time is over"""
+"""number of orders that are compared even if the time is up"""
 
 
 @dataclass(frozen=True, eq=False)
 class StepMode:
-    """One way to make a visit or a round, where it ends in one way."""
+    """Mode of a step: one order of its visits, with one set of locations at the end."""
 
     first: int
-    """the visit that it begins with"""
+    """first visit of the order"""
     exit: tuple[int, ...]
-    """the visits where the robot may then be; it is reckoned with the worst"""
+    """visits where the robot may be at the end; the worst one counts for the next drive"""
     order: tuple[int, ...]
     service: int = 0
-    """of a single visit"""
+    """service time of a single visit; 0 for a round"""
     entries: Vector | None = None
-    """of a round: the times of drives to `first`, sorted; None: a single visit"""
+    """possible times of the drive to the first visit of a round, sorted; None: a single visit"""
     time: Vector | None = None
-    """after a drive of each of these times, until the end, the drive included; NEVER: it does not
-    end in this way then"""
+    """time of the round after each of these drives, with the drive; NEVER: the round has another
+    exit after that drive"""
     energy: Vector | None = None
-    """likewise, the drive's own not included"""
+    """energy of the round after each of these drives, without the drive"""
 
     def enter(self, drive: Vector, energy: Vector) -> tuple[Vector, Vector]:
-        """Time and energy until the end after drives to `first` that take so much."""
+        """Return time and energy until the step's end, after drives of given times and energies."""
         if self.entries is None or self.time is None or self.energy is None:
             return plus(drive, self.service), energy
-        place = np.minimum(np.searchsorted(self.entries, drive), len(self.entries) - 1)
-        known = self.entries[place] == drive
-        time = np.where(known, self.time[place], NEVER)
-        return time, plus(energy, self.energy[place])
+        index = np.minimum(np.searchsorted(self.entries, drive), len(self.entries) - 1)
+        known = self.entries[index] == drive
+        time = np.where(known, self.time[index], NEVER)
+        return time, plus(energy, self.energy[index])
 
 
 @dataclass
 class Step:
-    """A visit, or a round with what lies directly in it. A node of the tree of rounds."""
+    """Visit, or round with its direct parts: a node of the tree of rounds."""
 
     visits: frozenset[int]
     round: Round | None = None
@@ -68,64 +69,69 @@ class Step:
 
 
 def steps(problem: RouteProblem) -> list[Step]:
-    """The visits and outermost rounds, in the order of their first visits."""
+    """Return the visits and outermost rounds, sorted by their lowest visits."""
     top = [Step(frozenset([visit])) for visit in range(problem.size)]
-    # From the innermost round outwards; of equal ones the last is inside.
+    # From the innermost round outwards; of equal ones the last is the inner one.
     numbers = sorted(range(len(problem.rounds)), key=lambda k: (len(problem.rounds[k].members), -k))
     for number in numbers:
-        one = problem.rounds[number]
-        inside = [step for step in top if step.visits <= set(one.members)]
-        around = Step(frozenset(one.members), one, inside)
-        top = [step for step in top if not step.visits <= around.visits] + [around]
+        round_ = problem.rounds[number]
+        inner = [step for step in top if step.visits <= set(round_.members)]
+        outer = Step(frozenset(round_.members), round_, inner)
+        top = [step for step in top if not step.visits <= outer.visits] + [outer]
     return sorted(top, key=lambda step: min(step.visits))
 
 
 def modes(
     problem: RouteProblem,
     step: Step,
-    order_of: Callable[[Step], tuple[Step, ...]],
-    over: Callable[[], bool] = lambda: False,
+    cyclic_order: Callable[[Step], tuple[Step, ...]],
+    is_time_up: Callable[[], bool] = lambda: False,
 ) -> tuple[list[StepMode], bool]:
-    """The ways to make a step that may be the best, and whether they are all of those.
+    """Return the modes of a step that may be optimal, and whether they are complete.
 
     A round of more than MOST_MEMBERS parts, or with a duration and of more than MOST_ORDERS orders,
-    is made in the cyclic order that `order_of` gives. When the time is `over`, some ways do.
+    is made in the cyclic order that `cyclic_order` returns. If the time is up, only some modes are
+    returned.
     """
     if step.round is None:
         (visit,) = step.visits
         return [StepMode(visit, (visit,), (visit,), problem.visits[visit].service)], True
     drives = _Drives(problem)
-    ways, exact = _ways(problem, step, order_of, drives, over, within_timed=False)
-    return [m for way in ways if isinstance(way, _Rounds) for m in _modes(way, drives)], exact
+    orders, exact = _candidate_orders(
+        problem, step, cyclic_order, drives, is_time_up, within_timed=False
+    )
+    return [
+        m for order in orders if isinstance(order, _RoundOrder) for m in _modes(order, drives)
+    ], exact
 
 
 def plus(times: Vector, more: int | Vector) -> Vector:
-    """A sum of times that is NEVER where a part is."""
+    """Return the sum of times, at most NEVER."""
     total: Vector = np.minimum(times + more, NEVER)
     return total
 
 
-class StepPlan(Protocol):
-    """How a visit or a round is made, its order decided."""
+class StepOrder(Protocol):
+    """Visit, or round with a decided order of its members."""
 
     @property
     def first(self) -> int:
-        """The visit that it begins with."""
+        """First visit of the order."""
         ...
 
     @property
     def order(self) -> tuple[int, ...]:
-        """Its visits in the first round."""
+        """Visits in the order of their first repetition."""
         ...
 
     def run(self, drive: int) -> "StepOutcome":
-        """What it takes after a drive to `first` of that time; the drive's energy is not in it."""
+        """Return the outcome after a drive to `first` of a given time, without its energy."""
         ...
 
 
 @dataclass(frozen=True)
 class StepOutcome:
-    """What a way takes, the time of the drive to it included, and where the robot may then be."""
+    """Time of a step with the drive to it, its energy, and the robot's possible locations."""
 
     time: int
     energy: int
@@ -133,7 +139,7 @@ class StepOutcome:
 
 
 @dataclass(frozen=True)
-class _Single:
+class _SingleVisit:
     first: int
     service: int
 
@@ -145,88 +151,94 @@ class _Single:
         return StepOutcome(min(drive + self.service, NEVER), 0, (self.first,))
 
 
-class _Rounds:
-    """A round with its parts in an order. Keeps what it has reckoned once."""
+class _RoundOrder:
+    """Round with its parts in a given order, which caches the outcomes of repetitions."""
 
-    def __init__(self, drives: "_Drives", asked: Round, parts: tuple[StepPlan, ...]) -> None:
-        self._drives, self._round, self._parts = drives, asked, parts
+    def __init__(self, drives: "_Drives", round_: Round, parts: tuple[StepOrder, ...]) -> None:
+        self._drives, self._round, self._parts = drives, round_, parts
         self.first = parts[0].first
         self.order = tuple(visit for part in parts for visit in part.order)
-        self._after: dict[tuple[int, ...], StepOutcome] = {}
-        # Where the first part takes its time whatever the drive, so does a whole pass.
-        self._steady = parts[0].run(0) if isinstance(parts[0], _Single) else None
-        if self._steady is not None:
-            self._steady = self._on(self._steady)
+        self._next_by_exit: dict[tuple[int, ...], StepOutcome] = {}
+        # If the time of the first part does not depend on the drive to it, neither does that of a
+        # repetition: this is its outcome without the drive.
+        self._without_drive = parts[0].run(0) if isinstance(parts[0], _SingleVisit) else None
+        if self._without_drive is not None:
+            self._without_drive = self._add_other_parts(self._without_drive)
 
-    def once(self, drive: int) -> StepOutcome:
-        """A single pass after a drive to `first` of that time."""
-        if self._steady is None:
-            return self._on(self._parts[0].run(drive))
-        done = self._steady
-        return StepOutcome(min(drive + done.time, NEVER), done.energy, done.exit)
+    def first_repetition(self, drive: int) -> StepOutcome:
+        """Return the outcome of the first repetition after a drive of a given time."""
+        if self._without_drive is None:
+            return self._add_other_parts(self._parts[0].run(drive))
+        outcome = self._without_drive
+        return StepOutcome(min(drive + outcome.time, NEVER), outcome.energy, outcome.exit)
 
-    def _on(self, done: StepOutcome) -> StepOutcome:
+    def _add_other_parts(self, outcome: StepOutcome) -> StepOutcome:
         for part in self._parts[1:]:
-            done = self._drives.onward(done, part)
-        return done
+            outcome = self._drives.after(outcome, part)
+        return outcome
 
-    def _again(self, exit: tuple[int, ...]) -> StepOutcome:
-        """A further pass, from the places where the last one ended."""
-        if exit not in self._after:
-            begun = self._drives.onward(StepOutcome(0, 0, exit), self._parts[0])
-            self._after[exit] = self._on(begun)
-        return self._after[exit]
+    def _next_repetition(self, exit: tuple[int, ...]) -> StepOutcome:
+        """Return the outcome of a further repetition, from the locations after the last one."""
+        if exit not in self._next_by_exit:
+            first_part = self._drives.after(StepOutcome(0, 0, exit), self._parts[0])
+            self._next_by_exit[exit] = self._add_other_parts(first_part)
+        return self._next_by_exit[exit]
 
     def runs(self, drives: Vector) -> tuple[Vector, Vector, list[tuple[int, ...]], Vector]:
-        """Times and energies after some drives, the ends that there are, and which each has."""
-        asked, once = self._round, self._steady
-        more = None if once is None else self._again(once.exit)
+        """Return times and energies after some drives, the exits, and the index of each exit."""
+        round_, once = self._round, self._without_drive
+        more = None if once is None else self._next_repetition(once.exit)
         if once is None or more is None or more.exit != once.exit or more.time == 0:
-            ends = [self.run(drive) for drive in drives.tolist()]
-            exits = sorted({end.exit for end in ends})
-            rows = [(end.time, end.energy, exits.index(end.exit)) for end in ends]
-            time, energy, which = np.array(rows, np.int64).reshape(-1, 3).T
-            return time, energy, exits, which
+            outcomes = [self.run(drive) for drive in drives.tolist()]
+            exits = sorted({outcome.exit for outcome in outcomes})
+            rows = [(end.time, end.energy, exits.index(end.exit)) for end in outcomes]
+            time, energy, exit_index = np.array(rows, np.int64).reshape(-1, 3).T
+            return time, energy, exits, exit_index
         time = plus(drives, once.time)
-        passes = np.full(len(time), asked.repeat - 1 if asked.repeat else NEVER)
-        if asked.duration:
-            wanted = -((time - asked.duration) // more.time)
-            passes = np.minimum(passes, np.maximum(wanted, 0))
+        repetitions = np.full(len(time), round_.repeat - 1 if round_.repeat else NEVER)
+        if round_.duration:
+            until_duration = -((time - round_.duration) // more.time)
+            repetitions = np.minimum(repetitions, np.maximum(until_duration, 0))
         time, energy = (
-            plus(time, passes * more.time),
-            np.minimum(once.energy + passes * more.energy, NEVER),
+            plus(time, repetitions * more.time),
+            np.minimum(once.energy + repetitions * more.energy, NEVER),
         )
-        left = (time > asked.duration) & (time < NEVER) & (asked.duration > 0) & (not asked.soft)
-        time[left] = asked.duration
-        return time, energy, [once.exit, tuple(sorted(self.order))], left.astype(np.int64)
+        interrupted = (
+            (time > round_.duration) & (time < NEVER) & (round_.duration > 0) & (not round_.soft)
+        )
+        time[interrupted] = round_.duration
+        return time, energy, [once.exit, tuple(sorted(self.order))], interrupted.astype(np.int64)
 
     def run(self, drive: int) -> StepOutcome:
-        asked = self._round
-        done, count = self.once(drive), 1
-        while done.time < NEVER and (not asked.repeat or count < asked.repeat):
-            if asked.duration and done.time >= asked.duration:
+        round_ = self._round
+        outcome, count = self.first_repetition(drive), 1
+        while outcome.time < NEVER and (not round_.repeat or count < round_.repeat):
+            if round_.duration and outcome.time >= round_.duration:
                 break
-            more, passes = self._again(done.exit), 1
-            if asked.duration and more.time == 0:
-                return _sum(done, more, 1)  # passes that take no time would never fill it
-            if more.exit == done.exit:  # all that follow are like this one
-                passes = asked.repeat - count if asked.repeat else NEVER
-                if asked.duration:
-                    passes = min(passes, -(-(asked.duration - done.time) // more.time))
-            done = _sum(done, more, passes)
-            count += passes
-        if asked.duration and not asked.soft and asked.duration < done.time < NEVER:
-            return StepOutcome(asked.duration, done.energy, tuple(sorted(self.order)))
-        return done
+            more, repetitions = self._next_repetition(outcome.exit), 1
+            if round_.duration and more.time == 0:
+                # Repetitions that take no time would never fill the duration.
+                return _sum(outcome, more, 1)
+            if more.exit == outcome.exit:  # all further repetitions are equal
+                repetitions = round_.repeat - count if round_.repeat else NEVER
+                if round_.duration:
+                    repetitions = min(
+                        repetitions, -(-(round_.duration - outcome.time) // more.time)
+                    )
+            outcome = _sum(outcome, more, repetitions)
+            count += repetitions
+        if round_.duration and not round_.soft and round_.duration < outcome.time < NEVER:
+            return StepOutcome(round_.duration, outcome.energy, tuple(sorted(self.order)))
+        return outcome
 
 
-def _sum(done: StepOutcome, more: StepOutcome, times: int) -> StepOutcome:
-    time = min(done.time + times * more.time, NEVER)
-    return StepOutcome(time, min(done.energy + times * more.energy, NEVER), more.exit)
+def _sum(outcome: StepOutcome, more: StepOutcome, times: int) -> StepOutcome:
+    time = min(outcome.time + times * more.time, NEVER)
+    return StepOutcome(time, min(outcome.energy + times * more.energy, NEVER), more.exit)
 
 
 class _Drives:
-    """The drives between places. Keeps what it has looked up once."""
+    """Drives between locations, which caches the worst ones and the entries of steps."""
 
     def __init__(self, problem: RouteProblem) -> None:
         self._travel, self._battery = problem.travel, problem.battery
@@ -234,143 +246,164 @@ class _Drives:
         self._worst: dict[tuple[tuple[int, ...], int], tuple[int, int]] = {}
 
     def entries(self, first: int) -> Vector:
-        """The times of all drives to a visit, sorted: a step is entered after one of them."""
+        """Return the times of all drives to a visit, sorted: each step is entered after one."""
         if first not in self._entries:
             drives = np.unique(self._travel[:, first])
             self._entries[first] = drives[drives < NEVER]
         return self._entries[first]
 
-    def onward(self, done: StepOutcome, way: StepPlan) -> StepOutcome:
-        """A way after what was done, from the worst of the places where the robot may be."""
-        if (done.exit, way.first) not in self._worst:
-            places = list(done.exit)
-            drive, energy = int(self._travel[places, way.first].max()), 0
+    def after(self, outcome: StepOutcome, part: StepOrder) -> StepOutcome:
+        """Return the outcome after a further part, with the drive from the worst location."""
+        if (outcome.exit, part.first) not in self._worst:
+            origins = list(outcome.exit)
+            drive, energy = int(self._travel[origins, part.first].max()), 0
             if self._battery is not None:
-                energy = int(self._battery.energy[places, way.first].max())
-            self._worst[done.exit, way.first] = drive, energy
-        drive, energy = self._worst[done.exit, way.first]
-        after = way.run(drive)
-        time = NEVER if drive >= NEVER else min(done.time + after.time, NEVER)
-        return StepOutcome(time, min(done.energy + energy + after.energy, NEVER), after.exit)
+                energy = int(self._battery.energy[origins, part.first].max())
+            self._worst[outcome.exit, part.first] = drive, energy
+        drive, energy = self._worst[outcome.exit, part.first]
+        added = part.run(drive)
+        time = NEVER if drive >= NEVER else min(outcome.time + added.time, NEVER)
+        return StepOutcome(time, min(outcome.energy + energy + added.energy, NEVER), added.exit)
 
 
-def _ways(
+def _candidate_orders(
     problem: RouteProblem,
     step: Step,
-    order_of: Callable[[Step], tuple[Step, ...]],
+    cyclic_order: Callable[[Step], tuple[Step, ...]],
     drives: _Drives,
-    over: Callable[[], bool],
+    is_time_up: Callable[[], bool],
     *,
     within_timed: bool,
-) -> tuple[list[StepPlan], bool]:
-    """The ways to make a step among which the best is, and whether that is so. `within_timed`:
-    whether a round around it lasts for a time."""
+) -> tuple[list[StepOrder], bool]:
+    """Return orders of a step, and whether an optimal one is certainly among them.
+
+    `within_timed`: a round around the step has a duration.
+    """
     if step.round is None:
         (visit,) = step.visits
-        return [_Single(visit, problem.visits[visit].service)], True
-    lasts = within_timed or step.round.duration > 0
+        return [_SingleVisit(visit, problem.visits[visit].service)], True
+    is_timed = within_timed or step.round.duration > 0
     exact, choices = True, []
     for part in step.parts:
-        some, all_of_them = _ways(problem, part, order_of, drives, over, within_timed=lasts)
-        choices.append(some)
-        exact &= all_of_them
-    waits = _waits(problem, step.parts)
-    orders: list[tuple[StepPlan, ...]] | None = None
-    if lasts or _timed(step):
-        orders = _all_orders(choices, waits)
+        part_orders, part_exact = _candidate_orders(
+            problem, part, cyclic_order, drives, is_time_up, within_timed=is_timed
+        )
+        choices.append(part_orders)
+        exact &= part_exact
+    predecessors = _predecessors(problem, step.parts)
+    orders: list[tuple[StepOrder, ...]] | None = None
+    if is_timed or _has_duration(step):
+        orders = _all_orders(choices, predecessors)
     elif len(step.parts) <= MOST_MEMBERS:
-        orders = _best_orders(drives, choices, waits, over)
+        orders = _best_orders(drives, choices, predecessors, is_time_up)
         if orders is not None:
-            return [_Rounds(drives, step.round, order) for order in orders], exact
-    if orders is None or over():
+            return [_RoundOrder(drives, step.round, order) for order in orders], exact
+    if orders is None or is_time_up():
         exact = False
-        cycle = step.parts if over() else order_of(step)
-        orders = _rotations(choices, waits, [step.parts.index(part) for part in cycle])
-    ways = [_Rounds(drives, step.round, order) for order in orders]
-    best = _undominated(ways, drives, over, by_time=not within_timed)
-    return best, exact and not over()
+        cycle = step.parts if is_time_up() else cyclic_order(step)
+        orders = _rotations(choices, predecessors, [step.parts.index(part) for part in cycle])
+    candidates = [_RoundOrder(drives, step.round, order) for order in orders]
+    best = _undominated(candidates, drives, is_time_up, by_time=not within_timed)
+    return best, exact and not is_time_up()
 
 
 def _undominated(
-    ways: list[_Rounds], drives: _Drives, over: Callable[[], bool], *, by_time: bool
-) -> list[StepPlan]:
-    """The ways than which none is as good after every drive: in energy, and in time (`by_time`, or
-    else in the same time), in places among which the robot then is. Some when the time is over."""
-    numbers: dict[tuple[int, ...], int] = {}
-    found: dict[int, list[tuple[_Rounds, Vector]]] = {}
-    for k, way in enumerate(ways):
-        if k >= _FEW and over():
-            break
-        if not len(drives.entries(way.first)):
-            continue  # there is no way to it
-        time, energy, exits, which = way.runs(drives.entries(way.first))
-        number = np.array([numbers.setdefault(exit, len(numbers)) for exit in exits], np.int64)
-        row = np.stack([time, energy, number[which]])
-        found.setdefault(way.first, []).append((way, row))
-    within = np.array([[set(one) <= set(other) for other in numbers] for one in numbers])
-    return [way for some in found.values() for way in _best_of(some, within, over, by_time)]
-
-
-def _best_of(
-    ways: list[tuple[_Rounds, Vector]],
-    within: NDArray[np.bool_],
-    over: Callable[[], bool],
+    candidates: list[_RoundOrder],
+    drives: _Drives,
+    is_time_up: Callable[[], bool],
+    *,
     by_time: bool,
-) -> list[StepPlan]:
-    """Those with the same first visit. Of each its times, energies and numbers of ends, shape
-    (3, entries); `within`: whether the places of the end of row are among those of column."""
-    kept: list[StepPlan] = []
-    table = np.empty((len(ways), *ways[0][1].shape), np.int64)
-    for way, row in sorted(ways, key=lambda one: tuple(one[1][:2].sum(axis=1))):
-        if kept and over():
+) -> list[StepOrder]:
+    """Return the orders that no other order dominates after every drive.
+
+    An order dominates another with the same first visit if it needs no more energy, its exits are
+    among those of the other, and it takes no more time (`by_time`), or else the same time. Returns
+    only some orders if the time is up.
+    """
+    numbers: dict[tuple[int, ...], int] = {}
+    by_first_visit: dict[int, list[tuple[_RoundOrder, Vector]]] = {}
+    for k, order in enumerate(candidates):
+        if k >= _FEW and is_time_up():
             break
-        others, time = table[: len(kept)], row[0]
-        soon = others[:, 0] <= time if by_time else others[:, 0] == time
-        as_good = soon & (others[:, 1] <= row[1]) & within[others[:, 2], row[2]]
+        if not len(drives.entries(order.first)):
+            continue  # the first visit can't be reached
+        time, energy, exits, exit_index = order.runs(drives.entries(order.first))
+        number = np.array([numbers.setdefault(exit, len(numbers)) for exit in exits], np.int64)
+        row = np.stack([time, energy, number[exit_index]])
+        by_first_visit.setdefault(order.first, []).append((order, row))
+    is_subset = np.array([[set(one) <= set(other) for other in numbers] for one in numbers])
+    return [
+        order
+        for group in by_first_visit.values()
+        for order in _undominated_in_group(group, is_subset, is_time_up, by_time)
+    ]
+
+
+def _undominated_in_group(
+    group: list[tuple[_RoundOrder, Vector]],
+    is_subset: NDArray[np.bool_],
+    is_time_up: Callable[[], bool],
+    by_time: bool,
+) -> list[StepOrder]:
+    """Return the undominated orders of a group with the same first visit.
+
+    Each order has an array of times, energies and numbers of exits, shape (3, entries).
+    `is_subset`: whether the locations of exit `row` are among those of exit `column`.
+    """
+    undominated: list[StepOrder] = []
+    table = np.empty((len(group), *group[0][1].shape), np.int64)
+    for order, row in sorted(group, key=lambda item: tuple(item[1][:2].sum(axis=1))):
+        if undominated and is_time_up():
+            break
+        others, time = table[: len(undominated)], row[0]
+        not_later = others[:, 0] <= time if by_time else others[:, 0] == time
+        as_good = not_later & (others[:, 1] <= row[1]) & is_subset[others[:, 2], row[2]]
         if (time < NEVER).any() and not (as_good | (time >= NEVER)).all(axis=1).any():
-            table[len(kept)] = row
-            kept.append(way)
-    return kept
+            table[len(undominated)] = row
+            undominated.append(order)
+    return undominated
 
 
-def _timed(step: Step) -> bool:
-    """Whether there is a duration in it: then to be there sooner may take longer in the end."""
-    inside = any(_timed(part) for part in step.parts)
+def _has_duration(step: Step) -> bool:
+    """Return True if a round of the step has a duration: then an earlier start may end later."""
+    inside = any(_has_duration(part) for part in step.parts)
     return inside or (step.round is not None and step.round.duration > 0)
 
 
-def _waits(problem: RouteProblem, parts: list[Step]) -> list[int]:
-    """For each part, as bits, the parts that must come before it."""
-    waits = [0] * len(parts)
-    home = {visit: k for k, part in enumerate(parts) for visit in part.visits}
+def _predecessors(problem: RouteProblem, parts: list[Step]) -> list[int]:
+    """Return, for each part, the set of parts that must come before it, as bits."""
+    predecessors = [0] * len(parts)
+    part_of_visit = {visit: k for k, part in enumerate(parts) for visit in part.visits}
     for precedence in problem.precedences:
-        there = [home[visit] for visit in precedence.sequence if visit in home]
-        for later, part in enumerate(there):
-            for earlier in there[:later]:
+        sequence = [part_of_visit[visit] for visit in precedence.sequence if visit in part_of_visit]
+        for later, part in enumerate(sequence):
+            for earlier in sequence[:later]:
                 if earlier != part:
-                    waits[part] |= 1 << earlier
-    return waits
+                    predecessors[part] |= 1 << earlier
+    return predecessors
 
 
-def _free(choices: list[list[StepPlan]], waits: list[int], done: int) -> list[tuple[int, StepPlan]]:
+def _available(
+    choices: list[list[StepOrder]], predecessors: list[int], made: int
+) -> list[tuple[int, StepOrder]]:
     return [
-        (part, way)
-        for part, some in enumerate(choices)
-        if not done >> part & 1 and waits[part] & ~done == 0
-        for way in some
+        (part, choice)
+        for part, part_choices in enumerate(choices)
+        if not made >> part & 1 and predecessors[part] & ~made == 0
+        for choice in part_choices
     ]
 
 
 def _all_orders(
-    choices: list[list[StepPlan]], waits: list[int]
-) -> list[tuple[StepPlan, ...]] | None:
-    """None: there are more than MOST_ORDERS."""
-    orders: list[tuple[int, tuple[StepPlan, ...]]] = [(0, ())]
+    choices: list[list[StepOrder]], predecessors: list[int]
+) -> list[tuple[StepOrder, ...]] | None:
+    """Return all orders of the parts, or None if there are more than MOST_ORDERS."""
+    orders: list[tuple[int, tuple[StepOrder, ...]]] = [(0, ())]
     for _ in choices:
         orders = [
-            (done | 1 << part, (*order, way))
-            for done, order in orders
-            for part, way in _free(choices, waits, done)
+            (made | 1 << part, (*order, choice))
+            for made, order in orders
+            for part, choice in _available(choices, predecessors, made)
         ]
         if len(orders) > MOST_ORDERS:
             return None
@@ -379,68 +412,82 @@ def _all_orders(
 
 @dataclass(frozen=True)
 class _Label:
-    done: StepOutcome
-    order: tuple[StepPlan, ...]
+    outcome: StepOutcome
+    order: tuple[StepOrder, ...]
 
 
 def _best_orders(
-    drives: _Drives, choices: list[list[StepPlan]], waits: list[int], over: Callable[[], bool]
-) -> list[tuple[StepPlan, ...]] | None:
-    """Dynamic programming over the parts done, from each first way to each last one, with the
-    labels of time and energy of which neither is the smaller. None: the time is over."""
-    found: list[tuple[StepPlan, ...]] = []
-    for k, first in _free(choices, waits, 0):
+    drives: _Drives,
+    choices: list[list[StepOrder]],
+    predecessors: list[int],
+    is_time_up: Callable[[], bool],
+) -> list[tuple[StepOrder, ...]] | None:
+    """Compute the undominated orders by dynamic programming, or return None if the time is up.
+
+    The states are the parts made and the last one, for each first part; the labels of a state do
+    not dominate each other in time and energy.
+    """
+    orders: list[tuple[StepOrder, ...]] = []
+    for k, first in _available(choices, predecessors, 0):
         layer = {(1 << k, id(first)): [_Label(first.run(0), (first,))]}
         for _ in range(len(choices) - 1):
-            if over():
+            if is_time_up():
                 return None
             following: dict[tuple[int, int], list[_Label]] = {}
-            for (done, _), labels in layer.items():
-                for part, way in _free(choices, waits, done):
-                    some = following.setdefault((done | 1 << part, id(way)), [])
+            for (made, _), labels in layer.items():
+                for part, choice in _available(choices, predecessors, made):
+                    next_labels = following.setdefault((made | 1 << part, id(choice)), [])
                     for label in labels:
-                        after = drives.onward(label.done, way)
-                        _add(some, _Label(after, (*label.order, way)))
+                        outcome = drives.after(label.outcome, choice)
+                        _add(next_labels, _Label(outcome, (*label.order, choice)))
             layer = following
-        found += [label.order for labels in layer.values() for label in labels]
-    return found
+        orders += [label.order for labels in layer.values() for label in labels]
+    return orders
 
 
 def _add(labels: list[_Label], new: _Label) -> None:
-    time, energy = new.done.time, new.done.energy
-    if time >= NEVER or any(one.done.time <= time and one.done.energy <= energy for one in labels):
+    time, energy = new.outcome.time, new.outcome.energy
+    if time >= NEVER or any(
+        other.outcome.time <= time and other.outcome.energy <= energy for other in labels
+    ):
         return
-    labels[:] = [one for one in labels if one.done.time < time or one.done.energy < energy]
+    labels[:] = [
+        other for other in labels if other.outcome.time < time or other.outcome.energy < energy
+    ]
     labels.append(new)
 
 
 def _rotations(
-    choices: list[list[StepPlan]], waits: list[int], cycle: list[int]
-) -> list[tuple[StepPlan, ...]]:
-    """A cyclic order of the parts, entered at each part that may be the first; parts that must wait
-    for others come as soon as they may."""
-    found = []
+    choices: list[list[StepOrder]], predecessors: list[int], cycle: list[int]
+) -> list[tuple[StepOrder, ...]]:
+    """Return the rotations of a cyclic order of the parts that start with a possible first part.
+
+    Parts with predecessors come as early as these allow.
+    """
+    rotations = []
     for k in range(len(cycle)):
-        rest, done, order = cycle[k:] + cycle[:k], 0, list[int]()
+        rest, made, order = cycle[k:] + cycle[:k], 0, list[int]()
         while rest:
-            part = next((p for p in rest if choices[p] and not waits[p] & ~done), None)
+            part = next((p for p in rest if choices[p] and not predecessors[p] & ~made), None)
             if part is None or (not order and part != cycle[k]):
                 break
             rest.remove(part)
             order.append(part)
-            done |= 1 << part
+            made |= 1 << part
         else:
-            found.append(tuple(choices[part][0] for part in order))
-    return found
+            rotations.append(tuple(choices[part][0] for part in order))
+    return rotations
 
 
-def _modes(way: _Rounds, drives: _Drives) -> list[StepMode]:
-    """A way as modes: one for each of the ends that it has after the drives that there are."""
-    entries = drives.entries(way.first)
-    time, energy, exits, which = way.runs(entries)
-    found = []
+def _modes(order: _RoundOrder, drives: _Drives) -> list[StepMode]:
+    """Return the modes of an order: one for each exit that it has after the possible drives."""
+    entries = drives.entries(order.first)
+    time, energy, exits, exit_index = order.runs(entries)
+    modes_by_exit = []
     for number, exit in enumerate(exits):
-        here = np.where(which == number, time, NEVER)
-        if (here < NEVER).any():
-            found.append(StepMode(way.first, exit, way.order, 0, entries, here, energy))
-    return found
+        exit_time = np.where(exit_index == number, time, NEVER)
+        if (exit_time < NEVER).any():
+            modes_by_exit.append(
+                StepMode(order.first, exit, order.order, 0, entries, exit_time, energy)
+            )
+    return modes_by_exit

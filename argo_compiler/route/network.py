@@ -1,4 +1,4 @@
-"""A route problem as the solvers see it: steps with modes as the nodes of one network."""
+"""Network of a route problem for the solvers: its nodes are the modes of the steps."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -12,56 +12,62 @@ from argo_compiler.route.modes import Step, StepMode, Vector, modes, steps
 from argo_compiler.route.problem import NEVER, Objective, RouteProblem, Tour
 
 _MOST_NODES = 4000
-"""after which rounds are made in few ways: matrices of nodes by nodes have to be held"""
+"""number of nodes after which further rounds get few modes, as there are matrices of nodes by
+nodes"""
 _SPARSE = 0.01
-"""share of what is true in relations that are composed as lists"""
+"""highest share of true entries for which relations are composed as sparse matrices"""
 
 
 @dataclass(frozen=True, eq=False)
 class StepNetwork:
-    """m nodes, each a mode of one of s steps. A route makes each step at most once, by one of its
-    modes. Row m of a matrix is the start, column m the end."""
+    """Network with m nodes, each a mode of one of s steps.
+
+    A route makes each step at most once, by one of its modes. Row m of a matrix is the start,
+    column m the end.
+    """
 
     problem: RouteProblem
     nodes: tuple[StepMode, ...]
     step: NDArray[np.int64]
-    """of each node, shape (m,)"""
+    """step of each node, shape (m,)"""
     time: NDArray[np.int64]
-    """from the end of row to the beginning of column, shape (m + 1, m + 1)"""
+    """time from the end of row to the begin of column (to the end of a round), shape
+    (m + 1, m + 1)"""
     service: NDArray[np.int64]
-    """from a node's beginning to its end, shape (m,); that of a round is part of `time`"""
+    """time from each node's begin to its end, shape (m,); 0 for a round, which is part of `time`"""
     energy: NDArray[np.int64] | None
-    """from the end of row to the end of column, shape (m + 1, m + 1); None: without a battery"""
+    """energy from the end of row to the end of column, shape (m + 1, m + 1); None: no battery"""
     chargers: tuple["ChargingStation", ...]
     prize: NDArray[np.int64]
-    """of each step, shape (s,)"""
+    """prize of each step, shape (s,)"""
     mandatory: NDArray[np.bool_]
+    """true if each route must make the step, shape (s,)"""
     earliest: NDArray[np.int64]
-    """of each step; 0: at once"""
+    """earliest begin of each step, shape (s,); 0: no limit"""
     latest: NDArray[np.int64]
-    """of each step; NEVER: whenever"""
+    """latest begin of each step, shape (s,); NEVER: no limit"""
     needs: NDArray[np.bool_]
-    """shape (s, s): row must have been made before column can be"""
+    """true if column requires that row is made before it, shape (s, s)"""
     before: NDArray[np.bool_]
-    """shape (s, s): row can't be made any more after column"""
+    """true if row can't come after column, shape (s, s)"""
     limit: int
-    """when the robot must be at the end; NEVER: whenever"""
+    """latest time to reach the end; NEVER: no limit"""
     exact: bool
-    """whether the modes of large rounds are all that may be the best"""
+    """true if the network has all modes that may be optimal; large rounds may lack some"""
 
     @property
     def size(self) -> int:
-        """The number of nodes, which is the row of the start and the column of the end."""
+        """Number of nodes, which is also the row of the start and the column of the end."""
         return len(self.nodes)
 
     @cached_property
     def windowed(self) -> bool:
-        """Whether a step has a time window, so that there may be waiting."""
+        """True if a step has a time window, so that the robot may wait."""
         return bool((self.earliest > 0).any() or (self.latest < NEVER).any())
 
     @property
     def plain(self) -> bool:
-        """Whether a route's time is the sum of its arcs, and none is too short."""
+        """True if a route's time is the sum of its arcs, without windows and battery."""
         return self.problem.battery is None and not self.windowed
 
     @property
@@ -76,39 +82,44 @@ class StepNetwork:
         return np.flatnonzero(self.step == step).tolist()
 
     def route(self, path: Iterable[int], charges: dict[int, int] | None = None) -> Tour:
-        """The route that makes these nodes. `charges`: the charger by the position in the path."""
+        """Return the route of a path of nodes.
+
+        `charges`: number of the charger by the position in the path before which the robot charges.
+        """
         order: list[int] = []
-        places: dict[int, int] = {}
+        tour_charges: dict[int, int] = {}
         path = list(path)
         for position, node in enumerate(path):
             if charges and position in charges:
-                places[len(order)] = charges[position]
+                tour_charges[len(order)] = charges[position]
             order += self.nodes[node].order
         if charges and len(path) in charges:
-            places[len(order)] = charges[len(path)]
-        return Tour(tuple(order), places)
+            tour_charges[len(order)] = charges[len(path)]
+        return Tour(tuple(order), tour_charges)
 
     def path(self, tour: Tour) -> tuple[tuple[int, ...] | None, dict[int, int]]:
-        """The nodes of a route, and its charges by the position among them; None: the network does
-        not have the order in which it makes a round."""
+        """Return the nodes of a route, and its charges by the position among them.
+
+        Instead of the nodes returns None if the network lacks the route's order of some round.
+        """
         path: list[int] = []
         charges: dict[int, int] = {}
         position, at = 0, self.size
         while position < len(tour.order):
             if position in tour.charges:
                 charges[len(path)] = tour.charges[position]
-            there = (
+            times = (
                 self.time[at]
                 if position not in tour.charges
                 else (self.chargers[tour.charges[position]].out)
             )
             rest = tour.order[position:]
-            fits = (
+            matching = (
                 node
                 for node, mode in enumerate(self.nodes)
                 if rest[0] == mode.first and mode.order == rest[: len(mode.order)]
             )
-            at = next((node for node in fits if there[node] < NEVER), -1)
+            at = next((node for node in matching if times[node] < NEVER), -1)
             if at < 0:
                 return None, {}
             path.append(at)
@@ -120,8 +131,11 @@ class StepNetwork:
 
 @dataclass(frozen=True, eq=False)
 class ChargingStation:
-    """A charger: the ways there from the end of each node, and from there to its beginning; the
-    last entry is that of the start, and of the end."""
+    """Charger with its times and energies to and from the nodes.
+
+    Entries are from the end of each node to the charger, and from the charger to the node, as in
+    the network's `time` and `energy`; the last entry is from the start, and to the end.
+    """
 
     to: Vector
     to_energy: Vector
@@ -131,34 +145,37 @@ class ChargingStation:
 
 def network(
     problem: RouteProblem,
-    order_of: Callable[[Step], tuple[Step, ...]],
-    over: Callable[[], bool] = lambda: False,
+    cyclic_order: Callable[[Step], tuple[Step, ...]],
+    is_time_up: Callable[[], bool] = lambda: False,
 ) -> StepNetwork:
-    """The network of a problem. `order_of`, `over`: see `argo_compiler.route.modes.modes`."""
-    found = steps(problem)
+    """Build the network of a problem.
+
+    `cyclic_order` and `is_time_up` are those of `argo_compiler.route.modes.modes`.
+    """
+    all_steps = steps(problem)
     exact, step_of = True, list[int]()
     nodes: list[StepMode] = []
 
-    def full() -> bool:
-        return over() or len(nodes) > _MOST_NODES
+    def must_stop() -> bool:
+        return is_time_up() or len(nodes) > _MOST_NODES
 
-    for number, step in enumerate(found):
-        some, all_of_them = modes(problem, step, order_of, full)
-        exact &= all_of_them
-        nodes += some
-        step_of += [number] * len(some)
+    for number, step in enumerate(all_steps):
+        step_modes, step_exact = modes(problem, step, cyclic_order, must_stop)
+        exact &= step_exact
+        nodes += step_modes
+        step_of += [number] * len(step_modes)
     n = problem.size
-    single = [step.round is None for step in found]
-    visits = [problem.visits[min(step.visits)] for step in found]
+    is_visit = [step.round is None for step in all_steps]
+    visits = [problem.visits[min(step.visits)] for step in all_steps]
     service = np.array([node.service for node in nodes], dtype=np.int64)
-    places = [mode.exit for mode in nodes] + [(n,)]
-    times = _worst(problem.travel, places)
+    exits = [mode.exit for mode in nodes] + [(n,)]
+    times = _worst_drives(problem.travel, exits)
     used = np.zeros_like(times)
     if problem.battery is not None:
-        used = _worst(problem.battery.energy, places)
-    time, energies = _entered(nodes, times, used, problem.end)
+        used = _worst_drives(problem.battery.energy, exits)
+    time, energies = _enter_nodes(nodes, times, used, problem.end)
     energy = None if problem.battery is None else energies
-    needs, before, mandatory = _orders(problem, found)
+    needs, before, mandatory = _step_order(problem, all_steps)
     return StepNetwork(
         problem,
         tuple(nodes),
@@ -166,11 +183,13 @@ def network(
         time,
         service,
         energy,
-        tuple(_station(problem, nodes, places, k) for k in range(len(problem.chargers))),
-        np.array([sum(problem.visits[v].prize for v in s.visits) for s in found], dtype=np.int64),
+        tuple(_station(problem, nodes, exits, k) for k in range(len(problem.chargers))),
+        np.array(
+            [sum(problem.visits[v].prize for v in s.visits) for s in all_steps], dtype=np.int64
+        ),
         mandatory,
-        np.array([visits[s].earliest if one else 0 for s, one in enumerate(single)], np.int64),
-        np.array([_latest(visits[s].latest) if one else NEVER for s, one in enumerate(single)]),
+        np.array([visits[s].earliest if one else 0 for s, one in enumerate(is_visit)], np.int64),
+        np.array([_latest(visits[s].latest) if one else NEVER for s, one in enumerate(is_visit)]),
         needs,
         before,
         NEVER if problem.max_duration is None else problem.max_duration,
@@ -182,19 +201,22 @@ def _latest(latest: int | None) -> int:
     return NEVER if latest is None else latest
 
 
-def _worst(matrix: NDArray[np.int64], places: list[tuple[int, ...]]) -> NDArray[np.int64]:
-    """The most that a drive to each place takes from some places."""
-    firsts = matrix[[there[0] for there in places]]
-    for row, there in enumerate(places):
-        if len(there) > 1:
-            firsts[row] = matrix[list(there)].max(axis=0)
-    return firsts
+def _worst_drives(matrix: NDArray[np.int64], exits: list[tuple[int, ...]]) -> NDArray[np.int64]:
+    """Return the highest value of a drive from each exit's locations to each location."""
+    worst = matrix[[locations[0] for locations in exits]]
+    for row, locations in enumerate(exits):
+        if len(locations) > 1:
+            worst[row] = matrix[list(locations)].max(axis=0)
+    return worst
 
 
-def _entered(
+def _enter_nodes(
     nodes: list[StepMode], times: NDArray[np.int64], used: NDArray[np.int64], end: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """What rows of drives take until each node's beginning (a round's end), and until the end."""
+    """Return times and energies until each node's begin (a round's end), and until the end.
+
+    `times` and `used` have a row for each origin and a column for each location.
+    """
     firsts = [node.first for node in nodes] + [end]
     time, energy = times[:, firsts], used[:, firsts]
     for column, node in enumerate(nodes):
@@ -204,59 +226,60 @@ def _entered(
 
 
 def _station(
-    problem: RouteProblem, nodes: list[StepMode], places: list[tuple[int, ...]], number: int
+    problem: RouteProblem, nodes: list[StepMode], exits: list[tuple[int, ...]], number: int
 ) -> ChargingStation:
     assert problem.battery is not None
     row, energy = problem.charger(number), problem.battery.energy
-    out, out_energy = _entered(nodes, problem.travel[[row]], energy[[row]], problem.end)
+    out, out_energy = _enter_nodes(nodes, problem.travel[[row]], energy[[row]], problem.end)
     return ChargingStation(
-        np.array([problem.travel[list(there), row].max() for there in places]),
-        np.array([energy[list(there), row].max() for there in places]),
+        np.array([problem.travel[list(locations), row].max() for locations in exits]),
+        np.array([energy[list(locations), row].max() for locations in exits]),
         out[0],
         out_energy[0],
     )
 
 
-def _orders(
-    problem: RouteProblem, found: list[Step]
+def _step_order(
+    problem: RouteProblem, all_steps: list[Step]
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]]:
-    """Which steps need which, which rule out which, and which must be made."""
-    home = {visit: k for k, step in enumerate(found) for visit in step.visits}
-    count = len(found)
+    """Return the network's `needs`, `before` and `mandatory`."""
+    step_of_visit = {visit: k for k, step in enumerate(all_steps) for visit in step.visits}
+    count = len(all_steps)
     mandatory = np.array(
-        [any(problem.visits[v].mandatory for v in step.visits) for step in found], dtype=np.bool_
+        [any(problem.visits[v].mandatory for v in step.visits) for step in all_steps],
+        dtype=np.bool_,
     )
     needs = np.zeros((count, count), np.bool_)
     before = np.zeros((count, count), np.bool_)
     for precedence in problem.precedences:
-        there = [home[visit] for visit in precedence.sequence]
-        for k, later in enumerate(there):
-            for earlier in there[:k]:
-                if earlier != later or _twice(found[later], precedence.sequence):
+        sequence = [step_of_visit[visit] for visit in precedence.sequence]
+        for k, later in enumerate(sequence):
+            for earlier in sequence[:k]:
+                if earlier != later or _repeats_visit(all_steps[later], precedence.sequence):
                     before[earlier, later] = True
                     needs[earlier, later] |= precedence.needed
-    # What a mandatory step needs is mandatory; what is mandatory and comes before is needed.
+    # The needs of mandatory steps are mandatory; mandatory steps are needs of those after them.
     while True:
-        wanted = needs | (before & mandatory[:, None])
-        wanted |= compose(wanted, wanted)
-        must = mandatory | (wanted & mandatory[None, :]).any(axis=1)
-        if (wanted == needs).all() and (must == mandatory).all():
+        closed_needs = needs | (before & mandatory[:, None])
+        closed_needs |= compose(closed_needs, closed_needs)
+        closed_mandatory = mandatory | (closed_needs & mandatory[None, :]).any(axis=1)
+        if (closed_needs == needs).all() and (closed_mandatory == mandatory).all():
             return needs, before | needs, mandatory
-        needs, mandatory = wanted, must
+        needs, mandatory = closed_needs, closed_mandatory
 
 
 def compose(first: NDArray[np.bool_], then: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """The composition of two relations: row to column by way of something between."""
+    """Return the composition of two relations: true if some element links row with column."""
     if not (first.any() and then.any()):
         return np.zeros_like(first)
     if max(first.mean(), then.mean()) < _SPARSE:
-        found: NDArray[np.bool_] = (csr_array(first) @ csr_array(then)).toarray()
-        return found
-    # As numbers with a fraction, for which there are fast products.
+        composed: NDArray[np.bool_] = (csr_array(first) @ csr_array(then)).toarray()
+        return composed
+    # Floating-point numbers have fast matrix products.
     return np.asarray(first.astype(np.float32) @ then.astype(np.float32) > 0.0)
 
 
-def _twice(step: Step, sequence: tuple[int, ...]) -> bool:
-    """Whether a sequence wants a visit of the step to be made before itself."""
-    there = [visit for visit in sequence if visit in step.visits]
-    return len(set(there)) < len(there)
+def _repeats_visit(step: Step, sequence: tuple[int, ...]) -> bool:
+    """Return True if a visit of the step is in a sequence twice, so that it must precede itself."""
+    visits = [visit for visit in sequence if visit in step.visits]
+    return len(set(visits)) < len(visits)

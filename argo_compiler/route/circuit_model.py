@@ -1,7 +1,7 @@
-"""The exact model for CP-SAT: a circuit through the steps, with self-loops at those left out.
+"""Exact model for CP-SAT: a circuit through the steps, with self-loops at those left out.
 
-The sum of the arcs is made small, not the time of the end: it gives the linear relaxation something
-to hold on to.
+The objective is a sum of arcs, not the time at the end, as the linear relaxation of a sum of arcs
+is stronger.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -16,26 +16,29 @@ from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import NEVER, Objective
 from argo_compiler.route.pruning import Pruned, horizon, least_path_times
 
-_ARC = 6e-5
-"""s that an arc takes to be built and looked at, and twice as long with clocks or positions"""
+_TIME_PER_ARC = 6e-5
+"""s to build and presolve an arc; twice as long with begin times or ranks in the model"""
 
 
 def time_to_build(network: StepNetwork, pruned: Pruned) -> float:
-    """s with which it is worth while to begin with a model."""
-    each = _ARC if network.plain and not network.before.any() else 2.0 * _ARC
-    return each * int(pruned.arcs.sum()) * (1 + len(network.chargers))
+    """Return the least remaining time in s for which a model is worth building."""
+    per_arc = _TIME_PER_ARC if network.plain and not network.before.any() else 2.0 * _TIME_PER_ARC
+    return per_arc * int(pruned.arcs.sum()) * (1 + len(network.chargers))
 
 
 class CircuitModel:
-    """The variables and constraints. Has state: the model that it builds."""
+    """CP-SAT model of a network, with its variables and constraints."""
 
     def __init__(self, network: StepNetwork, pruned: Pruned, end: int | None = None) -> None:
-        """`end`: when the route must end, where order is to be stated with times; for plain
-        networks only. It must be tight for the linear relaxation to see much."""
+        """Build the model.
+
+        `end`: latest time of the route's end, if precedences are to be constraints on begin times;
+        for plain networks only. The linear relaxation profits only if that limit is tight.
+        """
         self.model = cp_model.CpModel()
         self._network, self._pruned = network, pruned
         self._timed = end is not None
-        self._apart = least_path_times(network)
+        self._distances = least_path_times(network)
         self._horizon = horizon(network)
         if end is not None:
             self._horizon = min(self._horizon, end)
@@ -43,31 +46,31 @@ class CircuitModel:
         self._arc_costs: list[int] = []
         self._arc_energies: list[int] = []
         self._charges: list[cp_model.IntVar] = []
-        self._made = self._circuit()
+        self._made = self._add_circuit()
         self._cost: Any = 0
-        self._costs()
-        self._orders()
+        self._add_cost()
+        self._add_precedences()
 
-    # The circuit
+    # Circuit
 
-    def _circuit(self) -> list[Any]:
-        """Arcs and self-loops; gives for each step whether it is made."""
+    def _add_circuit(self) -> list[Any]:
+        """Add arcs and self-loops, and return the literal of each step that it is made."""
         network, pruned, model = self._network, self._pruned, self.model
         m = network.size
         circuit: list[tuple[int, int, cp_model.LiteralT]] = []
         service = [*network.service.tolist(), 0]
         for i, row in enumerate(pruned.arcs.tolist()):
-            for j, there in enumerate(row):
-                if not there:
+            for j, has_arc in enumerate(row):
+                if not has_arc:
                     continue
                 if network.time[i, j] < NEVER and self._energy_fits(i, j):
                     self._add_arc(i, j, None, int(network.time[i, j]) + service[j])
                 for charger, station in enumerate(network.chargers):
-                    way = int(station.to[i]) + int(station.out[j])
-                    if way < NEVER and self._charge_fits(i, j, charger):
+                    drive = int(station.to[i]) + int(station.out[j])
+                    if drive < NEVER and self._charge_fits(i, j, charger):
                         assert network.problem.battery is not None
                         overhead = network.problem.battery.overhead
-                        self._add_arc(i, j, charger, way + overhead + service[j])
+                        self._add_arc(i, j, charger, drive + overhead + service[j])
         circuit += [(i, j, literal) for i, j, _, literal in self._arcs]
         made: list[Any] = []
         for s, mandatory in enumerate(network.mandatory.tolist()):
@@ -75,9 +78,9 @@ class CircuitModel:
             left_out = [model.new_bool_var("") for _ in nodes]
             if len(nodes) == 1 and mandatory:
                 made.append(model.new_constant(1))
-                # The circuit does not know of nodes that have no arcs.
-                into = [literal for _, j, _, literal in self._arcs if j == nodes[0]]
-                model.add_bool_or(into)
+                # The circuit constraint ignores nodes without arcs.
+                entering = [literal for _, j, _, literal in self._arcs if j == nodes[0]]
+                model.add_bool_or(entering)
                 continue
             circuit += [(node, node, out) for node, out in zip(nodes, left_out, strict=True)]
             if not pruned.steps[s]:
@@ -89,10 +92,10 @@ class CircuitModel:
             elif len(nodes) == 1:
                 made.append(left_out[0].negated())
             else:
-                some = model.new_bool_var("")
-                model.add(sum(out.negated() for out in left_out) == some)
-                made.append(some)
-        # A route that makes nothing is none of the model's.
+                is_made = model.new_bool_var("")
+                model.add(sum(out.negated() for out in left_out) == is_made)
+                made.append(is_made)
+        # The model excludes the route without steps.
         model.add_exactly_one([literal for i, *_, literal in self._arcs if i == m])
         if circuit:
             model.add_circuit(circuit)
@@ -127,9 +130,9 @@ class CircuitModel:
             and int(station.out_energy[j]) <= battery.capacity
         )
 
-    # Costs, clocks and energy
+    # Cost, begin times and energy
 
-    def _costs(self) -> None:
+    def _add_cost(self) -> None:
         network, model = self._network, self.model
         battery = network.problem.battery
         literals = [literal for *_, literal in self._arcs]
@@ -138,16 +141,16 @@ class CircuitModel:
         if battery is not None:
             energy = cp_model.LinearExpr.weighted_sum(literals, self._arc_energies)
             if network.chargers:
-                used = self._charging(battery.used, battery.capacity)
+                used = self._add_energy_levels(battery.used, battery.capacity)
                 work = work + battery.used + energy - used[-1]
             else:
                 model.add(battery.used + energy <= battery.capacity)
         self._begins: list[cp_model.IntVar] | None = None
         duration = work
         if network.windowed or self._timed:
-            self._begins = self._clocks(used)
+            self._begins = self._add_begins(used)
             end = model.new_int_var(0, self._horizon, "end")
-            self._arrive(end, used)
+            self._add_end(end, used)
             waiting = model.new_int_var(0, 0 if self._timed else self._horizon, "waiting")
             model.add(end == work + waiting)
             duration = end
@@ -155,8 +158,8 @@ class CircuitModel:
             model.add(work <= network.limit)
         self._cost = duration if network.objective is Objective.DURATION else work
 
-    def _charging(self, used: int, capacity: int) -> list[Any]:
-        """What has been used since the last charge at the end of each step, and at the end."""
+    def _add_energy_levels(self, used: int, capacity: int) -> list[Any]:
+        """Add the energy used since the last charge, after each step and at the route's end."""
         network, model = self._network, self.model
         count, m = len(network.prize), network.size
         assert network.energy is not None
@@ -166,21 +169,23 @@ class CircuitModel:
             return levels[int(network.step[node])] if node < m else levels[count]
 
         for i, j, charger, literal in self._arcs:
-            before = used if i == m else level(i)
+            departure = used if i == m else level(i)
             if charger is None:
                 energy = int(network.energy[i, j])
-                model.add(level(j) == before + energy).only_enforce_if(literal)
+                model.add(level(j) == departure + energy).only_enforce_if(literal)
             else:
                 station = network.chargers[charger]
-                model.add(before + int(station.to_energy[i]) <= capacity).only_enforce_if(literal)
+                model.add(departure + int(station.to_energy[i]) <= capacity).only_enforce_if(
+                    literal
+                )
                 model.add(level(j) == int(station.out_energy[j])).only_enforce_if(literal)
         for s, made in enumerate(self._made):
             if not network.mandatory[s]:
                 model.add(levels[s] == 0).only_enforce_if(made.negated())
         return levels
 
-    def _clocks(self, used: Sequence[Any]) -> list[cp_model.IntVar]:
-        """When each step begins."""
+    def _add_begins(self, used: Sequence[Any]) -> list[cp_model.IntVar]:
+        """Add and return the begin time of each step."""
         network, pruned, model = self._network, self._pruned, self.model
         m, begins = network.size, []
         latest_of_all = self._horizon
@@ -189,19 +194,21 @@ class CircuitModel:
             if not pruned.steps[s]:
                 begins.append(model.new_int_var(0, latest_of_all, ""))
                 continue
-            soonest = min(int(pruned.earliest[node]) for node in nodes)
+            earliest = min(int(pruned.earliest[node]) for node in nodes)
             latest = max(int(pruned.latest[node]) for node in nodes)
-            begins.append(model.new_int_var(soonest, max(soonest, min(latest, latest_of_all)), ""))
+            begins.append(
+                model.new_int_var(earliest, max(earliest, min(latest, latest_of_all)), "")
+            )
         for i, j, charger, literal in self._arcs:
             if j < m:
                 begin = begins[int(network.step[j])]
-                self._begin(begin, self._arrival(begins, used, i, j, charger), literal)
+                self._link_begin(begin, self._arrival(begins, used, i, j, charger), literal)
         return begins
 
-    def _begin(self, begin: cp_model.IntVar, arrival: Any, literal: cp_model.IntVar) -> None:
-        """With windows, there may be waiting."""
-        soon = begin == arrival if self._timed else begin >= arrival
-        self.model.add(soon).only_enforce_if(literal)
+    def _link_begin(self, begin: cp_model.IntVar, arrival: Any, literal: cp_model.IntVar) -> None:
+        """Constrain a begin by an arrival; with windows, the robot may wait between the two."""
+        constraint = begin == arrival if self._timed else begin >= arrival
+        self.model.add(constraint).only_enforce_if(literal)
 
     def _arrival(
         self,
@@ -211,55 +218,55 @@ class CircuitModel:
         j: int,
         charger: int | None,
     ) -> Any:
-        """When the robot comes to node j from node i."""
+        """Return the time of the arrival at node j from node i, straight or by a charger."""
         network, m = self._network, self._network.size
-        left: Any = 0
+        departure: Any = 0
         if i < m:
-            left = begins[int(network.step[i])] + int(network.service[i])
+            departure = begins[int(network.step[i])] + int(network.service[i])
         if charger is None:
-            return left + int(network.time[i, j])
+            return departure + int(network.time[i, j])
         battery, station = network.problem.battery, network.chargers[charger]
         assert battery is not None
-        before = battery.used if i == m else used[int(network.step[i])]
-        way = (
+        used_before = battery.used if i == m else used[int(network.step[i])]
+        fixed = (
             int(station.to[i]) + int(station.out[j]) + battery.overhead + int(station.to_energy[i])
         )
-        return left + before + way
+        return departure + used_before + fixed
 
-    def _arrive(self, end: cp_model.IntVar, used: Sequence[Any]) -> None:
+    def _add_end(self, end: cp_model.IntVar, used: Sequence[Any]) -> None:
         assert self._begins is not None
         m = self._network.size
         for i, j, charger, literal in self._arcs:
             if j == m:
                 arrival = self._arrival(self._begins, used, i, j, charger)
-                self._begin(end, arrival, literal)
+                self._link_begin(end, arrival, literal)
 
-    def _orders(self) -> None:
-        """What is needed is made before, and what is ruled out is not made after."""
+    def _add_precedences(self) -> None:
+        """Add the constraints of `needs` and `before`, on begin times or on ranks."""
         network, pruned, model = self._network, self._pruned, self.model
         ranks: list[cp_model.IntVar] | None = None
         for i, j in np.argwhere(network.before).tolist():
             if not (pruned.steps[i] and pruned.steps[j]):
-                continue  # what needs a step that can't be made can't be made either
+                continue  # pruning has removed all steps that need a removed one
             optional = [self._made[s] for s in (i, j) if not network.mandatory[s]]
             if network.needs[i, j] and not network.mandatory[i]:
                 model.add_implication(self._made[j], self._made[i])
                 optional = [self._made[j]]
             least = min(
-                int(network.service[first] + self._apart[first, then])
+                int(network.service[first] + self._distances[first, second])
                 for first in network.nodes_of(i)
-                for then in network.nodes_of(j)
+                for second in network.nodes_of(j)
             )
             if self._begins is not None and least > 0:
-                later = model.add(self._begins[j] >= self._begins[i] + least)
+                constraint = model.add(self._begins[j] >= self._begins[i] + least)
             else:
-                ranks = self._ranks() if ranks is None else ranks
-                later = model.add(ranks[j] > ranks[i])
+                ranks = self._add_ranks() if ranks is None else ranks
+                constraint = model.add(ranks[j] > ranks[i])
             if optional:
-                later.only_enforce_if(optional)
+                constraint.only_enforce_if(optional)
 
-    def _ranks(self) -> list[cp_model.IntVar]:
-        """The position of each step."""
+    def _add_ranks(self) -> list[cp_model.IntVar]:
+        """Add and return the rank of each step in the route."""
         network, model = self._network, self.model
         count = len(network.prize)
         ranks = [model.new_int_var(0, count - 1, "") for _ in range(count)]
@@ -272,14 +279,14 @@ class CircuitModel:
     # Objectives
 
     def maximise_prize(self, least: int | None) -> None:
-        """The sum of the prizes of what is made, which is `least` at least."""
+        """Maximise the prize; `least`: a lower limit on it."""
         prize = self._prize()
         if least is not None:
             self.model.add(prize >= least)
         self.model.maximize(prize)
 
     def minimise_cost(self, prize: int | None, most: int | None) -> None:
-        """The cost, which is `most` at most, with a prize of at least `prize`."""
+        """Minimise the cost; `most`: an upper limit on it; `prize`: a lower limit on the prize."""
         if prize is not None:
             self.model.add(self._prize() >= prize)
         if most is not None:
@@ -290,34 +297,39 @@ class CircuitModel:
         prizes = self._network.prize.tolist()
         return sum(int(p) * made for p, made in zip(prizes, self._made, strict=True))
 
-    def at_least(
+    def require_at_least(
         self,
-        counts: Callable[[NDArray[np.int64], NDArray[np.int64]], NDArray[np.int64]],
+        coefficients: Callable[[NDArray[np.int64], NDArray[np.int64]], NDArray[np.int64]],
         least: int,
     ) -> None:
-        """What the arcs of a route come to, by what arcs count from tails to heads, is `least` at
-        least."""
+        """Require that the weighted sum of a route's arcs is at least `least`.
+
+        `coefficients` returns the weights of arcs with given tails and heads.
+        """
         ends = np.array([arc[:2] for arc in self._arcs], np.int64).reshape(-1, 2)
-        found = counts(ends[:, 0], ends[:, 1])
-        some = np.flatnonzero(found).tolist()
-        literals = [self._arcs[k][3] for k in some]
-        whole = cp_model.LinearExpr.weighted_sum(literals, found[some].tolist())
-        self.model.add(whole >= least)
+        weights = coefficients(ends[:, 0], ends[:, 1])
+        nonzero = np.flatnonzero(weights).tolist()
+        literals = [self._arcs[k][3] for k in nonzero]
+        total = cp_model.LinearExpr.weighted_sum(literals, weights[nonzero].tolist())
+        self.model.add(total >= least)
 
     def hint(self, path: tuple[int, ...], charges: Mapping[int, int]) -> None:
-        """A path to begin with, and the chargers by the position in it."""
+        """Add a path as a hint, with the chargers by the position in it."""
         m = self._network.size
-        ways = enumerate(pairwise((m, *path, m)))
-        legs = {(i, j, charges.get(position)) for position, (i, j) in ways}
+        arcs = enumerate(pairwise((m, *path, m)))
+        legs = {(i, j, charges.get(position)) for position, (i, j) in arcs}
         for i, j, charger, literal in self._arcs:
             self.model.add_hint(literal, (i, j, charger) in legs)
 
     def path(
-        self, holds: Callable[[cp_model.IntVar], bool]
+        self, is_true: Callable[[cp_model.IntVar], bool]
     ) -> tuple[tuple[int, ...], dict[int, int]]:
-        """The nodes of a solution in order, and its charges; `holds`: whether it has a literal."""
+        """Return the nodes of a solution in order, and its charges.
+
+        `is_true` returns the value of a literal in the solution.
+        """
         m = self._network.size
-        onward = {i: (j, charger) for i, j, charger, literal in self._arcs if holds(literal)}
+        onward = {i: (j, charger) for i, j, charger, literal in self._arcs if is_true(literal)}
         path: list[int] = []
         charges: dict[int, int] = {}
         node = m

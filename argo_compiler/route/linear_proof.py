@@ -1,8 +1,8 @@
-"""Proofs by the linear relaxation, and by CP-SAT with the few arcs that it leaves.
+"""Solver that proves routes by the linear relaxation, and by CP-SAT on the arcs that it leaves.
 
-Of routes up to a cost that is a little above the bound, few arcs are possible. If CP-SAT finds the
-best of those routes, it is the best of all; if there is none, the bound is higher, and more is
-allowed. So no good route need be known before.
+Routes up to a cost a little above the bound have few possible arcs. If CP-SAT finds the best of
+these routes, it is the best of all; if there is none, the bound rises, and the next attempt allows
+a higher cost. So the proof needs no good route from another solver.
 """
 
 from collections.abc import Callable
@@ -22,15 +22,15 @@ from argo_compiler.route.problem import Objective, RouteProblem
 from argo_compiler.route.pruning import horizon, least_arc_times
 from argo_compiler.route.search import Search
 
-_ABOVE = 0.005
-"""of the bound: what is allowed at first; each time twice as much"""
+_FIRST_MARGIN = 0.005
+"""share of the bound by which the first attempt exceeds it; each further one doubles the share"""
 _MOST_ARCS = 60_000
-_SHARE, _SHARE_OF_BOUND = 0.5, 0.1
-"""of the time that is left, for proofs, and where only a bound is looked for"""
+_PROOF_SHARE, _BOUND_SHARE = 0.5, 0.1
+"""share of the remaining time for a proof, and if only a bound is computed"""
 
 
 class LinearProof:
-    """For routes in any order without windows or a battery; a bound on the cost of others."""
+    """Solver that proves routes without precedences, windows or battery, and bounds all others."""
 
     name = "linear relaxation"
 
@@ -38,104 +38,108 @@ class LinearProof:
         return problem.size > 2
 
     def solve(self, search: Search) -> None:
-        """First the most prize, then the least cost with it."""
+        """Maximise the prize first, then minimise the cost at that prize."""
         network, pruned = search.network, search.pruned
         if not pruned.possible or not 0 < int(pruned.arcs.sum()) <= _MOST_ARCS:
             return
         if not network.mandatory.any():
-            offer_empty_routes(search)  # its circuits make something
+            offer_empty_routes(search)  # the circuit model excludes them
         best = search.best
-        whole = network.plain and not network.before.any()
-        search = search.share(_SHARE if whole else _SHARE_OF_BOUND)
+        to_optimality = network.plain and not network.before.any()
+        search = search.share(_PROOF_SHARE if to_optimality else _BOUND_SHARE)
         m = network.size
         if network.selective and (best is None or best.prize < search.prize_bound):
             prizes = np.zeros((m + 1, m + 1), np.int64)
             prizes[:, :m] = -network.prize[network.step]
-            _Stage(search, prizes, None).run(whole=whole)
+            _Stage(search, prizes, None).run(to_optimality=to_optimality)
         best = search.best
-        some = not network.selective or (best is not None and best.prize >= search.prize_bound)
-        if network.objective is not Objective.PRIZE and some:
+        prize_proven = not network.selective or (
+            best is not None and best.prize >= search.prize_bound
+        )
+        if network.objective is not Objective.PRIZE and prize_proven:
             times = least_arc_times(network) + np.append(network.service, 0)
             least = best.prize if best is not None and network.selective else 0
-            _Stage(search, times, least).run(whole=whole)
+            _Stage(search, times, least).run(to_optimality=to_optimality)
 
 
 @dataclass
 class _Stage:
-    """One objective, made small."""
+    """Minimisation of one objective: the negative prize, or the cost."""
 
     search: Search
     costs: NDArray[np.int64]
     least_prize: int | None
-    """of the routes that are of interest; None: the prize is the objective"""
+    """lowest prize of the routes that count; None: the prize is the objective"""
 
-    def run(self, *, whole: bool) -> None:
-        """`whole`: until it is proven, else only a bound."""
+    def run(self, *, to_optimality: bool) -> None:
+        """Compute a bound, and if `to_optimality`, search until the optimum is proven."""
         search, network = self.search, self.search.network
         relaxation = LinearRelaxation(network, search.pruned, self.costs, self.least_prize or None)
-        relaxation.solve(search.share(0.5 if whole else 1.0), self._known())
-        low, share, cap = relaxation.bound, _ABOVE, self._cap()
+        relaxation.solve(search.share(0.5 if to_optimality else 1.0), self._best_value())
+        low, margin, cap = relaxation.bound, _FIRST_MARGIN, self._cap()
         if low is None:
             return
-        self._none_below(min(low, cap + 1))
-        while whole and search.remaining() > 0.0 and not self._proven(low, cap):
-            most = min(low + max(1, int(share * abs(low))), self._most(cap))
-            low = self._best_up_to(relaxation, most)
-            self._none_below(low)
-            if low <= most:  # found, or no time to find out
+        self._report_bound(min(low, cap + 1))
+        while to_optimality and search.remaining() > 0.0 and not self._is_proven(low, cap):
+            most = min(low + max(1, int(margin * abs(low))), self._most(cap))
+            low = self._solve_within(relaxation, most)
+            self._report_bound(low)
+            if low <= most:  # the optimum is found, or the time is up
                 return
-            share *= 2.0
+            margin *= 2.0
 
     def _cap(self) -> int:
-        """No route comes to more."""
+        """Return an upper limit on the objective of all routes."""
         return 0 if self.least_prize is None else horizon(self.search.network)
 
-    def _known(self) -> int | None:
-        """What the best route comes to; None: there is none that counts."""
+    def _best_value(self) -> int | None:
+        """Return the objective of the best route, or None if there is none with the least prize."""
         best = self.search.best
         if best is None or best.prize < (self.least_prize or 0):
             return None
         return -best.prize if self.least_prize is None else best.cost
 
     def _most(self, cap: int) -> int:
-        """The most that is of interest."""
-        known = self._known()
-        return cap if known is None else min(cap, known - 1)
+        """Return the highest objective that would improve on the best route."""
+        value = self._best_value()
+        return cap if value is None else min(cap, value - 1)
 
-    def _proven(self, low: int, cap: int) -> bool:
+    def _is_proven(self, low: int, cap: int) -> bool:
         return low > self._most(cap)
 
-    def _none_below(self, low: int) -> None:
-        """It is proven that no route comes to less."""
-        search, known = self.search, self._known()
-        if known is None and low > self._cap():
+    def _report_bound(self, low: int) -> None:
+        """Report that no route has an objective below `low`."""
+        search, value = self.search, self._best_value()
+        if value is None and low > self._cap():
             search.report_infeasible()
         elif self.least_prize is None:
-            search.report_bounds(prize_bound=-low if known is None else max(-low, -known))
+            search.report_bounds(prize_bound=-low if value is None else max(-low, -value))
         else:
             search.report_bounds(
-                bound=low if known is None else min(low, known), prize=self.least_prize
+                bound=low if value is None else min(low, value), prize=self.least_prize
             )
 
-    def _best_up_to(self, relaxation: LinearRelaxation, most: int) -> int:
-        """Offers the best route that comes to `most` at most, if there is one; gives what no route
-        comes to less than."""
+    def _solve_within(self, relaxation: LinearRelaxation, most: int) -> int:
+        """Offer the best route with an objective of at most `most`, and return a lower bound.
+
+        The bound is above `most` if there is no such route.
+        """
         search, network, pruned = self.search, self.search.network, self.search.pruned
-        arcs, must = relaxation.left(most)
+        arcs, mandatory = relaxation.restrict(most)
         arcs[network.size, network.size] = False
         steps = np.zeros_like(pruned.steps)
         steps[network.step[arcs[:, :-1].any(axis=0)]] = True
-        few, pruned = (
-            replace(network, mandatory=must),
+        restricted, pruned = (
+            replace(network, mandatory=mandatory),
             replace(pruned, arcs=arcs, steps=pruned.steps & steps),
         )
-        if search.remaining() < time_to_build(few, pruned):
+        if search.remaining() < time_to_build(restricted, pruned):
             return min(relaxation.bound or 0, most)
-        model = CircuitModel(few, pruned)
+        model = CircuitModel(restricted, pruned)
         for cut in relaxation.cuts:
-            model.at_least(cut.of, cut.least)
-        if _symmetric(network):
-            model.at_least(_one_direction(network.size), 0)
+            model.require_at_least(cut.coefficients, cut.least)
+        if _is_symmetric(network):
+            model.require_at_least(_one_direction(network.size), 0)
         if self.least_prize is None:
             model.maximise_prize(-most)
         else:
@@ -153,8 +157,8 @@ class _Stage:
         return min(bound, most)
 
 
-def _symmetric(network: StepNetwork) -> bool:
-    """Whether each route takes as long the other way round."""
+def _is_symmetric(network: StepNetwork) -> bool:
+    """Return True if each route takes as long as its reverse."""
     between = network.time[:-1, :-1]
     ends = network.time[-1, :-1], network.time[:-1, -1]
     return bool((between == between.T).all() and (ends[0] == ends[1]).all())
@@ -163,5 +167,8 @@ def _symmetric(network: StepNetwork) -> bool:
 def _one_direction(
     m: int,
 ) -> Callable[[NDArray[np.int64], NDArray[np.int64]], NDArray[np.int64]]:
-    """Of the nodes at the ends of a route, the first has the lower number."""
+    """Return coefficients that allow one of the two directions of each route.
+
+    They require that the first node of the route has a lower number than the last one, or the same.
+    """
     return lambda tail, head: tail * (head == m) - head * (tail == m)

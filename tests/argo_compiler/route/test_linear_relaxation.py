@@ -43,7 +43,7 @@ def _kept(net: StepNetwork, relaxation: LinearRelaxation, most: int, problem: Ro
     path, charges = net.path(route)
     if path is None or charges:
         return
-    arcs, must = relaxation.left(most)
+    arcs, must = relaxation.restrict(most)
     ends = [net.size, *path, net.size]
     assert arcs[ends[:-1], ends[1:]].all()
     assert set(np.flatnonzero(must)) <= set(net.step[list(path)].tolist())
@@ -90,5 +90,5 @@ def test_arcs_of_the_best_route_are_left_at_its_cost(size: int) -> None:
         assert relaxation.bound is not None
         assert 0.9 * own.cost <= relaxation.bound <= own.cost
         _kept(net, relaxation, own.cost, problem)
-        left, _ = relaxation.left(own.cost)
+        left, _ = relaxation.restrict(own.cost)
         assert left.sum() < pruned.arcs.sum() / 2

@@ -1,7 +1,7 @@
-"""The loops of `argo_compiler.route.exchange_search`, compiled by numba, which takes a while.
+"""Loops of `argo_compiler.route.exchange_search`, compiled by numba, which takes some seconds.
 
-A line is the start (node m), the nodes of a route and the end (node m + 1); those that are not in
-it have the position -1. Cut k of a line is right after its position k.
+A line is the start (node m), the nodes of a route and the end (node m + 1); nodes that are not in
+it have the position -1. Cut k of a line is directly after its position k.
 """
 
 from collections.abc import Callable
@@ -13,54 +13,58 @@ from numpy.typing import NDArray
 
 Vector = NDArray[np.int64]
 _Function = TypeVar("_Function", bound=Callable[..., object])
-NO_WAY = 1 << 40
-"""time of an arc that there is not"""
-_STRETCH, _AROUND = 30, 20
-"""nodes in a stretch that is exchanged at random, at most, and how far from the others it begins"""
-_RUINED, _RUN = 10, 4
-"""nodes that are taken out at a time, and one after the other, at most"""
+NO_ARC = 1 << 40
+"""time of an arc that does not exist"""
+_LONGEST_STRETCH, _AROUND = 30, 20
+"""highest number of nodes in a stretch of a random exchange, and highest distance of its begin
+from the other random exchanges"""
+_MOST_REMOVED, _LONGEST_RUN = 10, 4
+"""highest number of nodes that are removed at a time, and of consecutive ones among them"""
 State = Vector
-"""what is being changed, and room to do so, shape (15, m + 8): rows as follows"""
-LINE, AT, MADE, KEPT, BEST = range(5)
-"""nodes by position; the position of each node; the node of each step, -1: none; the line to go
-back to; the best one"""
-AHEAD, ONWARD, SOONEST, LATE = range(5, 9)
-"""by position: when it begins, how long it is from there to the end without waiting, when it ends
-however soon it begins there, and when it must begin there"""
-QUEUE, QUEUED, SPARE, BITS, WORTH, NUMBERS = range(9, 15)
-"""nodes after which to try cuts, from entry 1 (0: how many); whether each is in it; room; room;
-count, cost and what is missed of `KEPT`, and of `BEST`; the numbers that follow"""
+"""state of the search, with buffers, shape (15, m + 8); its rows follow"""
+LINE, POSITION, NODE_OF_STEP, CURRENT, BEST = range(5)
+"""rows: nodes of the line by position; position of each node; node of each step, -1: none; nodes of
+the current line of the annealing, to which a rejected line returns; nodes of the best line"""
+BEGIN, REST, EARLIEST_END, LATEST_BEGIN = range(5, 9)
+"""rows by position: begin; time from there to the end without waiting; earliest end that the
+windows from there on allow; latest begin"""
+QUEUE, QUEUED, SPARE, BITS, VALUES, NUMBERS = range(9, 15)
+"""rows: nodes after which to try cuts, from entry 1 (entry 0: their number); 1 for each node in the
+queue; buffer; buffer; node count, cost and missed prize of `CURRENT`, and of `BEST`; the numbers
+that follow"""
 COUNT, LENGTH, MISSED, RANDOM, WORK, ITERATIONS = range(6)
-"""nodes in the line, its cost, what it misses; the random generator's; what was done"""
+"""entries of `NUMBERS`: number of nodes in the line, its cost, the prize that it misses; state of
+the random generator; work and iterations so far"""
 
 
-class Ways(NamedTuple):
-    """A network. What is by node has m + 2 entries."""
+class KernelNetwork(NamedTuple):
+    """Network as arrays; those by node have m + 2 entries."""
 
     time: Vector
-    """from the beginning of row to that of column, shape (m + 2, m + 2)"""
+    """time from the begin of row to the begin of column, shape (m + 2, m + 2)"""
     near: Vector
-    """by node the ones that may follow it, nearest first; -1: no more"""
+    """nodes that may follow each node, the nearest first; -1: no more"""
     before: Vector
-    """by node a bit for each that can't be made any more after it"""
+    """bits, for each node, of the nodes that can't come after it"""
     nodes: Vector
-    """rows: earliest, latest, step"""
+    """rows by node: earliest begin, latest begin, step"""
     steps: Vector
-    """rows: first node (those of a step lie together), what it is worth, whether it is optional"""
+    """rows by step: first node (the nodes of a step are consecutive), prize (for mandatory steps
+    more than all prizes together), 1 if it is optional"""
     needs: Vector
-    """by step the optional ones that it needs; -1: no more"""
+    """optional steps that each step needs; -1: no more"""
     timed: bool
-    """whether there are windows or a limit"""
+    """true if there are windows or a limit"""
     waits: bool
-    """whether the cost is the time at the end, not the sum of the arcs"""
+    """true if the cost is the time at the end, not the sum of the arcs"""
     ruins: float
     """share of ruin and recreate"""
     weight: float
-    """what is missed, as cost, where a line that is worse may be taken"""
+    """cost of a unit of missed prize, in the acceptance of worse lines"""
 
 
 def compiled(function: _Function) -> _Function:
-    """The function as machine code, which is kept for later where a folder can be written to."""
+    """Return the function compiled to machine code, which is cached on disk if possible."""
     try:
         return cast(_Function, numba.njit(nogil=True, cache=True, error_model="numpy")(function))
     except RuntimeError:
@@ -68,8 +72,8 @@ def compiled(function: _Function) -> _Function:
 
 
 @compiled
-def _below(state: State, most: int) -> int:
-    """A random number from 0 to most - 1, by G. Marsaglia's xorshift."""
+def _random_below(state: State, most: int) -> int:
+    """Return a random number from 0 to most - 1, by G. Marsaglia's xorshift."""
     x = np.uint64(state[NUMBERS, RANDOM])
     x ^= x << np.uint64(13)
     x ^= x >> np.uint64(7)
@@ -79,66 +83,73 @@ def _below(state: State, most: int) -> int:
 
 
 @compiled
-def _precedes(ways: Ways, one: int, other: int) -> bool:
-    """Whether a node can't be made any more after another."""
-    return bool((ways.before[other, one >> 6] >> (one & 63)) & 1)
+def _precedes(network: KernelNetwork, one: int, other: int) -> bool:
+    """Return True if node `one` can't come after node `other`."""
+    return bool((network.before[other, one >> 6] >> (one & 63)) & 1)
 
 
 @compiled
-def _ordered(ways: Ways, state: State, first: int, second: int, third: int) -> bool:
-    """Whether the stretches between three cuts may change places."""
+def _keeps_order(network: KernelNetwork, state: State, first: int, second: int, third: int) -> bool:
+    """Return True if the precedences allow to exchange the two stretches between three cuts."""
     line, bits = state[LINE], state[BITS]
-    words = ways.before.shape[1]
+    words = network.before.shape[1]
     bits[:words] = 0
     for k in range(first + 1, second + 1):
         bits[line[k] >> 6] |= np.int64(1) << (line[k] & 63)
     for k in range(second + 1, third + 1):
         for word in range(words):
-            if ways.before[line[k], word] & bits[word]:
+            if network.before[line[k], word] & bits[word]:
                 return False
     return True
 
 
 @compiled
-def _in_time(ways: Ways, state: State, first: int, second: int, third: int, most: int) -> bool:
-    """Whether the line keeps its windows with two stretches exchanged, and costs that at most."""
-    if not ways.timed:
+def _is_in_time(
+    network: KernelNetwork, state: State, first: int, second: int, third: int, most: int
+) -> bool:
+    """Return True if the line with two stretches exchanged is in time, and costs at most `most`.
+
+    The cost is checked only if it is the time at the end.
+    """
+    if not network.timed:
         return True
-    line, now, at = state[LINE], state[AHEAD, first], state[LINE, first]
+    line, now, at = state[LINE], state[BEGIN, first], state[LINE, first]
     for low, high in ((second + 1, third + 1), (first + 1, second + 1)):
         for k in range(low, high):
-            now = max(now + ways.time[at, line[k]], ways.nodes[0, line[k]])
+            now = max(now + network.time[at, line[k]], network.nodes[0, line[k]])
             at = line[k]
-            if now > ways.nodes[1, at]:
+            if now > network.nodes[1, at]:
                 return False
-    now += ways.time[at, line[third + 1]]
-    end = max(now + state[ONWARD, third + 1], state[SOONEST, third + 1])
-    return now <= state[LATE, third + 1] and (not ways.waits or end <= most)
+    now += network.time[at, line[third + 1]]
+    end = max(now + state[REST, third + 1], state[EARLIEST_END, third + 1])
+    return now <= state[LATEST_BEGIN, third + 1] and (not network.waits or end <= most)
 
 
 @compiled
-def _measure(ways: Ways, state: State) -> None:
-    """Looks at the whole line again."""
+def _update(network: KernelNetwork, state: State) -> None:
+    """Recompute the times, the cost and the missed prize of the line."""
     line, last, length, missed = state[LINE], state[NUMBERS, COUNT] + 1, 0, 0
     for k in range(last):
-        length += ways.time[line[k], line[k + 1]]
-    if ways.timed:
+        length += network.time[line[k], line[k + 1]]
+    if network.timed:
         for k in range(last):
-            begun = state[AHEAD, k] + ways.time[line[k], line[k + 1]]
-            state[AHEAD, k + 1] = max(begun, ways.nodes[0, line[k + 1]])
-        state[ONWARD, last] = state[SOONEST, last] = 0
-        state[LATE, last] = ways.nodes[1, line[last]]
+            begun = state[BEGIN, k] + network.time[line[k], line[k + 1]]
+            state[BEGIN, k + 1] = max(begun, network.nodes[0, line[k + 1]])
+        state[REST, last] = state[EARLIEST_END, last] = 0
+        state[LATEST_BEGIN, last] = network.nodes[1, line[last]]
         for k in range(last - 1, -1, -1):
-            arc = ways.time[line[k], line[k + 1]]
-            state[ONWARD, k] = arc + state[ONWARD, k + 1]
-            soonest = ways.nodes[0, line[k]] + state[ONWARD, k]
-            state[SOONEST, k] = max(soonest, state[SOONEST, k + 1])
-            state[LATE, k] = min(ways.nodes[1, line[k]], state[LATE, k + 1] - arc)
-        if ways.waits:
-            length = state[AHEAD, last]
-    for s in range(ways.needs.shape[0]):
-        if state[MADE, s] < 0:
-            missed += ways.steps[1, s]
+            arc = network.time[line[k], line[k + 1]]
+            state[REST, k] = arc + state[REST, k + 1]
+            end = network.nodes[0, line[k]] + state[REST, k]
+            state[EARLIEST_END, k] = max(end, state[EARLIEST_END, k + 1])
+            state[LATEST_BEGIN, k] = min(
+                network.nodes[1, line[k]], state[LATEST_BEGIN, k + 1] - arc
+            )
+        if network.waits:
+            length = state[BEGIN, last]
+    for s in range(network.needs.shape[0]):
+        if state[NODE_OF_STEP, s] < 0:
+            missed += network.steps[1, s]
     state[NUMBERS, LENGTH], state[NUMBERS, MISSED] = length, missed
 
 
@@ -151,30 +162,33 @@ def _push(state: State, node: int) -> None:
 
 
 @compiled
-def _exchange(ways: Ways, state: State, first: int, second: int, third: int) -> None:
+def _exchange(network: KernelNetwork, state: State, first: int, second: int, third: int) -> None:
     line, gap, size = state[LINE], second - first, third - second
     state[SPARE, :gap] = line[first + 1 : second + 1]
     for k in range(first + 1, first + 1 + size):
         line[k] = line[k + gap]
     line[first + 1 + size : third + 1] = state[SPARE, :gap]
     for k in range(first + 1, third + 1):
-        state[AT, line[k]] = k
+        state[POSITION, line[k]] = k
     for k in (first, first + size, third):
         _push(state, line[k])
-    if ways.timed:
-        _measure(ways, state)
+    if network.timed:
+        _update(network, state)
 
 
 @compiled
-def _cuts(ways: Ways, state: State, a: int) -> tuple[int, int, int, int]:
-    """The exchange with a shorter arc from a node that saves most: how much, and its cuts."""
-    line, time = state[LINE], ways.time
-    i, last, most = state[AT, a], state[NUMBERS, COUNT] + 1, state[NUMBERS, LENGTH]
+def _best_exchange(network: KernelNetwork, state: State, a: int) -> tuple[int, int, int, int]:
+    """Return the best exchange that gives node `a` a shorter arc: its change in cost, and its cuts.
+
+    The change is 0 if no exchange saves anything.
+    """
+    line, time = state[LINE], network.time
+    i, last, most = state[POSITION, a], state[NUMBERS, COUNT] + 1, state[NUMBERS, LENGTH]
     best = 0, 0, 0, 0
-    for b in ways.near[a]:
+    for b in network.near[a]:
         if b < 0 or time[a, b] >= time[a, line[i + 1]]:
             break
-        p = state[AT, b]
+        p = state[POSITION, b]
         if p < 0:
             continue
         state[NUMBERS, WORK] += 10 + (last - p + i if p > i else i - p)
@@ -190,196 +204,206 @@ def _cuts(ways: Ways, state: State, a: int) -> tuple[int, int, int, int]:
                 more += time[line[y], line[z + 1]] - time[line[z], line[z + 1]]
                 if more >= best[0]:
                     continue
-                if not _ordered(ways, state, x, y, z):
+                if not _keeps_order(network, state, x, y, z):
                     if kind == 2:
                         continue
-                    break  # longer stretches won't be either
-                if _in_time(ways, state, x, y, z, most):
+                    break  # longer stretches violate the same precedence
+                if _is_in_time(network, state, x, y, z, most):
                     best = more, x, y, z
     return best
 
 
 @compiled
-def _improve(ways: Ways, state: State) -> None:
-    """Exchanges that pay, until there is none with a cut after a node of the queue."""
+def _improve(network: KernelNetwork, state: State) -> None:
+    """Apply exchanges that save cost, until none has a cut after a node of the queue."""
     while state[QUEUE, 0]:
         a = state[QUEUE, state[QUEUE, 0]]
         state[QUEUE, 0] -= 1
         state[QUEUED, a] = False
-        saved, first, second, third = _cuts(ways, state, a)
+        saved, first, second, third = _best_exchange(network, state, a)
         if saved < 0:
-            _exchange(ways, state, first, second, third)
+            _exchange(network, state, first, second, third)
             _push(state, a)
 
 
 @compiled
-def _shuffle(ways: Ways, state: State) -> None:
-    """Some random exchanges near each other."""
+def _shuffle(network: KernelNetwork, state: State) -> None:
+    """Apply some random exchanges near each other."""
     count = state[NUMBERS, COUNT]
-    around, length = _below(state, count), min(_STRETCH, count // 2)
-    for _ in range(2 + _below(state, 3)):
+    around, length = _random_below(state, count), min(_LONGEST_STRETCH, count // 2)
+    for _ in range(2 + _random_below(state, 3)):
         for _ in range(20):
-            one, other = 1 + _below(state, length), 1 + _below(state, length)
-            cut = around + _below(state, 2 * _AROUND) - _AROUND
+            one, other = 1 + _random_below(state, length), 1 + _random_below(state, length)
+            cut = around + _random_below(state, 2 * _AROUND) - _AROUND
             cut = min(max(cut, 0), count - one - other)
-            if _ordered(ways, state, cut, cut + one, cut + one + other) and (
-                _in_time(ways, state, cut, cut + one, cut + one + other, NO_WAY)
+            if _keeps_order(network, state, cut, cut + one, cut + one + other) and (
+                _is_in_time(network, state, cut, cut + one, cut + one + other, NO_ARC)
             ):
-                _exchange(ways, state, cut, cut + one, cut + one + other)
+                _exchange(network, state, cut, cut + one, cut + one + other)
                 break
 
 
 @compiled
-def _made(ways: Ways, state: State, s: int) -> bool:
-    """Whether what an optional step must not be made without is made."""
+def _needs_met(network: KernelNetwork, state: State, s: int) -> bool:
+    """Return True if the line has all optional steps that a step needs."""
     missing = 0
-    for other in ways.needs[s]:
-        missing += other >= 0 and state[MADE, other] < 0
+    for other in network.needs[s]:
+        missing += other >= 0 and state[NODE_OF_STEP, other] < 0
     return missing == 0
 
 
 @compiled
-def _ruin(ways: Ways, state: State) -> None:
-    """Takes nodes near each other out of the line, and what needs their steps."""
-    line, at, made, count = state[LINE], state[AT], state[MADE], state[NUMBERS, COUNT]
-    left, node = 1 + _below(state, min(_RUINED, count)), line[1 + _below(state, count)]
-    while left > 0:
-        run = min(at[node] + 1 + _below(state, _RUN), count + 1)
+def _ruin(network: KernelNetwork, state: State) -> None:
+    """Remove nodes near each other from the line, and the nodes that need their steps."""
+    line, at, made, count = state[LINE], state[POSITION], state[NODE_OF_STEP], state[NUMBERS, COUNT]
+    remaining, node = (
+        1 + _random_below(state, min(_MOST_REMOVED, count)),
+        line[1 + _random_below(state, count)],
+    )
+    while remaining > 0:
+        run = min(at[node] + 1 + _random_below(state, _LONGEST_RUN), count + 1)
         for k in range(at[node], run):
-            if made[ways.nodes[2, line[k]]] >= 0:
-                made[ways.nodes[2, line[k]]] = -1
-                left -= 1
-        node = ways.near[node, _below(state, ways.near.shape[1])]
+            if made[network.nodes[2, line[k]]] >= 0:
+                made[network.nodes[2, line[k]]] = -1
+                remaining -= 1
+        node = network.near[node, _random_below(state, network.near.shape[1])]
         if (
             node < 0
-            or node >= ways.time.shape[0] - 2
+            or node >= network.time.shape[0] - 2
             or at[node] < 0
-            or made[ways.nodes[2, node]] < 0
+            or made[network.nodes[2, node]] < 0
         ):
             break
-    place = 1
+    position = 1
     for k in range(1, count + 2):
         node = line[k]
-        s = -1 if k > count else ways.nodes[2, node]
-        if s >= 0 and (made[s] < 0 or not _made(ways, state, s)):
+        s = -1 if k > count else network.nodes[2, node]
+        if s >= 0 and (made[s] < 0 or not _needs_met(network, state, s)):
             at[node] = made[s] = -1
-            _push(state, line[place - 1])
+            _push(state, line[position - 1])
         else:
-            line[place], at[node] = node, place
-            place += 1
-    state[NUMBERS, COUNT] = place - 2
-    _measure(ways, state)
+            line[position], at[node] = node, position
+            position += 1
+    state[NUMBERS, COUNT] = position - 2
+    _update(network, state)
 
 
 @compiled
-def _place(ways: Ways, state: State, s: int) -> tuple[int, int, int]:
-    """The best place for a step: what it costs more, the node, and after which position."""
-    line, time = state[LINE], ways.time
-    best = NO_WAY, -1, -1
-    for node in range(ways.steps[0, s], ways.steps[0, s + 1]):
-        here, over = best, False
+def _best_insertion(network: KernelNetwork, state: State, s: int) -> tuple[int, int, int]:
+    """Return the best insertion of a step: its extra cost, its node, and the position before it."""
+    line, time = state[LINE], network.time
+    best = NO_ARC, -1, -1
+    for node in range(network.steps[0, s], network.steps[0, s + 1]):
+        best_here, must_precede = best, False
         for k in range(state[NUMBERS, COUNT] + 1):
-            at, then = line[k], line[k + 1]
-            if k and _precedes(ways, at, node):
-                here = best
-            over |= k > 0 and _precedes(ways, node, at)
-            if over:
+            before, after = line[k], line[k + 1]
+            if k and _precedes(network, before, node):
+                best_here = best
+            must_precede |= k > 0 and _precedes(network, node, before)
+            if must_precede:
                 continue
-            more = time[at, node] + time[node, then] - time[at, then]
-            if more >= NO_WAY // 2 or _below(state, 64) == 0:
+            extra = time[before, node] + time[node, after] - time[before, after]
+            if extra >= NO_ARC // 2 or _random_below(state, 64) == 0:
                 continue
-            if ways.timed:
-                now = max(state[AHEAD, k] + time[at, node], ways.nodes[0, node])
-                arrived = now + time[node, then]
-                if now > ways.nodes[1, node] or arrived > state[LATE, k + 1]:
+            if network.timed:
+                begin = max(state[BEGIN, k] + time[before, node], network.nodes[0, node])
+                arrival = begin + time[node, after]
+                if begin > network.nodes[1, node] or arrival > state[LATEST_BEGIN, k + 1]:
                     continue
-                if ways.waits:
-                    end = max(arrived + state[ONWARD, k + 1], state[SOONEST, k + 1])
-                    more += 4 * (end - state[NUMBERS, LENGTH])
-            if more < here[0]:
-                here = more, node, k
-        best = here
+                if network.waits:
+                    end = max(arrival + state[REST, k + 1], state[EARLIEST_END, k + 1])
+                    extra += 4 * (end - state[NUMBERS, LENGTH])
+            if extra < best_here[0]:
+                best_here = extra, node, k
+        best = best_here
     return best
 
 
 @compiled
-def _recreate(ways: Ways, state: State) -> None:
-    """Puts steps that are not in the line where they cost least: those that must be in it in any
-    order, then of the others always the one that costs least for what it is worth."""
+def _recreate(network: KernelNetwork, state: State) -> None:
+    """Insert missing steps where they cost least.
+
+    Mandatory steps come first, in random order. Then the optional step with the lowest ratio of
+    cost to prize is inserted, one after the other.
+    """
     line, spare, missing = state[LINE], state[SPARE], 0
     for optional in (False, True):
-        begin = missing
-        for s in range(ways.needs.shape[0]):
-            some = ways.steps[1, s] > 0 or _below(state, 4) == 0
-            if some and state[MADE, s] < 0 and ways.steps[2, s] == optional:
+        first = missing
+        for s in range(network.needs.shape[0]):
+            is_tried = network.steps[1, s] > 0 or _random_below(state, 4) == 0
+            if is_tried and state[NODE_OF_STEP, s] < 0 and network.steps[2, s] == optional:
                 spare[missing] = s
-                other = begin + _below(state, missing + 1 - begin)
+                other = first + _random_below(state, missing + 1 - first)
                 spare[missing], spare[other] = spare[other], spare[missing]
                 missing += 1
     while True:
         least, chosen, position = np.inf, -1, -1
         for s in spare[:missing]:
-            if state[MADE, s] < 0 and _made(ways, state, s):
-                more, node, k = _place(ways, state, s)
+            if state[NODE_OF_STEP, s] < 0 and _needs_met(network, state, s):
+                extra, node, k = _best_insertion(network, state, s)
                 state[NUMBERS, WORK] += state[NUMBERS, COUNT]
-                ratio = (more + 1) * (1 + _below(state, 64) / 128) / (ways.steps[1, s] + 1)
+                ratio = (
+                    (extra + 1) * (1 + _random_below(state, 64) / 128) / (network.steps[1, s] + 1)
+                )
                 if node >= 0 and ratio < least:
                     least, chosen, position = ratio, node, k
-                    if not ways.steps[2, s]:
+                    if not network.steps[2, s]:
                         break
         if chosen < 0:
             break
         last = state[NUMBERS, COUNT] + 1
         for k in range(last, position, -1):
             line[k + 1] = line[k]
-            state[AT, line[k]] = k + 1
-        line[position + 1], state[AT, chosen] = chosen, position + 1
-        state[MADE, ways.nodes[2, chosen]] = chosen
+            state[POSITION, line[k]] = k + 1
+        line[position + 1], state[POSITION, chosen] = chosen, position + 1
+        state[NODE_OF_STEP, network.nodes[2, chosen]] = chosen
         state[NUMBERS, COUNT] = last
         _push(state, line[position])
         _push(state, chosen)
-        _measure(ways, state)
+        _update(network, state)
 
 
 @compiled
-def run(ways: Ways, state: State, budget: int, warm: float) -> None:
-    """Changes the line until that much work is done. `warm`: by how much a line that is kept may be
-    worse, on average."""
-    numbers, worth = state[NUMBERS], state[WORTH]
+def run(network: KernelNetwork, state: State, budget: int, warm: float) -> None:
+    """Search by simulated annealing until `budget` units of work are done.
+
+    `warm`: temperature, the average increase in cost of an accepted line.
+    """
+    numbers, values = state[NUMBERS], state[VALUES]
     end = numbers[WORK] + budget
     while numbers[WORK] < end:
         count = numbers[COUNT]
-        if count < 4 or _below(state, 1000) < 1000 * ways.ruins:
+        if count < 4 or _random_below(state, 1000) < 1000 * network.ruins:
             if count:
-                _ruin(ways, state)
-            _recreate(ways, state)
+                _ruin(network, state)
+            _recreate(network, state)
         else:
-            _shuffle(ways, state)
-        _improve(ways, state)
-        _measure(ways, state)
+            _shuffle(network, state)
+        _improve(network, state)
+        _update(network, state)
         count, length, missed = numbers[COUNT], numbers[LENGTH], numbers[MISSED]
-        numbers[WORK] += 200 + 4 * ways.time.shape[0]
+        numbers[WORK] += 200 + 4 * network.time.shape[0]
         numbers[ITERATIONS] += 1
-        worse = length - worth[1] + ways.weight * (missed - worth[2])
-        if worse <= -warm * np.log((1 + _below(state, 1 << 30)) / (1 << 30)):
-            state[KEPT] = state[LINE]
-            worth[0], worth[1], worth[2] = count, length, missed
-            if missed < worth[5] or (missed == worth[5] and length < worth[4]):
+        worse = length - values[1] + network.weight * (missed - values[2])
+        if worse <= -warm * np.log((1 + _random_below(state, 1 << 30)) / (1 << 30)):
+            state[CURRENT] = state[LINE]
+            values[0], values[1], values[2] = count, length, missed
+            if missed < values[5] or (missed == values[5] and length < values[4]):
                 state[BEST] = state[LINE]
-                worth[3:6] = worth[:3]
+                values[3:6] = values[:3]
         else:
-            put(ways, state, state[KEPT], worth[0])
+            set_line(network, state, state[CURRENT], values[0])
 
 
 @compiled
-def put(ways: Ways, state: State, line: Vector, count: int) -> None:
-    """Goes on from a line."""
+def set_line(network: KernelNetwork, state: State, line: Vector, count: int) -> None:
+    """Replace the line of the state by one with `count` nodes, start and end not counted."""
     state[LINE] = line
-    state[AT] = -1
-    state[MADE] = -1
+    state[POSITION] = -1
+    state[NODE_OF_STEP] = -1
     for k in range(count + 2):
-        state[AT, state[LINE, k]] = k
+        state[POSITION, state[LINE, k]] = k
         if 0 < k <= count:
-            state[MADE, ways.nodes[2, state[LINE, k]]] = state[LINE, k]
+            state[NODE_OF_STEP, network.nodes[2, state[LINE, k]]] = state[LINE, k]
     state[NUMBERS, COUNT] = count
-    _measure(ways, state)
+    _update(network, state)

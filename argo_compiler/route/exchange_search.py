@@ -1,10 +1,10 @@
-"""Local search where order counts: two neighbouring stretches of a route change places.
+"""Local search for problems with precedences: it exchanges two neighbouring stretches of a route.
 
-No stretch is turned round, so that neither one-way times nor precedence stand in the way: the
-SOP-3-exchange of L. M. Gambardella and M. Dorigo (INFORMS Journal on Computing 12, 2000), with the
-nearest nodes and the last changes only. Some random exchanges, or ruin and recreate (see
-`argo_compiler.route.ruin_recreate`), then all that pay: what comes out is taken by simulated
-annealing, in rounds of which each is twice as long.
+It reverses no stretch, so it suits asymmetric times and precedences. This is the SOP-3-exchange of
+L. M. Gambardella and M. Dorigo (INFORMS Journal on Computing 12, 2000), restricted to the nearest
+nodes and to the parts of the route that changed last. Each iteration applies some random exchanges,
+or ruin and recreate (see `argo_compiler.route.ruin_recreate`), and then all exchanges that save
+cost. Simulated annealing decides whether to accept the result; its runs double in length.
 """
 
 from importlib import import_module
@@ -22,21 +22,21 @@ from argo_compiler.route.pruning import Pruned, prune
 from argo_compiler.route.search import Search
 
 _NEAR = 12
-"""nodes that may follow another one, with which exchanges are tried"""
-_SLICE, _NOMINAL = 4_000_000, 7e-9
-"""work at a time, and s for each of it"""
-_ROUND = 0.5
-"""s of the first round"""
+"""highest number of followers of a node with which exchanges are tried"""
+_WORK_SLICE, _TIME_PER_WORK = 4_000_000, 7e-9
+"""units of work between two checks of the time, and nominal s per unit"""
+_FIRST_RUN = 0.5
+"""length of the first annealing run in s"""
 _HOT, _COLD = 2.0, 0.005
-"""by how much a route that is taken is worse on average, in mean arcs"""
-_RUINS = 0.7
-"""share of ruin and recreate where there is a choice of nodes, or time"""
-_PRIZE = 3.0
-"""what a mean prize weighs, in mean arcs"""
+"""first and last temperature of a run, as multiples of the mean arc"""
+_RUIN_SHARE = 0.7
+"""share of ruin and recreate if there are optional steps, several modes, windows or a limit"""
+_PRIZE_WEIGHT = 3.0
+"""cost of a mean prize, as a multiple of the median arc"""
 
 
 class ExchangeSearch:
-    """Improves the best route that is known, or looks for one, until the time is over."""
+    """Solver that improves the best known route, or searches for one, until the time is up."""
 
     name = "exchange search"
 
@@ -47,30 +47,32 @@ class ExchangeSearch:
         kernel = _Kernel.compiled(search)
         if kernel is None or search.network.size < 2:
             return
-        ways = _ways(kernel, search.network, search.pruned)
-        state = _state(kernel, ways, search.seed)
+        kernel_network = _kernel_network(kernel, search.network, search.pruned)
+        state = _initial_state(kernel, kernel_network, search.seed)
         worst = int(search.network.prize.sum()) + 1
-        work, iterations, length = 0, 0, _ROUND
+        work, iterations, length = 0, 0, _FIRST_RUN
         while search.remaining() > 0.0:
-            _begin(kernel, ways, state, search)
-            begun, left = search.now(), search.remaining()
-            length = left if left < 2.0 * length else length
+            _restart(kernel, kernel_network, state, search)
+            begun, remaining = search.now(), search.remaining()
+            length = remaining if remaining < 2.0 * length else length
             while search.remaining() > 0.0 and (passed := (search.now() - begun) / length) < 1.0:
-                cost, missed = state[kernel.WORTH, 4:6].tolist()
-                mean = state[kernel.WORTH, 1] / max(1, state[kernel.WORTH, 0])
-                kernel.run(ways, state, _SLICE, _HOT * mean * (_COLD / _HOT) ** passed)
+                cost, missed = state[kernel.VALUES, 4:6].tolist()
+                mean = state[kernel.VALUES, 1] / max(1, state[kernel.VALUES, 0])
+                kernel.run(
+                    kernel_network, state, _WORK_SLICE, _HOT * mean * (_COLD / _HOT) ** passed
+                )
                 done, tried = state[kernel.NUMBERS, [kernel.WORK, kernel.ITERATIONS]].tolist()
-                search.spend((done - work) * _NOMINAL, tried - iterations)
+                search.spend((done - work) * _TIME_PER_WORK, tried - iterations)
                 work, iterations = done, tried
-                if (state[kernel.WORTH, 4:6].tolist() != [cost, missed]) and state[
-                    kernel.WORTH, 5
+                if (state[kernel.VALUES, 4:6].tolist() != [cost, missed]) and state[
+                    kernel.VALUES, 5
                 ] < worst:
-                    search.offer(state[kernel.BEST, 1 : state[kernel.WORTH, 3] + 1].tolist())
+                    search.offer(state[kernel.BEST, 1 : state[kernel.VALUES, 3] + 1].tolist())
             length *= 2.0
 
 
 class _Kernel:
-    """The compiled loops, which take some seconds the first time."""
+    """Compiled loops, which take some seconds to compile the first time."""
 
     _module: ModuleType | None = None
     _thread: Thread | None = None
@@ -78,7 +80,7 @@ class _Kernel:
 
     @classmethod
     def compiled(cls, search: Search) -> ModuleType | None:
-        """Them; None if they are not ready within the search's time."""
+        """Return the compiled module, or None if it is not ready within the search's time."""
         with cls._lock:
             if cls._thread is None:
                 cls._thread = Thread(target=cls._compile)
@@ -90,51 +92,54 @@ class _Kernel:
     @classmethod
     def _compile(cls) -> None:
         kernel = import_module("argo_compiler.route.exchange_kernel")
-        some = RouteProblem((Visit(""),) * 5, np.ones((6, 6), np.int64))
-        net = network(some, lambda step: tuple(step.parts))
-        ways = _ways(kernel, net, prune(net))
-        state = _state(kernel, ways, 0)
-        kernel.put(ways, state, state[kernel.LINE], 0)
-        kernel.run(ways, state, 1, 1.0)
+        example = RouteProblem((Visit(""),) * 5, np.ones((6, 6), np.int64))
+        net = network(example, lambda step: tuple(step.parts))
+        kernel_network = _kernel_network(kernel, net, prune(net))
+        state = _initial_state(kernel, kernel_network, 0)
+        kernel.set_line(kernel_network, state, state[kernel.LINE], 0)
+        kernel.run(kernel_network, state, 1, 1.0)
         cls._module = kernel
 
 
-def _begin(kernel: ModuleType, ways: Any, state: Any, search: Search) -> None:
-    """Goes on from the best route that is known, if that is better than the search's own."""
+def _restart(kernel: ModuleType, kernel_network: Any, state: Any, search: Search) -> None:
+    """Start a run from the best known route if it is better than the best line.
+
+    Otherwise the run continues from the current line; the first run may start from an empty one.
+    """
     best, m = search.best, search.network.size
     path = best.path if best is not None else None
     if path is None:
-        path = () if state[kernel.WORTH, 3] < 0 else None
+        path = () if state[kernel.VALUES, 3] < 0 else None
     if path is None:
         return
     line = np.zeros_like(state[kernel.LINE])
     line[: len(path) + 2] = [m, *path, m + 1]
-    kernel.put(ways, state, line, len(path))
+    kernel.set_line(kernel_network, state, line, len(path))
     cost, missed = state[kernel.NUMBERS, [kernel.LENGTH, kernel.MISSED]].tolist()
-    if state[kernel.WORTH, 3] < 0 or (missed, cost) < (
-        state[kernel.WORTH, 5],
-        state[kernel.WORTH, 4],
+    if state[kernel.VALUES, 3] < 0 or (missed, cost) < (
+        state[kernel.VALUES, 5],
+        state[kernel.VALUES, 4],
     ):
-        state[kernel.WORTH, :6] = [len(path), cost, missed] * 2
-        state[kernel.KEPT] = state[kernel.BEST] = line
+        state[kernel.VALUES, :6] = [len(path), cost, missed] * 2
+        state[kernel.CURRENT] = state[kernel.BEST] = line
         state[kernel.QUEUE, : m + 2] = [m + 1, *range(m + 1)]
         state[kernel.QUEUED, : m + 1] = True
     else:
-        kernel.put(ways, state, state[kernel.KEPT], state[kernel.WORTH, 0])
+        kernel.set_line(kernel_network, state, state[kernel.CURRENT], state[kernel.VALUES, 0])
 
 
-def _ways(kernel: ModuleType, net: StepNetwork, pruned: Pruned) -> Any:
+def _kernel_network(kernel: ModuleType, net: StepNetwork, pruned: Pruned) -> Any:
     m, steps = net.size, len(net.prize)
-    time = np.full((m + 2, m + 2), kernel.NO_WAY)
-    begun = np.minimum(net.time + np.append(net.service, 0)[:, None], kernel.NO_WAY)
-    begun[:, :m][:, ~pruned.arcs[:, :m].any(axis=0)] = kernel.NO_WAY
+    time = np.full((m + 2, m + 2), kernel.NO_ARC)
+    begun = np.minimum(net.time + np.append(net.service, 0)[:, None], kernel.NO_ARC)
+    begun[:, :m][:, ~pruned.arcs[:, :m].any(axis=0)] = kernel.NO_ARC
     time[: m + 1, :m], time[: m + 1, m + 1] = begun[:, :m], begun[:, m]
-    # Arcs that no whole route has are still those of lines in which something is missing.
-    likely = np.full_like(time, kernel.NO_WAY)
-    arcs = np.where(pruned.arcs, begun, kernel.NO_WAY)
-    likely[: m + 1, :m], likely[: m + 1, m + 1] = arcs[:, :m], arcs[:, m]
-    near = np.argsort(likely, axis=1, kind="stable")[:, :_NEAR]
-    near[np.take_along_axis(likely, near, axis=1) >= kernel.NO_WAY] = -1
+    # Incomplete lines may have pruned arcs, so these keep their times and only leave `near`.
+    unpruned = np.full_like(time, kernel.NO_ARC)
+    arcs = np.where(pruned.arcs, begun, kernel.NO_ARC)
+    unpruned[: m + 1, :m], unpruned[: m + 1, m + 1] = arcs[:, :m], arcs[:, m]
+    near = np.argsort(unpruned, axis=1, kind="stable")[:, :_NEAR]
+    near[np.take_along_axis(unpruned, near, axis=1) >= kernel.NO_ARC] = -1
     bits = np.zeros((m + 2, 64 * (m // 64 + 1)), np.uint8)
     bits[:m, :m] = pruned.before.T[np.ix_(net.step, net.step)]
     nodes = np.zeros((3, m + 2), np.int64)
@@ -144,32 +149,32 @@ def _ways(kernel: ModuleType, net: StepNetwork, pruned: Pruned) -> Any:
     optional = pruned.needs & ~net.mandatory[:, None]
     needs = np.full((steps, max(1, int(optional.sum(axis=0).max(initial=0)))), -1)
     for s in range(steps):
-        some = np.flatnonzero(optional[:, s])
-        needs[s, : len(some)] = some
+        needed = np.flatnonzero(optional[:, s])
+        needs[s, : len(needed)] = needed
     first = np.searchsorted(net.step, np.arange(steps + 1))
-    worth = np.append(np.where(net.mandatory, net.prize.sum() + 1, net.prize), 0)
+    prizes = np.append(np.where(net.mandatory, net.prize.sum() + 1, net.prize), 0)
     timed = net.windowed or net.limit < NEVER
     waits = net.windowed and net.objective is Objective.DURATION
-    ruins = _RUINS if timed or net.selective or m > steps else 0.0
-    arc = np.median(time[time < kernel.NO_WAY]) if (time < kernel.NO_WAY).any() else 0.0
-    return kernel.Ways(
+    ruins = _RUIN_SHARE if timed or net.selective or m > steps else 0.0
+    arc = np.median(time[time < kernel.NO_ARC]) if (time < kernel.NO_ARC).any() else 0.0
+    return kernel.KernelNetwork(
         time,
-        np.ascontiguousarray(near),  # a part of rows is another type, and compiled again
+        np.ascontiguousarray(near),  # a view has another type, for which numba compiles again
         np.packbits(bits, axis=1, bitorder="little").view(np.int64),
         nodes,
-        np.stack([first, worth, np.append(~net.mandatory, 0)]),
+        np.stack([first, prizes, np.append(~net.mandatory, 0)]),
         needs,
         timed,
         waits,
         ruins,
-        _PRIZE * float(arc) / max(1.0, float(net.prize.mean())),
+        _PRIZE_WEIGHT * float(arc) / max(1.0, float(net.prize.mean())),
     )
 
 
-def _state(kernel: ModuleType, ways: Any, seed: int) -> NDArray[np.int64]:
-    """With an empty line, and none that is the best."""
-    state = np.zeros((15, len(ways.time) + 6), np.int64)
-    state[kernel.LINE, :2] = len(ways.time) - 2, len(ways.time) - 1
-    state[kernel.WORTH] = -1
+def _initial_state(kernel: ModuleType, kernel_network: Any, seed: int) -> NDArray[np.int64]:
+    """Return a state with an empty line, and without a current and a best line."""
+    state = np.zeros((15, len(kernel_network.time) + 6), np.int64)
+    state[kernel.LINE, :2] = len(kernel_network.time) - 2, len(kernel_network.time) - 1
+    state[kernel.VALUES] = -1
     state[kernel.NUMBERS, kernel.RANDOM] = np.random.default_rng(seed).integers(1, 1 << 62)
     return state

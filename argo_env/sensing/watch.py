@@ -49,7 +49,7 @@ class ReportedDetection:
 
 @runtime_checkable
 class SkippableWatch(Watch, Protocol):
-    """A watch that can tell that its updates have no effect while no fault begins or ends."""
+    """A watch that knows when its updates have no effect until a fault begins or ends."""
 
     def can_skip(self, lowest: float, highest: float) -> bool:
         """Return True if no update detects or changes anything until a fault begins or ends.

@@ -1,6 +1,7 @@
 """Watch for hot spots in the small images (°C) of a thermal camera.
 
-The camera looks ahead or to one side. A hot spot is warmer than the map's surfaces there can be.
+The camera looks ahead to the left and to the right in turn. A hot spot is warmer than the surfaces
+that the map has there can be without a fault.
 """
 
 import math
@@ -213,7 +214,7 @@ class HeatWatch:
 
 
 def find_spots(image: ThermalImage, site_map: SiteMap, air: float) -> tuple[Spot, ...]:
-    """Return the spots that are warmer than the map's surfaces there can be.
+    """Return the spots that are warmer than the surfaces that the map has there can be.
 
     `air` is the temperature of the air in °C.
     """

@@ -64,7 +64,7 @@ class CameraSensor:
         if missing := [joint for joint in JOINTS if joint not in world.robot.arm_raised]:
             raise Invalid(
                 f"the sensor `camera` aims an arm with the joints {', '.join(JOINTS)}; robot "
-                f"{world.robot.name} has no {', '.join(missing)}: take the sensor `ideal`"
+                f"{world.robot.name} has no {', '.join(missing)}: use the sensor `ideal`"
             )
         self._world = world
         self._seed = seed

@@ -172,8 +172,8 @@ class TestFiles:
 
 def models(base: type[Fault]) -> set[type[Fault]]:
     """Return the models of faults below a base that have a kind of their own."""
-    found = {base} if base.model_fields["kind"].default is not PydanticUndefined else set()
-    return found.union(*(models(below) for below in base.__subclasses__()))
+    own = {base} if base.model_fields["kind"].default is not PydanticUndefined else set()
+    return own.union(*(models(below) for below in base.__subclasses__()))
 
 
 class TestKinds:
@@ -324,8 +324,8 @@ class TestChangedSite:
         )
         with World(umad, robot, elements=site_with_faults(umad, (fault,)).elements) as world:
             for y, z in ((3.5, 0.5), (7.14, 3.0)):
-                found = world.obstacle_between((0.85, y - 1.0, z), (0.85, y + 1.0, z))
-                assert found == "barrier of the west tower", (y, z)
+                obstacle = world.obstacle_between((0.85, y - 1.0, z), (0.85, y + 1.0, z))
+                assert obstacle == "barrier of the west tower", (y, z)
 
     def test_several_bricks_have_names_of_their_own(self, umad):
         bricks = resolve_faults(faults_of({"kind": "brick"}, {"kind": "brick"}), umad, 0)

@@ -255,7 +255,7 @@ def test_an_arm_that_does_not_turn_reads_as_the_ideal_sensor_does_and_aims_no_ca
     mission = Mission(tasks=(Task(name="A", action="MEASURE", object_id="1"),))
     spec = RunSpec(mission=mission, site="darmstadt")
     assert simulate(spec, site).result.success
-    with pytest.raises(Invalid, match="robot tracker has no arm_yaw: take the sensor `ideal`"):
+    with pytest.raises(Invalid, match="robot tracker has no arm_yaw: use the sensor `ideal`"):
         simulate(spec.model_copy(update={"sensor": "camera"}), site)
 
 

@@ -1,11 +1,11 @@
-"""Routes that are likely to be completed, instead of short ones.
+"""Robust routes: those with a high probability of completion, instead of the shortest ones.
 
-If all ways were independent and normal, with no windows, rounds and battery, the most probable
-route would be one that minimises mean + weight x variance for some weight (E. Nikolova, J. Kelner,
+If the times of all legs were independent and normal, without windows, rounds and battery, the most
+probable route would minimise mean + weight x variance for some weight (E. Nikolova, J. Kelner,
 M. Brand, M. Mitzenmacher, "Stochastic shortest paths via quasi-convex maximization", ESA 2006). So
-problems with such times are solved for some weights around the one that would be right, together
-with ones whose limits are drawn in, and the routes are improved by local search on samples that all
-of them share. None of this is a proof: the result is the best of the routes that were tried.
+problems with such times are solved for some weights around the one that would be right, and
+problems with tightened limits as well. Local search improves the routes on samples that all of them
+share. None of this is a proof: the result is the best of the routes that were tried.
 """
 
 import math
@@ -23,21 +23,21 @@ from argo_compiler.route.robust_spread import TravelSpread
 from argo_compiler.route.suggested import RouteSuggestion
 from argo_compiler.route.suggestion import suggest_route
 
-SEARCHED = 2000
-"""samples on which routes are compared in the search"""
-JUDGED = 10_000
-"""samples, others than those, on which the result is judged"""
+SEARCH_SAMPLES = 2000
+"""number of samples on which the search compares routes"""
+FINAL_SAMPLES = 10_000
+"""number of other samples, on which the result is estimated"""
 _WEIGHTS = (0.5, 1.0, 2.0)
-"""of the variance, times the one that would be right if the route stayed the same"""
+"""weights of the variance, as multiples of the right one for the nominal route"""
 _MARGINS = (0.5, 1.0, 1.6, 2.3, 3.0)
-"""standard deviations of the duration by which limits are drawn in"""
+"""margins by which limits are tightened, in standard deviations of the duration"""
 _LONGEST_MOVED = 3
-"""visits that local search moves at once"""
+"""highest number of visits that local search moves at once"""
 
 
 @dataclass(frozen=True)
 class RobustSuggestion:
-    """The route, and the one that is best without any spread, judged on the same samples."""
+    """Robust route and the best route without any spread, estimated on the same samples."""
 
     route: Tour
     completion: Completion
@@ -45,11 +45,11 @@ class RobustSuggestion:
     nominal: RouteSuggestion
     nominal_completion: Completion
     tried: int
-    """how many different routes were compared"""
+    """number of different routes compared"""
 
     @property
     def dropped(self) -> tuple[int, ...]:
-        """The visits that the route without any spread makes, and this one does not."""
+        """Visits of the nominal route that this route leaves out."""
         return tuple(sorted(set(self.nominal.order) - set(self.route.order)))
 
 
@@ -60,40 +60,41 @@ def suggest_robust_route(
     seed: int = 0,
     confidence: float = 0.95,
 ) -> RobustSuggestion:
-    """The route that is most probably completed, of those that are found within the limit (s).
+    """Search for the route with the highest probability of completion, within `time_limit` s.
 
-    Where visits may be left out, the one with the most prize of those that are completed with a
+    If visits are optional, the result is the route with the highest prize among those with a
     probability of at least `confidence`; if there is none, the most probable one.
 
-    Raises ArgoError if there is no route even without any spread, or none is found.
+    Raises Invalid if `confidence` is not above 0 and at most 1, and Conflict if there is no route
+    even without any spread, or none is found.
     """
     if not 0.0 < confidence <= 1.0:
-        raise Invalid(f"a confidence of {confidence} is none; give one above 0 and up to 1")
+        raise Invalid(f"a confidence of {confidence} is not possible; give one above 0 and up to 1")
     nominal = suggest_route(problem, time_limit / 4.0, seed)
-    # From here: the first search imports OR-Tools, which may take longer than the time limit.
+    # The time counts from here: the first search imports OR-Tools, which may take longer than that.
     end = time.monotonic() + time_limit * 0.75
     if nominal.route is None:
         why = "; ".join(nominal.infeasible_subset) or "none was found within the time limit"
-        raise Conflict(f"there is no route: {why}; relax what it must keep to, or give more time")
-    search = _Search(problem, Draws(spread, SEARCHED, _rng(seed, 0)), confidence)
+        raise Conflict(f"there is no route: {why}; relax its constraints, or give more time")
+    search = _Search(problem, Draws(spread, SEARCH_SAMPLES, _rng(seed, 0)), confidence)
     search.consider(nominal.route)
-    if search.all_done:
+    if search.is_perfect:
         end = -math.inf
     varied = [*_variations(problem, spread, search.deviation(nominal.route))]
     for k, variation in enumerate(varied):
-        # Half of the time that is left is for the local search.
+        # Half of the remaining time is for the local search.
         share = (end - time.monotonic()) / 2.0 / (len(varied) - k)
         if share <= 0.0:
             break
-        found = suggest_route(variation, share, seed, explain=False)
-        if found.route is not None:
-            search.consider(found.route)
+        suggestion = suggest_route(variation, share, seed, explain=False)
+        if suggestion.route is not None:
+            search.consider(suggestion.route)
     search.improve(lambda: time.monotonic() < end)
-    judged = Draws(spread, JUDGED, _rng(seed, 1))
+    final_draws = Draws(spread, FINAL_SAMPLES, _rng(seed, 1))
     routes = [search.best, nominal.route]
-    completions = [completion(problem, route, judged) for route in routes]
-    keys = [_key(problem, *one, confidence) for one in zip(routes, completions, strict=True)]
-    # Luck on the few samples of the search must not make a route worse than the usual one.
+    completions = [completion(problem, route, final_draws) for route in routes]
+    keys = [_key(problem, *pair, confidence) for pair in zip(routes, completions, strict=True)]
+    # A route that was only lucky on the few samples of the search must not replace the nominal one.
     pick = 0 if keys[0] >= keys[1] else 1
     return RobustSuggestion(
         routes[pick],
@@ -116,15 +117,15 @@ def _prize(problem: RouteProblem, route: Tour) -> int:
 _Key = tuple[float, int, float, float]
 
 
-def _key(problem: RouteProblem, route: Tour, found: Completion, confidence: float) -> _Key:
-    """What makes a route better than another, the greater first."""
-    sure = min(found.probability, confidence)
-    prize = _prize(problem, route) if found.probability > 0.0 else 0
-    return (sure, prize, found.probability, -found.duration)
+def _key(problem: RouteProblem, route: Tour, estimate: Completion, confidence: float) -> _Key:
+    """Return the sort key of a route; the greater one is better."""
+    sufficient = min(estimate.probability, confidence)
+    prize = _prize(problem, route) if estimate.probability > 0.0 else 0
+    return (sufficient, prize, estimate.probability, -estimate.duration)
 
 
 class _Search:
-    """Compares routes on the same samples. Holds the best one so far."""
+    """Comparison of routes on the same samples, which holds the best one so far."""
 
     def __init__(self, problem: RouteProblem, draws: Draws, confidence: float) -> None:
         self._problem, self._draws, self._confidence = problem, draws, confidence
@@ -133,7 +134,7 @@ class _Search:
 
     @property
     def tried(self) -> int:
-        """How many different routes were compared."""
+        """Number of different routes compared."""
         return len(self._seen)
 
     @property
@@ -142,45 +143,45 @@ class _Search:
         return self._best[1]
 
     @property
-    def all_done(self) -> bool:
-        """Whether all prize is won in all samples, so that there is nothing to gain."""
+    def is_perfect(self) -> bool:
+        """True if the best route wins all prizes in all samples, so that no route is better."""
         assert self._best is not None
         (_, prize, probability, _), _ = self._best
         return probability == 1.0 and prize == sum(visit.prize for visit in self._problem.visits)
 
     def consider(self, route: Tour) -> bool:
-        """Takes the route if it is the best one so far, and tells whether it is."""
-        same = (route.order, tuple(sorted(route.charges.items())))
-        if same in self._seen:
+        """Store a route if it is new and the best one so far, and return whether it is."""
+        identity = (route.order, tuple(sorted(route.charges.items())))
+        if identity in self._seen:
             return False
-        self._seen.add(same)
-        found = completion(self._problem, route, self._draws)
-        key = _key(self._problem, route, found, self._confidence)
+        self._seen.add(identity)
+        estimate = completion(self._problem, route, self._draws)
+        key = _key(self._problem, route, estimate, self._confidence)
         if self._best is not None and key <= self._best[0]:
             return False
         self._best = (key, route)
         return True
 
     def deviation(self, route: Tour) -> float:
-        """About the standard deviation of a route's duration, in units."""
-        found = completion(self._problem, route, self._draws)
-        return max(0.0, (found.duration_95 - found.duration) / 1.645)
+        """Return an estimate of the standard deviation of a route's duration, in units."""
+        estimate = completion(self._problem, route, self._draws)
+        return max(0.0, (estimate.duration_95 - estimate.duration) / 1.645)
 
-    def improve(self, go_on: Callable[[], bool]) -> None:
-        """Changes the best route in small ways until none of them makes it better."""
-        better = True
-        while better:
-            better = False
-            for changed in _neighbours(self._problem, self.best):
-                if not go_on():
+    def improve(self, has_time: Callable[[], bool]) -> None:
+        """Replace the best route by a better neighbour until there is none, or the time is up."""
+        improved = True
+        while improved:
+            improved = False
+            for neighbour in _neighbours(self._problem, self.best):
+                if not has_time():
                     return
-                if self.consider(changed):
-                    better = True
+                if self.consider(neighbour):
+                    improved = True
                     break
 
 
 def _neighbours(problem: RouteProblem, route: Tour) -> Iterator[Tour]:
-    """Routes with some visits moved, a part reversed, one left out or one more made.
+    """Yield routes with some visits moved, a part reversed, a visit left out or one added.
 
     Charges stay at their positions as far as these exist.
     """
@@ -188,8 +189,8 @@ def _neighbours(problem: RouteProblem, route: Tour) -> Iterator[Tour]:
     n = len(order)
 
     def changed(*parts: tuple[int, ...]) -> Tour:
-        made = sum(parts, ())
-        return Tour(made, {k: c for k, c in route.charges.items() if k <= len(made)})
+        joined = sum(parts, ())
+        return Tour(joined, {k: c for k, c in route.charges.items() if k <= len(joined)})
 
     for size in range(1, _LONGEST_MOVED + 1):
         for k in range(n - size + 1):
@@ -211,46 +212,48 @@ def _neighbours(problem: RouteProblem, route: Tour) -> Iterator[Tour]:
 def _variations(
     problem: RouteProblem, spread: TravelSpread, deviation: float
 ) -> Iterator[RouteProblem]:
-    """Problems without any spread whose best routes may be likely to be completed in this one."""
-    mean = _with_means(problem, spread)
+    """Yield problems without any spread whose best routes may be robust in this problem."""
+    mean = _with_mean_times(problem, spread)
     yield mean
     if problem.max_duration is not None and deviation > 0.0:
-        # Where the probability is that of a normal distribution, a unit of variance costs as much
-        # as margin / (2 x deviation) units of the mean, with a margin of one to two deviations.
+        # With a normal distribution, a unit of variance costs as much as margin / (2 x deviation)
+        # units of the mean, with a margin of one to two deviations.
         variance = _variances(problem, spread)
         for weight in _WEIGHTS:
-            yield _slower(mean, variance * weight / deviation)
+            yield _with_longer_legs(mean, variance * weight / deviation)
     for margin in _MARGINS:
-        yield _drawn_in(mean, margin * deviation, spread, margin)
+        yield _with_tighter_limits(mean, margin * deviation, spread, margin)
 
 
-def _with_means(problem: RouteProblem, spread: TravelSpread) -> RouteProblem:
+def _with_mean_times(problem: RouteProblem, spread: TravelSpread) -> RouteProblem:
     delay = spread.delay_chance * spread.delay / problem.unit
     visits = tuple(
         replace(visit, service=round(visit.service * (1.0 + spread.repeat_chance)))
         for visit in problem.visits
     )
-    return _slower(replace(problem, visits=visits), np.full(problem.travel.shape, delay))
+    return _with_longer_legs(replace(problem, visits=visits), np.full(problem.travel.shape, delay))
 
 
 def _variances(problem: RouteProblem, spread: TravelSpread) -> NDArray[np.float64]:
-    """Of the time of each way, in units squared."""
+    """Return the variance of the time of each leg, in units squared."""
     delay = spread.delay / problem.unit
-    held_up = spread.delay_chance * (2.0 - spread.delay_chance) * delay**2
-    variances: NDArray[np.float64] = (spread.way * problem.travel.astype(np.float64)) ** 2 + held_up
+    of_delay = spread.delay_chance * (2.0 - spread.delay_chance) * delay**2
+    variances: NDArray[np.float64] = (
+        spread.way * problem.travel.astype(np.float64)
+    ) ** 2 + of_delay
     return variances
 
 
-def _slower(problem: RouteProblem, more: NDArray[np.float64]) -> RouteProblem:
-    longest = NEVER >> 4  # the longest time that a route problem takes
-    with_more = np.rint(np.minimum(problem.travel + more, longest)).astype(np.int64)
-    return replace(problem, travel=np.where(problem.travel >= NEVER, NEVER, with_more))
+def _with_longer_legs(problem: RouteProblem, extra: NDArray[np.float64]) -> RouteProblem:
+    longest = NEVER >> 4  # far below NEVER, which means that there is no path
+    longer = np.rint(np.minimum(problem.travel + extra, longest)).astype(np.int64)
+    return replace(problem, travel=np.where(problem.travel >= NEVER, NEVER, longer))
 
 
-def _drawn_in(
+def _with_tighter_limits(
     problem: RouteProblem, margin: float, spread: TravelSpread, deviations: float
 ) -> RouteProblem:
-    """With less time until all limits, and less in the battery."""
+    """Return the problem with earlier limits and a smaller battery."""
     less = round(margin)
     visits = tuple(
         visit

@@ -1,4 +1,4 @@
-"""How travel times spread around those of a route problem."""
+"""Random spread of travel times around those of a route problem."""
 
 from pydantic import Field
 
@@ -6,24 +6,25 @@ from argo_compiler.base.model import Model
 
 
 class TravelSpread(Model):
-    """What is random about a mission. All parts are independent of each other.
+    """Parameters of the random parts of a mission, which are independent of each other.
 
-    A way takes nominal time x common factor x factor of its own, and sometimes a delay. Factors are
-    log-normal with mean 1. The energy for a way grows by the same two factors.
+    A leg, the drive to one location, takes nominal time x common factor x factor of its own, and
+    sometimes a delay. Factors are log-normal with mean 1. The energy of a leg grows by the same two
+    factors.
     """
 
     common: float = Field(0.0, ge=0, le=1)
-    """standard deviation of the factor of the whole mission: grip, the battery's voltage"""
+    """standard deviation of the factor that all legs share: grip, the battery's voltage"""
     way: float = Field(0.0, ge=0, le=1)
-    """standard deviation of the factor of each way, drawn anew each time that it is driven"""
+    """standard deviation of the factor of each leg, drawn anew each time that it is driven"""
     delay_chance: float = Field(0.0, ge=0, le=1)
-    """of each way to be held up, by something that stands in it"""
+    """probability of a delay on each leg, by an obstacle"""
     delay: float = Field(0.0, ge=0)
     """mean of a delay, s; delays are exponential"""
     repeat_chance: float = Field(0.0, ge=0, le=1)
-    """that what is done at a place takes its service time twice: a reading that is repeated"""
+    """probability that a visit takes its service time twice: a measurement that is repeated"""
     source: str = ""
-    """where the figures come from"""
+    """source of the numbers"""
 
 
 SIMULATED = TravelSpread(

@@ -1,9 +1,9 @@
-// Runs a behaviour tree with stub nodes: `runner TREE.xml STEPS < outcomes`.
+// Runs a behaviour tree with replaced nodes: `runner TREE.xml STEPS < outcomes`.
 //
-// A line of input is the outcome of an action: its duration (s), whether it reads a value, the
-// value, whether that is abnormal, and whether it fails; one that fails and has a value is one of
-// reading. They are used in turn. A line of output is the start of an action:
-// the time and the node's name. The last line is the blackboard entry `outcome`, or 0.
+// A line of input is the outcome of one action: its duration (s), whether it reads a value, the
+// value, whether the value is abnormal, and whether the action fails; a failure with a value is
+// unreadable. The outcomes are used in turn. A line of output is the start of an action: the time
+// and the node's name. The last line is the blackboard entry `outcome`, or 0.
 //
 //   c++ -std=c++17 -O1 btcpp_runner.cpp -lbehaviortree_cpp -o runner
 

@@ -10,7 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from tests.code_parameter import trees
+from tests.source import trees
 
 SHARED = frozenset(["diagnostic_of", "parse_yaml", "refusal"])
 """functions that pass codes on and are called from other folders as well"""

@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
-from argo_env.sensing.make_watch import ReportedDetection
 from argo_env.sensing.signals.gas_watch import GasSensor, GasWatch, Hysteresis, UltrasonicMicrophone
+from argo_env.sensing.watch import ReportedDetection
 from argo_env.surroundings import GasLeak, Surroundings, Weather
 from tests.argo_env.sensing.signals.plant import Z, detections_along, lane
 from tests.conftest import examples

@@ -162,7 +162,7 @@ def test_each_module_is_found_where_its_name_says():
 
 def test_the_checkers_of_witnesses_share_no_code_with_the_analysis():
     analysis = "argo_compiler.analysis."
-    forms = {analysis + name for name in ("facts", "travel", "witness")}
+    forms = {analysis + name for name in ("results", "travel", "witness")}
     checkers = {m for m in trees() if m.startswith((analysis + "verif", analysis + "bound_verif"))}
     assert checkers
     for module in checkers:

@@ -2,7 +2,7 @@
 
 from argo_compiler.analysis.analysing import analyse
 from argo_compiler.analysis.bound_verification import unproved_bounds
-from argo_compiler.analysis.facts import (
+from argo_compiler.analysis.results import (
     Analysis,
     Bound,
     Bounds,
@@ -12,7 +12,7 @@ from argo_compiler.analysis.facts import (
     TransitionFacts,
     Verdict,
 )
-from argo_compiler.analysis.travel import Leg, NoWay, Standing, Travel
+from argo_compiler.analysis.travel import Leg, NoPath, RobotPose, Travel
 from argo_compiler.analysis.verification_claims import unproved
 from argo_compiler.analysis.witness import (
     Invariant,
@@ -34,9 +34,9 @@ __all__ = [
     "LeastSpent",
     "LeastWitness",
     "Leg",
-    "NoWay",
+    "NoPath",
     "ReadingScale",
-    "Standing",
+    "RobotPose",
     "Stretch",
     "TaskFacts",
     "TransitionFacts",

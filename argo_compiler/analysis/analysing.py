@@ -3,34 +3,34 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from argo_compiler.analysis.bound_verification import AT_LEAST, least_steps, unshown
-from argo_compiler.analysis.bound_witnessing import make_least_witness
-from argo_compiler.analysis.endings import endings
-from argo_compiler.analysis.facts import (
+from argo_compiler.analysis.bound_verification import AT_LEAST, least_steps, unproved_claims
+from argo_compiler.analysis.bound_witness_search import make_least_witness
+from argo_compiler.analysis.duration_with_failures import longest_duration_with_failures
+from argo_compiler.analysis.endings import diagnose_endings
+from argo_compiler.analysis.flow import Flow
+from argo_compiler.analysis.limits import diagnose_limits, diagnose_stale_values
+from argo_compiler.analysis.non_terminating_loops import find_non_terminating_loops
+from argo_compiler.analysis.reachability import compute_reachability, make_fields
+from argo_compiler.analysis.results import (
     Analysis,
     GroupFacts,
     TaskFacts,
     TransitionFacts,
     Verdict,
 )
-from argo_compiler.analysis.flow import Flow
-from argo_compiler.analysis.kept import kept_loops
-from argo_compiler.analysis.limits import limits, stale
-from argo_compiler.analysis.reach import unreachable_tasks
 from argo_compiler.analysis.study import Study
-from argo_compiler.analysis.transitions import transitions
+from argo_compiler.analysis.transitions import diagnose_transitions
 from argo_compiler.analysis.travel import Travel
-from argo_compiler.analysis.values import find_paths, make_fields
+from argo_compiler.analysis.unreachable_tasks import diagnose_unreachable_tasks
 from argo_compiler.analysis.verification_claims import unproved
-from argo_compiler.analysis.witnessing import make_witnesses
-from argo_compiler.analysis.worst import worst_duration
+from argo_compiler.analysis.witness_construction import make_witnesses
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.hfsm.lowering import lower
 from argo_compiler.il import Mission
 
-_BY_WITNESS = frozenset(
+_WITNESSED = frozenset(
     f"analysis.{code}"
     for code in (
         "endless-loop",
@@ -44,7 +44,7 @@ _BY_WITNESS = frozenset(
 )
 """the diagnostics that say what never or always happens"""
 
-_WITHDRAWN = {
+_SUBJECTS = {
     "analysis.too-long": "whether the mission takes too long on all paths",
     "analysis.battery-exceeded": "whether the battery never suffices",
     "analysis.window-late": "whether some windows are always over",
@@ -66,55 +66,59 @@ def analyse(
         ArgoError: the robot can't stand where the mission starts.
     """
     with collector_held():
-        return _analysis(mission, catalog, travel)
+        return _analyse(mission, catalog, travel)
 
 
-def _analysis(mission: Mission, catalog: Catalog | None, travel: Travel | None) -> Analysis:
-    flow = Flow.of(lower(mission), mission)
+def _analyse(mission: Mission, catalog: Catalog | None, travel: Travel | None) -> Analysis:
+    flow = Flow.from_machine(lower(mission), mission)
     fields = make_fields(flow, catalog)
     study = Study(
         mission,
         catalog,
         travel,
         flow,
-        nominal=find_paths(flow, fields, failures=False),
-        with_failures=find_paths(flow, fields, failures=True),
+        nominal=compute_reachability(flow, fields, failures=False),
+        with_failures=compute_reachability(flow, fields, failures=True),
     )
     unjudged = []
     if len(fields.shift) < len(fields.scales):
         names = ", ".join(sorted(fields.scales.keys() - fields.shift.keys())[:10])
         unjudged.append(f"the values of some checkpoints along the paths ({names})")
-    kept = tuple(kept_loops(study))
-    found = [*unreachable_tasks(study), *transitions(study), *endings(study, kept)]
-    worst = None if study.extent is None else worst_duration(study)
-    if study.extent is None:
+    loops = tuple(find_non_terminating_loops(study))
+    diagnostics = [
+        *diagnose_unreachable_tasks(study),
+        *diagnose_transitions(study),
+        *diagnose_endings(study, loops),
+    ]
+    longest = None if study.bounds is None else longest_duration_with_failures(study)
+    if study.bounds is None:
         unjudged.append("loops and durations")
     elif travel is not None:
-        found += limits(study, travel, worst)
-        old = stale(study)
-        if old is None:
+        diagnostics += diagnose_limits(study, travel, longest)
+        stale = diagnose_stale_values(study)
+        if stale is None:
             unjudged.append("ages of values")
         else:
-            found += old
-    extent = study.extent
+            diagnostics += stale
+    bounds = study.bounds
     analysis = Analysis(
-        diagnostics=tuple(found),
+        diagnostics=tuple(diagnostics),
         tasks=tuple(_task_facts(study, i) for i in range(len(flow.leaves)) if study.is_own(i)),
         groups=tuple(_group_facts(study, g) for g in range(len(flow.groups))),
-        ends=_reach(study, flow.done),
-        duration=None if extent is None else extent.duration,
-        energy=None if extent is None else extent.energy,
-        duration_with_failures=worst,
+        ends=_reach_verdict(study, flow.end_node),
+        duration=None if bounds is None else bounds.duration,
+        energy=None if bounds is None else bounds.energy,
+        duration_with_failures=longest,
         unjudged=tuple(unjudged),
-        witnesses=make_witnesses(study, kept),
+        witnesses=make_witnesses(study, loops),
     )
     wrong = unproved(mission, catalog, analysis)
     if wrong:
         analysis = without_verdicts(analysis, wrong)
-    return analysis if travel is None else _with_bounds_shown(mission, catalog, travel, analysis)
+    return analysis if travel is None else _with_proved_bounds(mission, catalog, travel, analysis)
 
 
-def _with_bounds_shown(
+def _with_proved_bounds(
     mission: Mission, catalog: Catalog | None, travel: Travel, analysis: Analysis
 ) -> Analysis:
     """The same with a witness of what is said to be taken at least, and without what it does not
@@ -127,14 +131,14 @@ def _with_bounds_shown(
         least = None if steps is None else make_least_witness(steps)
         witnesses = replace(witnesses, least=least)
         analysis = analysis.model_copy(update={"witnesses": witnesses})
-    return without_bounds(analysis, unshown(steps, analysis))
+    return without_bounds(analysis, unproved_claims(steps, analysis))
 
 
 def without_bounds(analysis: Analysis, wrong: Sequence[Diagnostic]) -> Analysis:
     """The same without some of what is said to be taken at least."""
     if not wrong:
         return analysis
-    subjects = ", ".join(dict.fromkeys(_WITHDRAWN[d.code] for d in wrong))
+    subjects = ", ".join(dict.fromkeys(_SUBJECTS[d.code] for d in wrong))
     return analysis.model_copy(
         update={
             "diagnostics": tuple(d for d in analysis.diagnostics if d not in wrong),
@@ -150,7 +154,8 @@ def without_verdicts(analysis: Analysis, wrong: Sequence[str]) -> Analysis:
             task=facts.task,
             verdict=Verdict.POSSIBLE,
             transitions=tuple(
-                one.model_copy(update={"verdict": Verdict.POSSIBLE}) for one in facts.transitions
+                transition.model_copy(update={"verdict": Verdict.POSSIBLE})
+                for transition in facts.transitions
             ),
         )
         for facts in analysis.tasks
@@ -161,7 +166,7 @@ def without_verdicts(analysis: Analysis, wrong: Sequence[str]) -> Analysis:
     )
     return analysis.model_copy(
         update={
-            "diagnostics": tuple(d for d in analysis.diagnostics if d.code not in _BY_WITNESS),
+            "diagnostics": tuple(d for d in analysis.diagnostics if d.code not in _WITNESSED),
             "tasks": tasks,
             "groups": groups,
             "ends": Verdict.POSSIBLE,
@@ -171,10 +176,10 @@ def without_verdicts(analysis: Analysis, wrong: Sequence[str]) -> Analysis:
     )
 
 
-def _reach(study: Study, node: int) -> Verdict:
-    if study.nominal.reached(node):
+def _reach_verdict(study: Study, node: int) -> Verdict:
+    if study.nominal.is_reached(node):
         return Verdict.POSSIBLE
-    return Verdict.AFTER_FAILURE if study.with_failures.reached(node) else Verdict.NEVER
+    return Verdict.AFTER_FAILURE if study.with_failures.is_reached(node) else Verdict.NEVER
 
 
 def _task_facts(study: Study, leaf: int) -> TaskFacts:
@@ -183,72 +188,76 @@ def _task_facts(study: Study, leaf: int) -> TaskFacts:
     facts = []
     for index, transition in enumerate(task.transitions):
         if transition.conditions:
-            verdict = _conditional(study, leaf, conditional)
+            verdict = _conditional_verdict(study, leaf, conditional)
             conditional += 1
         else:
-            verdict = _unconditional(study, leaf)
+            verdict = _unconditional_verdict(study, leaf)
         facts.append(TransitionFacts(index=index, target=transition.target, verdict=verdict))
-    return TaskFacts(task=task.name, verdict=_reach(study, leaf), transitions=tuple(facts))
+    return TaskFacts(task=task.name, verdict=_reach_verdict(study, leaf), transitions=tuple(facts))
 
 
-def _conditional(study: Study, leaf: int, k: int) -> Verdict:
-    nominal = study.nominal.conditional(study.flow, leaf)
+def _conditional_verdict(study: Study, leaf: int, k: int) -> Verdict:
+    nominal = study.nominal.conditional_guards(study.flow, leaf)
     if k < len(nominal) and nominal[k].certain:
         return Verdict.ALWAYS
     if k < len(nominal) and nominal[k].possible:
         return Verdict.POSSIBLE
-    looks = study.with_failures.conditional(study.flow, leaf)
-    return Verdict.AFTER_FAILURE if k < len(looks) and looks[k].possible else Verdict.NEVER
+    guards = study.with_failures.conditional_guards(study.flow, leaf)
+    return Verdict.AFTER_FAILURE if k < len(guards) and guards[k].possible else Verdict.NEVER
 
 
-def _unconditional(study: Study, leaf: int) -> Verdict:
+def _unconditional_verdict(study: Study, leaf: int) -> Verdict:
     """Of a task that ends groups it is the one after their last rounds."""
     flow = study.flow
-    for paths, verdict in (
+    for reachability, verdict in (
         (study.nominal, Verdict.POSSIBLE),
         (study.with_failures, Verdict.AFTER_FAILURE),
     ):
-        if paths.reached(leaf) and paths.tail_possible(flow, leaf):
-            node = flow.leaves[leaf].tail
-        elif any(paths.reached(flow.time_up(g)) for g in _ending_hard(study, leaf)):
+        if reachability.is_reached(leaf) and reachability.unconditional_possible(flow, leaf):
+            node = flow.leaves[leaf].unconditional
+        elif any(
+            reachability.is_reached(flow.time_up(g)) for g in _hard_groups_ending_with(study, leaf)
+        ):
             return verdict
         else:
             continue
         group = flow.group_of_round_end(node)
         if group is None:
-            conditional = paths.conditional(flow, leaf)
-            alone = verdict is Verdict.POSSIBLE and not any(look.possible for look in conditional)
+            conditional = reachability.conditional_guards(flow, leaf)
+            alone = verdict is Verdict.POSSIBLE and not any(guard.possible for guard in conditional)
             return Verdict.ALWAYS if alone else verdict
-        if any(paths.reached(flow.time_up(g)) for g in _ending_hard(study, leaf)):
+        if any(
+            reachability.is_reached(flow.time_up(g)) for g in _hard_groups_ending_with(study, leaf)
+        ):
             return verdict
         while group is not None and flow.groups[group].may_end:
-            group = flow.group_of_round_end(flow.groups[group].onward)
+            group = flow.group_of_round_end(flow.groups[group].successor)
         if group is None:
             return verdict
     return Verdict.NEVER
 
 
-def _ending_hard(study: Study, leaf: int) -> list[int]:
+def _hard_groups_ending_with(study: Study, leaf: int) -> list[int]:
     """The groups with a hard stop that end with a leaf, and that no endless group keeps."""
     flow = study.flow
-    found = []
+    groups = []
     group = flow.leaves[leaf].parent
     while group >= 0 and flow.groups[group].last == leaf:
         if flow.groups[group].hard:
-            found.append(group)
+            groups.append(group)
         elif not flow.groups[group].may_end:
-            found.clear()
+            groups.clear()
         group = flow.groups[group].parent
-    return found
+    return groups
 
 
 def _group_facts(study: Study, number: int) -> GroupFacts:
     flow = study.flow
     group = flow.groups[number]
-    ended = _reach(study, flow.round_end(number))
+    ended = _reach_verdict(study, flow.round_end(number))
     repeats = ended if group.may_repeat else Verdict.NEVER
     if group.hard:
-        ends = _reach(study, flow.time_up(number))
+        ends = _reach_verdict(study, flow.time_up(number))
     else:
         ends = ended if group.may_end else Verdict.NEVER
     return GroupFacts(group=group.name, repeats=repeats, ends=ends)

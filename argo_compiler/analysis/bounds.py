@@ -4,36 +4,36 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-from argo_compiler.analysis.facts import Bound, Bounds, Stretch
+from argo_compiler.analysis.completion_times import TaskEnd, completion_times
 from argo_compiler.analysis.flow import Flow
-from argo_compiler.analysis.legs import Legs
-from argo_compiler.analysis.levels import LevelGraph, Levels, Loop
-from argo_compiler.analysis.moments import TaskEnd, moments
-from argo_compiler.analysis.rounds import Out
-from argo_compiler.analysis.values import Paths
+from argo_compiler.analysis.path_lengths import LevelGraph, Loop, PathLengths
+from argo_compiler.analysis.reachability import Reachability
+from argo_compiler.analysis.results import Bound, Bounds, Stretch
+from argo_compiler.analysis.rounds import GroupExit
+from argo_compiler.analysis.step_costs import StepCosts
 
-_CUTS = 200_000  # pairs of a task and a time-out that may cut it, as far as they are looked at
-_STRETCHES = 200  # of a path that are kept, at its beginning and at its end
+_MOST_CUTS = 200_000  # pairs of a task and a time-out that may cut it, as far as they are looked at
+_MOST_STRETCHES = 200  # of a path that are kept, at its beginning and at its end
 
 
 @dataclass(frozen=True)
-class Extent:
+class MissionBounds:
     """What the levels of a mission say."""
 
     duration: Bounds | None
     energy: Bounds | None
     loops: tuple[Loop, ...]
-    levels: Levels
-    level: LevelGraph
+    lengths: PathLengths
+    mission_level: LevelGraph
     """the mission's"""
 
     @cached_property
-    def moments(self) -> tuple[TaskEnd, ...]:
+    def completion_times(self) -> tuple[TaskEnd, ...]:
         """When each leaf has ended, where durations are known."""
-        return moments(self.levels, self.level)
+        return completion_times(self.lengths, self.mission_level)
 
 
-def too_many_cuts(flow: Flow) -> bool:
+def has_too_many_cuts(flow: Flow) -> bool:
     """Whether groups nest too deeply to look at what each time-out may cut."""
     pairs = 0
     hard: list[int] = []
@@ -41,56 +41,58 @@ def too_many_cuts(flow: Flow) -> bool:
         hard.append(group.hard + (hard[group.parent] if group.parent >= 0 else 0))
     for leaf in flow.leaves:
         pairs += hard[leaf.parent] if leaf.parent >= 0 else 0
-    return pairs > _CUTS
+    return pairs > _MOST_CUTS
 
 
-def measure(flow: Flow, paths: Paths, legs: Legs, endless: bool) -> Extent:
+def compute_bounds(
+    flow: Flow, reachability: Reachability, costs: StepCosts, endless: bool
+) -> MissionBounds:
     """The bounds of a mission and its loops; none above if some path is `endless`, or has a loop
     that no time limits: also one that no way leads out of, so that no end comes after it. Raises
     BoundsTooLargeError."""
-    levels = Levels(flow, paths, legs)
-    level = levels.mission()
+    lengths = PathLengths(flow, reachability, costs)
+    level = lengths.mission_level()
     duration = energy = None
-    ends = [way for way in level.outs if way[1][1] == flow.done]
+    ends = [exit for exit in level.exits if exit[1][1] == flow.end_node]
     # What can't be done as planned fails: then nothing is known of a path without failures.
-    if ends and legs.travel is not None and not legs.too_slow:
-        endless = endless or bool(levels.loops)
-        duration = _bounds(flow, legs, level, "time", endless)
-        energy = _bounds(flow, legs, level, "energy", endless)
-    return Extent(duration, energy, tuple(levels.loops.values()), levels, level)
+    if ends and costs.travel is not None and not costs.too_slow:
+        endless = endless or bool(lengths.loops)
+        duration = _bounds(flow, costs, level, "time", endless)
+        energy = _bounds(flow, costs, level, "energy", endless)
+    return MissionBounds(duration, energy, tuple(lengths.loops.values()), lengths, level)
 
 
-def longest(flow: Flow, paths: Paths, legs: Legs) -> float:
+def longest_duration(flow: Flow, reachability: Reachability, costs: StepCosts) -> float:
     """s at most from the mission's start to its end; infinite if there is no bound. Raises
     BoundsTooLargeError."""
-    levels = Levels(flow, paths, legs)
-    level = levels.mission()
-    if levels.loops:
+    lengths = PathLengths(flow, reachability, costs)
+    level = lengths.mission_level()
+    if lengths.loops:
         return math.inf
     most = 0.0
-    for node, (source, target), cost, _ in level.outs:
-        if target == flow.done:
-            end = level.most["time"][node] + cost.time.most + legs.last_clean_up(source)
+    for node, (source, target), cost, _ in level.exits:
+        if target == flow.end_node:
+            end = level.most["time"][node] + cost.time.most + costs.last_clean_up(source)
             most = max(most, end)
     return most
 
 
 def _bounds(
-    flow: Flow, legs: Legs, level: LevelGraph, quantity: str, endless: bool
+    flow: Flow, costs: StepCosts, level: LevelGraph, quantity: str, endless: bool
 ) -> Bounds | None:
     """None if no path comes to its end: rounds in which no time passes never fill a duration."""
     least = min(
         (level.least[quantity][node] + getattr(cost, quantity).least, k)
-        for k, (node, _, cost, _) in enumerate(level.outs)
+        for k, (node, _, cost, _) in enumerate(level.exits)
     )
     most = max(
         (
             level.most[quantity][node]
             + getattr(cost, quantity).most
-            + (legs.last_clean_up(source) if quantity == "time" else 0.0),
+            + (costs.last_clean_up(source) if quantity == "time" else 0.0),
             k,
         )
-        for k, (node, (source, _), cost, _) in enumerate(level.outs)
+        for k, (node, (source, _), cost, _) in enumerate(level.exits)
     )
     if math.isinf(least[0]):
         return None
@@ -106,13 +108,13 @@ def _path(
     flow: Flow, level: LevelGraph, quantity: str, end: int, shortest: bool
 ) -> tuple[Stretch, ...]:
     """The path to one of the ends of a level, the middle of a very long one left out."""
-    before = (level.least_before if shortest else level.most_before)[quantity]
+    predecessors = (level.least_predecessors if shortest else level.most_predecessors)[quantity]
     distance = (level.least if shortest else level.most)[quantity]
-    node, _, _, out = level.outs[end]
+    node, _, _, group_exit = level.exits[end]
     reversed_path: list[Stretch] = []
-    at: tuple[int, Out | None] | None = (node, out)
-    while at is not None:
-        node, out = at
+    pending: tuple[int, GroupExit | None] | None = (node, group_exit)
+    while pending is not None:
+        node, group_exit = pending
         key = level.keys[node]
         if isinstance(key, int):
             if flow.is_leaf(key):
@@ -121,10 +123,10 @@ def _path(
             name = flow.leaves[key[1]].name
             reversed_path.append(Stretch(task=name, missed=True, until=distance[node]))
         else:
-            assert out is not None
-            span = getattr(out.cost, quantity)
-            taken = span.least if shortest else span.most
-            rounds = out.fewest if shortest else out.most
+            assert group_exit is not None
+            cost = getattr(group_exit.cost, quantity)
+            taken = cost.least if shortest else cost.most
+            rounds = group_exit.fewest if shortest else group_exit.most
             reversed_path.append(
                 Stretch(
                     group=flow.groups[key[0]].name,
@@ -132,8 +134,8 @@ def _path(
                     until=distance[node] + taken,
                 )
             )
-        at = before[node]
+        pending = predecessors[node]
     path = reversed_path[::-1]
-    if len(path) > 2 * _STRETCHES:
-        path = path[:_STRETCHES] + path[-_STRETCHES:]
+    if len(path) > 2 * _MOST_STRETCHES:
+        path = path[:_MOST_STRETCHES] + path[-_MOST_STRETCHES:]
     return tuple(path)

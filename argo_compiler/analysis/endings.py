@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
-from argo_compiler.analysis.kept import KeptLoop
+from argo_compiler.analysis.non_terminating_loops import NonTerminatingLoop
 from argo_compiler.analysis.study import Study
 from argo_compiler.base.listing import quoted
 from argo_compiler.base.model import Pose
@@ -10,27 +10,29 @@ from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Task
 from argo_compiler.il.docked import at_dock
 
-_PATHS = 200  # diagnostics that come with a path
-_WAY_OUT = (
+_MOST_PATHS = 200  # diagnostics that come with a path
+_REMEDY = (
     "lead a transition out of it, or make it a group with max_repeat_count or max_repeat_duration"
 )
 
 
-def endings(study: Study, kept: Iterable[KeptLoop] = ()) -> Iterator[Diagnostic]:
+def diagnose_endings(
+    study: Study, loops: Iterable[NonTerminatingLoop] = ()
+) -> Iterator[Diagnostic]:
     """Whether the mission comes to its end, and where; `kept` are the loops that readings keep."""
     if not study.mission.tasks:
         return
     traps = study.traps
-    yield from _endless(study, traps)
-    yield from _kept(study, kept)
-    yield from _unbounded(study, {leaf for trap in traps for leaf in trap})
-    yield from _elsewhere(study)
+    yield from _endless_loops(study, traps)
+    yield from _held_loops(study, loops)
+    yield from _unbounded_loops(study, {leaf for trap in traps for leaf in trap})
+    yield from _ends_elsewhere(study)
 
 
-def _endless(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator[Diagnostic]:
+def _endless_loops(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator[Diagnostic]:
     severity = Severity.WARNING if study.ended_by_reaction else Severity.ERROR
     but = "nothing but a reaction" if study.ended_by_reaction else "nothing but a failure"
-    can_end = study.nominal.reached(study.flow.done)
+    can_end = study.nominal.is_reached(study.flow.end_node)
     for trap in traps:
         if not trap:
             continue
@@ -39,7 +41,7 @@ def _endless(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator[Diagn
             "endless-loop",
             f"{_tasks(study, trap)} {_follow(trap)} for ever: {but} or a person ends that "
             f"(path: {path})",
-            _WAY_OUT,
+            _REMEDY,
             trap[0],
             severity=severity,
         )
@@ -49,7 +51,7 @@ def _endless(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator[Diagn
             if traps
             else "no path leads to its end"
         )
-        if study.with_failures.reached(study.flow.done):
+        if study.with_failures.is_reached(study.flow.end_node):
             why += ", unless an action fails"
         yield study.diagnostic(
             "no-end",
@@ -60,7 +62,7 @@ def _endless(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator[Diagn
         )
 
 
-def _kept(study: Study, loops: Iterable[KeptLoop]) -> Iterator[Diagnostic]:
+def _held_loops(study: Study, loops: Iterable[NonTerminatingLoop]) -> Iterator[Diagnostic]:
     but = "nothing but a reaction" if study.ended_by_reaction else "nothing but a failure"
     for loop in loops:
         leaves = tuple(sorted(filter(study.flow.is_leaf, loop.nodes)))
@@ -89,12 +91,12 @@ def _tasks(study: Study, leaves: tuple[int, ...]) -> str:
     return f"task{'s' if len(leaves) > 1 else ''} {quoted([study.name(i) for i in leaves])}"
 
 
-def _unbounded(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
+def _unbounded_loops(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
     """Loops of which nobody knows when they are left, or whether they are."""
-    extent = study.extent
-    if extent is None:
+    bounds = study.bounds
+    if bounds is None:
         return
-    for loop in extent.loops:
+    for loop in bounds.loops:
         first = min([*loop.leaves, *(study.flow.groups[g].first for g in loop.groups)])
         if first in trapped:
             continue
@@ -105,21 +107,21 @@ def _unbounded(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
         ]
         single = len(loop.leaves) + len(loop.groups) == 1
         they = "it" if single else "they"
-        way_out = (
+        remark = (
             f"{they} can be left, but no count and no duration says when"
-            if loop.left
+            if loop.has_exit
             else f"what leads out of {'it' if single else 'them'} comes too late for a hard stop"
         )
         yield study.diagnostic(
             "unbounded-loop",
             f"{' and '.join(parts)} may be repeated without limit: "
-            f"{way_out}, so no duration of the mission can be promised",
+            f"{remark}, so no duration of the mission can be promised",
             "make it a group with max_repeat_count or max_repeat_duration that goes on in any case",
             first,
         )
 
 
-def _elsewhere(study: Study) -> Iterator[Diagnostic]:
+def _ends_elsewhere(study: Study) -> Iterator[Diagnostic]:
     """Paths that end elsewhere than where the mission is to end."""
     area = study.mission.end_area
     if area is None:
@@ -131,26 +133,28 @@ def _elsewhere(study: Study) -> Iterator[Diagnostic]:
     flow = study.flow
     last_elsewhere: dict[int, str] = {}
     for leaf in range(len(flow.leaves)):
-        if not study.nominal.reached(leaf):
+        if not study.nominal.is_reached(leaf):
             continue
-        if any(_ends(study, target) for target in study.nominal.after_missing(flow, leaf)):
+        if any(
+            _leads_to_end(study, target) for target in study.nominal.targets_when_missed(flow, leaf)
+        ):
             where = f"wherever the robot is when the window of task '{study.name(leaf)}' is over"
             last_elsewhere[leaf] = where
-        elif not _stands_at(study, leaf, dock) and any(
-            _ends(study, target) for target in study.nominal.targets(flow, leaf)
+        elif not _is_docked_after(study, leaf, dock) and any(
+            _leads_to_end(study, target) for target in study.nominal.targets(flow, leaf)
         ):
             last_elsewhere[leaf] = f"after task '{study.name(leaf)}'"
     for number, group in enumerate(flow.groups):
         if (
             group.hard
-            and study.nominal.reached(flow.time_up(number))
-            and _ends(study, group.onward)
+            and study.nominal.is_reached(flow.time_up(number))
+            and _leads_to_end(study, group.successor)
         ):
             last_elsewhere.setdefault(
                 group.last, f"wherever the robot is when the time of group '{group.name}' is up"
             )
     for k, (leaf, where) in enumerate(sorted(last_elsewhere.items())):
-        path = f" (path: {study.path_words(leaf)})" if k < _PATHS else ""
+        path = f" (path: {study.path_words(leaf)})" if k < _MOST_PATHS else ""
         yield study.diagnostic(
             "end-elsewhere",
             f"the mission is to end docked in starting area {area}, but it can end {where}{path}",
@@ -159,19 +163,19 @@ def _elsewhere(study: Study) -> Iterator[Diagnostic]:
         )
 
 
-def _ends(study: Study, node: int) -> bool:
+def _leads_to_end(study: Study, node: int) -> bool:
     """Whether a node is the end of the mission, or may lead there without another task."""
     flow = study.flow
     group = flow.group_of_round_end(node)
     while group is not None:
         if not flow.groups[group].may_end:
             return False
-        node = flow.groups[group].onward
+        node = flow.groups[group].successor
         group = flow.group_of_round_end(node)
-    return node == flow.done
+    return node == flow.end_node
 
 
-def _stands_at(study: Study, leaf: int, dock: Pose) -> bool:
+def _is_docked_after(study: Study, leaf: int, dock: Pose) -> bool:
     """Whether the robot is at the dock after a task; after a WAIT it is where it was before."""
     seen = {leaf}
     pending = [leaf]
@@ -179,7 +183,7 @@ def _stands_at(study: Study, leaf: int, dock: Pose) -> bool:
         node = pending.pop()
         if study.flow.is_leaf(node) and study.flow.leaves[node].wait is None:
             missed = node != leaf and study.flow.leaves[node].deadline is not None
-            if missed or not _leads_to(study.task(node), dock):
+            if missed or not _drives_to(study.task(node), dock):
                 return False
             continue
         before = study.predecessors[node]
@@ -191,5 +195,5 @@ def _stands_at(study: Study, leaf: int, dock: Pose) -> bool:
     return True
 
 
-def _leads_to(task: Task, dock: Pose) -> bool:
+def _drives_to(task: Task, dock: Pose) -> bool:
     return task.action is Action.WAYPOINT and task.pose is not None and at_dock(task.pose, dock)

@@ -27,7 +27,7 @@ class GroupFlow:
     """its leaves are `first` to `last`"""
     start: int
     """the leaf that a round begins with"""
-    onward: int
+    successor: int
     """the node after the last round"""
     count: int
     duration: float
@@ -51,7 +51,7 @@ class GroupFlow:
     def may_end(self) -> bool:
         return self.limited or bool(self.until)
 
-    def holds(self, leaf: int) -> bool:
+    def contains(self, leaf: int) -> bool:
         return self.first <= leaf <= self.last
 
 
@@ -62,7 +62,7 @@ class LeafFlow:
     leaf: Leaf
     parent: int
     conditional: tuple[tuple[tuple[Condition, ...], int], ...]
-    tail: int
+    unconditional: int
     """the node if no condition holds"""
     failure: int | None
     """the node after a failure for good, where that is not the same as any other end"""
@@ -100,12 +100,12 @@ class Flow:
     """of each group: whether its time, or that of a group around it, may be up at any moment"""
 
     @cached_property
-    def done(self) -> int:
+    def end_node(self) -> int:
         return len(self.leaves) + 2 * len(self.groups)
 
     @property
     def size(self) -> int:
-        return self.done + 1
+        return self.end_node + 1
 
     def round_end(self, group: int) -> int:
         """The node at which a round of the group has ended."""
@@ -123,7 +123,7 @@ class Flow:
         return at if 0 <= at < len(self.groups) else None
 
     @classmethod
-    def of(cls, hfsm: Hfsm, mission: Mission) -> "Flow":
+    def from_machine(cls, hfsm: Hfsm, mission: Mission) -> "Flow":
         """The graph of a machine, in linear time."""
         return _Builder(hfsm, mission).flow()
 
@@ -135,7 +135,7 @@ class _Builder:
         self.number = {leaf.id: i for i, leaf in enumerate(hfsm.leaves)}
         self.groups = {c.id: i for i, c in enumerate(hfsm.composites[1:])}
         self.groups[MISSION] = NOWHERE
-        self.done = len(hfsm.leaves) + 2 * len(hfsm.composites[1:])
+        self.end_node = len(hfsm.leaves) + 2 * len(hfsm.composites[1:])
 
     def flow(self) -> Flow:
         groups = self._group_flows()
@@ -148,7 +148,7 @@ class _Builder:
         return Flow(
             leaves=tuple(self._leaf_flow(leaf) for leaf in self.hfsm.leaves),
             groups=groups,
-            initial=self.number.get(self.hfsm.mission.initial, self.done),
+            initial=self.number.get(self.hfsm.mission.initial, self.end_node),
             depth=tuple(depth),
             timed=tuple(timed),
         )
@@ -156,7 +156,7 @@ class _Builder:
     def _node(self, transition: StateTransition) -> int:
         if transition.completes is not None:
             return len(self.hfsm.leaves) + self.groups[transition.completes]
-        return self.number.get(transition.target or "", self.done)
+        return self.number.get(transition.target or "", self.end_node)
 
     def _leaf_flow(self, leaf: Leaf) -> LeafFlow:
         *conditional, last = leaf.transitions
@@ -165,7 +165,7 @@ class _Builder:
             leaf=leaf,
             parent=self.groups[leaf.parent],
             conditional=tuple((t.conditions, self._node(t)) for t in conditional),
-            tail=self._node(last),
+            unconditional=self._node(last),
             failure=None if leaf.failure is None else self._node(leaf.failure),
             measures=task.object_id if task.action is Action.MEASURE else None,
             missed=None if leaf.missed is None else self._node(leaf.missed),
@@ -191,7 +191,7 @@ class _Builder:
         for at, composite in enumerate(composites):
             repeat = composite.repeat
             assert repeat is not None
-            onward = composite.transitions[-1]
+            successor = composite.transitions[-1]
             flows.append(
                 GroupFlow(
                     name=composite.name,
@@ -199,7 +199,7 @@ class _Builder:
                     first=first[at],
                     last=last[at],
                     start=self.number[composite.initial],
-                    onward=self._node(onward),
+                    successor=self._node(successor),
                     count=repeat.count,
                     duration=repeat.duration,
                     hard=repeat.duration > 0 and repeat.stop is Stop.HARD,

@@ -4,13 +4,13 @@ import heapq
 import math
 from collections.abc import Callable, Iterator
 
-from argo_compiler.analysis.bounds import Extent
-from argo_compiler.analysis.facts import Bound, Bounds, Stretch
+from argo_compiler.analysis.bounds import MissionBounds
 from argo_compiler.analysis.quantities import energy_words, time_words
+from argo_compiler.analysis.reachability import reported_by_others
+from argo_compiler.analysis.results import Bound, Bounds, Stretch
 from argo_compiler.analysis.study import Study
-from argo_compiler.analysis.travel import NoWay, Travel
-from argo_compiler.analysis.values import told_by_others
-from argo_compiler.analysis.windows import time_limits, windows
+from argo_compiler.analysis.travel import NoPath, Travel
+from argo_compiler.analysis.windows import diagnose_time_limits, diagnose_windows
 from argo_compiler.base.listing import quoted
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Diagnostic
@@ -34,28 +34,30 @@ RESERVE_SHARE = 0.2
 _SHOWN = 8  # stretches of a path that a message spells out
 
 
-def limits(study: Study, travel: Travel, worst: Bound | None = None) -> Iterator[Diagnostic]:
+def diagnose_limits(
+    study: Study, travel: Travel, longest: Bound | None = None
+) -> Iterator[Diagnostic]:
     """What travel times and energy say about the mission. `worst` is how long it takes at most,
     whatever fails and occurs."""
-    yield from _blocked(study)
+    yield from _blocked_tasks(study)
     yield from _blocked_retreats(study, travel)
-    yield from time_limits(study)
-    extent = study.extent
-    if extent is None or extent.duration is None or extent.energy is None:
+    yield from diagnose_time_limits(study)
+    bounds = study.bounds
+    if bounds is None or bounds.duration is None or bounds.energy is None:
         return
     if study.mission.max_duration is not None:
         if any(r.event is EventKind.TIME_UP and ends_mission(r) for r in study.mission.reactions):
-            yield from _cut_short(study, extent, study.mission.max_duration, worst)
+            yield from _cut_short(study, bounds, study.mission.max_duration, longest)
         else:
-            yield from _too_long(study, extent.duration, study.mission.max_duration)
-    yield from windows(study, extent)
+            yield from _too_long(study, bounds.duration, study.mission.max_duration)
+    yield from diagnose_windows(study, bounds)
     if travel.battery is not None:
-        yield from _too_far(study, extent.energy, travel.battery)
-        yield from _no_way_back(study, extent.energy, travel)
+        yield from _battery_exceeded(study, bounds.energy, travel.battery)
+        yield from _no_way_back(study, bounds.energy, travel)
 
 
-def _blocked(study: Study) -> Iterator[Diagnostic]:
-    for leaf, reason in sorted(study.legs.blocked.items()):
+def _blocked_tasks(study: Study) -> Iterator[Diagnostic]:
+    for leaf, reason in sorted(study.costs.blocked.items()):
         yield study.diagnostic(
             "unreachable-place",
             f"the robot can't carry out task '{study.name(leaf)}': {reason}",
@@ -76,18 +78,16 @@ def _blocked_retreats(study: Study, travel: Travel) -> Iterator[Diagnostic]:
     for reaction in mission.reactions:
         if reaction.response.drives and reaction.pose is not None:
             where = "dock" if reaction.response is Response.RETURN else "safe area"
-            place = f"go to the {where} of the reaction to {reaction.event}"
-            retreats.append(
-                (reaction.pose, subject_of("reactions", reaction.event, ".pose"), place)
-            )
+            aim = f"go to the {where} of the reaction to {reaction.event}"
+            retreats.append((reaction.pose, subject_of("reactions", reaction.event, ".pose"), aim))
     start = travel.start(mission)
-    for pose, subject, what in retreats:
+    for pose, subject, aim in retreats:
         drive = Task(name="retreat", action=Action.WAYPOINT, pose=pose)
         leg = travel.leg(start, drive, None)
-        if isinstance(leg, NoWay):
+        if isinstance(leg, NoPath):
             yield study.diagnostic(
                 "unreachable-place",
-                f"the robot can't {what}: {leg.reason}",
+                f"the robot can't {aim}: {leg.reason}",
                 "choose a place that it can reach",
                 subject=subject,
             )
@@ -124,22 +124,26 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
 
 
 def _cut_short(
-    study: Study, extent: Extent, limit: float, worst: Bound | None
+    study: Study, bounds: MissionBounds, limit: float, longest: Bound | None
 ) -> Iterator[Diagnostic]:
     """What the plan loses when a reaction to TIME_UP ends the mission."""
-    assert extent.duration is not None
-    most = extent.duration.most.value
+    assert bounds.duration is not None
+    most = bounds.duration.most.value
     if most is not None and most <= limit:
         return
-    own = [i for i in range(len(study.flow.leaves)) if study.is_own(i) and study.nominal.reached(i)]
-    lost = [study.name(i) for i in own if limit < extent.moments[i].soonest < math.inf]
+    own = [
+        i for i in range(len(study.flow.leaves)) if study.is_own(i) and study.nominal.is_reached(i)
+    ]
+    lost = [study.name(i) for i in own if limit < bounds.completion_times[i].soonest < math.inf]
     unsure = [
-        study.name(i) for i in own if extent.moments[i].soonest <= limit < extent.moments[i].latest
+        study.name(i)
+        for i in own
+        if bounds.completion_times[i].soonest <= limit < bounds.completion_times[i].latest
     ]
     up_to = "without limit" if most is None else f"up to {time_words(most)}"
     ends = "the reaction to time_up ends it then"
-    if worst is not None and worst.value is not None:
-        ends += f", after {time_words(worst.value)} at most"
+    if longest is not None and longest.value is not None:
+        ends += f", after {time_words(longest.value)} at most"
     yield study.diagnostic(
         "cut-short",
         f"the plan may take {up_to}, longer than the mission's maximum duration of "
@@ -151,9 +155,9 @@ def _cut_short(
     )
 
 
-def _too_far(study: Study, energy: Bounds, battery: float) -> Iterator[Diagnostic]:
+def _battery_exceeded(study: Study, energy: Bounds, battery: float) -> Iterator[Diagnostic]:
     least, most = energy.least.value, energy.most.value
-    if least is not None and least > battery and not _may_do_with_less(study):
+    if least is not None and least > battery and not _may_need_less_energy(study):
         yield study.diagnostic(
             "battery-exceeded",
             f"the mission needs at least {energy_words(least)} if nothing fails, and the battery "
@@ -173,7 +177,7 @@ def _too_far(study: Study, energy: Bounds, battery: float) -> Iterator[Diagnosti
         )
 
 
-def _may_do_with_less(study: Study) -> bool:
+def _may_need_less_energy(study: Study) -> bool:
     """Whether the robot may stand at a dock for a while, which charges it, or the mission may end
     before its plan does, as its time is up."""
     waits = any(leaf.wait is not None or leaf.earliest for leaf in study.flow.leaves)
@@ -201,9 +205,9 @@ def _no_way_back(study: Study, energy: Bounds, travel: Travel) -> Iterator[Diagn
         after = [leaves[stretch.task]] if stretch.task is not None else members[stretch.group or ""]
         back = 0.0
         for leaf in after:
-            way = study.legs.onward(leaf, home)
-            if not isinstance(way, NoWay):
-                back = max(back, way.energy.most)
+            cost = study.costs.cost_to(leaf, home)
+            if not isinstance(cost, NoPath):
+                back = max(back, cost.energy.most)
         if stretch.until + back + RESERVE_SHARE * battery > battery:
             yield study.diagnostic(
                 "no-way-back",
@@ -231,36 +235,36 @@ def ends_mission(reaction: Reaction) -> bool:
     return False
 
 
-def stale(study: Study) -> Iterator[Diagnostic] | None:
+def diagnose_stale_values(study: Study) -> Iterator[Diagnostic] | None:
     """Conditions whose value is always older than their `max_age`, or None if that is too much to
     look at."""
     flow = study.flow
-    asked: dict[str, list[tuple[int, int, int]]] = {}
-    told = told_by_others(flow)
+    comparisons: dict[str, list[tuple[int, int, int]]] = {}
+    reported = reported_by_others(flow)
     for i, leaf in enumerate(flow.leaves):
         for k, (conditions, _) in enumerate(leaf.conditional):
             for c, condition in enumerate(conditions):
                 o = condition.object_id
-                aged = condition.max_age is not None and o != leaf.measures and o not in told
+                aged = condition.max_age is not None and o != leaf.measures and o not in reported
                 if condition.type is ConditionType.STALE:
                     continue
-                if aged and study.nominal.reached(i):
-                    asked.setdefault(o, []).append((i, k, c))
-    steps = study.legs.steps()
-    if len(asked) * sum(len(s) for s in steps.values()) > AGE_WORK:
+                if aged and study.nominal.is_reached(i):
+                    comparisons.setdefault(o, []).append((i, k, c))
+    steps = study.costs.successor_times()
+    if len(comparisons) * sum(len(s) for s in steps.values()) > AGE_WORK:
         return None
-    return _stale(study, asked, steps)
+    return _stale_conditions(study, comparisons, steps)
 
 
-def _stale(
+def _stale_conditions(
     study: Study,
-    asked: dict[str, list[tuple[int, int, int]]],
+    comparisons: dict[str, list[tuple[int, int, int]]],
     steps: dict[object, list[tuple[object, float]]],
 ) -> Iterator[Diagnostic]:
-    for o, places in asked.items():
+    for o, uses in comparisons.items():
         sources = [i for i, leaf in enumerate(study.flow.leaves) if leaf.measures == o]
-        age = _ages(sources, steps)
-        for leaf, k, c in places:
+        age = _youngest_ages(sources, steps)
+        for leaf, k, c in uses:
             condition = study.flow.leaves[leaf].conditional[k][0][c]
             youngest = age.get(leaf, math.inf)
             assert condition.max_age is not None
@@ -272,11 +276,11 @@ def _stale(
                     f"{time_words(youngest)}",
                     f"measure checkpoint {o} again before, or allow a greater age",
                     leaf,
-                    study.indices(leaf)[k],
+                    study.conditional_indices(leaf)[k],
                 )
 
 
-def _ages(
+def _youngest_ages(
     sources: list[int], steps: dict[object, list[tuple[object, float]]]
 ) -> dict[object, float]:
     """The least time from the end of one of the sources to the end of each leaf after it."""
@@ -284,12 +288,12 @@ def _ages(
     heap: list[tuple[float, int, object]] = [(0.0, k, s) for k, s in enumerate(sources)]
     count = len(heap)
     heapq.heapify(heap)
-    done: set[object] = set()
+    visited: set[object] = set()
     while heap:
         here, _, node = heapq.heappop(heap)
-        if node in done:
+        if node in visited:
             continue
-        done.add(node)
+        visited.add(node)
         for target, taken in steps.get(node, ()):
             there = here + taken
             if there < age.get(target, math.inf):

@@ -5,17 +5,17 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from argo_compiler.analysis.flow import GroupFlow
-from argo_compiler.analysis.legs import NOTHING, Cost, QuantityRange, Source
+from argo_compiler.analysis.step_costs import NOTHING, Cost, QuantityRange, Source
 
-_SLACK = 1e-9  # of a round: sums of floats are not exact
-_EXACT = 1e12  # rounds; more of them are not counted
+_TOLERANCE = 1e-9  # of a round: sums of floats are not exact
+_MOST_COUNTED = 1e12  # rounds; more of them are not counted
 
-WayOut = tuple[Source, int]
+ExitKey = tuple[Source, int]
 """how a group is left: what ended last, and the node that is next"""
 
 
 @dataclass(frozen=True, slots=True)
-class Out:
+class GroupExit:
     """A way out of a group, counted from when it was entered."""
 
     cost: Cost
@@ -23,8 +23,8 @@ class Out:
     most: float
     """rounds, the last one included"""
 
-    def __or__(self, other: "Out") -> "Out":
-        return Out(
+    def __or__(self, other: "GroupExit") -> "GroupExit":
+        return GroupExit(
             self.cost | other.cost, min(self.fewest, other.fewest), max(self.most, other.most)
         )
 
@@ -35,7 +35,7 @@ class GroupRound:
 
     ends: Mapping[Source, Cost]
     """where the round comes to its end, by what ended last"""
-    exits: Mapping[WayOut, Cost]
+    exits: Mapping[ExitKey, Cost]
     """where the group is left within the round"""
     energy: float
     """Wh at most at any moment of it"""
@@ -51,7 +51,7 @@ class GroupRound:
 class Rounds:
     """All ways out of a group, entered in one way."""
 
-    outs: Mapping[WayOut, Out]
+    exits: Mapping[ExitKey, GroupExit]
     energy: float
     """Wh at most at any moment inside"""
     time: float
@@ -68,7 +68,7 @@ def union(costs: Iterable[Cost]) -> Cost | None:
     return joined
 
 
-def combine(
+def combine_rounds(
     number: int,
     group: GroupFlow,
     first: GroupRound,
@@ -100,7 +100,7 @@ class _Combination:
         self.limit = group.duration or math.inf
         self.count = min(group.count or math.inf, _due_before(self.limit, self.every))
         self.fewest, self.most = self._range()
-        self.outs: dict[WayOut, Out] = {}
+        self.exits: dict[ExitKey, GroupExit] = {}
 
     def rounds(self) -> Rounds:
         self._leave_within()
@@ -109,7 +109,7 @@ class _Combination:
             self._time_out()
         repeats = self.most >= 2 and self.period is not None
         return Rounds(
-            outs=self.outs,
+            exits=self.exits,
             energy=self._energy_inside(),
             time=self._time_inside(),
             unlimited=repeats and not self.group.limited,
@@ -133,19 +133,21 @@ class _Combination:
             longest = max(period.time.most, self.every)
             fewest = 1
             if first < self.limit:
-                fewest += _rounds_up(self.limit - first, longest, -1)
-        over = end.time.least > self.limit or (end.time.least == self.limit and not self.group.hard)
-        if over or self.later is None or self.count == 1:
+                fewest += _periods_to_fill(self.limit - first, longest, -1)
+        is_too_long = end.time.least > self.limit or (
+            end.time.least == self.limit and not self.group.hard
+        )
+        if is_too_long or self.later is None or self.count == 1:
             most = 1
         elif math.isinf(self.limit) or period is None or period.time.least == 0:
             most = math.inf if period is not None else 2
         else:
             # Before a hard stop a round may begin at the very moment, and be cut at once.
-            filled = _filled if self.group.hard else _rounds_up
-            most = 1 + filled(self.limit - end.time.least, period.time.least, 1)
+            count_periods = _periods_started if self.group.hard else _periods_to_fill
+            most = 1 + count_periods(self.limit - end.time.least, period.time.least, 1)
         return min(fewest, self.count), min(most, self.count)
 
-    def _after(self, rounds: float) -> Cost | None:
+    def _end_after(self, rounds: float) -> Cost | None:
         """When so many rounds have been completed."""
         if self.first_end is None or rounds < 1:
             return None
@@ -158,29 +160,29 @@ class _Combination:
             return cost
         # The last round that had to be waited for is the second one, or the last of all, or none.
         time = QuantityRange(
-            max(cost.time.least, self._planned(rounds, self.period.time.least)),
-            max(cost.time.most, self._planned(rounds, self.period.time.most)),
+            max(cost.time.least, self._end_if_waited(rounds, self.period.time.least)),
+            max(cost.time.most, self._end_if_waited(rounds, self.period.time.most)),
         )
-        return Cost(time, cost.energy + self._standing(rounds))
+        return Cost(time, cost.energy + self._idle_energy(rounds))
 
-    def _planned(self, rounds: float, period: float) -> float:
+    def _end_if_waited(self, rounds: float, period: float) -> float:
         """When so many rounds are over if one of them had to be waited for."""
         if math.isinf(rounds):
             return math.inf
         return max(self.every + (rounds - 1) * period, (rounds - 1) * self.every + period)
 
-    def _begun(self, rounds: float) -> Cost:
+    def _last_start(self, rounds: float) -> Cost:
         """When the last of so many rounds begins: two or more, and no more than two if only the
         first one comes to its end."""
-        before = self._after(rounds - 1)
-        assert before is not None
+        previous_end = self._end_after(rounds - 1)
+        assert previous_end is not None
         if not self.every:
-            return before
+            return previous_end
         due = (rounds - 1) * self.every
-        time = QuantityRange(max(before.time.least, due), max(before.time.most, due))
-        return Cost(time, before.energy + self._standing(rounds))
+        time = QuantityRange(max(previous_end.time.least, due), max(previous_end.time.most, due))
+        return Cost(time, previous_end.energy + self._idle_energy(rounds))
 
-    def _standing(self, rounds: float) -> QuantityRange:
+    def _idle_energy(self, rounds: float) -> QuantityRange:
         """Wh while rounds are not due."""
         if not self.standing_power:
             return NOTHING
@@ -188,12 +190,12 @@ class _Combination:
 
     def _leave_within(self) -> None:
         """By transitions of members."""
-        for way, cost in self.first.exits.items():
-            self._add(way, cost, 1, 1)
+        for exit_key, cost in self.first.exits.items():
+            self._add(exit_key, cost, 1, 1)
         if self.later is None or self.first_end is None or self.most < 2:
             return
-        soonest, latest = self._begun(2), self._begun(self.most)
-        for way, cost in self.later.exits.items():
+        soonest, latest = self._last_start(2), self._last_start(self.most)
+        for exit_key, cost in self.later.exits.items():
             least = soonest.time.least + cost.time.least
             # No round begins after the limit.
             most = min(latest.time.most, self.limit) + cost.time.most
@@ -203,11 +205,11 @@ class _Combination:
                     soonest.energy.least + cost.energy.least, latest.energy.most + cost.energy.most
                 ),
             )
-            self._add(way, later, 2, self.most)
+            self._add(exit_key, later, 2, self.most)
 
     def _leave_at_end(self) -> None:
         """By the unconditional transition, after the last round."""
-        cost, fewest, most = self._last_end()
+        cost, fewest, most = self._end_of_last()
         if cost is None:
             return
         sources = dict(self.first.ends)
@@ -215,12 +217,12 @@ class _Combination:
             sources |= {s: c for s, c in self.later.ends.items() if s not in sources}
         for source in sources:
             exact = self.first.ends.get(source) if most == 1 else None
-            self._add((source, self.group.onward), exact or cost, fewest, most)
+            self._add((source, self.group.successor), exact or cost, fewest, most)
 
-    def _last_end(self) -> tuple[Cost | None, float, float]:
+    def _end_of_last(self) -> tuple[Cost | None, float, float]:
         if self.first_end is None or not self.group.may_end:
             return None, 0, 0
-        by_count = None if math.isinf(self.count) else self._after(self.count)
+        by_count = None if math.isinf(self.count) else self._end_after(self.count)
         if self.group.until:
             return self._end_by_value()
         if math.isinf(self.limit):
@@ -228,13 +230,13 @@ class _Combination:
         if self.group.hard:
             # At the limit itself the time-out takes over.
             return by_count, self.count, self.count
-        by_time = self._after(self.fewest)
+        by_time = self._end_after(self.fewest)
         if by_time is None:
             return by_count, self.count, self.count
         least = max(self.limit, by_time.time.least)
         if by_count is not None:
             least = min(least, by_count.time.least)
-        last = self._after(self.most)
+        last = self._end_after(self.most)
         most = self._longest(last)
         energy = by_time.energy | (last or by_time).energy
         return Cost(QuantityRange(min(least, most), most), energy), self.fewest, self.most
@@ -242,7 +244,7 @@ class _Combination:
     def _end_by_value(self) -> tuple[Cost, float, float]:
         """After any round, if what it is repeated until holds then."""
         assert self.first_end is not None
-        last = self._after(self.most)
+        last = self._end_after(self.most)
         if last is None:
             return self.first_end, 1, 1
         ends = self.first_end | last
@@ -274,43 +276,45 @@ class _Combination:
             completed = 1.0
             if self.period is not None and self.count > 1:
                 # The round that reaches the limit is not among those completed for sure.
-                completed = max(1.0, _rounds_up(self.limit - first, longest, -1))
+                completed = max(1.0, _periods_to_fill(self.limit - first, longest, -1))
             completed = min(completed, self.count)
-        least = self._after(1 if math.isinf(completed) else completed)
+        least = self._end_after(1 if math.isinf(completed) else completed)
         cost = Cost(
             QuantityRange(self.limit, self.limit),
             QuantityRange(0.0 if least is None else least.energy.least, self._energy_inside()),
         )
         fewest = completed if 1 <= completed < math.inf else 1
-        self._add((("cut", self.number), self.group.onward), cost, fewest, max(1, self.most))
+        self._add((("cut", self.number), self.group.successor), cost, fewest, max(1, self.most))
 
     def _energy_inside(self) -> float:
         energy = self.first.energy
         if self.later is not None and self.first_end is not None and self.most >= 2:
-            energy = max(energy, self._begun(self.most).energy.most + self.later.energy)
+            energy = max(energy, self._last_start(self.most).energy.most + self.later.energy)
         return energy
 
     def _time_inside(self) -> float:
         time = self.first.time
         if self.later is not None and self.first_end is not None and self.most >= 2:
-            begun = min(self._begun(self.most).time.most, self.limit)
-            time = max(time, begun + self.later.time)
+            last_start = min(self._last_start(self.most).time.most, self.limit)
+            time = max(time, last_start + self.later.time)
         return min(time, self.limit) if self.group.hard else time
 
-    def _add(self, way: WayOut, cost: Cost, fewest: float, most: float) -> None:
-        if self.group.hard and not (isinstance(way[0], tuple) and way[0] == ("cut", self.number)):
-            if cost.time.least > self.limit + _SLACK:
+    def _add(self, exit_key: ExitKey, cost: Cost, fewest: float, most: float) -> None:
+        if self.group.hard and not (
+            isinstance(exit_key[0], tuple) and exit_key[0] == ("cut", self.number)
+        ):
+            if cost.time.least > self.limit + _TOLERANCE:
                 return
             least = min(cost.time.least, self.limit)
             cost = Cost(QuantityRange(least, min(cost.time.most, self.limit)), cost.energy)
-        out = Out(cost, fewest, most)
-        known = self.outs.get(way)
-        self.outs[way] = out if known is None else known | out
+        group_exit = GroupExit(cost, fewest, most)
+        known = self.exits.get(exit_key)
+        self.exits[exit_key] = group_exit if known is None else known | group_exit
 
 
 def _due_before(limit: float, every: float) -> float:
     """How many rounds are due before a time is up, if one is due each so many seconds."""
-    if not every or limit / every > _EXACT:
+    if not every or limit / every > _MOST_COUNTED:
         return math.inf
     rounds = math.ceil(limit / every)
     while (rounds - 1) * every >= limit:
@@ -320,12 +324,12 @@ def _due_before(limit: float, every: float) -> float:
     return rounds
 
 
-def _filled(time: float, period: float, side: int) -> float:
+def _periods_started(time: float, period: float, side: int) -> float:
     """How many periods begin within the time, one that begins at its very end included."""
-    return 1 + math.floor(time / period + side * _SLACK)
+    return 1 + math.floor(time / period + side * _TOLERANCE)
 
 
-def _rounds_up(time: float, period: float, side: int) -> float:
+def _periods_to_fill(time: float, period: float, side: int) -> float:
     """How many periods it takes to fill the time; `side` says where rounding may err to."""
     if period == 0:
         return math.inf
@@ -333,4 +337,4 @@ def _rounds_up(time: float, period: float, side: int) -> float:
         return 1
     # Whole seconds add up exactly, other times nearly.
     exact = time.is_integer() and period.is_integer()
-    return math.ceil(time / period + (0.0 if exact else side * _SLACK))
+    return math.ceil(time / period + (0.0 if exact else side * _TOLERANCE))

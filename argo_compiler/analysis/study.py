@@ -4,19 +4,19 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from argo_compiler.analysis.bounds import Extent, measure, too_many_cuts
+from argo_compiler.analysis.bounds import MissionBounds, compute_bounds, has_too_many_cuts
 from argo_compiler.analysis.flow import Flow
-from argo_compiler.analysis.legs import Legs
-from argo_compiler.analysis.levels import BoundsTooLargeError
+from argo_compiler.analysis.path_lengths import BoundsTooLargeError
+from argo_compiler.analysis.reachability import Reachability
+from argo_compiler.analysis.step_costs import StepCosts
 from argo_compiler.analysis.travel import Travel
-from argo_compiler.analysis.values import Paths
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.graphs import components, first_ways, leading_to, way_to
 from argo_compiler.diagnostics import Diagnostic, Severity, diagnostic_of
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Afterwards, Mission, Response, Task
 
-_NAMES = 6  # of a list or path that a message spells out
+_MOST_NAMES = 6  # of a list or path that a message spells out
 
 
 @dataclass(frozen=True)
@@ -27,9 +27,9 @@ class Study:
     catalog: Catalog | None
     travel: Travel | None
     flow: Flow
-    nominal: Paths
+    nominal: Reachability
     """if every action succeeds and every measurement gives a value"""
-    with_failures: Paths
+    with_failures: Reachability
     """whatever fails"""
 
     @cached_property
@@ -40,15 +40,15 @@ class Study:
     @cached_property
     def successors(self) -> tuple[tuple[int, ...], ...]:
         """What may come next after each node, if nothing fails."""
-        return tuple(tuple(dict.fromkeys(self._after(n))) for n in range(self.flow.size))
+        return tuple(tuple(dict.fromkeys(self._successors_of(n))) for n in range(self.flow.size))
 
     @cached_property
     def trap_nodes(self) -> tuple[tuple[int, ...], ...]:
         """The nodes of each loop that may be entered and that nothing but a failure leaves."""
-        ends = leading_to(self.successors, [self.flow.done])
+        ends = leading_to(self.successors, [self.flow.end_node])
         traps = []
         for part in components(self.successors):
-            if ends[part[0]] or not self.nominal.reached(part[0]):
+            if ends[part[0]] or not self.nominal.is_reached(part[0]):
                 continue
             inside = set(part)
             if all(other in inside for node in part for other in self.successors[node]):
@@ -70,18 +70,18 @@ class Study:
         return tuple(tuple(filter(self.flow.is_leaf, nodes)) for nodes in self.trap_nodes)
 
     @cached_property
-    def legs(self) -> Legs:
-        return Legs(self.flow, self.nominal, self.travel, self.mission)
+    def costs(self) -> StepCosts:
+        return StepCosts(self.flow, self.nominal, self.travel, self.mission)
 
     @cached_property
-    def extent(self) -> Extent | None:
+    def bounds(self) -> MissionBounds | None:
         """None where the mission is too large or too deeply nested to measure."""
-        if too_many_cuts(self.flow):
+        if has_too_many_cuts(self.flow):
             return None
-        if self.legs.too_many:
+        if self.costs.too_many:
             return None
         try:
-            return measure(self.flow, self.nominal, self.legs, endless=bool(self.traps))
+            return compute_bounds(self.flow, self.nominal, self.costs, endless=bool(self.traps))
         except BoundsTooLargeError:
             return None
 
@@ -103,7 +103,7 @@ class Study:
         """Whether a leaf is a task of the mission, and not one that the machine adds."""
         return self.name(leaf) in self.position
 
-    def indices(self, leaf: int) -> list[int]:
+    def conditional_indices(self, leaf: int) -> list[int]:
         """Where a leaf's ways stand in its task's list: those with conditions, in order."""
         return [k for k, t in enumerate(self.task(leaf).transitions) if t.conditions]
 
@@ -119,29 +119,29 @@ class Study:
 
     def path_words(self, leaf: int) -> str:
         """A shortest path to a leaf if nothing fails, for people; empty if there is none."""
-        way = way_to(self._first_ways, self.flow.initial, leaf)
-        return "" if way is None else self.words(way)
+        path = way_to(self._path_tree, self.flow.initial, leaf)
+        return "" if path is None else self.words(path)
 
-    def words(self, way: tuple[int, ...]) -> str:
+    def words(self, path: tuple[int, ...]) -> str:
         """The tasks of a path, the middle left out if it is long."""
-        leaves = [n for n in way if n < len(self.flow.leaves)]
-        if len(leaves) <= _NAMES + 1:
+        leaves = [n for n in path if n < len(self.flow.leaves)]
+        if len(leaves) <= _MOST_NAMES + 1:
             return " > ".join(map(self.name, leaves))
-        half = _NAMES // 2
+        half = _MOST_NAMES // 2
         shown = [*map(self.name, leaves[:half]), f"({len(leaves) - 2 * half} more)"]
         return " > ".join([*shown, *map(self.name, leaves[-half:])])
 
     @cached_property
-    def _first_ways(self) -> list[int | None]:
+    def _path_tree(self) -> list[int | None]:
         return first_ways(self.successors, self.flow.initial, lambda _a, _b: True)
 
-    def _after(self, node: int) -> Iterator[int]:
+    def _successors_of(self, node: int) -> Iterator[int]:
         flow = self.flow
-        if not self.nominal.reached(node) or node == flow.done:
+        if not self.nominal.is_reached(node) or node == flow.end_node:
             return
         if flow.is_leaf(node):
             yield from self.nominal.targets(flow, node)
-            yield from self.nominal.after_missing(flow, node)
+            yield from self.nominal.targets_when_missed(flow, node)
             parent = flow.leaves[node].parent
             if parent >= 0 and flow.timed[parent]:
                 yield flow.time_up(parent)
@@ -151,11 +151,11 @@ class Study:
             if flow.groups[ended].may_repeat:
                 yield flow.groups[ended].start
             if flow.groups[ended].may_end:
-                yield flow.groups[ended].onward
+                yield flow.groups[ended].successor
             return
         group = flow.groups[node - len(flow.leaves) - len(flow.groups)]
         if group.hard:
-            yield group.onward
+            yield group.successor
         if group.parent >= 0 and flow.timed[group.parent]:
             yield flow.time_up(group.parent)
 

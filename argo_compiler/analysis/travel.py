@@ -6,7 +6,7 @@ from typing import Protocol
 
 from argo_compiler.il import Mission, Task
 
-Standing = Hashable
+RobotPose = Hashable
 """Where the robot stands, as the `Travel` names it; equal where it makes no difference."""
 
 
@@ -18,7 +18,7 @@ class Leg:
     """s"""
     energy: float
     """Wh"""
-    arrival: Standing
+    arrival: RobotPose
     """where the robot stands when the action has ended"""
     work: float = 0.0
     """s of the duration that the action takes even if the robot is there already"""
@@ -27,7 +27,7 @@ class Leg:
 
 
 @dataclass(frozen=True, slots=True)
-class NoWay:
+class NoPath:
     """The task can't be carried out."""
 
     reason: str
@@ -52,11 +52,11 @@ class Travel(Protocol):
         """W that the robot draws while it stands and waits."""
         ...
 
-    def start(self, mission: Mission) -> Standing:
+    def start(self, mission: Mission) -> RobotPose:
         """Where the robot stands when the mission begins. Raises ArgoError if it can't."""
         ...
 
-    def leg(self, origin: Standing, task: Task, velocity: float | None) -> Leg | NoWay:
+    def leg(self, origin: RobotPose, task: Task, velocity: float | None) -> Leg | NoPath:
         """From a standing to the task's place at `velocity` (m/s; None: the robot's planning
         speed), and the task's action there. Called often with the same arguments."""
         ...

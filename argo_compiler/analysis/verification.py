@@ -4,7 +4,7 @@ It reads a mission by the rules of `docs/language.md` alone and uses nothing of 
 form of its witnesses. Each step of the mission is looked at once.
 """
 
-from argo_compiler.analysis.verification_layout import END, GroupLayout, Place
+from argo_compiler.analysis.verification_layout import END, GroupLayout, ProgramPoint
 from argo_compiler.analysis.verification_states import ClaimedStates
 from argo_compiler.analysis.verification_walk import MissionWalk, Proved
 from argo_compiler.analysis.witness import Invariant, Trap
@@ -24,29 +24,29 @@ class Verifier:
             for c in checkpoints
         }
 
-    def invariant(self, witness: Invariant) -> Proved | None:
+    def check_invariant(self, witness: Invariant) -> Proved | None:
         """What an invariant proves; None: some step leads out of it, or its form is wrong."""
         states = self._states(witness)
         if states is None:
             return None
         proved = Proved(ended=witness.ended)
-        proved.tasks = {at for kind, at in states.places if kind == "task"}
+        proved.tasks = {at for kind, at in states.readings if kind == "task"}
         walk = MissionWalk(
             self._mission, self._layout, states, witness.failures, proved, self._ranges
         )
-        if not states.holds(*walk.first()):
+        if not states.contains(*walk.first_step()):
             return None
-        for here in list(states.places):
-            if not all(states.holds(*step) for step in walk.steps(here)):
+        for here in list(states.readings):
+            if not all(states.contains(*step) for step in walk.steps(here)):
                 return None
         return proved
 
-    def trap(self, witness: Trap, invariant: Invariant) -> bool:
+    def check_trap(self, witness: Trap, invariant: Invariant) -> bool:
         """Whether no step leads out of a trap, if what is there is as an invariant says, which has
         been checked."""
         states = self._states(invariant)
-        places = self._places_of(witness)
-        if states is None or places is None or not places or invariant.failures:
+        points = self._points_of(witness)
+        if states is None or points is None or not points or invariant.failures:
             return False
         if witness.kept is not None:
             kept = states.with_kept(witness.kept, self._ranges)
@@ -54,15 +54,15 @@ class Verifier:
                 return False
             states = kept
         walk = MissionWalk(self._mission, self._layout, states, False, Proved(), self._ranges)
-        for here in places:
-            if here not in states.places:
+        for here in points:
+            if here not in states.readings:
                 continue
-            for place, state, _ in walk.steps(here):
-                if place not in places or not states.keeps(place, state, witness.kept):
+            for point, state, _ in walk.steps(here):
+                if point not in points or not states.stays_in_trap(point, state, witness.kept):
                     return False
-        return any(here in states.places for here in places)
+        return any(here in states.readings for here in points)
 
-    def _places_of(self, witness: Trap) -> set[Place] | None:
+    def _points_of(self, witness: Trap) -> set[ProgramPoint] | None:
         task, group = self._layout.position, self._layout.group_position
         if not (set(witness.tasks) <= task.keys() and witness.tasks):
             return None
@@ -89,9 +89,9 @@ class Verifier:
                 return None
             for at, state in enumerate(known):
                 if state is not None:
-                    states.places[kind, at] = state
+                    states.readings[kind, at] = state
                 if late[at]:
                     states.late[kind, at] = late[at]
         if witness.ended:
-            states.places[END] = states.late[END] = -1
+            states.readings[END] = states.late[END] = -1
         return states

@@ -1,6 +1,6 @@
 """The claims of an analysis beside what its witnesses prove."""
 
-from argo_compiler.analysis.facts import (
+from argo_compiler.analysis.results import (
     Analysis,
     GroupFacts,
     TaskFacts,
@@ -19,53 +19,60 @@ def unproved(mission: Mission, catalog: Catalog | None, analysis: Analysis) -> t
     if witnesses is None:
         return ("there are no witnesses",)
     verifier = Verifier(mission, catalog)
-    nominal, whatever = verifier.invariant(witnesses.nominal), verifier.invariant(witnesses.all)
-    if nominal is None or whatever is None or not witnesses.all.failures:
+    nominal, with_failures = (
+        verifier.check_invariant(witnesses.nominal),
+        verifier.check_invariant(witnesses.all),
+    )
+    if nominal is None or with_failures is None or not witnesses.all.failures:
         return ("what can't happen",)
     if witnesses.nominal.failures:
         return ("what happens only after failures",)
-    claims = _Claims(mission, nominal, whatever)
-    wrong = [claims.of_task(facts) for facts in analysis.tasks]
-    wrong += [claims.of_group(facts) for facts in analysis.groups]
-    if not _excluded(analysis.ends, whatever.ended, nominal.ended):
+    claims = _Claims(mission, nominal, with_failures)
+    wrong = [claims.wrong_in_task(facts) for facts in analysis.tasks]
+    wrong += [claims.wrong_in_group(facts) for facts in analysis.groups]
+    if not _is_proved(analysis.ends, with_failures.ended, nominal.ended):
         wrong.append(["how the mission ends"])
-    traps = ["endless loops" for t in witnesses.traps if not verifier.trap(t, witnesses.nominal)]
-    return tuple(dict.fromkeys([*(one for many in wrong for one in many), *traps]))
+    traps = [
+        "endless loops" for t in witnesses.traps if not verifier.check_trap(t, witnesses.nominal)
+    ]
+    return tuple(
+        dict.fromkeys([*(claim for claims_of_one in wrong for claim in claims_of_one), *traps])
+    )
 
 
-def _excluded(verdict: Verdict, whatever: bool, nominal: bool) -> bool:
+def _is_proved(verdict: Verdict, with_failures: bool, nominal: bool) -> bool:
     """Whether what a verdict excludes is excluded, by what may be with failures and without."""
     if verdict is Verdict.NEVER:
-        return not whatever
+        return not with_failures
     return not (verdict is Verdict.AFTER_FAILURE and nominal)
 
 
 class _Claims:
     """The verdicts of an analysis beside what is proved."""
 
-    def __init__(self, mission: Mission, nominal: Proved, whatever: Proved) -> None:
+    def __init__(self, mission: Mission, nominal: Proved, with_failures: Proved) -> None:
         self.mission = mission
         self.tasks = {task.name: i for i, task in enumerate(mission.tasks)}
         self.groups = {group.name: i for i, group in enumerate(mission.groups)}
         self.nominal = nominal
-        self.whatever = whatever
+        self.with_failures = with_failures
 
-    def of_task(self, facts: TaskFacts) -> list[str]:
+    def wrong_in_task(self, facts: TaskFacts) -> list[str]:
         at = self.tasks.get(facts.task)
         if at is None:
             return [f"task '{facts.task}'"]
-        right = _excluded(facts.verdict, at in self.whatever.tasks, at in self.nominal.tasks)
+        right = _is_proved(facts.verdict, at in self.with_failures.tasks, at in self.nominal.tasks)
         wrong = [] if right else [f"task '{facts.task}'"]
-        for one in facts.transitions:
-            if not self._right(at, one):
-                wrong.append(f"transition {one.index} of task '{facts.task}'")
+        for transition in facts.transitions:
+            if not self._is_transition_proved(at, transition):
+                wrong.append(f"transition {transition.index} of task '{facts.task}'")
         return wrong
 
-    def _right(self, at: int, facts: TransitionFacts) -> bool:
+    def _is_transition_proved(self, at: int, facts: TransitionFacts) -> bool:
         key = (at, facts.index)
         if facts.verdict is not Verdict.ALWAYS:
-            may = key in self.whatever.transitions, key in self.nominal.transitions
-            return _excluded(facts.verdict, *may)
+            may = key in self.with_failures.transitions, key in self.nominal.transitions
+            return _is_proved(facts.verdict, *may)
         transitions = self.mission.tasks[at].transitions
         if transitions[facts.index].conditions:
             return key in self.nominal.certain or key not in self.nominal.transitions
@@ -74,11 +81,11 @@ class _Claims:
             for k, transition in enumerate(transitions)
         )
 
-    def of_group(self, facts: GroupFacts) -> list[str]:
+    def wrong_in_group(self, facts: GroupFacts) -> list[str]:
         at = self.groups.get(facts.group)
         if at is None:
             return [f"group '{facts.group}'"]
-        whatever, nominal = self.whatever, self.nominal
-        right = _excluded(facts.repeats, at in whatever.repeats, at in nominal.repeats)
-        right = right and _excluded(facts.ends, at in whatever.ends, at in nominal.ends)
+        with_failures, nominal = self.with_failures, self.nominal
+        right = _is_proved(facts.repeats, at in with_failures.repeats, at in nominal.repeats)
+        right = right and _is_proved(facts.ends, at in with_failures.ends, at in nominal.ends)
         return [] if right else [f"group '{facts.group}'"]

@@ -2,9 +2,9 @@
 
 from argo_compiler.il import Action, Mission, Stop
 
-Place = tuple[str, int]
+ProgramPoint = tuple[str, int]
 """`task`, `round` or `cut` with a position in the mission's list, or `END`"""
-END: Place = ("end", 0)
+END: ProgramPoint = ("end", 0)
 
 
 class GroupLayout:
@@ -40,17 +40,17 @@ class GroupLayout:
                 self.innermost[i] = inside[-1]
             while inside and self.last[inside[-1]] == i:
                 inside.pop()
-        self.begin = self._begin(mission)
+        self.begin = self._find_begin(mission)
 
-    def place(self, name: str) -> Place:
+    def task_point(self, name: str) -> ProgramPoint:
         return "task", self.position[name]
 
-    def _begin(self, mission: Mission) -> Place:
+    def _find_begin(self, mission: Mission) -> ProgramPoint:
         start = next((t for t in mission.tasks if t.action is Action.START), None)
         if start is not None:
             for transition in start.transitions:
                 if not transition.conditions:
-                    return self.place(transition.target)
+                    return self.task_point(transition.target)
         for i, task in enumerate(mission.tasks):
             if task.action is not Action.START:
                 return "task", i

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
-from argo_compiler.analysis.verification_layout import END, Place
+from argo_compiler.analysis.verification_layout import END, ProgramPoint
 from argo_compiler.analysis.witness import KeptReading
 from argo_compiler.il import Condition, ConditionType
 
@@ -103,8 +103,8 @@ def bounds_of(condition: Condition) -> list[float]:
 class ClaimedStates:
     """The readings at each place, all checkpoints beside each other in one number."""
 
-    places: dict[Place, int]
-    late: dict[Place, int]
+    readings: dict[ProgramPoint, int]
+    late: dict[ProgramPoint, int]
     """what may still come there from an action that is being cancelled (I3)"""
     scales: dict[str, ClaimedScale]
     width: int
@@ -136,15 +136,15 @@ class ClaimedStates:
         scale = self.scales[object_id]
         return (scale.values | (scale.unreadable if failures else 0)) << scale.shift
 
-    def holds(self, place: Place, state: int, late: int) -> bool:
-        known = self.places.get(place)
-        if known is None or late & ~self.late.get(place, 0):
+    def contains(self, point: ProgramPoint, state: int, late: int) -> bool:
+        known = self.readings.get(point)
+        if known is None or late & ~self.late.get(point, 0):
             return False
         return not (state | late) & ~known
 
-    def keeps(self, place: Place, state: int, kept: KeptReading | None) -> bool:
-        if place == END or kept is None:
-            return place != END
+    def stays_in_trap(self, point: ProgramPoint, state: int, kept: KeptReading | None) -> bool:
+        if point == END or kept is None:
+            return point != END
         return not self.get(state, kept.object_id) & ~kept.readings
 
     def get(self, state: int, object_id: str) -> int:
@@ -165,6 +165,6 @@ class ClaimedStates:
         if not 0 < kept.readings <= scale.full:
             return None
         hole = 0 if old is None else old.full << old.shift
-        for place, state in self.places.items():
-            states.places[place] = state & ~hole | kept.readings << scale.shift
+        for point, state in self.readings.items():
+            states.readings[point] = state & ~hole | kept.readings << scale.shift
         return states

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from argo_compiler.analysis.verification_layout import END, GroupLayout, Place
+from argo_compiler.analysis.verification_layout import END, GroupLayout, ProgramPoint
 from argo_compiler.analysis.verification_states import (
     ClaimedScale,
     ClaimedStates,
@@ -12,7 +12,7 @@ from argo_compiler.analysis.verification_states import (
 )
 from argo_compiler.il import Action, Condition, ConditionType, Mission, OnFailure, Task
 
-Step = tuple[Place, int, int]
+Step = tuple[ProgramPoint, int, int]
 """where to, the readings that may be there, and those that may still come there"""
 
 # An enumeration's members are found slowly, and these are looked at with each task.
@@ -57,7 +57,7 @@ class MissionWalk:
         self.failures = failures
         self.proved = proved
         self._satisfying: dict[int, int] = {}
-        self._told = 0
+        self._reported = 0
         waited = {
             condition.object_id
             for task in mission.tasks
@@ -67,67 +67,71 @@ class MissionWalk:
         for object_id, scale in states.scales.items():
             # What a mission waits for or never measures may be told at any time (C8).
             if object_id in waited or object_id not in measured:
-                self._told |= scale.values << scale.shift
+                self._reported |= scale.values << scale.shift
 
-    def first(self) -> Step:
+    def first_step(self) -> Step:
         """M1: where the mission begins. Nothing has been measured."""
-        state = self._told
+        state = self._reported
         for scale in self.states.scales.values():
             state |= scale.missing << scale.shift
         return self.layout.begin, state, 0
 
-    def steps(self, here: Place) -> list[Step]:
+    def steps(self, here: ProgramPoint) -> list[Step]:
         """Where the mission may go on from a place, with which readings."""
         kind, at = here
         late = self.states.late.get(here, 0)
-        state = self.states.places[here]
+        state = self.states.readings[here]
         if kind == "task":
             return self._leave_task(at, state, late)
         if kind == "round":
             return self._end_round(at, state, late)
-        found: list[Step] = []
+        steps: list[Step] = []
         if kind == "cut":
             around = self.layout.parent[at]
             if around is not None and self.layout.timed[around]:
-                found.append((("cut", around), state, late))
+                steps.append((("cut", around), state, late))
             if self.layout.hard[at]:
                 self.proved.ends.add(at)
-                found.append(self._after_last(at, state, late))
-        return found
+                steps.append(self._after_last(at, state, late))
+        return steps
 
     def _leave_task(self, at: int, state: int, late: int) -> list[Step]:
-        found: list[Step] = []
+        steps: list[Step] = []
         task = self.mission.tasks[at]
-        own = self._late(task)
-        ended = self._after(task, state)
+        own = self._late_readings(task)
+        ended = self._after_success(task, state)
         # A WAIT runs no action, so what is late may still come when it has ended. Other tasks begin
         # when the action before has ended, but may have failed by time before they begin.
-        by_time = self._by_time(task)
+        by_time = self._may_fail_by_time(task)
         passing = late if task.wait is not None or by_time else 0
-        goes_on = False
+        continues = False
         if self._may_fail(task):
-            goes_on = self._may_go_on(task)
+            continues = self._failure_may_continue(task)
             failed = self._after_failure(task, state)
-            lost = passing | (own if by_time else 0)
-            if goes_on:
+            still_late = passing | (own if by_time else 0)
+            if continues:
                 ended |= failed
-                passing = lost
-            found += [(place, failed | lost, lost) for place in self._failure_places(task)]
+                passing = still_late
+            steps += [
+                (point, failed | still_late, still_late) for point in self._failure_points(task)
+            ]
         inside = self.layout.innermost[at]
         if inside is not None and self.layout.timed[inside]:
-            found.append((("cut", inside), state | late | own, late | own))
+            steps.append((("cut", inside), state | late | own, late | own))
         fresh = None
-        if task.action is _MEASURE and not (self.failures or goes_on):
+        if task.action is _MEASURE and not (self.failures or continues):
             fresh = task.object_id
-        return found + self._ways(at, task, ended | passing | self._told, passing, fresh)
+        return steps + self._transition_steps(
+            at, task, ended | passing | self._reported, passing, fresh
+        )
 
-    def _late(self, task: Task) -> int:
+    def _late_readings(self, task: Task) -> int:
         """What may come from the task's action while it is cancelled."""
         if task.action is not _MEASURE or task.object_id not in self.states.scales:
             return 0
         return self.states.late_readings(task.object_id, self.failures)
 
-    def _after(self, task: Task, state: int) -> int:
+    def _after_success(self, task: Task, state: int) -> int:
         """The readings when a task has ended (C3), by the robot or by hand (H3)."""
         o = task.object_id
         if task.action is not _MEASURE or o not in self.states.scales:
@@ -135,7 +139,7 @@ class MissionWalk:
         scale = self.states.scales[o]
         # A success without a number is unreadable; by hand there may be no value.
         others = scale.unreadable | scale.missing if self.failures else 0
-        return self.states.set(state, o, scale.values | others) | self._told
+        return self.states.set(state, o, scale.values | others) | self._reported
 
     def _after_failure(self, task: Task, state: int) -> int:
         o = task.object_id
@@ -143,72 +147,74 @@ class MissionWalk:
             return state
         scale = self.states.scales[o]
         others = scale.unreadable if self.failures else 0
-        return self.states.set(state, o, scale.failed | others) | self._told
+        return self.states.set(state, o, scale.failed | others) | self._reported
 
     def _may_fail(self, task: Task) -> bool:
         """Whether a task may fail for good; without failures, by time alone (W3, W5)."""
         waits = task.wait is not None and task.wait.limit is not None
-        return self._missable(task) or waits or (self.failures and task.action is not _WAIT)
+        return self._can_miss_window(task) or waits or (self.failures and task.action is not _WAIT)
 
-    def _missable(self, task: Task) -> bool:
+    def _can_miss_window(self, task: Task) -> bool:
         window = task.window
         return window is not None and window.hard and window.latest is not None
 
-    def _by_time(self, task: Task) -> bool:
+    def _may_fail_by_time(self, task: Task) -> bool:
         """Whether a task may fail while its action, or one before, is being cancelled."""
-        return self._missable(task) or (self.failures and task.time_limit is not None)
+        return self._can_miss_window(task) or (self.failures and task.time_limit is not None)
 
-    def _by_itself(self, task: Task) -> bool:
+    def _may_fail_otherwise(self, task: Task) -> bool:
         """Whether it may fail otherwise than by a missed window."""
         waits = task.wait is not None and task.wait.limit is not None
         return waits or (self.failures and task.action is not _WAIT)
 
-    def _to_missed(self, task: Task) -> str | None:
+    def _missed_target(self, task: Task) -> str | None:
         return None if task.window is None else task.window.missed_target
 
-    def _may_go_on(self, task: Task) -> bool:
+    def _failure_may_continue(self, task: Task) -> bool:
         """Whether some failure for good counts as any other end (T8)."""
-        goes_on = task.on_failure is _CONTINUE or (
+        continues = task.on_failure is _CONTINUE or (
             task.on_failure is _BRANCH and task.failure_target is None
         )
-        return goes_on and (self._by_itself(task) or self._to_missed(task) is None)
+        return continues and (self._may_fail_otherwise(task) or self._missed_target(task) is None)
 
-    def _failure_places(self, task: Task) -> Iterator[Place]:
+    def _failure_points(self, task: Task) -> Iterator[ProgramPoint]:
         """Where a task leads that has failed for good, if not where any end leads (T8, W5)."""
-        missed = self._to_missed(task)
-        if self._missable(task) and missed is not None:
-            yield self.layout.place(missed)
-            if not self._by_itself(task):
+        missed = self._missed_target(task)
+        if self._can_miss_window(task) and missed is not None:
+            yield self.layout.task_point(missed)
+            if not self._may_fail_otherwise(task):
                 return
         if task.on_failure is _BRANCH and task.failure_target is not None:
-            yield self.layout.place(task.failure_target)
+            yield self.layout.task_point(task.failure_target)
         elif task.on_failure in _ENDING:
             yield END
 
-    def _ways(self, at: int, task: Task, state: int, late: int, fresh: str | None) -> list[Step]:
+    def _transition_steps(
+        self, at: int, task: Task, state: int, late: int, fresh: str | None
+    ) -> list[Step]:
         """T2 and T3: the transitions in order, then the unconditional one. The checkpoint `fresh`
         was just measured."""
-        found: list[Step] = []
-        changing = late | self._told
+        steps: list[Step] = []
+        changing = late | self._reported
         for k, transition in enumerate(task.transitions):
             if not transition.conditions:
                 continue
-            taken, rest, certain = self._test(transition.conditions, state, fresh)
+            taken, rest, certain = self._evaluate(transition.conditions, state, fresh)
             if taken is not None:
                 self.proved.transitions.add((at, k))
-                found.append((self.layout.place(transition.target), taken | changing, late))
+                steps.append((self.layout.task_point(transition.target), taken | changing, late))
                 if certain:
                     self.proved.certain.add((at, k))
-                    return found
+                    return steps
             state = rest | changing
         ending = self.layout.ending[at]
         if ending is not None:
-            found.append((("round", ending), state, late))
+            steps.append((("round", ending), state, late))
         else:
-            found.append(self._unconditional(at, state, late))
-        return found
+            steps.append(self._unconditional(at, state, late))
+        return steps
 
-    def _test(
+    def _evaluate(
         self, conditions: tuple[Condition, ...], state: int, fresh: str | None
     ) -> tuple[int | None, int, bool]:
         """The readings if all conditions hold (None: they can't), and if not; whether they do."""
@@ -223,7 +229,7 @@ class MissionWalk:
                 if not must or o != fresh:
                     unsure.append((condition, False))
                 continue
-            holding = self._holding(condition)
+            holding = self._satisfying_readings(condition)
             held = states.get(taken, o) & holding
             possible = possible and held != 0
             possible = possible and not (o == fresh and condition.type is ConditionType.STALE)
@@ -234,7 +240,7 @@ class MissionWalk:
         rest = state
         if len(unsure) == 1 and unsure[0][1]:
             condition = unsure[0][0]
-            left = states.get(state, condition.object_id) & ~self._holding(condition)
+            left = states.get(state, condition.object_id) & ~self._satisfying_readings(condition)
             rest = states.set(state, condition.object_id, left)
         return taken if possible else None, rest, possible and not unsure
 
@@ -255,38 +261,38 @@ class MissionWalk:
         exact = timely and condition.type not in _AGED
         return exact and scale is not None and scale.decides(condition)
 
-    def _holding(self, condition: Condition) -> int:
+    def _satisfying_readings(self, condition: Condition) -> int:
         # The mission is kept as long as this, so ids stay what they are; hashing takes long.
-        found = self._satisfying.get(id(condition))
-        if found is None:
-            found = self.states.scales[condition.object_id].satisfying(condition)
-            self._satisfying[id(condition)] = found
-        return found
+        satisfying = self._satisfying.get(id(condition))
+        if satisfying is None:
+            satisfying = self.states.scales[condition.object_id].satisfying(condition)
+            self._satisfying[id(condition)] = satisfying
+        return satisfying
 
     def _unconditional(self, at: int, state: int, late: int) -> Step:
         for k, transition in enumerate(self.mission.tasks[at].transitions):
             if not transition.conditions:
                 self.proved.transitions.add((at, k))
-                return self.layout.place(transition.target), state, late
+                return self.layout.task_point(transition.target), state, late
         return END, 0, 0
 
     def _end_round(self, number: int, state: int, late: int) -> list[Step]:
         """G5 to G8."""
-        found: list[Step] = []
+        steps: list[Step] = []
         group = self.mission.groups[number]
-        changing = late | self._told
-        held, left, certain = self._test(group.until, state, None)
+        changing = late | self._reported
+        held, left, certain = self._evaluate(group.until, state, None)
         if group.max_repeat_count != 1 and not (group.until and certain):
             self.proved.repeats.add(number)
             start = "task", self.layout.position[group.start]
-            found.append((start, left | changing if group.until else state, late))
+            steps.append((start, left | changing if group.until else state, late))
         limited = group.max_repeat_count > 0 or group.max_repeat_duration > 0
         if limited or (group.until and held is not None):
             if not self.layout.hard[number]:
                 self.proved.ends.add(number)
             after = state if limited or held is None else held | changing
-            found.append(self._after_last(number, after, late))
-        return found
+            steps.append(self._after_last(number, after, late))
+        return steps
 
     def _after_last(self, number: int, state: int, late: int) -> Step:
         """G6, G7: the next group outward decides, or the unconditional transition is taken."""

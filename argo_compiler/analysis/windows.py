@@ -3,26 +3,26 @@
 import math
 from collections.abc import Iterator
 
-from argo_compiler.analysis.bounds import Extent
+from argo_compiler.analysis.bounds import MissionBounds
 from argo_compiler.analysis.quantities import time_words
 from argo_compiler.analysis.study import Study
 from argo_compiler.diagnostics import Diagnostic
 
-_SOON = 1e-6  # s: sums of floats are not exact
+_TOLERANCE = 1e-6  # s: sums of floats are not exact
 
 
-def windows(study: Study, extent: Extent) -> Iterator[Diagnostic]:
+def diagnose_windows(study: Study, bounds: MissionBounds) -> Iterator[Diagnostic]:
     """Tasks that end too late for their window, at the planned times."""
     for leaf, flow in enumerate(study.flow.leaves):
         window = flow.leaf.task.window
-        if window is None or window.latest is None or not study.nominal.reached(leaf):
+        if window is None or window.latest is None or not study.nominal.is_reached(leaf):
             continue
-        moment = extent.moments[leaf]
+        end = bounds.completion_times[leaf]
         name, latest = study.name(leaf), time_words(window.latest)
-        if moment.soonest > window.latest + _SOON:
+        if end.soonest > window.latest + _TOLERANCE:
             soonest = ""
-            if math.isfinite(moment.soonest):
-                soonest = f": it ends after {time_words(moment.soonest)} at the soonest"
+            if math.isfinite(end.soonest):
+                soonest = f": it ends after {time_words(end.soonest)} at the soonest"
             yield study.diagnostic(
                 "window-missed" if window.hard else "window-late",
                 f"if nothing fails, no path is in time for task '{name}', which is to have ended "
@@ -30,7 +30,7 @@ def windows(study: Study, extent: Extent) -> Iterator[Diagnostic]:
                 "do it earlier, or let its window end later",
                 leaf,
             )
-        elif moment.latest > window.latest + _SOON:
+        elif end.latest > window.latest + _TOLERANCE:
             yield study.diagnostic(
                 "window-maybe-missed",
                 f"task '{name}' may come too late: it is to have ended {latest} after the "
@@ -41,9 +41,9 @@ def windows(study: Study, extent: Extent) -> Iterator[Diagnostic]:
             )
 
 
-def time_limits(study: Study) -> Iterator[Diagnostic]:
+def diagnose_time_limits(study: Study) -> Iterator[Diagnostic]:
     """Tasks that can't be done within their time limit, as planned."""
-    for leaf, taken in sorted(study.legs.too_slow.items()):
+    for leaf, taken in sorted(study.costs.too_slow.items()):
         limit = study.task(leaf).time_limit
         assert limit is not None
         if study.task(leaf).retries:

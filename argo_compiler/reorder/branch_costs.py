@@ -137,13 +137,13 @@ class BranchCosts:
         target is None if one of them is endless.
         """
         flow = self._chain.flow
-        node, extra = flow.leaves[leaf].tail, 0.0
+        node, extra = flow.leaves[leaf].unconditional, 0.0
         group = flow.group_of_round_end(node)
         while group is not None and group != level:
             if not flow.groups[group].may_end:
                 return None, 0.0
             extra += self._further_rounds(group, costs)
-            node = flow.groups[group].onward
+            node = flow.groups[group].successor
             group = flow.group_of_round_end(node)
         return node, extra
 

@@ -204,10 +204,10 @@ class _Rewriting:
         In the mission, this transition leads to what follows after the last round.
         """
         unit = self.visits.task_units[self.visits.visit_of_leaf[leaf]]
-        node = self.chain.flow.leaves[leaf].tail
+        node = self.chain.flow.leaves[leaf].unconditional
         group = self.chain.flow.group_of_round_end(node)
         while group is not None and group != unit.level:
-            node = self.chain.flow.groups[group].onward
+            node = self.chain.flow.groups[group].successor
             group = self.chain.flow.group_of_round_end(node)
         return group is not None
 
@@ -218,7 +218,7 @@ class _Rewriting:
         """
         if any(not transition.conditions for transition in task.transitions):
             return False
-        return (leaf, self.chain.flow.done) not in self.chain.early_exits
+        return (leaf, self.chain.flow.end_node) not in self.chain.early_exits
 
     # ---- groups
 

@@ -56,7 +56,7 @@ class TaskGraph:
 
     def __init__(self, mission: Mission) -> None:
         """Lower the mission. Raises DiagnosticError if `check` finds errors in it."""
-        self.flow = flow = Flow.of(lower(mission), mission)
+        self.flow = flow = Flow.from_machine(lower(mission), mission)
         names = {task.name for task in mission.tasks}
         # `lower` may add a return to the dock, which is reached only after failures.
         self.own_leaves = [i for i, leaf in enumerate(flow.leaves) if leaf.name in names]
@@ -76,7 +76,7 @@ class TaskGraph:
             docks = task.action is Action.WAYPOINT and task.pose == mission.dock
             branches = leaf.conditional or self.branch_targets(i)
             if docks and leaf.parent == NOWHERE and not branches:
-                return i if leaf.tail == self.flow.done else None
+                return i if leaf.unconditional == self.flow.end_node else None
         return None
 
     def branch_targets(self, leaf: int) -> tuple[int, ...]:
@@ -109,16 +109,16 @@ class TaskGraph:
         flow = self.flow
         following: list[list[int]] = [[] for _ in range(flow.size)]
         for i, leaf in enumerate(flow.leaves):
-            following[i] = [target for _, target in leaf.conditional] + [leaf.tail]
+            following[i] = [target for _, target in leaf.conditional] + [leaf.unconditional]
             following[i] += self.branch_targets(i) if i in self._own_leaf_set else ()
             if leaf.parent >= 0:
                 following[i].append(flow.time_up(leaf.parent))
         for g, group in enumerate(flow.groups):
             following[flow.round_end(g)].append(group.start)
             if group.may_end:
-                following[flow.round_end(g)].append(group.onward)
+                following[flow.round_end(g)].append(group.successor)
             if group.hard:
-                following[flow.time_up(g)].append(group.onward)
+                following[flow.time_up(g)].append(group.successor)
             if group.parent >= 0:
                 following[flow.time_up(g)].append(flow.time_up(group.parent))
         reached = reached_from(following, [flow.initial])
@@ -129,7 +129,7 @@ class TaskGraph:
                     "an order: remove it, or add a transition to it; a check gives details",
                     remedies=(Remedy.CHECK_MISSION,),
                 )
-        if not reached[flow.done]:
+        if not reached[flow.end_node]:
             raise Invalid(
                 "nothing leads to the end of this mission: a check states why",
                 remedies=(Remedy.CHECK_MISSION,),
@@ -160,7 +160,7 @@ class TaskGraph:
             if inner > group and within.may_end and within.last in child_of:
                 direct = inner if within.parent == group else None
                 number = child_of[within.last]
-                self._add_edge(level, group, number, within.last, within.onward, True, direct)
+                self._add_edge(level, group, number, within.last, within.successor, True, direct)
         level.edges = self._without_early_ends(level)
         leads_to_end = leading_to(level.successors(level.edges), [level.sink])
         if group != NOWHERE and not all(leads_to_end):
@@ -178,7 +178,7 @@ class TaskGraph:
             self._add_edge(level, group, number, leaf, target, False, None)
         for target in self.branch_targets(leaf):
             self._add_edge(level, group, number, leaf, target, False, None)
-        tail = flow.leaves[leaf].tail
+        tail = flow.leaves[leaf].unconditional
         ended_group = flow.group_of_round_end(tail)
         if ended_group is None or ended_group == group:
             self._add_edge(level, group, number, leaf, tail, True, None)
@@ -210,7 +210,7 @@ class TaskGraph:
                 level.chain_error = f"'{flow.leaves[leaf].name}' leaves it"
             else:
                 self.early_exits.add((leaf, target))
-        elif target == flow.done:
+        elif target == flow.end_node:
             branches = bool(flow.leaves[leaf].conditional or self.branch_targets(leaf))
             if group == NOWHERE and self.end is None:
                 level.edges.append(Edge(number, level.sink, leaf, None, tail, branches))
@@ -232,7 +232,9 @@ class TaskGraph:
         remaining = []
         for edge in level.edges:
             if edge.early and leads_to_end[edge.source]:
-                self.early_exits.add((edge.leaf, self.flow.done if self.end is None else self.end))
+                self.early_exits.add(
+                    (edge.leaf, self.flow.end_node if self.end is None else self.end)
+                )
             else:
                 remaining.append(edge)
         return remaining

@@ -62,7 +62,9 @@ def _leaf_transitions(chain: UnitChain) -> list[tuple[int, int]]:
     """by group, the leaves that a round may end with"""
     for k, leaf in enumerate(flow.leaves):
         nodes = [target for _, target in leaf.conditional]
-        nodes += [node for node in (leaf.tail, leaf.failure, leaf.missed) if node is not None]
+        nodes += [
+            node for node in (leaf.unconditional, leaf.failure, leaf.missed) if node is not None
+        ]
         for node in nodes:
             ended = flow.group_of_round_end(node)
             if ended is not None:
@@ -75,9 +77,9 @@ def _leaf_transitions(chain: UnitChain) -> list[tuple[int, int]]:
         result += [(k, group.start) for k in leaves]
         if group.hard:
             leaves = list(range(group.first, group.last + 1))
-        around = flow.group_of_round_end(group.onward)
+        around = flow.group_of_round_end(group.successor)
         if around is not None:
             ends.setdefault(around, []).extend(leaves)
-        elif flow.is_leaf(group.onward):
-            result += [(k, group.onward) for k in leaves]
+        elif flow.is_leaf(group.successor):
+            result += [(k, group.successor) for k in leaves]
     return result

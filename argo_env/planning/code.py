@@ -12,7 +12,7 @@ _FOLDERS = ("files", "navigation", "planning", "robot", "site")
 _MODULES = (
     "argo_compiler/base/catalog.py",
     "argo_compiler/base/model.py",
-    "argo_compiler/analysis/legs.py",
+    "argo_compiler/analysis/step_costs.py",
 )
 
 

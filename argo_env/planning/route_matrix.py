@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.analysis import Leg, NoWay
+from argo_compiler.analysis import Leg, NoPath
 from argo_compiler.base.errors import Unreachable
 from argo_compiler.base.model import Pose
 from argo_compiler.base.stages import each
@@ -109,7 +109,7 @@ def _standings(places: Sequence[Task], start: Pose, travel: SiteTravel) -> list[
 
 def _leg(travel: SiteTravel, start: Pose, task: Task) -> Leg:
     leg = travel.leg(start, task, None)
-    if isinstance(leg, NoWay):
+    if isinstance(leg, NoPath):
         raise Unreachable(f"the robot can't carry out task '{task.name}': {leg.reason}")
     return leg
 

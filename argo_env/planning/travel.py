@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
-from argo_compiler.analysis import Leg, NoWay, Standing
+from argo_compiler.analysis import Leg, NoPath, RobotPose
 from argo_compiler.base.errors import ArgoError, Unreachable
 from argo_compiler.base.model import Pose
 from argo_compiler.il import MAX_TIME_S, Action, Mission, Task
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _PLACES = 1 << 14  # files at most, a few kB each; a new way takes the place of an older one
 
-Way = Path | NoWay
+Way = Path | NoPath
 
 
 def kept_way(parts: Parts, asked: object, plan: Callable[[], Path]) -> Way:
@@ -39,7 +39,7 @@ def kept_way(parts: Parts, asked: object, plan: Callable[[], Path]) -> Way:
     try:
         way: Way = plan()
     except ArgoError as error:
-        way = NoWay(str(error))
+        way = NoPath(str(error))
     parts.keep_text(name, f"{question}\n{json.dumps(_to_data(way))}")
     return way
 
@@ -50,7 +50,7 @@ def as_data(pose: Pose) -> tuple[float, float, float, float]:
 
 
 def _to_data(way: Way) -> dict[str, Any]:
-    if isinstance(way, NoWay):
+    if isinstance(way, NoPath):
         return {"reason": way.reason}
     motions = [
         (*as_data(m.start), *as_data(m.end), m.turn, int(m.gear), bool(m.on_stairs))
@@ -61,7 +61,7 @@ def _to_data(way: Way) -> dict[str, Any]:
 
 def _to_way(data: dict[str, Any]) -> Way:
     if "reason" in data:
-        return NoWay(data["reason"])
+        return NoPath(data["reason"])
     motions = [Motion(_pose(row[:4]), _pose(row[4:8]), *row[8:]) for row in data["motions"]]
     return Path(_pose(data["start"]), tuple(motions))
 
@@ -95,8 +95,8 @@ class SiteTravel:
         self._robot = on.robot
         self._parts = on.parts
         self.time_step = time_step
-        self._ways: dict[tuple[Pose, str | Pose | None], Path | NoWay] = {}
-        self._legs: dict[tuple[Pose, str | Pose | None, Action, float | None], Leg | NoWay] = {}
+        self._ways: dict[tuple[Pose, str | Pose | None], Path | NoPath] = {}
+        self._legs: dict[tuple[Pose, str | Pose | None, Action, float | None], Leg | NoPath] = {}
 
     @property
     def _navigator(self) -> "Navigator":
@@ -129,7 +129,7 @@ class SiteTravel:
         standing = kept_way(
             self._parts, ["stand", as_data(pose)], lambda: Path(self._navigator.snap(pose), ())
         )
-        if isinstance(standing, NoWay):
+        if isinstance(standing, NoPath):
             raise Unreachable(standing.reason)
         return standing.start
 
@@ -141,11 +141,11 @@ class SiteTravel:
     def way(self, origin: Pose, task: Task) -> Path:
         """The way to the task's place. Raises ArgoError if there is none."""
         way = self._way(origin, task.pose or task.object_id)
-        if isinstance(way, NoWay):
+        if isinstance(way, NoPath):
             raise Unreachable(f"the robot can't carry out task '{task.name}': {way.reason}")
         return way
 
-    def leg(self, origin: Standing, task: Task, velocity: float | None) -> Leg | NoWay:
+    def leg(self, origin: RobotPose, task: Task, velocity: float | None) -> Leg | NoPath:
         """The way to the task's place at `velocity` (m/s), and its action."""
         assert isinstance(origin, Pose)
         if task.action is Action.WAIT:
@@ -155,10 +155,10 @@ class SiteTravel:
         if key not in self._legs:
             way = self._way(origin, place)
             work = self.work(task)
-            self._legs[key] = way if isinstance(way, NoWay) else self._leg(way, velocity, work)
+            self._legs[key] = way if isinstance(way, NoPath) else self._leg(way, velocity, work)
         return self._legs[key]
 
-    def _way(self, origin: Pose, place: str | Pose | None) -> Path | NoWay:
+    def _way(self, origin: Pose, place: str | Pose | None) -> Path | NoPath:
         key = origin, place
         if key not in self._ways:
             asked = as_data(place) if isinstance(place, Pose) else place
@@ -173,11 +173,11 @@ class SiteTravel:
         checkpoint = self._on.site.measured_by(place)
         return self._navigator.plan_to_view(origin, checkpoint.id)
 
-    def _leg(self, way: Path, velocity: float | None, work: float) -> Leg | NoWay:
+    def _leg(self, way: Path, velocity: float | None, work: float) -> Leg | NoPath:
         robot, power = self._robot, self._robot.power
         seconds = way.duration(robot, velocity)
         if seconds > MAX_TIME_S:
-            return NoWay(f"at {velocity} m/s the way there takes longer than any mission")
+            return NoPath(f"at {velocity} m/s the way there takes longer than any mission")
         drive = max(self.time_step, self._stepped(seconds))
         energy = sum(m.duration(robot, velocity) * self._watts(m) for m in way.motions) / 3600
         work_energy = work * power.measuring / 3600

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from enum import StrEnum
 from itertools import pairwise
 
-from argo_compiler.analysis import Leg, NoWay
+from argo_compiler.analysis import Leg, NoPath
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import ArgoError, Invalid, NotFound
 from argo_compiler.base.model import Model, Pose
@@ -168,7 +168,7 @@ class _Ways:
             if task.pose is not None:
                 require_on_site(task.pose, "its pose")
             leg = self.travel.leg(start, task, task.velocity)
-            if isinstance(leg, NoWay):
+            if isinstance(leg, NoPath):
                 return PreviewedWay(problem=_not_there(goal, leg.reason))
             path = self.travel.way(start, task)
         except ArgoError as error:

@@ -2,7 +2,7 @@
 
 import itertools
 
-from argo_compiler.analysis import Leg, NoWay
+from argo_compiler.analysis import Leg, NoPath
 from argo_compiler.base.catalog import Area, Catalog
 from argo_compiler.base.model import Pose
 from argo_compiler.il import Condition, ConditionType, Mission, Transition
@@ -81,7 +81,7 @@ class Steady:
     def leg(self, origin, task, velocity):
         place = task.object_id or task.name
         if place in self.blocked or (task.pose and task.pose.x < 0):
-            return NoWay("a wall stands in the way")
+            return NoPath("a wall stands in the way")
         work = 2.0 if task.object_id else 0.0
         drive = 0.0 if origin == place else 10.0 / (velocity or 1.0)
         return Leg(drive + work, 1.0, place, work, 0.0)

@@ -9,8 +9,8 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from argo_compiler.analysis import analyse, unproved_bounds
-from argo_compiler.analysis.bound_verification import holds, least_steps
-from argo_compiler.analysis.bound_witnessing import make_least_witness
+from argo_compiler.analysis.bound_verification import is_valid, least_steps
+from argo_compiler.analysis.bound_witness_search import make_least_witness
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.hfsm import Cause, lower
@@ -47,7 +47,7 @@ def test_no_run_takes_less_than_what_is_accepted(plan, catalog, seed, clean_up, 
     travel = MadeUpTravel(seed, clean_up, standing_power=standing_power)
     witness, steps = witnessed(plan, catalog, travel)
     assume(witness is not None)
-    assert holds(steps, witness)
+    assert is_valid(steps, witness)
     position = {one.name: i for i, one in enumerate(plan.tasks)}
     hfsm = lower(plan)
     for k in range(4):
@@ -139,11 +139,11 @@ def corrupted(spent):
 def test_a_witness_that_claims_more_is_rejected(name):
     plan, travel = USUAL[name], Steady()
     witness, steps = witnessed(plan, CATALOG, travel)
-    assert holds(steps, witness)
+    assert is_valid(steps, witness)
     for field, other in corrupted(witness.time):
-        assert not holds(steps, replace(witness, time=other)), (field, other)
+        assert not is_valid(steps, replace(witness, time=other)), (field, other)
     for field, other in corrupted(witness.energy):
-        assert not holds(steps, replace(witness, energy=other)), (field, other)
+        assert not is_valid(steps, replace(witness, energy=other)), (field, other)
 
 
 def test_what_is_not_shown_is_not_said():

@@ -167,7 +167,7 @@ def test_a_witness_that_leaves_out_what_happens_is_not_taken(plan, data):
     failures = data.draw(st.booleans())
     witness = analysis.witnesses.all if failures else analysis.witnesses.nominal
     corrupted = data.draw(corruptions(witness))
-    proved = Verifier(plan, None).invariant(corrupted)
+    proved = Verifier(plan, None).check_invariant(corrupted)
     if proved is None:
         return
     found = Explorer(plan, failures)
@@ -246,7 +246,7 @@ def test_a_claim_that_a_value_told_by_others_disproves_is_not_proved():
         (scale,) = witness.scales
         unmeasured = 1 << (2 * len(scale.bounds) + 1 + scale.shift)
         tasks = tuple(None if t is None else unmeasured for t in witness.tasks)
-        assert Verifier(plan, CATALOG).invariant(replace(witness, tasks=tasks)) is None
+        assert Verifier(plan, CATALOG).check_invariant(replace(witness, tasks=tasks)) is None
 
 
 def kept(plan):
@@ -301,7 +301,7 @@ def test_a_corrupted_loop_is_not_taken():
     witnesses = analyse(plan, CATALOG).witnesses
     (trap,) = witnesses.traps
     verifier = Verifier(plan, CATALOG)
-    assert verifier.trap(trap, witnesses.nominal)
+    assert verifier.check_trap(trap, witnesses.nominal)
     wrong = [
         replace(trap, tasks=("B",)),
         replace(trap, tasks=("D",)),
@@ -318,4 +318,4 @@ def test_a_corrupted_loop_is_not_taken():
         replace(trap, kept=replace(trap.kept, object_id="2")),
     ]
     for one in wrong:
-        assert not verifier.trap(one, witnesses.nominal), one
+        assert not verifier.check_trap(one, witnesses.nominal), one

@@ -5,9 +5,9 @@ from random import Random
 
 from hypothesis import strategies as st
 
-from argo_compiler.analysis import Leg, NoWay
+from argo_compiler.analysis import Leg, NoPath
 from argo_compiler.analysis.flow import Flow
-from argo_compiler.analysis.values import told_by_others
+from argo_compiler.analysis.reachability import reported_by_others
 from argo_compiler.base.catalog import Area, Catalog
 from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import (
@@ -183,7 +183,7 @@ class MadeUpTravel:
     def leg(self, origin, task, velocity):
         place = task.object_id or f"{task.pose.x:g}"
         if place in self.blocked:
-            return NoWay("a wall stands in the way")
+            return NoPath("a wall stands in the way")
         rng = Random(f"{self.seed} {origin} {place}")
         distance = 0 if origin == place else rng.choice([0, 1, 1, 2, 3, 4])
         action = Random(f"{self.seed} {place}").choice([0, 1]) if task.object_id else 0
@@ -261,7 +261,7 @@ class _World:
             awaited -= reacting
         else:
             awaited |= reacting | {r.until for r in mission.reactions if r.until is not None}
-        told = told_by_others(Flow.of(hfsm, mission)) & self.checkpoints.keys()
+        told = reported_by_others(Flow.from_machine(hfsm, mission)) & self.checkpoints.keys()
         if self.mode == "eventful":
             self.outside = [*sorted(awaited), *sorted(told)]
         rng, coming = self.rng, []

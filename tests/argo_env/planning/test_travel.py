@@ -2,7 +2,7 @@
 
 import pytest
 
-from argo_compiler.analysis import Leg, NoWay, analyse, unproved_bounds
+from argo_compiler.analysis import Leg, NoPath, analyse, unproved_bounds
 from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, Mission, Task
 from argo_env.planning.travel import SiteTravel
@@ -63,10 +63,10 @@ def test_ways_that_do_not_exist_say_why(travel):
     start = travel.start(Mission(tasks=(measure(1),)))
     far = Task(name="far", action=Action.WAYPOINT, pose=Pose(x=500, y=0, z=0))
     away = travel.leg(start, far, None)
-    assert isinstance(away, NoWay)
+    assert isinstance(away, NoPath)
     assert "(500.00, 0.00, 0.00)" in away.reason
     unknown = travel.leg(start, measure(9999), None)
-    assert isinstance(unknown, NoWay)
+    assert isinstance(unknown, NoPath)
     assert "9999" in unknown.reason
 
 

@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from argo_compiler.analysis.flow import Flow, LeafFlow
-from argo_compiler.analysis.regions import Fields, Scale, make_scale, sum_bits
+from argo_compiler.analysis.value_regions import Fields, Scale, make_scale, sum_bits
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.il import Condition, ConditionType
 
@@ -39,7 +39,7 @@ class GuardStatus:
 
 
 @dataclass(frozen=True)
-class Paths:
+class Reachability:
     """Which nodes may be reached, with which values, and which ways on may be taken."""
 
     fields: Fields
@@ -53,28 +53,28 @@ class Paths:
     late: tuple[int, ...] = ()
     """at each node: what may still come there, from an action that is being cancelled"""
 
-    def reached(self, node: int) -> bool:
+    def is_reached(self, node: int) -> bool:
         return self.states[node] is not None
 
-    def conditional(self, flow: Flow, leaf: int) -> tuple[GuardStatus, ...]:
-        return self.looks[leaf][: len(flow.leaves[leaf].conditional)]
+    def conditional_guards(self, flow: Flow, leaf: int) -> tuple[GuardStatus, ...]:
+        return self.guards[leaf][: len(flow.leaves[leaf].conditional)]
 
-    def tail_possible(self, flow: Flow, leaf: int) -> bool:
-        return len(self.looks[leaf]) > len(flow.leaves[leaf].conditional)
+    def unconditional_possible(self, flow: Flow, leaf: int) -> bool:
+        return len(self.guards[leaf]) > len(flow.leaves[leaf].conditional)
 
     def targets(self, flow: Flow, leaf: int) -> Iterator[int]:
         """The nodes that may come next when a leaf has ended, or failed as it may."""
-        ways = flow.leaves[leaf].conditional
-        for look, (_, target) in zip(self.looks[leaf], ways, strict=False):
-            if look.possible:
+        successors = flow.leaves[leaf].conditional
+        for guard, (_, target) in zip(self.guards[leaf], successors, strict=False):
+            if guard.possible:
                 yield target
-        if self.tail_possible(flow, leaf):
-            yield flow.leaves[leaf].tail
+        if self.unconditional_possible(flow, leaf):
+            yield flow.leaves[leaf].unconditional
         failure = flow.leaves[leaf].failure
         if failure is not None and (self.failures or flow.leaves[leaf].may_give_up):
             yield failure
 
-    def after_missing(self, flow: Flow, leaf: int) -> Iterator[int]:
+    def targets_when_missed(self, flow: Flow, leaf: int) -> Iterator[int]:
         """The nodes that may come next when the hard window of a leaf is over."""
         here = flow.leaves[leaf]
         if here.deadline is None:
@@ -116,12 +116,12 @@ def make_fields(flow: Flow, catalog: Catalog | None, bits: int = TRACKED_BITS) -
     return Fields(scales, shift, width)
 
 
-def find_paths(flow: Flow, fields: Fields, failures: bool) -> Paths:
+def compute_reachability(flow: Flow, fields: Fields, failures: bool) -> Reachability:
     """The fixed point. With `failures` any action may fail and any measurement lack its value."""
-    return PathSearch(flow, fields, failures).run()
+    return ReachabilitySearch(flow, fields, failures).run()
 
 
-def told_by_others(flow: Flow) -> frozenset[str]:
+def reported_by_others(flow: Flow) -> frozenset[str]:
     """The objects that conditions look at and a WAIT waits for, or no task measures."""
     compared = {
         condition.object_id
@@ -140,12 +140,12 @@ def told_by_others(flow: Flow) -> frozenset[str]:
     return frozenset(waited | compared - {leaf.measures for leaf in flow.leaves})
 
 
-_Look = tuple[GuardStatus, int, int]
+_GuardResult = tuple[GuardStatus, int, int]
 """what is known of a transition, where it leads, and the values if it is taken"""
 
 
 @dataclass(frozen=True, slots=True)
-class _Change:
+class _Effect:
     """What the end of a measurement does to the values."""
 
     kept: int
@@ -153,7 +153,7 @@ class _Change:
     added: int
 
 
-class PathSearch:
+class ReachabilitySearch:
     """The ways on from each node, and the fixed point in the making."""
 
     def __init__(self, flow: Flow, fields: Fields, failures: bool) -> None:
@@ -170,53 +170,62 @@ class PathSearch:
             (len(flow.leaves), 0),
         ]
         self.order = sorted(range(flow.size), key=rank.__getitem__)
-        self.place = [0] * flow.size
+        self.rank_of = [0] * flow.size
         """of each node in the order"""
-        for place, node in enumerate(self.order):
-            self.place[node] = place
-        self.waiting: list[int] = []
+        for number, node in enumerate(self.order):
+            self.rank_of[node] = number
+        self.pending: list[int] = []
         """places of nodes, a heap"""
         self.queued = [False] * flow.size
         self.satisfying: dict[tuple[object, ...], int] = {}
-        self.told = sum_bits(self._values(o) for o in told_by_others(flow))
+        self.reported = sum_bits(self._values(o) for o in reported_by_others(flow))
         self.late = _late_readings(flow, self._late_readings)
-        self.looks: list[tuple[GuardStatus, ...]] = [()] * len(flow.leaves)
-        self._changes: dict[tuple[str, bool], _Change] = {}
-        self.changes = [*map(self._change, flow.leaves)]
+        self.guards: list[tuple[GuardStatus, ...]] = [()] * len(flow.leaves)
+        self._effects: dict[tuple[str, bool], _Effect] = {}
+        self.effects = [*map(self._effect_of, flow.leaves)]
         """for each leaf, what its end changes"""
-        self.plain = [*map(self._only_way, flow.leaves), *([None] * (flow.size - len(flow.leaves)))]
+        self.only_successor = [
+            *map(self._find_only_successor, flow.leaves),
+            *([None] * (flow.size - len(flow.leaves))),
+        ]
         """for each node, the one that always follows, if it is so simple"""
 
-    def _only_way(self, leaf: LeafFlow) -> int | None:
+    def _find_only_successor(self, leaf: LeafFlow) -> int | None:
         timed = leaf.parent >= 0 and self.flow.timed[leaf.parent]
         simple = not leaf.conditional and leaf.wait is None and leaf.deadline is None and not timed
-        return leaf.tail if simple and not (self.failures and leaf.failure is not None) else None
+        return (
+            leaf.unconditional
+            if simple and not (self.failures and leaf.failure is not None)
+            else None
+        )
 
-    def run(self) -> Paths:
-        self._reach(self.flow.initial, self.fields.unmeasured | self.told)
-        while self.waiting:
-            node = self.order[heapq.heappop(self.waiting)]
+    def run(self) -> Reachability:
+        self._join(self.flow.initial, self.fields.unmeasured | self.reported)
+        while self.pending:
+            node = self.order[heapq.heappop(self.pending)]
             self.queued[node] = False
             state = self.states[node]
             assert state is not None
-            following = self.plain[node]
+            following = self.only_successor[node]
             if following is not None:
-                self._reach(following, self._after(node, state) | self.told)
+                self._join(following, self._after_leaf(node, state) | self.reported)
                 continue
-            looked = self._look(node, state)
-            if looked:
-                self.looks[node] = tuple([look for look, _, _ in looked])
-            for target, after in self._ways(node, state, looked):
-                self._reach(target, after)
-        for i in range(len(self.looks)):
+            results = self._evaluate_guards(node, state)
+            if results:
+                self.guards[node] = tuple([guard for guard, _, _ in results])
+            for target, after in self._successors(node, state, results):
+                self._join(target, after)
+        for i in range(len(self.guards)):
             state = self.states[i]
-            if state is not None and self.plain[i] is not None:
-                self.looks[i] = (GuardStatus(True, True, self._after(i, state) | self.told),)
-        return Paths(
-            self.fields, tuple(self.states), tuple(self.looks), self.failures, tuple(self.late)
+            if state is not None and self.only_successor[i] is not None:
+                self.guards[i] = (
+                    GuardStatus(True, True, self._after_leaf(i, state) | self.reported),
+                )
+        return Reachability(
+            self.fields, tuple(self.states), tuple(self.guards), self.failures, tuple(self.late)
         )
 
-    def _reach(self, node: int, state: int) -> None:
+    def _join(self, node: int, state: int) -> None:
         state |= self.late[node]
         known = self.states[node]
         joined = state if known is None else known | state
@@ -228,7 +237,7 @@ class PathSearch:
         self.states[node] = joined
         if not self.queued[node]:
             self.queued[node] = True
-            heapq.heappush(self.waiting, self.place[node])
+            heapq.heappush(self.pending, self.rank_of[node])
 
     def _widened(self, known: int, joined: int, everything: bool) -> int:
         if everything:
@@ -239,51 +248,56 @@ class PathSearch:
                 joined = self.fields.set(joined, o, scale.possible | scale.without_value)
         return joined
 
-    def ways(self, node: int, state: int) -> Iterator[tuple[int, int]]:
+    def successors(self, node: int, state: int) -> Iterator[tuple[int, int]]:
         """Where to go on from a node with some readings, and with which ones then."""
-        return self._ways(node, state, self._look(node, state))
+        return self._successors(node, state, self._evaluate_guards(node, state))
 
-    def _ways(self, node: int, state: int, looked: list[_Look]) -> Iterator[tuple[int, int]]:
+    def _successors(
+        self, node: int, state: int, results: list[_GuardResult]
+    ) -> Iterator[tuple[int, int]]:
         flow = self.flow
         if flow.is_leaf(node):
             leaf = flow.leaves[node]
-            for look, target, taken in looked:
-                if look.possible:
+            for guard, target, taken in results:
+                if guard.possible:
                     yield target, taken
             if leaf.failure is not None and (self.failures or self._fails_by_itself(leaf)):
-                yield leaf.failure, self._unmeasured(leaf, state)
+                yield leaf.failure, self._after_failure(leaf, state)
             if leaf.missed is not None:
-                yield leaf.missed, self._unmeasured(leaf, state) | self._measured(leaf, state)
+                yield (
+                    leaf.missed,
+                    self._after_failure(leaf, state) | self._after_success(leaf, state),
+                )
             if leaf.parent >= 0 and flow.timed[leaf.parent]:
                 # An action that is cancelled may still report its value.
-                yield flow.time_up(leaf.parent), state | self._measured(leaf, state)
+                yield flow.time_up(leaf.parent), state | self._after_success(leaf, state)
             return
-        if node == flow.done:
+        if node == flow.end_node:
             return
         ended = flow.group_of_round_end(node)
         if ended is not None:
             group = flow.groups[ended]
-            yield from self._after_round(ended, state)
+            yield from self._successors_of_round(ended, state)
             return
         number = node - len(flow.leaves) - len(flow.groups)
         group = flow.groups[number]
         if group.hard:
-            yield group.onward, state
+            yield group.successor, state
         if group.parent >= 0 and flow.timed[group.parent]:
             yield flow.time_up(group.parent), state
 
-    def _after_round(self, number: int, state: int) -> Iterator[tuple[int, int]]:
+    def _successors_of_round(self, number: int, state: int) -> Iterator[tuple[int, int]]:
         """Where to go on at the end of a round."""
         group = self.flow.groups[number]
-        look, ended, repeated = self._test(group.until, state, None)
+        guard, ended, repeated = self._evaluate(group.until, state, None)
         by_value = bool(group.until)
-        changing = self.late[self.flow.round_end(number)] | self.told
-        if group.may_repeat and not (by_value and look.certain):
+        changing = self.late[self.flow.round_end(number)] | self.reported
+        if group.may_repeat and not (by_value and guard.certain):
             yield group.start, repeated | changing if by_value else state
         if group.limited:
-            yield group.onward, state
-        elif by_value and look.possible:
-            yield group.onward, ended | changing
+            yield group.successor, state
+        elif by_value and guard.possible:
+            yield group.successor, ended | changing
 
     def _fails_by_itself(self, leaf: LeafFlow) -> bool:
         """Whether a leaf may fail although no action does."""
@@ -302,71 +316,74 @@ class PathSearch:
         scale = self.fields.scales[object_id]
         return (scale.possible | scale.unreadable) << shift
 
-    def _measured(self, leaf: LeafFlow, state: int) -> int:
+    def _after_success(self, leaf: LeafFlow, state: int) -> int:
         """After a measurement that succeeded."""
         object_id = leaf.measures
         if object_id is None or object_id not in self.fields.scales:
             return state
-        return self.fields.set(state, object_id, self.fields.scales[object_id].possible) | self.told
+        return (
+            self.fields.set(state, object_id, self.fields.scales[object_id].possible)
+            | self.reported
+        )
 
-    def _unmeasured(self, leaf: LeafFlow, state: int) -> int:
+    def _after_failure(self, leaf: LeafFlow, state: int) -> int:
         """After one that failed for good."""
         object_id = leaf.measures
         if object_id is None or object_id not in self.fields.scales:
             return state
-        return self.fields.set(state, object_id, self._without_value(object_id)) | self.told
+        return self.fields.set(state, object_id, self._without_value(object_id)) | self.reported
 
     def _without_value(self, object_id: str) -> int:
         scale = self.fields.scales[object_id]
         # What is done by hand without a value leaves none; it is no failure, but comes here too.
         return scale.without_value if self.failures else scale.failed
 
-    def _change(self, leaf: LeafFlow) -> _Change | None:
+    def _effect_of(self, leaf: LeafFlow) -> _Effect | None:
         """What the end of a leaf changes, be it without a value."""
         object_id = leaf.measures
         if object_id is None or object_id not in self.fields.scales:
             return None
         unmeasured = self.failures or self._may_go_on_unmeasured(leaf)
         key = object_id, unmeasured
-        if key not in self._changes:
+        if key not in self._effects:
             readings = self.fields.scales[object_id].possible
             if unmeasured:
                 readings |= self._without_value(object_id)
             added = self.fields.set(0, object_id, readings)
             kept = self.fields.set(self.fields.anything, object_id, 0)
-            self._changes[key] = _Change(kept, added | self.told)
-        return self._changes[key]
+            self._effects[key] = _Effect(kept, added | self.reported)
+        return self._effects[key]
 
-    def _after(self, node: int, state: int) -> int:
+    def _after_leaf(self, node: int, state: int) -> int:
         """The values when a leaf has ended."""
-        change = self.changes[node]
+        change = self.effects[node]
         return state if change is None else state & change.kept | change.added
 
     def _may_go_on_unmeasured(self, leaf: LeafFlow) -> bool:
         """Whether a window that is missed counts as the end of the task."""
         return leaf.deadline is not None and leaf.missed is None and leaf.failure is None
 
-    def _look(self, node: int, state: int) -> list[_Look]:
+    def _evaluate_guards(self, node: int, state: int) -> list[_GuardResult]:
         """The transitions of a leaf with some readings as long as they may be looked at; nothing of
         other nodes."""
         if not self.flow.is_leaf(node):
             return []
         leaf = self.flow.leaves[node]
-        looked: list[_Look] = []
+        results: list[_GuardResult] = []
         # What was just measured is there and new, tracked or not.
         fresh = None if self.failures or self._may_go_on_unmeasured(leaf) else leaf.measures
-        changing = self.told if leaf.wait is None else self.told | self.late[node]
-        state = self._after(node, state) | changing
+        changing = self.reported if leaf.wait is None else self.reported | self.late[node]
+        state = self._after_leaf(node, state) | changing
         for conditions, target in leaf.conditional:
-            look, taken, rest = self._test(conditions, state, fresh)
-            looked.append((look, target, taken | changing))
-            if look.certain:
-                return looked
+            guard, taken, rest = self._evaluate(conditions, state, fresh)
+            results.append((guard, target, taken | changing))
+            if guard.certain:
+                return results
             state = rest | changing
-        looked.append((GuardStatus(True, True, state), leaf.tail, state))
-        return looked
+        results.append((GuardStatus(True, True, state), leaf.unconditional, state))
+        return results
 
-    def _test(
+    def _evaluate(
         self, conditions: tuple[Condition, ...], state: int, fresh: str | None
     ) -> tuple[GuardStatus, int, int]:
         """Whether conditions hold, and the values if they do and if they don't."""
@@ -377,28 +394,30 @@ class PathSearch:
         for condition in conditions:
             o = condition.object_id
             satisfying = self._satisfying(condition)
-            there = self._there(taken, o, fresh)
-            possible = possible and bool(there & satisfying)
+            possible_readings = self._possible_readings(taken, o, fresh)
+            possible = possible and bool(possible_readings & satisfying)
             if o == fresh and condition.type is ConditionType.STALE:
                 possible = False
-            taken = fields.set(taken, o, there & satisfying)
+            taken = fields.set(taken, o, possible_readings & satisfying)
             # Those two say nothing of a value when they don't hold.
             timely = condition.type not in (ConditionType.STALE, ConditionType.ABNORMAL)
             timely = timely and (condition.max_age is None or o == fresh)
-            if not timely or self._there(state, o, fresh) & ~satisfying:
+            if not timely or self._possible_readings(state, o, fresh) & ~satisfying:
                 unsure.append((condition, timely))
         rest = state
         if len(unsure) == 1 and unsure[0][1]:
             condition = unsure[0][0]
-            left = self._there(state, condition.object_id, fresh) & ~self._satisfying(condition)
+            left = self._possible_readings(state, condition.object_id, fresh) & ~self._satisfying(
+                condition
+            )
             rest = fields.set(state, condition.object_id, left)
         return GuardStatus(possible, possible and not unsure, state), taken, rest
 
-    def _there(self, state: int, object_id: str, fresh: str | None) -> int:
-        there = self.fields.get(state, object_id)
+    def _possible_readings(self, state: int, object_id: str, fresh: str | None) -> int:
+        possible_readings = self.fields.get(state, object_id)
         if object_id == fresh and object_id not in self.fields.shift:
-            return there & ~self.fields.scales[object_id].without_value
-        return there
+            return possible_readings & ~self.fields.scales[object_id].without_value
+        return possible_readings
 
     def _satisfying(self, condition: Condition) -> int:
         key = (condition.object_id, condition.type, condition.param1, condition.param2,
@@ -410,7 +429,7 @@ class PathSearch:
         return found
 
 
-def objects_of(conditions: Iterable[Condition]) -> frozenset[str]:
+def compared_objects(conditions: Iterable[Condition]) -> frozenset[str]:
     """The objects whose readings the conditions look at."""
     return frozenset(c.object_id for c in conditions)
 
@@ -430,29 +449,29 @@ def _late_readings(flow: Flow, readings: Callable[[str], int]) -> list[int]:
         if flow.is_leaf(node):
             measured = flow.leaves[node].measures
             passed |= readings(measured) if measured is not None else 0
-        for target in _ways_while_cancelling(flow, node):
+        for target in _successors_while_cancelling(flow, node):
             if passed | late[target] != late[target]:
                 late[target] |= passed
                 pending.append(target)
     return late
 
 
-def _ways_while_cancelling(flow: Flow, node: int) -> tuple[int, ...]:
+def _successors_while_cancelling(flow: Flow, node: int) -> tuple[int, ...]:
     """What may follow a node before an action that is being cancelled has ended."""
-    if node == flow.done:
+    if node == flow.end_node:
         return ()
     if not flow.is_leaf(node):
         ended = flow.group_of_round_end(node)
         if ended is not None:
-            return flow.groups[ended].start, flow.groups[ended].onward
+            return flow.groups[ended].start, flow.groups[ended].successor
         group = flow.groups[node - len(flow.leaves) - len(flow.groups)]
         around = group.parent >= 0 and flow.timed[group.parent]
-        return (group.onward, *((flow.time_up(group.parent),) if around else ()))
+        return (group.successor, *((flow.time_up(group.parent),) if around else ()))
     leaf = flow.leaves[node]
     found = []
     if leaf.wait is not None or leaf.deadline is not None or leaf.leaf.task.time_limit is not None:
         found += [target for _, target in leaf.conditional]
-        found += [leaf.tail]
+        found += [leaf.unconditional]
         found += [way for way in (leaf.failure, leaf.missed) if way is not None]
     if leaf.parent >= 0 and flow.timed[leaf.parent]:
         found.append(flow.time_up(leaf.parent))

@@ -3,16 +3,20 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from argo_compiler.analysis.regions import Scale
+from argo_compiler.analysis.reachability import (
+    ReachabilitySearch,
+    compared_objects,
+    reported_by_others,
+)
 from argo_compiler.analysis.study import Study
-from argo_compiler.analysis.values import PathSearch, objects_of, told_by_others
+from argo_compiler.analysis.value_regions import Scale
 from argo_compiler.analysis.witness import KeptReading, Trap
 
-_WORK = 50_000  # steps that are looked at
+_MOST_STEPS = 50_000  # steps that are looked at
 
 
 @dataclass(frozen=True)
-class KeptLoop:
+class NonTerminatingLoop:
     """A loop that goes on for ever once it is entered with some readings."""
 
     leaf: int
@@ -23,33 +27,35 @@ class KeptLoop:
     readings: int
 
     @property
-    def reading(self) -> KeptReading:
+    def kept_reading(self) -> KeptReading:
         return KeptReading(self.object_id, self.scale.bounds, self.readings)
 
 
-def kept_loops(study: Study) -> Iterator[KeptLoop]:
+def find_non_terminating_loops(study: Study) -> Iterator[NonTerminatingLoop]:
     """The loops that some readings keep, in the order of their tasks, the shortest ones."""
     trapped = {node for nodes in study.trap_nodes for node in nodes}
     search = _Search(study)
-    found: list[KeptLoop] = []
-    for leaf, object_id in search.places():
+    loops: list[NonTerminatingLoop] = []
+    for leaf, object_id in search.old_comparisons():
         if leaf in trapped:
             continue
-        if search.work < 0:
+        if search.steps_left < 0:
             break
         closed: dict[frozenset[int], int] = {}
         for reading in search.readings(leaf, object_id):
-            nodes = search.kept(leaf, object_id, reading)
+            nodes = search.closure(leaf, object_id, reading)
             if nodes is not None:
                 closed[nodes] = closed.get(nodes, 0) | reading
         scale = study.nominal.fields.scales[object_id]
-        found += [KeptLoop(leaf, nodes, scale, object_id, r) for nodes, r in closed.items()]
-    for one in found:
-        if not any(_within(other, one) for other in found if other is not one):
-            yield one
+        loops += [
+            NonTerminatingLoop(leaf, nodes, scale, object_id, r) for nodes, r in closed.items()
+        ]
+    for loop in loops:
+        if not any(_is_within(other, loop) for other in loops if other is not loop):
+            yield loop
 
 
-def _within(inner: KeptLoop, outer: KeptLoop) -> bool:
+def _is_within(inner: NonTerminatingLoop, outer: NonTerminatingLoop) -> bool:
     """Whether a loop lies within another one that is kept by no other reading."""
     if inner.object_id != outer.object_id or outer.readings & ~inner.readings:
         return False
@@ -59,7 +65,7 @@ def _within(inner: KeptLoop, outer: KeptLoop) -> bool:
     return smaller or (same and wider)
 
 
-def trap_of(study: Study, nodes: Sequence[int], kept: KeptReading | None = None) -> Trap:
+def make_trap(study: Study, nodes: Sequence[int], kept: KeptReading | None = None) -> Trap:
     """The witness of nodes that no step leads out of."""
     flow = study.flow
     groups = len(flow.groups)
@@ -77,64 +83,64 @@ class _Search:
 
     def __init__(self, study: Study) -> None:
         self.study = study
-        self.work = _WORK
-        self.told = told_by_others(study.flow)
-        self.search = PathSearch(study.flow, study.nominal.fields, failures=False)
-        self.lookers: dict[str, set[int]] = {}
+        self.steps_left = _MOST_STEPS
+        self.reported = reported_by_others(study.flow)
+        self.search = ReachabilitySearch(study.flow, study.nominal.fields, failures=False)
+        self.guard_nodes: dict[str, set[int]] = {}
         """for each checkpoint, the nodes at which a condition looks at it"""
         for i, leaf in enumerate(study.flow.leaves):
             for conditions, _ in leaf.conditional:
                 for condition in conditions:
-                    self.lookers.setdefault(condition.object_id, set()).add(i)
+                    self.guard_nodes.setdefault(condition.object_id, set()).add(i)
         for g, group in enumerate(study.flow.groups):
             for condition in group.until:
-                self.lookers.setdefault(condition.object_id, set()).add(study.flow.round_end(g))
+                self.guard_nodes.setdefault(condition.object_id, set()).add(study.flow.round_end(g))
 
-    def places(self) -> Iterator[tuple[int, str]]:
+    def old_comparisons(self) -> Iterator[tuple[int, str]]:
         """Where a checkpoint is looked at that was not just measured."""
         study = self.study
         for i, leaf in enumerate(study.flow.leaves):
-            if not study.nominal.reached(i):
+            if not study.nominal.is_reached(i):
                 continue
             objects: set[str] = set()
             for conditions, _ in leaf.conditional:
-                objects |= objects_of(conditions)
-            for o in sorted(objects - self.told - {leaf.measures}):
+                objects |= compared_objects(conditions)
+            for o in sorted(objects - self.reported - {leaf.measures}):
                 if o in study.nominal.fields.shift:
                     yield i, o
 
     def readings(self, leaf: int, object_id: str) -> Iterator[int]:
-        """One bit for each reading that may be there."""
+        """One bit for each reading that may be possible."""
         state = self.study.nominal.states[leaf]
         assert state is not None
-        there = self.study.nominal.fields.get(state, object_id)
-        while there:
-            lowest = there & -there
+        possible = self.study.nominal.fields.get(state, object_id)
+        while possible:
+            lowest = possible & -possible
             yield lowest
-            there ^= lowest
+            possible ^= lowest
 
-    def kept(self, leaf: int, object_id: str, reading: int) -> frozenset[int] | None:
+    def closure(self, leaf: int, object_id: str, reading: int) -> frozenset[int] | None:
         """The nodes that follow as long as the reading is kept; None: some way ends it."""
         study, search = self.study, self.search
         flow, nominal = study.flow, study.nominal
         fields = nominal.fields
-        lookers = self.lookers[object_id]
+        guard_nodes = self.guard_nodes[object_id]
         seen = {leaf}
         pending = [leaf]
         while pending:
             node = pending.pop()
-            self.work -= 1
+            self.steps_left -= 1
             state = nominal.states[node]
-            if self.work < 0 or state is None or node == flow.done:
+            if self.steps_left < 0 or state is None or node == flow.end_node:
                 return None
             if flow.is_leaf(node) and flow.leaves[node].measures == object_id:
                 return None
             if nominal.late[node] and fields.get(nominal.late[node], object_id):
                 return None
             targets = study.successors[node]
-            if node in lookers:
+            if node in guard_nodes:
                 kept = fields.set(state, object_id, reading)
-                targets = tuple(target for target, _ in search.ways(node, kept))
+                targets = tuple(target for target, _ in search.successors(node, kept))
             for target in targets:
                 if target not in seen:
                     seen.add(target)

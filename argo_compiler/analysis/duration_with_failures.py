@@ -8,60 +8,60 @@ the other.
 
 import math
 
-from argo_compiler.analysis.bounds import longest
-from argo_compiler.analysis.facts import Bound
-from argo_compiler.analysis.legs import Legs
-from argo_compiler.analysis.levels import BoundsTooLargeError
+from argo_compiler.analysis.bounds import longest_duration
+from argo_compiler.analysis.path_lengths import BoundsTooLargeError
+from argo_compiler.analysis.results import Bound
+from argo_compiler.analysis.step_costs import StepCosts
 from argo_compiler.analysis.study import Study
-from argo_compiler.analysis.travel import NoWay, Standing
+from argo_compiler.analysis.travel import NoPath, RobotPose
 from argo_compiler.il import Action, Afterwards, EventKind, Mode, Reaction, Response, Task
 
 _MOST_LEAVES = 2_000
 """of missions that are looked at"""
 
 
-def worst_duration(study: Study) -> Bound | None:
+def longest_duration_with_failures(study: Study) -> Bound | None:
     """A bound of the duration (s) over all runs; None if that was not looked at."""
     if study.travel is None or len(study.flow.leaves) > _MOST_LEAVES:
         return None
-    legs = Legs(study.flow, study.with_failures, study.travel, study.mission)
-    if legs.blocked or legs.too_many:
+    costs = StepCosts(study.flow, study.with_failures, study.travel, study.mission)
+    if costs.blocked or costs.too_many:
         return None
     try:
-        within = longest(study.flow, study.with_failures, legs)
+        within = longest_duration(study.flow, study.with_failures, costs)
     except BoundsTooLargeError:
         return None
-    if study.extent is not None and study.extent.duration is not None:
-        within = max(within, study.extent.duration.most.value or 0.0)
-    reactions = _Reactions(study, legs)
-    return Bound(value=_finite(min(within + reactions.after_any(), reactions.after_time_up())))
+    if study.bounds is not None and study.bounds.duration is not None:
+        within = max(within, study.bounds.duration.most.value or 0.0)
+    reactions = _ReactionTimes(study, costs)
+    return Bound(value=_finite(min(within + reactions.time_added(), reactions.end_by_time_up())))
 
 
 def _finite(seconds: float) -> float | None:
     return seconds if math.isfinite(seconds) else None
 
 
-class _Reactions:
+class _ReactionTimes:
     """How long reactions go on. A reaction that ends the mission lets nothing else go on after it,
     so that each of them is carried out once at most."""
 
-    def __init__(self, study: Study, legs: Legs) -> None:
+    def __init__(self, study: Study, costs: StepCosts) -> None:
         assert study.travel is not None
         self.study = study
-        self.legs = legs
+        self.costs = costs
         self.travel = study.travel
         self.clean_up = study.travel.clean_up
         self._start = study.travel.start(study.mission)
         self.mission = study.mission
         self.reactions = [r for r in study.mission.reactions if r.response is not Response.REPORT]
 
-    def after_any(self) -> float:
+    def time_added(self) -> float:
         """s at most that reactions add to the mission; infinite if one may interrupt it at will."""
         if self.mission.mode is Mode.SUPERVISORY:
             return math.inf
-        return sum(map(self._ending, self.reactions))
+        return sum(map(self._time_to_end, self.reactions))
 
-    def after_time_up(self) -> float:
+    def end_by_time_up(self) -> float:
         """s at most until the mission has ended as its time is up; infinite if it goes on."""
         limit = self.mission.max_duration
         last = next((r for r in self.reactions if r.event is EventKind.TIME_UP), None)
@@ -70,9 +70,9 @@ class _Reactions:
         if any(map(_may_pause, self.reactions)):
             return math.inf
         # A reaction of the same rank may be under way when the time is up.
-        return limit + sum(self._ending(r) for r in self.reactions if r.rank >= last.rank)
+        return limit + sum(self._time_to_end(r) for r in self.reactions if r.rank >= last.rank)
 
-    def _ending(self, reaction: Reaction) -> float:
+    def _time_to_end(self, reaction: Reaction) -> float:
         """s from a reaction's event until the mission has ended; infinite if it need not end."""
         if reaction.response is Response.ABORT:
             return self.clean_up
@@ -84,52 +84,54 @@ class _Reactions:
             return self.clean_up + held if ends else math.inf
         if reaction.afterwards is not Afterwards.END or _may_pause(reaction):
             return math.inf
-        return self.clean_up + self._drive(reaction) + held
+        return self.clean_up + self._drive_time(reaction) + held
 
-    def _drive(self, reaction: Reaction) -> float:
+    def _drive_time(self, reaction: Reaction) -> float:
         """s at most to where a reaction sends the robot, from wherever it is."""
-        target = self._target(reaction)
-        others = [self._target(r) for r in self.reactions if r.response.drives]
-        ways = [self._longest_way(target)]
+        target = self._drive_task(reaction)
+        others = [self._drive_task(r) for r in self.reactions if r.response.drives]
+        times = [self._longest_drive(target)]
         for other in others:
             if other != target:
-                ways.append(self._longest_way(other) + self._leg(self._standing(other), target))
-                ways.append(self._way_past_leaves(other, target))
-        return max(ways)
+                times.append(
+                    self._longest_drive(other) + self._leg_time(self._pose_after(other), target)
+                )
+                times.append(self._longest_drive_past_leaves(other, target))
+        return max(times)
 
-    def _target(self, reaction: Reaction) -> Task:
+    def _drive_task(self, reaction: Reaction) -> Task:
         pose = reaction.pose
         if reaction.response is Response.RETURN and pose is None:
             pose = self.mission.dock
         return Task(name="drive", action=Action.WAYPOINT, pose=pose)
 
-    def _longest_way(self, target: Task) -> float:
+    def _longest_drive(self, target: Task) -> float:
         """From wherever the plan brings the robot."""
-        longest = self._leg(self._start, target)
-        for leaf, places in enumerate(self.legs.places):
-            if places:
-                way = self.legs.way_back(leaf, target)
-                longest = max(longest, math.inf if isinstance(way, NoWay) else way.time.most)
+        longest = self._leg_time(self._start, target)
+        for leaf, positions in enumerate(self.costs.positions):
+            if positions:
+                cost = self.costs.retreat_cost(leaf, target)
+                longest = max(longest, math.inf if isinstance(cost, NoPath) else cost.time.most)
         return longest
 
-    def _way_past_leaves(self, other: Task, target: Task) -> float:
+    def _longest_drive_past_leaves(self, other: Task, target: Task) -> float:
         """From wherever it is on the way back from another reaction's place to the plan's."""
         longest = 0.0
-        standing = self._standing(other)
-        for leaf, places in enumerate(self.legs.places):
+        pose = self._pose_after(other)
+        for leaf, positions in enumerate(self.costs.positions):
             task = self.study.task(leaf)
-            if places and task.action is not Action.WAIT:
-                onward = max(self._leg(place.standing, target) for place in places)
-                longest = max(longest, self._leg(standing, task) + onward)
+            if positions and task.action is not Action.WAIT:
+                onward = max(self._leg_time(position.pose, target) for position in positions)
+                longest = max(longest, self._leg_time(pose, task) + onward)
         return longest
 
-    def _standing(self, target: Task) -> Standing:
+    def _pose_after(self, target: Task) -> RobotPose:
         leg = self.travel.leg(self._start, target, None)
-        return self._start if isinstance(leg, NoWay) else leg.arrival
+        return self._start if isinstance(leg, NoPath) else leg.arrival
 
-    def _leg(self, standing: Standing, task: Task) -> float:
-        leg = self.travel.leg(standing, task, None)
-        return math.inf if isinstance(leg, NoWay) else leg.duration
+    def _leg_time(self, pose: RobotPose, task: Task) -> float:
+        leg = self.travel.leg(pose, task, None)
+        return math.inf if isinstance(leg, NoPath) else leg.duration
 
 
 def _may_pause(reaction: Reaction) -> bool:

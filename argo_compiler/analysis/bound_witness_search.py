@@ -7,13 +7,13 @@ from argo_compiler.analysis.bound_verification import (
     BEGIN,
     END,
     LeastSteps,
-    Place,
+    ProgramPoint,
     Spent,
 )
 from argo_compiler.analysis.witness import LeastSpent, LeastWitness
 
-_WORK = 100  # steps that are looked at, for each task and group
-_GIVEN_UP = 1e-9  # of a round, so that rounds do not cost less than nothing by rounding
+_MOST_STEPS = 100  # steps that are looked at, for each task and group
+_ROUNDING = 1e-9  # of a round, so that rounds do not cost less than nothing by rounding
 
 
 def make_least_witness(steps: LeastSteps) -> LeastWitness | None:
@@ -23,14 +23,14 @@ def make_least_witness(steps: LeastSteps) -> LeastWitness | None:
         time = search.shortest(of_time=True, planned=planned)
         if time is None:
             continue
-        search.late = steps.late_tasks(time[0])
+        search.always_missed = steps.always_missed_tasks(time[0])
         energy = search.shortest(of_time=False, planned=False)
         if energy is not None:
             return LeastWitness(_witness(steps, *time), _witness(steps, *energy))
     return None
 
 
-_Found = tuple[dict[Place, float], tuple[float, ...]]
+_Spent = tuple[dict[ProgramPoint, float], tuple[float, ...]]
 
 
 class _Search:
@@ -38,46 +38,50 @@ class _Search:
 
     def __init__(self, steps: LeastSteps) -> None:
         self.steps = steps
-        self.late: frozenset[int] = frozenset()
+        self.always_missed: frozenset[int] = frozenset()
         """tasks that never end"""
-        self._work = 0
+        self._steps_left = 0
 
-    def shortest(self, *, of_time: bool, planned: bool) -> _Found | None:
+    def shortest(self, *, of_time: bool, planned: bool) -> _Spent | None:
         """What is spent at each place, with the periods. `planned`: rounds that are begun by a plan
         take as long as that at least."""
         groups = self.steps.mission.groups
-        self._work = _WORK * (100 + len(self.steps.mission.tasks) + len(groups))
+        self._steps_left = _MOST_STEPS * (100 + len(self.steps.mission.tasks) + len(groups))
         periods = [0.0] * len(groups)
         for g in sorted(range(len(groups)), key=lambda g: -groups[g].name.count("/")):
-            way = self._ways(("round", g), tuple(periods), of_time, g)
-            if way is None:
+            shortest = self._shortest_from(("round", g), tuple(periods), of_time, g)
+            if shortest is None:
                 return None
-            _, again = way
+            _, again = shortest
             every = groups[g].every if of_time and planned else 0.0
             period = 0.0 if math.isinf(again) else max(again, every)
-            periods[g] = period if period == every else period * (1 - _GIVEN_UP)
-        found = self._ways(BEGIN, tuple(periods), of_time)
+            periods[g] = period if period == every else period * (1 - _ROUNDING)
+        found = self._shortest_from(BEGIN, tuple(periods), of_time)
         return None if found is None else (found[0], tuple(periods))
 
-    def _ways(
-        self, first: Place, periods: tuple[float, ...], of_time: bool, group: int | None = None
-    ) -> tuple[dict[Place, float], float] | None:
+    def _shortest_from(
+        self,
+        first: ProgramPoint,
+        periods: tuple[float, ...],
+        of_time: bool,
+        group: int | None = None,
+    ) -> tuple[dict[ProgramPoint, float], float] | None:
         """From a place on, within a group: what is spent where, and by when it comes back."""
         steps = self.steps
-        spent: dict[Place, float] = {first: 0.0}
+        spent: dict[ProgramPoint, float] = {first: 0.0}
         again = math.inf
         # Dijkstra's algorithm, but a further round may take less than its period.
         pending = [(0.0, first)]
         while pending:
-            here, place = heapq.heappop(pending)
-            if here > spent[place] or (place[1] in self.late and place[0] == "task"):
+            here, point = heapq.heappop(pending)
+            if here > spent[point] or (point[1] in self.always_missed and point[0] == "task"):
                 continue
-            if of_time and place[0] == "task" and steps.late(place, spent):
+            if of_time and point[0] == "task" and steps.is_always_missed(point, spent):
                 continue
-            for other, least in steps.steps(place, spent, periods, of_time=of_time):
+            for other, least in steps.steps(point, spent, periods, of_time=of_time):
                 around = steps.around(other)
-                self._work -= 1 + len(around)
-                if self._work < 0:
+                self._steps_left -= 1 + len(around)
+                if self._steps_left < 0:
                     return None
                 if other == first:
                     again = min(again, least)

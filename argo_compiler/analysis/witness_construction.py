@@ -2,32 +2,32 @@
 
 from collections.abc import Iterable
 
-from argo_compiler.analysis.kept import KeptLoop, trap_of
+from argo_compiler.analysis.non_terminating_loops import NonTerminatingLoop, make_trap
+from argo_compiler.analysis.reachability import Reachability
 from argo_compiler.analysis.study import Study
-from argo_compiler.analysis.values import Paths
 from argo_compiler.analysis.witness import Invariant, ReadingScale, Witnesses
 
 
-def make_witnesses(study: Study, kept: Iterable[KeptLoop]) -> Witnesses:
+def make_witnesses(study: Study, loops: Iterable[NonTerminatingLoop]) -> Witnesses:
     """What shows that the claims of a study are right, in linear time."""
     return Witnesses(
         nominal=_invariant(study, study.nominal, failures=False),
         all=_invariant(study, study.with_failures, failures=True),
         traps=(
-            *(trap_of(study, nodes) for nodes in study.trap_nodes),
-            *(trap_of(study, sorted(loop.nodes), loop.reading) for loop in kept),
+            *(make_trap(study, nodes) for nodes in study.trap_nodes),
+            *(make_trap(study, sorted(loop.nodes), loop.kept_reading) for loop in loops),
         ),
     )
 
 
-def _invariant(study: Study, paths: Paths, *, failures: bool) -> Invariant:
-    flow, mission, fields = study.flow, study.mission, paths.fields
-    leaf_of = {leaf.name: i for i, leaf in enumerate(flow.leaves) if study.is_own(i)}
-    number_of = {group.name: g for g, group in enumerate(flow.groups)}
-    tasks = [leaf_of.get(task.name) for task in mission.tasks]
-    rounds = [flow.round_end(number_of[group.name]) for group in mission.groups]
-    cuts = [flow.time_up(number_of[group.name]) for group in mission.groups]
-    states, late = paths.states, paths.late
+def _invariant(study: Study, reachability: Reachability, *, failures: bool) -> Invariant:
+    flow, mission, fields = study.flow, study.mission, reachability.fields
+    leaf_for = {leaf.name: i for i, leaf in enumerate(flow.leaves) if study.is_own(i)}
+    number_for = {group.name: g for g, group in enumerate(flow.groups)}
+    tasks = [leaf_for.get(task.name) for task in mission.tasks]
+    rounds = [flow.round_end(number_for[group.name]) for group in mission.groups]
+    cuts = [flow.time_up(number_for[group.name]) for group in mission.groups]
+    states, late = reachability.states, reachability.late
     return Invariant(
         failures=failures,
         scales=tuple(
@@ -37,7 +37,7 @@ def _invariant(study: Study, paths: Paths, *, failures: bool) -> Invariant:
         tasks=tuple(None if node is None else states[node] for node in tasks),
         rounds=tuple(states[node] for node in rounds),
         cuts=tuple(states[node] for node in cuts),
-        ended=paths.reached(flow.done),
+        ended=reachability.is_reached(flow.end_node),
         late_tasks=tuple(0 if node is None else late[node] for node in tasks),
         late_rounds=tuple(late[node] for node in rounds),
         late_cuts=tuple(late[node] for node in cuts),

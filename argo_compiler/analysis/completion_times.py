@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from argo_compiler.analysis.levels import LevelGraph, Levels, is_entry
+from argo_compiler.analysis.path_lengths import LevelGraph, PathLengths, is_entry
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,9 +25,9 @@ class TaskEnd:
         )
 
 
-def moments(levels: Levels, mission: LevelGraph) -> tuple[TaskEnd, ...]:
+def completion_times(lengths: PathLengths, mission: LevelGraph) -> tuple[TaskEnd, ...]:
     """For each leaf. Visits in later rounds of a group are bounded by all that it takes."""
-    found = [TaskEnd() for _ in levels.flow.leaves]
+    ends = [TaskEnd() for _ in lengths.flow.leaves]
     # What a level is entered with, and what bounds all that happens in it.
     pending: list[tuple[LevelGraph, float, TaskEnd | None]] = [(mission, 0.0, None)]
     seen: dict[int, tuple[float, TaskEnd | None]] = {}
@@ -41,17 +41,17 @@ def moments(levels: Levels, mission: LevelGraph) -> tuple[TaskEnd, ...]:
             least = soonest + graph.least["time"][node]
             here = inside or TaskEnd(least, graph.most["time"][node], graph.most["energy"][node])
             if is_entry(key):
-                rounds = levels.rounds[key]
+                rounds = lengths.rounds[key]
                 all_rounds = inside or TaskEnd(
                     least, here.latest + rounds.time, here.energy + rounds.energy
                 )
-                pending += [(g, least, all_rounds) for g in levels.graphs_of(key)]
+                pending += [(g, least, all_rounds) for g in lengths.graphs_for(key)]
             elif isinstance(key, int):
-                if levels.flow.is_leaf(key):
-                    found[key] |= TaskEnd(least, here.latest, here.energy)
+                if lengths.flow.is_leaf(key):
+                    ends[key] |= TaskEnd(least, here.latest, here.energy)
             elif inside is None and math.isfinite(least):
-                found[key[1]] |= TaskEnd(latest=math.inf)
-    return tuple(found)
+                ends[key[1]] |= TaskEnd(latest=math.inf)
+    return tuple(ends)
 
 
 def _covers(known: TaskEnd | None, inside: TaskEnd | None) -> bool:

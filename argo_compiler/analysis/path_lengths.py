@@ -1,4 +1,4 @@
-"""Shortest and longest ways through a machine, level by level.
+"""Shortest and longest continuations through a machine, level by level.
 
 A level is the mission or one round of a group. Its nodes are the leaves that lie in it directly and
 the groups in it, a group once for each way of entering it. What a group takes is computed once for
@@ -13,15 +13,24 @@ from dataclasses import dataclass, field
 from typing import NamedTuple, TypeGuard, cast
 
 from argo_compiler.analysis.flow import NOWHERE, Flow
-from argo_compiler.analysis.legs import ANY, BEGIN, FREE, NOTHING, Cost, Legs, QuantityRange, Source
-from argo_compiler.analysis.rounds import GroupRound, Out, Rounds, WayOut, combine
-from argo_compiler.analysis.values import Paths
+from argo_compiler.analysis.reachability import Reachability
+from argo_compiler.analysis.rounds import ExitKey, GroupExit, GroupRound, Rounds, combine_rounds
+from argo_compiler.analysis.step_costs import (
+    ANY,
+    BEGIN,
+    FREE,
+    NOTHING,
+    Cost,
+    QuantityRange,
+    Source,
+    StepCosts,
+)
 from argo_compiler.base.graphs import components, is_loop
 
-WORK = 400_000
+MOST_STEPS = 400_000
 """steps after which the search is given up"""
-_SOON = 1e-9  # s: sums of floats are not exact
-_SOURCES = 8  # of one entry of a group that are told apart
+_TOLERANCE = 1e-9  # s: sums of floats are not exact
+_MOST_SOURCES = 8  # of one entry of a group that are told apart
 
 Entry = tuple[int, int, Source]
 """(group, leaf it is entered at, from where)"""
@@ -39,11 +48,11 @@ class Hop(NamedTuple):
 
     target: int
     cost: Cost
-    out: Out | None
+    group_exit: GroupExit | None
     """how the group was left, if a group is"""
-    before: Cost = FREE
+    before_target: Cost = FREE
     """the part of it that is over when the target's turn has come"""
-    way: QuantityRange = NOTHING
+    without_wait: QuantityRange = NOTHING
     """s that the rest takes if no window has to be waited for"""
 
 
@@ -53,14 +62,18 @@ class LevelGraph:
 
     keys: list[Key] = field(default_factory=list)
     hops: list[list[Hop]] = field(default_factory=list)
-    outs: list[tuple[int, WayOut, Cost, Out | None]] = field(default_factory=list)
+    exits: list[tuple[int, ExitKey, Cost, GroupExit | None]] = field(default_factory=list)
     """node, how the level is left or its round ends, what it takes from the node on"""
-    firsts: list[Hop] = field(default_factory=list)
+    first_hops: list[Hop] = field(default_factory=list)
     """the steps to the first nodes"""
     least: dict[str, list[float]] = field(default_factory=dict)
     most: dict[str, list[float]] = field(default_factory=dict)
-    least_before: dict[str, list[tuple[int, Out | None] | None]] = field(default_factory=dict)
-    most_before: dict[str, list[tuple[int, Out | None] | None]] = field(default_factory=dict)
+    least_predecessors: dict[str, list[tuple[int, GroupExit | None] | None]] = field(
+        default_factory=dict
+    )
+    most_predecessors: dict[str, list[tuple[int, GroupExit | None] | None]] = field(
+        default_factory=dict
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,20 +82,22 @@ class Loop:
 
     leaves: tuple[int, ...]
     groups: tuple[int, ...]
-    left: bool
+    has_exit: bool
     """whether some way leads out of it; a way that would be taken too late for a hard stop does not
     count"""
 
 
-class Levels:
+class PathLengths:
     """Computes levels and keeps them."""
 
-    def __init__(self, flow: Flow, paths: Paths, legs: Legs, work: int = WORK) -> None:
+    def __init__(
+        self, flow: Flow, reachability: Reachability, costs: StepCosts, work: int = MOST_STEPS
+    ) -> None:
         self.flow = flow
-        self.paths = paths
-        self.legs = legs
+        self.reachability = reachability
+        self.costs = costs
         self.loops: dict[tuple[tuple[int, ...], tuple[int, ...]], Loop] = {}
-        self._work = work
+        self._steps_left = work
         self.rounds: dict[Entry, Rounds] = {}
         self._later: dict[int, GroupRound] = {}
         self._graphs: dict[Entry, LevelGraph] = {}
@@ -92,12 +107,12 @@ class Levels:
         for number, group in enumerate(flow.groups):
             self._children[group.parent].append(number)
 
-    def mission(self) -> LevelGraph:
+    def mission_level(self) -> LevelGraph:
         """The level of the mission. Raises TooLargeError."""
         # Levels are computed inside each other; a stack of generators instead of calls, as groups
         # may nest deeper than calls can.
         stack: list[Generator[Entry, Rounds, LevelGraph | Rounds]]
-        stack = [self._level(NOWHERE, self.flow.initial, BEGIN)]
+        stack = [self._build_level(NOWHERE, self.flow.initial, BEGIN)]
         keys: list[Entry | None] = [None]
         answer: Rounds | None = None
         while True:
@@ -112,41 +127,43 @@ class Levels:
                 continue
             answer = self.rounds.get(wanted)
             if answer is None:
-                stack.append(self._group(*wanted))
+                stack.append(self._group_rounds(*wanted))
                 keys.append(wanted)
 
-    def graphs_of(self, entry: Entry) -> Iterator[LevelGraph]:
+    def graphs_for(self, entry: Entry) -> Iterator[LevelGraph]:
         """The first round of a group that is entered so, and each other one."""
         yield self._graphs[entry]
         if entry[0] in self._later_graphs:
             yield self._later_graphs[entry[0]]
 
-    def _group(self, group: int, entry: int, source: Source) -> Generator[Entry, Rounds, Rounds]:
+    def _group_rounds(
+        self, group: int, entry: int, source: Source
+    ) -> Generator[Entry, Rounds, Rounds]:
         """All rounds of a group, entered at a leaf from a source."""
-        graph = yield from self._level(group, entry, source)
+        graph = yield from self._build_level(group, entry, source)
         self._graphs[group, entry, source] = graph
-        first = self._round(group, graph)
+        first = self._group_round(group, graph)
         flow = self.flow.groups[group]
         later = None
         if flow.may_repeat and first.ends:
             if group not in self._later:
-                level = yield from self._level(group, flow.start, ("repeat", group))
+                level = yield from self._build_level(group, flow.start, ("repeat", group))
                 self._later_graphs[group] = level
-                self._later[group] = self._round(group, level)
+                self._later[group] = self._group_round(group, level)
             # The way back to the start depends on what ended last.
             later = self._later[group]
-        rounds = combine(group, flow, first, later, self.legs.standing_power)
+        rounds = combine_rounds(group, flow, first, later, self.costs.standing_power)
         timed = flow.parent >= 0 and self.flow.timed[flow.parent]
         if rounds.unlimited and not timed:
-            self._note_loop((), (group,), left=bool(rounds.outs))
+            self._record_loop((), (group,), has_exit=bool(rounds.exits))
         return rounds
 
-    def _round(self, group: int, level: LevelGraph) -> GroupRound:
+    def _group_round(self, group: int, level: LevelGraph) -> GroupRound:
         end = self.flow.round_end(group)
         ends: dict[Source, Cost] = {}
-        exits: dict[WayOut, Cost] = {}
-        for node, (source, target), cost, _ in level.outs:
-            total = _spans(level, node) + cost
+        exits: dict[ExitKey, Cost] = {}
+        for node, (source, target), cost, _ in level.exits:
+            total = _cost_to(level, node) + cost
             if target == end:
                 known = ends.get(source)
                 ends[source] = total if known is None else known | total
@@ -160,7 +177,7 @@ class Levels:
             time = max(time, level.most["time"][node] + (inside.time if inside else 0.0))
         return GroupRound(ends, exits, energy, time)
 
-    def _level(
+    def _build_level(
         self, level: int, entry: int, source: Source
     ) -> Generator[Entry, Rounds, LevelGraph]:
         """The graph of a level that is entered at a leaf from a source, with its distances."""
@@ -174,53 +191,63 @@ class Levels:
                 graph.hops.append([])
             return number[key]
 
-        def hops(last: Source, target: int, cost: Cost, out: Out | None) -> Iterator[Hop]:
+        def hops(
+            last: Source, target: int, cost: Cost, group_exit: GroupExit | None
+        ) -> Iterator[Hop]:
             """The steps to a leaf of the level: it may end, or its window may be over."""
-            following = self._key(level, target, last)
+            following = self._key_for(level, target, last)
             if not isinstance(following, int):
-                yield Hop(node(following), cost, out, cost)
+                yield Hop(node(following), cost, group_exit, cost)
                 return
-            step, way = self.legs.step(last, target), self.legs.way(last, target).time
-            yield Hop(node(following), cost + step, out, cost, way)
-            if self.flow.leaves[target].deadline is not None and self.legs.travel is not None:
-                missed = cost + self.legs.missing(last, target)
-                yield Hop(node(("missed", target)), missed, out, cost, way)
+            step, without_wait = (
+                self.costs.step_cost(last, target),
+                self.costs.cost_without_wait(last, target).time,
+            )
+            yield Hop(node(following), cost + step, group_exit, cost, without_wait)
+            if self.flow.leaves[target].deadline is not None and self.costs.travel is not None:
+                missed = cost + self.costs.cost_until_missed(last, target)
+                yield Hop(node(("missed", target)), missed, group_exit, cost, without_wait)
 
         if not self.flow.is_leaf(entry):
-            graph.outs.append((0, (source, entry), FREE, None))
-            graph.firsts.append(Hop(node(entry), FREE, None))
-            self._measure(graph, level)
+            graph.exits.append((0, (source, entry), FREE, None))
+            graph.first_hops.append(Hop(node(entry), FREE, None))
+            self._compute_lengths(graph, level)
             return graph
-        graph.firsts += hops(source, entry, FREE, None)
+        graph.first_hops += hops(source, entry, FREE, None)
         at = 0
         while at < len(graph.keys):
             key = graph.keys[at]
-            ways: list[tuple[WayOut, Cost, Out | None]]
+            continuations: list[tuple[ExitKey, Cost, GroupExit | None]]
             if isinstance(key, int):
-                ways = [((key, t), FREE, None) for t in self.paths.targets(self.flow, key)]
+                continuations = [
+                    ((key, t), FREE, None) for t in self.reachability.targets(self.flow, key)
+                ]
             elif is_entry(key):
                 rounds = yield key
-                ways = [(way, out.cost, out) for way, out in rounds.outs.items()]
+                continuations = [
+                    (without_wait, group_exit.cost, group_exit)
+                    for without_wait, group_exit in rounds.exits.items()
+                ]
             else:
                 missed = cast(tuple[str, int], key)
-                after = self.paths.after_missing(self.flow, missed[1])
-                ways = [((missed, t), FREE, None) for t in after]
-            self._work -= 1 + len(ways)
-            if self._work < 0:
+                after = self.reachability.targets_when_missed(self.flow, missed[1])
+                continuations = [((missed, t), FREE, None) for t in after]
+            self._steps_left -= 1 + len(continuations)
+            if self._steps_left < 0:
                 raise BoundsTooLargeError
-            for (last, target), cost, out in ways:
-                if self.flow.is_leaf(target) and self._holds(level, target):
-                    graph.hops[at] += hops(last, target, cost, out)
+            for (last, target), cost, group_exit in continuations:
+                if self.flow.is_leaf(target) and self._is_in_level(level, target):
+                    graph.hops[at] += hops(last, target, cost, group_exit)
                 else:
-                    graph.outs.append((at, (last, target), cost, out))
+                    graph.exits.append((at, (last, target), cost, group_exit))
             at += 1
-        self._measure(graph, level)
+        self._compute_lengths(graph, level)
         return graph
 
-    def _holds(self, level: int, leaf: int) -> bool:
-        return level < 0 or self.flow.groups[level].holds(leaf)
+    def _is_in_level(self, level: int, leaf: int) -> bool:
+        return level < 0 or self.flow.groups[level].contains(leaf)
 
-    def _key(self, level: int, leaf: int, source: Source) -> Key:
+    def _key_for(self, level: int, leaf: int, source: Source) -> Key:
         """The node of a level that a leaf lies in."""
         if self.flow.leaves[leaf].parent == level:
             return leaf
@@ -235,12 +262,12 @@ class Levels:
         child = children[low]
         sources = self._sources.setdefault((child, leaf), set())
         if source not in sources:
-            if len(sources) >= _SOURCES:
+            if len(sources) >= _MOST_SOURCES:
                 return child, leaf, ANY
             sources.add(source)
         return child, leaf, source
 
-    def _measure(self, graph: LevelGraph, level: int) -> None:
+    def _compute_lengths(self, graph: LevelGraph, level: int) -> None:
         """Distances to all nodes of a level, and its loops."""
         successors = [[hop.target for hop in hops] for hops in graph.hops]
         parts = components(successors)
@@ -253,26 +280,28 @@ class Levels:
                 if not timed:
                     keys = [graph.keys[node] for node in part]
                     inside = set(part)
-                    self._note_loop(
+                    self._record_loop(
                         tuple(sorted(k for k in keys if isinstance(k, int))),
                         tuple(sorted({k[0] for k in keys if is_entry(k)})),
-                        left=any(out[0] in inside for out in graph.outs)
+                        has_exit=any(group_exit[0] in inside for group_exit in graph.exits)
                         or any(t not in inside for node in part for t in successors[node]),
                     )
         order = [node for part in reversed(parts) for node in part]
-        for measure in ("time", "energy"):
-            clock = _Clock(self.legs) if level < 0 and measure == "time" else None
-            _most(graph, measure, order, looping, clock)
-            _least(graph, measure, clock)
+        for quantity in ("time", "energy"):
+            clock = _Clock(self.costs) if level < 0 and quantity == "time" else None
+            _find_longest(graph, quantity, order, looping, clock)
+            _find_shortest(graph, quantity, clock)
 
-    def _note_loop(self, leaves: tuple[int, ...], groups: tuple[int, ...], *, left: bool) -> None:
+    def _record_loop(
+        self, leaves: tuple[int, ...], groups: tuple[int, ...], *, has_exit: bool
+    ) -> None:
         known = self.loops.get((leaves, groups))
-        # The same loop may be entered in several ways, in time or not.
-        left = left or (known is not None and known.left)
-        self.loops[leaves, groups] = Loop(leaves, groups, left)
+        # The same loop may be entered in several continuations, in time or not.
+        has_exit = has_exit or (known is not None and known.has_exit)
+        self.loops[leaves, groups] = Loop(leaves, groups, has_exit)
 
 
-def _spans(level: LevelGraph, node: int) -> Cost:
+def _cost_to(level: LevelGraph, node: int) -> Cost:
     """What it takes to come to a node of a level."""
     return Cost(
         QuantityRange(level.least["time"][node], level.most["time"][node]),
@@ -283,46 +312,51 @@ def _spans(level: LevelGraph, node: int) -> Cost:
 class _Clock:
     """The time since the mission's start, which windows go by."""
 
-    def __init__(self, legs: Legs) -> None:
-        self.legs = legs
+    def __init__(self, costs: StepCosts) -> None:
+        self.costs = costs
 
     def soonest(self, hop: Hop, key: Key, here: float, latest_here: float) -> float:
         """When a step is over at the soonest; infinite if it can't be taken."""
-        begun = here + hop.before.time.least
+        started = here + hop.before_target.time.least
         leaf = self._window(key)
         if leaf is None:
             return here + hop.cost.time.least
-        flow = self.legs.flow.leaves[leaf]
-        work = self.legs.work(leaf).time
+        flow = self.costs.flow.leaves[leaf]
+        work = self.costs.action_cost(leaf).time
         if isinstance(key, int):
-            ended = max(begun + hop.way.least, flow.earliest + work.least)
-            late = flow.deadline is not None and ended > flow.deadline + _SOON
+            ended = max(started + hop.without_wait.least, flow.earliest + work.least)
+            late = flow.deadline is not None and ended > flow.deadline + _TOLERANCE
             return math.inf if late else ended
         assert flow.deadline is not None
-        ended = max(latest_here + hop.before.time.most + hop.way.most, flow.earliest + work.most)
-        return max(begun, flow.deadline) if ended >= flow.deadline - _SOON else math.inf
+        ended = max(
+            latest_here + hop.before_target.time.most + hop.without_wait.most,
+            flow.earliest + work.most,
+        )
+        return max(started, flow.deadline) if ended >= flow.deadline - _TOLERANCE else math.inf
 
     def latest(self, hop: Hop, key: Key, here: float) -> float:
         """When a step is over at the latest; minus infinity if it can't be taken."""
-        begun = here + hop.before.time.most
+        started = here + hop.before_target.time.most
         leaf = self._window(key)
         if leaf is None:
             return here + hop.cost.time.most
-        flow = self.legs.flow.leaves[leaf]
-        ended = max(begun + hop.way.most, flow.earliest + self.legs.work(leaf).time.most)
+        flow = self.costs.flow.leaves[leaf]
+        ended = max(
+            started + hop.without_wait.most, flow.earliest + self.costs.action_cost(leaf).time.most
+        )
         if isinstance(key, int):
-            return ended if flow.deadline is None else min(ended, flow.deadline + _SOON)
+            return ended if flow.deadline is None else min(ended, flow.deadline + _TOLERANCE)
         assert flow.deadline is not None
-        return max(begun, flow.deadline) if ended >= flow.deadline - _SOON else -math.inf
+        return max(started, flow.deadline) if ended >= flow.deadline - _TOLERANCE else -math.inf
 
     def _window(self, key: Key) -> int | None:
         """The leaf of a step whose window is to be looked at."""
         if is_entry(key):
             return None
         leaf = key if isinstance(key, int) else key[1]
-        flow = self.legs.flow
+        flow = self.costs.flow
         windowed = flow.is_leaf(leaf) and flow.leaves[leaf].leaf.task.window is not None
-        return leaf if windowed and self.legs.travel is not None else None
+        return leaf if windowed and self.costs.travel is not None else None
 
 
 def is_entry(key: Key) -> TypeGuard[Entry]:
@@ -330,25 +364,25 @@ def is_entry(key: Key) -> TypeGuard[Entry]:
     return isinstance(key, tuple) and len(key) == 3
 
 
-def _least(graph: LevelGraph, measure: str, clock: _Clock | None) -> None:
+def _find_shortest(graph: LevelGraph, quantity: str, clock: _Clock | None) -> None:
     """Dijkstra's algorithm. With a clock, times are those since the mission's start."""
-    of_time = measure == "time"
+    of_time = quantity == "time"
     distance = [math.inf] * len(graph.keys)
-    before: list[tuple[int, Out | None] | None] = [None] * len(graph.keys)
+    predecessors: list[tuple[int, GroupExit | None] | None] = [None] * len(graph.keys)
     heap: list[tuple[float, int]] = []
 
     def reach(hop: Hop, here: float, node: int | None) -> None:
         if clock is None:
             there = here + (hop.cost.time if of_time else hop.cost.energy).least
         else:
-            latest = 0.0 if node is None else graph.most[measure][node]
+            latest = 0.0 if node is None else graph.most[quantity][node]
             there = clock.soonest(hop, graph.keys[hop.target], here, latest)
         if there < distance[hop.target]:
             distance[hop.target] = there
-            before[hop.target] = None if node is None else (node, hop.out)
+            predecessors[hop.target] = None if node is None else (node, hop.group_exit)
             heapq.heappush(heap, (there, hop.target))
 
-    for hop in graph.firsts:
+    for hop in graph.first_hops:
         reach(hop, 0.0, None)
     while heap:
         here, node = heapq.heappop(heap)
@@ -356,16 +390,16 @@ def _least(graph: LevelGraph, measure: str, clock: _Clock | None) -> None:
             continue
         for hop in graph.hops[node]:
             reach(hop, here, node)
-    graph.least[measure], graph.least_before[measure] = distance, before
+    graph.least[quantity], graph.least_predecessors[quantity] = distance, predecessors
 
 
-def _most(
-    graph: LevelGraph, measure: str, order: list[int], looping: list[bool], clock: _Clock | None
+def _find_longest(
+    graph: LevelGraph, quantity: str, order: list[int], looping: list[bool], clock: _Clock | None
 ) -> None:
-    """The longest ways; without bound in loops and after them."""
-    of_time = measure == "time"
+    """The longest continuations; without bound in loops and after them."""
+    of_time = quantity == "time"
     distance = [-math.inf] * len(graph.keys)
-    before: list[tuple[int, Out | None] | None] = [None] * len(graph.keys)
+    predecessors: list[tuple[int, GroupExit | None] | None] = [None] * len(graph.keys)
 
     def reach(hop: Hop, here: float, node: int | None) -> None:
         if clock is None:
@@ -374,9 +408,9 @@ def _most(
             there = clock.latest(hop, graph.keys[hop.target], here)
         if there > distance[hop.target]:
             distance[hop.target] = there
-            before[hop.target] = None if node is None else (node, hop.out)
+            predecessors[hop.target] = None if node is None else (node, hop.group_exit)
 
-    for hop in graph.firsts:
+    for hop in graph.first_hops:
         reach(hop, 0.0, None)
     for node in order:
         if looping[node]:
@@ -385,4 +419,4 @@ def _most(
             continue
         for hop in graph.hops[node]:
             reach(hop, distance[node], node)
-    graph.most[measure], graph.most_before[measure] = distance, before
+    graph.most[quantity], graph.most_predecessors[quantity] = distance, predecessors

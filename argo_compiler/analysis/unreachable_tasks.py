@@ -1,0 +1,83 @@
+"""Diagnostics about tasks that no path leads to, and why."""
+
+from collections.abc import Iterator
+
+from argo_compiler.analysis.study import Study
+from argo_compiler.analysis.transitions import why_never
+from argo_compiler.base.listing import quoted
+from argo_compiler.diagnostics import Diagnostic
+
+_MOST_REASONS = 3  # ways to a task that a message speaks of
+
+
+def diagnose_unreachable_tasks(study: Study) -> Iterator[Diagnostic]:
+    """One for each task that can't be reached, whatever is measured and whatever fails."""
+    unreachable = [
+        i
+        for i in range(len(study.flow.leaves))
+        if not study.with_failures.is_reached(i) and study.is_own(i)
+    ]
+    reasons = _find_reasons(study, unreachable)
+    for leaf in unreachable:
+        yield study.diagnostic(
+            "unreachable-task",
+            f"task '{study.name(leaf)}' can't be reached: {_why(*reasons[leaf])}",
+            "lead a transition to it that can be taken, or remove the task",
+            leaf,
+        )
+
+
+_Reasons = tuple[list[str], list[str]]
+
+
+def _find_reasons(study: Study, unreachable: list[int]) -> dict[int, _Reasons]:
+    """For each lost leaf, why the transitions that lead to it from reached tasks aren't taken, and
+    the names of the lost tasks that lead to it. Linear time."""
+    flow = study.flow
+    reasons_for: dict[int, _Reasons] = {leaf: ([], []) for leaf in unreachable}
+    for i, leaf in enumerate(flow.leaves):
+        for k, (_, target) in enumerate(leaf.conditional):
+            if target in reasons_for and target != i:
+                _add_reason(study, reasons_for[target], i, k)
+        if leaf.unconditional in reasons_for and leaf.unconditional != i:
+            _add_reason(study, reasons_for[leaf.unconditional], i, None)
+        for target in (leaf.failure, leaf.missed):
+            if target in reasons_for and target != i and not study.with_failures.is_reached(i):
+                reasons_for[target][1].append(study.name(i))
+    for number, group in enumerate(flow.groups):
+        if group.successor not in reasons_for:
+            continue
+        if study.with_failures.is_reached(flow.round_end(number)):
+            if len(reasons_for[group.successor][0]) < _MOST_REASONS:
+                reasons_for[group.successor][0].append(
+                    f"group '{group.name}', after which it would come, is repeated without limit"
+                )
+        else:
+            _add_reason(study, reasons_for[group.successor], group.last, None)
+    return reasons_for
+
+
+def _add_reason(
+    study: Study, reasons_for_task: _Reasons, source: int, conditional: int | None
+) -> None:
+    reasons, unreachable = reasons_for_task
+    if not study.with_failures.is_reached(source):
+        unreachable.append(study.name(source))
+    elif len(reasons) < _MOST_REASONS:
+        if conditional is None:
+            earlier = "a transition before its unconditional one is always taken"
+            reasons.append(f"it would come after '{study.name(source)}', where {earlier}")
+        else:
+            why = why_never(study, source, conditional)
+            reasons.append(f"the transition from '{study.name(source)}' is never taken, as {why}")
+
+
+def _why(reasons: list[str], unreachable: list[str]) -> str:
+    names = list(dict.fromkeys(unreachable))
+    if names and reasons:
+        reasons = [*reasons, f"{quoted(names)} can't be reached either"]
+    elif len(names) == 1:
+        reasons = [f"only {quoted(names)} leads to it, and that task can't be reached either"]
+    elif names:
+        reasons = [f"only {quoted(names)} lead to it, and those tasks can't be reached either"]
+    return "; ".join(reasons) or "no transition leads to it"

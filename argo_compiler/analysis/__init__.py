@@ -1,4 +1,4 @@
-"""The analysis of a mission over all its paths: what can't happen, and what it takes."""
+"""Static analysis of a mission over all execution paths: reachability, duration and energy."""
 
 from argo_compiler.analysis.analysing import analyse
 from argo_compiler.analysis.bound_verification import unproved_bounds

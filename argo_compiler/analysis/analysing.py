@@ -1,4 +1,4 @@
-"""The analysis of a mission over all paths that it may take."""
+"""Entry point of the analysis: results for all execution paths of a mission."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -42,28 +42,33 @@ _WITNESSED = frozenset(
         "unreachable-task",
     )
 )
-"""the diagnostics that say what never or always happens"""
+"""codes of the diagnostics on what never or always happens, which a witness must prove"""
 
 _SUBJECTS = {
     "analysis.too-long": "whether the mission takes too long on all paths",
     "analysis.battery-exceeded": "whether the battery never suffices",
-    "analysis.window-late": "whether some windows are always over",
-    "analysis.window-missed": "whether some windows are always over",
+    "analysis.window-late": "whether some windows are always missed",
+    "analysis.window-missed": "whether some windows are always missed",
 }
-"""what is not judged where what is said to be taken at least is not shown"""
+"""for each code of a claim on a lower bound, what `unjudged` says if no witness proves the claim"""
 
 
 def analyse(
     mission: Mission, catalog: Catalog | None = None, travel: Travel | None = None
 ) -> Analysis:
-    """What can and can't happen on a mission, whatever is measured.
+    """Return what can and can't happen on a mission, whatever values are measured.
 
-    The catalogue bounds what checkpoints can show and says where docks are; travel gives times and
-    energy. What is assumed is written in `docs/analysis.md`.
+    `docs/analysis.md` lists the assumptions.
+
+    Args:
+        mission: The mission to analyse.
+        catalog: Limits the values that checkpoints can show and gives the docks; without it, a
+            checkpoint may show any value.
+        travel: Gives travel times and energy; without it, durations and energy are left out.
 
     Raises:
         DiagnosticError: `check` finds errors in the mission.
-        ArgoError: the robot can't stand where the mission starts.
+        ArgoError: The robot can't stand where the mission starts.
     """
     with collector_held():
         return _analyse(mission, catalog, travel)
@@ -121,8 +126,7 @@ def _analyse(mission: Mission, catalog: Catalog | None, travel: Travel | None) -
 def _with_proved_bounds(
     mission: Mission, catalog: Catalog | None, travel: Travel, analysis: Analysis
 ) -> Analysis:
-    """The same with a witness of what is said to be taken at least, and without what it does not
-    show."""
+    """Add a witness of the lower bounds to an analysis, and remove the claims it does not prove."""
     if not any(d.code in AT_LEAST for d in analysis.diagnostics):
         return analysis
     witnesses, steps = analysis.witnesses, None
@@ -135,7 +139,7 @@ def _with_proved_bounds(
 
 
 def without_bounds(analysis: Analysis, wrong: Sequence[Diagnostic]) -> Analysis:
-    """The same without some of what is said to be taken at least."""
+    """Return the analysis without the claims `wrong` on lower bounds; `unjudged` names them."""
     if not wrong:
         return analysis
     subjects = ", ".join(dict.fromkeys(_SUBJECTS[d.code] for d in wrong))
@@ -148,7 +152,10 @@ def without_bounds(analysis: Analysis, wrong: Sequence[Diagnostic]) -> Analysis:
 
 
 def without_verdicts(analysis: Analysis, wrong: Sequence[str]) -> Analysis:
-    """The same without what rests on witnesses, some of which do not hold."""
+    """Return the analysis without all results that rest on witnesses, as some are not valid.
+
+    Every verdict becomes POSSIBLE, and `unjudged` gets the texts in `wrong`.
+    """
     tasks = tuple(
         TaskFacts(
             task=facts.task,
@@ -207,7 +214,10 @@ def _conditional_verdict(study: Study, leaf: int, k: int) -> Verdict:
 
 
 def _unconditional_verdict(study: Study, leaf: int) -> Verdict:
-    """Of a task that ends groups it is the one after their last rounds."""
+    """Return the verdict on a task's unconditional transition.
+
+    If the task ends groups, this is the transition that follows their last rounds.
+    """
     flow = study.flow
     for reachability, verdict in (
         (study.nominal, Verdict.POSSIBLE),
@@ -238,7 +248,10 @@ def _unconditional_verdict(study: Study, leaf: int) -> Verdict:
 
 
 def _hard_groups_ending_with(study: Study, leaf: int) -> list[int]:
-    """The groups with a hard stop that end with a leaf, and that no endless group keeps."""
+    """Return the groups with a hard stop that end with a leaf, except those in an endless group.
+
+    If an endless group ends with the same leaf, its next round follows, not the transition.
+    """
     flow = study.flow
     groups = []
     group = flow.leaves[leaf].parent

@@ -1,10 +1,11 @@
-"""A checker of what a mission takes at least, independent of how that was found.
+"""Checker of lower bounds on time and energy, independent of the code that computes them.
 
-It reads the mission by the rules of `docs/language.md` and asks the travel; of the analysis it uses
-only the form of the witnesses and what `verification` has proved about the transitions. Each step
-of the mission is looked at once: none may take less than the difference that a witness claims.
+It reads the mission by the rules of `docs/language.md` and gets costs from the travel. From the
+analysis it uses only the format of the witnesses and what `verification` has proved about the
+transitions. It visits each step of the mission once: no step may cost less than the difference that
+a witness claims.
 
-No action fails and no reaction begins. The robot may be anywhere on its way when a time is up.
+No action fails and no reaction starts. The robot may be anywhere on its way when a time is up.
 """
 
 import math
@@ -23,64 +24,67 @@ from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Mission, OnFailure, Task
 
 ProgramPoint = tuple[str, int]
-"""`task`, `missed`, `round`, `left` or `entered` with a position in the mission's list, or:"""
+"""point of a run: `task`, `missed`, `round`, `left` or `entered` with an index into the mission's
+list of tasks or groups, as in `LeastSpent`; or BEGIN or END"""
 BEGIN: ProgramPoint = ("begin", 0)
 END: ProgramPoint = ("end", 0)
 
 Spent = Mapping[ProgramPoint, float]
-"""at least, since the mission's start"""
+"""least time (s) or energy (Wh) from the mission's start to each point"""
 
-_TOLERANCE = 1e-6  # s: sums of floats are not exact
-_ROUND_TOLERANCE = 1e-9  # of a round, likewise
-_MOST_POSES = 64  # of one place that are looked at
-_MOST_NESTING = 200_000  # pairs of a task or group and one around it
+_TOLERANCE = 1e-6  # s, as sums of floats are not exact
+_ROUND_TOLERANCE = 1e-9  # share of a round, for the same reason
+_MOST_POSES = 64  # positions of the robot at one point
+_MOST_NESTING = 200_000  # pairs of a task or group and a group that encloses it
 _COLUMNS = ("task", "missed", "round", "left", "entered")
 
 
 AT_LEAST = frozenset(
     f"analysis.{code}" for code in ("too-long", "battery-exceeded", "window-late", "window-missed")
 )
-"""the diagnostics that say what is taken at least"""
+"""codes of the diagnostics that claim a lower bound"""
 
 
 class LeastTooLargeError(Exception):
-    """There are more standings, or groups nest deeper, than is looked at."""
+    """Raised when the robot may be at too many positions, or groups nest too deeply."""
 
 
 @dataclass(frozen=True, slots=True)
 class _RobotPosition:
-    """Where the robot is: at a standing, or somewhere on a way from it or to it."""
+    """Position of the robot: at a pose, or somewhere on a way from it or to it."""
 
     pose: RobotPose
     is_there: bool
+    """whether the robot is exactly at the pose"""
 
 
 @dataclass(frozen=True, slots=True)
 class _Visit:
-    """A way to a task, perhaps into a further round of a group."""
+    """Transition to a task, perhaps into a further round of a group."""
 
     task: int
     repeated: int | None = None
+    """group whose further round starts with the task; None if there is none"""
 
 
 @dataclass(frozen=True, slots=True)
 class _VisitCost:
-    """A visit, from one place."""
+    """Least cost of a visit from one point."""
 
     visit: _Visit
     entered: tuple[int, ...]
-    """the groups that are entered on the way, from the outside in"""
+    """groups that the transition enters, the outermost first"""
     time: float
-    """s of the way and the action, or the wait, at least"""
+    """least s of the drive and the action, or of the wait"""
     energy: float
-    """Wh, likewise"""
+    """least Wh of the drive and the action, or of the wait"""
 
 
 class LeastSteps:
-    """The steps of a mission if nothing fails, and what each of them takes at least.
+    """Steps of a mission if nothing fails, with the least cost of each of them.
 
     Raises:
-        LeastTooLargeError: the robot may be at too many standings, or groups nest too deeply.
+        LeastTooLargeError: The robot may be at too many positions, or groups nest too deeply.
     """
 
     def __init__(self, mission: Mission, travel: Travel, proved: Proved) -> None:
@@ -95,7 +99,7 @@ class LeastSteps:
         self._robots: dict[ProgramPoint, dict[_RobotPosition, None]] = {}
         self._visits: dict[ProgramPoint, tuple[_Visit, ...]] = {}
         self._at_once: dict[ProgramPoint, tuple[ProgramPoint, ...]] = {}
-        """places that are come to at the same time"""
+        """for each point, the points reached at the same time, without a further task"""
         self._explore()
         self._action_costs = self._least_action_costs()
         self._visit_costs = {
@@ -104,7 +108,7 @@ class LeastSteps:
         }
 
     def around(self, point: ProgramPoint) -> tuple[int, ...]:
-        """The groups that a place lies in, from the outside in."""
+        """Return the groups that enclose a point, the outermost first."""
         kind, at = point
         if kind in ("task", "missed"):
             inside = self.layout.innermost[at]
@@ -114,7 +118,7 @@ class LeastSteps:
         return self._chains[at][:-1] if kind in ("left", "entered") else ()
 
     def is_always_missed(self, point: ProgramPoint, time: Spent) -> bool:
-        """Whether a task never ends, as its hard window is always over before."""
+        """Return True if a task never ends, as its hard window always closes before."""
         deadline = self._deadline(point[1])
         return deadline is not None and time.get(point, 0.0) > deadline + _TOLERANCE
 
@@ -122,10 +126,17 @@ class LeastSteps:
         tasks = range(len(self.mission.tasks))
         return frozenset(i for i in tasks if self.is_always_missed(("task", i), time))
 
-    def steps(
+    def successors(
         self, point: ProgramPoint, spent: Spent, periods: tuple[float, ...], *, of_time: bool
     ) -> Iterator[tuple[ProgramPoint, float]]:
-        """Where the mission may go on from a place, and what has been spent there at least."""
+        """Yield the points that can follow a point, with the least time or energy spent there.
+
+        Args:
+            point: The point.
+            spent: Claimed least time or energy at each point.
+            periods: Claimed least time or energy from one round of each group to the next.
+            of_time: True for time in s, False for energy in Wh.
+        """
         here = spent[point]
         for other in self._at_once.get(point, ()):
             yield other, here
@@ -137,7 +148,7 @@ class LeastSteps:
             if last is not None:
                 yield ("left", at), last
         elif kind == "entered" and self.layout.hard[at]:
-            # Whatever was done before the time was up.
+            # The time is up, whatever the robot is doing.
             passed = self.mission.groups[at].max_repeat_duration if of_time else 0.0
             yield ("left", at), here + passed
 
@@ -155,7 +166,7 @@ class LeastSteps:
             missed = started = here - periods[repeated]
             every = self.mission.groups[repeated].every
             if of_time and every and periods[repeated] <= every:
-                # Round n is not begun before it is due (G13).
+                # Round n does not start before it is due (G13).
                 entered = spent.get(("entered", repeated), -math.inf)
                 started = max(started, entered + (every - periods[repeated]))
         for g in cost.entered:
@@ -165,7 +176,7 @@ class LeastSteps:
         if window is None:
             yield ("task", i), ended
             return
-        # Windows count from the mission's start: in a group, all rounds share them.
+        # Windows count from the mission's start; in a group, all rounds share them.
         shared = self.layout.innermost[i] is not None
         if of_time and not shared:
             ended = max(ended, window.earliest + self._action_costs.get(i, (0.0, 0.0))[0])
@@ -177,7 +188,10 @@ class LeastSteps:
     def _earliest_end(
         self, g: int, here: float, spent: Spent, periods: tuple[float, ...], of_time: bool
     ) -> float | None:
-        """G8: when no other round is wanted; None: another one always is."""
+        """Return the least time or energy at which no further round is wanted (G8).
+
+        Returns None if a further round is always wanted.
+        """
         group = self.mission.groups[g]
         ends = []
         if group.until:
@@ -201,7 +215,7 @@ class LeastSteps:
         return _VisitCost(visit, inside[shared:], *self._cost(source, visit.task))
 
     def _cost(self, source: ProgramPoint, i: int) -> tuple[float, float]:
-        """s and Wh of the way from a place to a task, and its action, or the wait."""
+        """Return the least s and Wh from a point to a task, with its action, or of its wait."""
         task = self.mission.tasks[i]
         if task.wait is not None:
             return task.wait.duration or 0.0, 0.0
@@ -215,20 +229,20 @@ class LeastSteps:
         return max(time, 0.0), max(energy, 0.0)
 
     def _least_action_costs(self) -> dict[int, tuple[float, float]]:
-        """s and Wh of each task's action, wherever the robot comes from."""
-        found: dict[int, tuple[float, float]] = {}
+        """Return the least s and Wh of each task's action, wherever the robot comes from."""
+        costs: dict[int, tuple[float, float]] = {}
         for (_, i), leg in self._legs.items():
-            time, energy = found.get(i, (math.inf, math.inf))
+            time, energy = costs.get(i, (math.inf, math.inf))
             work = min(leg.work, leg.duration), min(leg.work_energy, leg.energy)
-            found[i] = max(min(time, work[0]), 0.0), max(min(energy, work[1]), 0.0)
-        return found
+            costs[i] = max(min(time, work[0]), 0.0), max(min(energy, work[1]), 0.0)
+        return costs
 
     def _leg(self, pose: RobotPose, i: int) -> Leg:
         known = self._legs.get((pose, i))
         if known is None:
             task = self.mission.tasks[i]
-            found = self.travel.leg(pose, task, task.velocity)
-            known = Leg(0.0, 0.0, pose) if isinstance(found, NoPath) else found
+            leg = self.travel.leg(pose, task, task.velocity)
+            known = Leg(0.0, 0.0, pose) if isinstance(leg, NoPath) else leg
             self._legs[pose, i] = known
         return known
 
@@ -249,7 +263,7 @@ class LeastSteps:
         return None if window is None or not window.hard else window.latest
 
     def _explore(self) -> None:
-        """Where the robot may be at each place."""
+        """Compute the robot's positions, the visits and the immediate successors of all points."""
         pending = [(BEGIN, _RobotPosition(self.travel.start(self.mission), True))]
         while pending:
             point, robot = pending.pop()
@@ -273,7 +287,7 @@ class LeastSteps:
     ) -> Iterator[tuple[ProgramPoint, _RobotPosition]]:
         cut: tuple[_RobotPosition, ...]
         if self.mission.tasks[i].wait is not None:
-            # It stays where it is (W1).
+            # The robot stays where it is (W1).
             ended, cut = robot, (robot,)
         else:
             arrival = self._leg(robot.pose, i).arrival
@@ -341,12 +355,12 @@ class LeastSteps:
         return task.on_failure in (OnFailure.RETURN, OnFailure.ABORT)
 
     def _continues(self, task: Task) -> bool:
-        """Whether a failure counts as any other end (T8)."""
+        """Return True if a failure counts like any other end (T8)."""
         branches = task.on_failure is OnFailure.BRANCH and task.failure_target is not None
         return not branches and not self._ends_mission(task)
 
     def _visits_by_transition(self, i: int) -> Iterator[_Visit]:
-        """T2 and T3, the ends of rounds apart."""
+        """Yield the visits by a task's transitions (T2, T3), except those at a round's end."""
         for k, transition in enumerate(self.mission.tasks[i].transitions):
             if transition.conditions and (i, k) in self._proved.transitions:
                 yield self._visit_of(transition.target)
@@ -363,7 +377,7 @@ class LeastSteps:
             yield END
 
     def _certain(self, i: int) -> bool:
-        """Whether one of the transitions with conditions is always taken."""
+        """Return True if one of the transitions with conditions is always taken."""
         transitions = self.mission.tasks[i].transitions
         return any((i, k) in self._proved.certain for k in range(len(transitions)))
 
@@ -381,7 +395,7 @@ class LeastSteps:
 
 
 def spent_by_point(witness: LeastSpent) -> dict[ProgramPoint, float]:
-    """A witness by places, the mission's start included."""
+    """Return the values of a witness by point, with 0 at the mission's start."""
     columns = witness.tasks, witness.missed, witness.rounds, witness.left, witness.entered
     spent: dict[ProgramPoint, float] = {BEGIN: 0.0}
     for kind, column in zip(_COLUMNS, columns, strict=True):
@@ -392,7 +406,7 @@ def spent_by_point(witness: LeastSpent) -> dict[ProgramPoint, float]:
 
 
 def is_valid(steps: LeastSteps, witness: LeastWitness) -> bool:
-    """Whether no step of the mission takes less than a witness says."""
+    """Return True if no step of the mission costs less than a witness claims."""
     if not all(_has_form(steps.mission, spent) for spent in (witness.time, witness.energy)):
         return False
     late = steps.always_missed_tasks(spent_by_point(witness.time))
@@ -416,8 +430,8 @@ def _is_consistent(
     for point in spent:
         if point[0] == "task" and point[1] in late:
             continue
-        for other, least in steps.steps(point, spent, witness.periods, of_time=of_time):
-            # Not a number is never right.
+        for other, least in steps.successors(point, spent, witness.periods, of_time=of_time):
+            # This also rejects NaN.
             if other not in spent or not spent[other] <= least:
                 return False
     return True
@@ -426,7 +440,7 @@ def _is_consistent(
 def unproved_bounds(
     mission: Mission, catalog: Catalog | None, travel: Travel, analysis: Analysis
 ) -> tuple[Diagnostic, ...]:
-    """The diagnostics about what is taken at least that the witness does not show."""
+    """Return the diagnostics on lower bounds that the analysis's witness does not prove."""
     witnesses = analysis.witnesses
     if witnesses is None or not any(d.code in AT_LEAST for d in analysis.diagnostics):
         return unproved_claims(None, analysis)
@@ -436,8 +450,10 @@ def unproved_bounds(
 def least_steps(
     mission: Mission, catalog: Catalog | None, travel: Travel, nominal: Invariant
 ) -> LeastSteps | None:
-    """The steps over the transitions that an invariant leaves possible; None if it is wrong, or
-    there is too much to look at."""
+    """Return the steps over the transitions that an invariant leaves possible.
+
+    Returns None if the invariant is wrong, or if there are too many positions or nested groups.
+    """
     proved = Verifier(mission, catalog).check_invariant(nominal)
     if proved is None or nominal.failures:
         return None
@@ -448,7 +464,10 @@ def least_steps(
 
 
 def unproved_claims(steps: LeastSteps | None, analysis: Analysis) -> tuple[Diagnostic, ...]:
-    """The same, with the mission's steps; None: nothing is shown."""
+    """Return the diagnostics on lower bounds that the analysis's witness does not prove.
+
+    Without `steps`, nothing is proved.
+    """
     claims = tuple(d for d in analysis.diagnostics if d.code in AT_LEAST)
     least = None if analysis.witnesses is None else analysis.witnesses.least
     if not claims or steps is None or least is None or not is_valid(steps, least):
@@ -461,7 +480,7 @@ def unproved_claims(steps: LeastSteps | None, analysis: Analysis) -> tuple[Diagn
 
 @dataclass(frozen=True)
 class _ProvedBounds:
-    """What a witness that has been accepted shows."""
+    """Lower bounds that an accepted witness proves."""
 
     steps: LeastSteps
     analysis: Analysis
@@ -478,7 +497,7 @@ class _ProvedBounds:
 
 
 def _exceeds(spent: Spent, claimed: Bounds | None, limit: float | None) -> bool:
-    """Whether the mission's end takes as much as is claimed, and more than a limit."""
+    """Return True if the mission's end costs as much as claimed, and more than a limit."""
     least = None if claimed is None else claimed.least.value
     if least is None or limit is None or END not in spent:
         return False

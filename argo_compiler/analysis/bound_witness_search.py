@@ -1,4 +1,4 @@
-"""Finds what a mission takes at least, place by place, as a witness."""
+"""Search for a witness of the least time and energy of a mission."""
 
 import heapq
 import math
@@ -12,12 +12,12 @@ from argo_compiler.analysis.bound_verification import (
 )
 from argo_compiler.analysis.witness import LeastSpent, LeastWitness
 
-_MOST_STEPS = 100  # steps that are looked at, for each task and group
-_ROUNDING = 1e-9  # of a round, so that rounds do not cost less than nothing by rounding
+_MOST_STEPS = 100  # greatest number of steps for each task and group
+_ROUNDING = 1e-9  # share of a round, so that rounding makes no round cheaper than nothing
 
 
 def make_least_witness(steps: LeastSteps) -> LeastWitness | None:
-    """The shortest ways to all places; None if they are not found soon."""
+    """Return a witness from the shortest paths to all points; None if the search takes too long."""
     search = _Search(steps)
     for planned in (True, False):
         time = search.shortest(of_time=True, planned=planned)
@@ -30,21 +30,28 @@ def make_least_witness(steps: LeastSteps) -> LeastWitness | None:
     return None
 
 
-_Spent = tuple[dict[ProgramPoint, float], tuple[float, ...]]
+_SpentAndPeriods = tuple[dict[ProgramPoint, float], tuple[float, ...]]
+"""least time or energy at each point, and period of each group"""
 
 
 class _Search:
-    """Shortest ways over the steps of a mission."""
+    """Search for the shortest paths over the steps of a mission.
+
+    `always_missed` is set after the search by time, for the search by energy.
+    """
 
     def __init__(self, steps: LeastSteps) -> None:
         self.steps = steps
         self.always_missed: frozenset[int] = frozenset()
-        """tasks that never end"""
+        """tasks that never end, as their windows always close before"""
         self._steps_left = 0
 
-    def shortest(self, *, of_time: bool, planned: bool) -> _Spent | None:
-        """What is spent at each place, with the periods. `planned`: rounds that are begun by a plan
-        take as long as that at least."""
+    def shortest(self, *, of_time: bool, planned: bool) -> _SpentAndPeriods | None:
+        """Return the least time or energy at each point, with the periods of all groups.
+
+        If `planned`, a round of a group with `every` takes at least that time. Returns None if the
+        search takes too long.
+        """
         groups = self.steps.mission.groups
         self._steps_left = _MOST_STEPS * (100 + len(self.steps.mission.tasks) + len(groups))
         periods = [0.0] * len(groups)
@@ -56,8 +63,8 @@ class _Search:
             every = groups[g].every if of_time and planned else 0.0
             period = 0.0 if math.isinf(again) else max(again, every)
             periods[g] = period if period == every else period * (1 - _ROUNDING)
-        found = self._shortest_from(BEGIN, tuple(periods), of_time)
-        return None if found is None else (found[0], tuple(periods))
+        shortest = self._shortest_from(BEGIN, tuple(periods), of_time)
+        return None if shortest is None else (shortest[0], tuple(periods))
 
     def _shortest_from(
         self,
@@ -66,7 +73,10 @@ class _Search:
         of_time: bool,
         group: int | None = None,
     ) -> tuple[dict[ProgramPoint, float], float] | None:
-        """From a place on, within a group: what is spent where, and by when it comes back."""
+        """Return the least cost from a point to all others, and back to it, within a group.
+
+        Without a group, the search covers the mission. Returns None if it takes too long.
+        """
         steps = self.steps
         spent: dict[ProgramPoint, float] = {first: 0.0}
         again = math.inf
@@ -78,7 +88,7 @@ class _Search:
                 continue
             if of_time and point[0] == "task" and steps.is_always_missed(point, spent):
                 continue
-            for other, least in steps.steps(point, spent, periods, of_time=of_time):
+            for other, least in steps.successors(point, spent, periods, of_time=of_time):
                 around = steps.around(other)
                 self._steps_left -= 1 + len(around)
                 if self._steps_left < 0:
@@ -90,7 +100,7 @@ class _Search:
                     heapq.heappush(pending, (least, other))
                     ended = "round", other[1]
                     if other[0] == "entered" and ended in spent:
-                        # The end of a group's time hangs on when it was entered.
+                        # The end of a group's time depends on when it was entered.
                         heapq.heappush(pending, (spent[ended], ended))
         return spent, again
 

@@ -1,4 +1,4 @@
-"""The least and the most that a mission takes from start to end, with the paths that do so."""
+"""Least and greatest duration and energy of a mission, with the paths that attain them."""
 
 import math
 from dataclasses import dataclass
@@ -12,29 +12,29 @@ from argo_compiler.analysis.results import Bound, Bounds, Stretch
 from argo_compiler.analysis.rounds import GroupExit
 from argo_compiler.analysis.step_costs import StepCosts
 
-_MOST_CUTS = 200_000  # pairs of a task and a time-out that may cut it, as far as they are looked at
-_MOST_STRETCHES = 200  # of a path that are kept, at its beginning and at its end
+_MOST_CUTS = 200_000  # pairs of a task and a time-out that may interrupt it
+_MOST_STRETCHES = 200  # parts of a path that are returned, from its start and from its end each
 
 
 @dataclass(frozen=True)
 class MissionBounds:
-    """What the levels of a mission say."""
+    """Bounds of a mission on duration and energy, its loops, and its path lengths."""
 
     duration: Bounds | None
     energy: Bounds | None
     loops: tuple[Loop, ...]
     lengths: PathLengths
     mission_level: LevelGraph
-    """the mission's"""
+    """graph of the level of the mission"""
 
     @cached_property
     def completion_times(self) -> tuple[TaskEnd, ...]:
-        """When each leaf has ended, where durations are known."""
+        """Completion times of each leaf, if durations are known."""
         return completion_times(self.lengths, self.mission_level)
 
 
 def has_too_many_cuts(flow: Flow) -> bool:
-    """Whether groups nest too deeply to look at what each time-out may cut."""
+    """Return True if groups nest too deeply to handle each task that a time-out may interrupt."""
     pairs = 0
     hard: list[int] = []
     for group in flow.groups:
@@ -47,14 +47,19 @@ def has_too_many_cuts(flow: Flow) -> bool:
 def compute_bounds(
     flow: Flow, reachability: Reachability, costs: StepCosts, endless: bool
 ) -> MissionBounds:
-    """The bounds of a mission and its loops; none above if some path is `endless`, or has a loop
-    that no time limits: also one that no way leads out of, so that no end comes after it. Raises
-    BoundsTooLargeError."""
+    """Return the bounds of a mission and its loops.
+
+    There is no upper bound if some path is `endless` or has a loop that no time limits, also if no
+    transition leads out of that loop to an end.
+
+    Raises:
+        BoundsTooLargeError: The computation would take too long.
+    """
     lengths = PathLengths(flow, reachability, costs)
     level = lengths.mission_level()
     duration = energy = None
     ends = [exit for exit in level.exits if exit[1][1] == flow.end_node]
-    # What can't be done as planned fails: then nothing is known of a path without failures.
+    # A task that takes longer than its time limit fails: no path is then free of failures.
     if ends and costs.travel is not None and not costs.too_slow:
         endless = endless or bool(lengths.loops)
         duration = _bounds(flow, costs, level, "time", endless)
@@ -63,8 +68,11 @@ def compute_bounds(
 
 
 def longest_duration(flow: Flow, reachability: Reachability, costs: StepCosts) -> float:
-    """s at most from the mission's start to its end; infinite if there is no bound. Raises
-    BoundsTooLargeError."""
+    """Return the longest time in s from the mission's start to its end; infinite if unbounded.
+
+    Raises:
+        BoundsTooLargeError: The computation would take too long.
+    """
     lengths = PathLengths(flow, reachability, costs)
     level = lengths.mission_level()
     if lengths.loops:
@@ -80,7 +88,10 @@ def longest_duration(flow: Flow, reachability: Reachability, costs: StepCosts) -
 def _bounds(
     flow: Flow, costs: StepCosts, level: LevelGraph, quantity: str, endless: bool
 ) -> Bounds | None:
-    """None if no path comes to its end: rounds in which no time passes never fill a duration."""
+    """Return the bounds of one quantity, `time` or `energy`, over all ends of the level.
+
+    Returns None if no path reaches an end: rounds that take no time never fill a duration.
+    """
     least = min(
         (level.least[quantity][node] + getattr(cost, quantity).least, k)
         for k, (node, _, cost, _) in enumerate(level.exits)
@@ -107,14 +118,14 @@ def _bounds(
 def _path(
     flow: Flow, level: LevelGraph, quantity: str, end: int, shortest: bool
 ) -> tuple[Stretch, ...]:
-    """The path to one of the ends of a level, the middle of a very long one left out."""
+    """Return the path to one exit of a level; a very long path lacks its middle."""
     predecessors = (level.least_predecessors if shortest else level.most_predecessors)[quantity]
     distance = (level.least if shortest else level.most)[quantity]
     node, _, _, group_exit = level.exits[end]
     reversed_path: list[Stretch] = []
-    pending: tuple[int, GroupExit | None] | None = (node, group_exit)
-    while pending is not None:
-        node, group_exit = pending
+    current: tuple[int, GroupExit | None] | None = (node, group_exit)
+    while current is not None:
+        node, group_exit = current
         key = level.keys[node]
         if isinstance(key, int):
             if flow.is_leaf(key):
@@ -134,7 +145,7 @@ def _path(
                     until=distance[node] + taken,
                 )
             )
-        pending = predecessors[node]
+        current = predecessors[node]
     path = reversed_path[::-1]
     if len(path) > 2 * _MOST_STRETCHES:
         path = path[:_MOST_STRETCHES] + path[-_MOST_STRETCHES:]

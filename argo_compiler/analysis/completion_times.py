@@ -1,4 +1,4 @@
-"""When each task has ended, and what was used by then, over all paths without failures."""
+"""Completion times of the tasks, and the energy used until then, on all paths without failures."""
 
 import math
 from dataclasses import dataclass
@@ -8,14 +8,14 @@ from argo_compiler.analysis.path_lengths import LevelGraph, PathLengths, is_entr
 
 @dataclass(frozen=True, slots=True)
 class TaskEnd:
-    """The end of a task, in any of its visits. Times count from the mission's start."""
+    """Bounds on the end of a task over all its visits; times count from the mission's start."""
 
     soonest: float = math.inf
-    """s; infinite if it can't end in time, or is not come to"""
+    """s; infinite if the task can't end in time, or is not reached"""
     latest: float = -math.inf
-    """s; infinite if there is no bound, or its window may be over before"""
+    """s; infinite if there is no bound, or if the task's window may close before"""
     energy: float = -math.inf
-    """Wh at most"""
+    """greatest energy in Wh"""
 
     def __or__(self, other: "TaskEnd") -> "TaskEnd":
         return TaskEnd(
@@ -26,9 +26,13 @@ class TaskEnd:
 
 
 def completion_times(lengths: PathLengths, mission: LevelGraph) -> tuple[TaskEnd, ...]:
-    """For each leaf. Visits in later rounds of a group are bounded by all that it takes."""
+    """Return the bounds on the end of each leaf.
+
+    Visits in later rounds of a group are bounded by the cost of all rounds of the group.
+    """
     ends = [TaskEnd() for _ in lengths.flow.leaves]
-    # What a level is entered with, and what bounds all that happens in it.
+    # A level, the soonest time at which it is entered, and the bounds on all that happens in it;
+    # None at the mission's own level.
     pending: list[tuple[LevelGraph, float, TaskEnd | None]] = [(mission, 0.0, None)]
     seen: dict[int, tuple[float, TaskEnd | None]] = {}
     while pending:

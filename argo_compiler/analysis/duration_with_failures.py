@@ -1,9 +1,9 @@
-"""What a mission takes at most, whatever fails and whatever occurs: reactions included.
+"""Upper bound on the duration of a mission, whatever fails and whatever events occur.
 
-It is assumed that nobody interrupts the mission or takes the robot over, that an action which fails
-has failed by the time at which it would have been done, and that after actions which failed or were
-cancelled, be it several in a row, the robot is between two places of the plan of which one follows
-the other.
+Reactions are included. The assumptions are: Nobody interrupts the mission or takes the robot over.
+An action that fails has failed by the time at which it would have ended. After one or several
+actions in a row that failed or were cancelled, the robot is between two consecutive poses of the
+planned paths.
 """
 
 import math
@@ -17,11 +17,15 @@ from argo_compiler.analysis.travel import NoPath, RobotPose
 from argo_compiler.il import Action, Afterwards, EventKind, Mode, Reaction, Response, Task
 
 _MOST_LEAVES = 2_000
-"""of missions that are looked at"""
+"""greatest number of leaves of a mission for which the bound is computed"""
 
 
 def longest_duration_with_failures(study: Study) -> Bound | None:
-    """A bound of the duration (s) over all runs; None if that was not looked at."""
+    """Return a bound on the duration (s) of all runs; None if it can't be computed.
+
+    That is so without travel times, if the mission is too large, and if the robot can't get to
+    some task.
+    """
     if study.travel is None or len(study.flow.leaves) > _MOST_LEAVES:
         return None
     costs = StepCosts(study.flow, study.with_failures, study.travel, study.mission)
@@ -42,8 +46,10 @@ def _finite(seconds: float) -> float | None:
 
 
 class _ReactionTimes:
-    """How long reactions go on. A reaction that ends the mission lets nothing else go on after it,
-    so that each of them is carried out once at most."""
+    """Durations of a mission's reactions.
+
+    Nothing follows a reaction that ends the mission, so each of them is executed at most once.
+    """
 
     def __init__(self, study: Study, costs: StepCosts) -> None:
         assert study.travel is not None
@@ -56,24 +62,34 @@ class _ReactionTimes:
         self.reactions = [r for r in study.mission.reactions if r.response is not Response.REPORT]
 
     def time_added(self) -> float:
-        """s at most that reactions add to the mission; infinite if one may interrupt it at will."""
+        """Return the greatest time in s that reactions add to the mission.
+
+        It is infinite if a reaction does not always end the mission, as it may then interrupt it
+        again and again, or if the mission starts supervised.
+        """
         if self.mission.mode is Mode.SUPERVISORY:
             return math.inf
         return sum(map(self._time_to_end, self.reactions))
 
     def end_by_time_up(self) -> float:
-        """s at most until the mission has ended as its time is up; infinite if it goes on."""
+        """Return the greatest time in s until the reaction to TIME_UP has ended the mission.
+
+        It is infinite if there is no such reaction, or if the mission may continue.
+        """
         limit = self.mission.max_duration
         last = next((r for r in self.reactions if r.event is EventKind.TIME_UP), None)
         if limit is None or last is None or self.mission.mode is Mode.SUPERVISORY:
             return math.inf
         if any(map(_may_pause, self.reactions)):
             return math.inf
-        # A reaction of the same rank may be under way when the time is up.
+        # A reaction of the same or a higher rank may be active when the time is up.
         return limit + sum(self._time_to_end(r) for r in self.reactions if r.rank >= last.rank)
 
     def _time_to_end(self, reaction: Reaction) -> float:
-        """s from a reaction's event until the mission has ended; infinite if it need not end."""
+        """Return the greatest time in s from a reaction's event to the mission's end.
+
+        It is infinite if the reaction does not always end the mission.
+        """
         if reaction.response is Response.ABORT:
             return self.clean_up
         held = 0.0
@@ -87,7 +103,7 @@ class _ReactionTimes:
         return self.clean_up + self._drive_time(reaction) + held
 
     def _drive_time(self, reaction: Reaction) -> float:
-        """s at most to where a reaction sends the robot, from wherever it is."""
+        """Return the greatest time in s to the reaction's target pose, wherever the robot is."""
         target = self._drive_task(reaction)
         others = [self._drive_task(r) for r in self.reactions if r.response.drives]
         times = [self._longest_drive(target)]
@@ -106,7 +122,7 @@ class _ReactionTimes:
         return Task(name="drive", action=Action.WAYPOINT, pose=pose)
 
     def _longest_drive(self, target: Task) -> float:
-        """From wherever the plan brings the robot."""
+        """Return the greatest time in s to a task from all positions on the planned paths."""
         longest = self._leg_time(self._start, target)
         for leaf, positions in enumerate(self.costs.positions):
             if positions:
@@ -115,7 +131,11 @@ class _ReactionTimes:
         return longest
 
     def _longest_drive_past_leaves(self, other: Task, target: Task) -> float:
-        """From wherever it is on the way back from another reaction's place to the plan's."""
+        """Return the greatest time in s to a task while the robot returns from another reaction.
+
+        The robot may then be anywhere between the pose of the task `other` and the next task of the
+        mission.
+        """
         longest = 0.0
         pose = self._pose_after(other)
         for leaf, positions in enumerate(self.costs.positions):
@@ -135,8 +155,8 @@ class _ReactionTimes:
 
 
 def _may_pause(reaction: Reaction) -> bool:
-    """Whether a reaction may leave the mission paused until a person resumes it."""
+    """Return True if a reaction may leave the mission paused until a person resumes it."""
     if reaction.response.drives and reaction.afterwards is not Afterwards.END:
-        return True  # if the drive fails, or as it says
+        return True  # if the drive fails, or because `afterwards` demands it
     pauses = reaction.hold_limit is not None and reaction.on_limit is Afterwards.WAIT
     return reaction.holds and pauses

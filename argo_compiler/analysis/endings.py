@@ -1,4 +1,4 @@
-"""Diagnostics about how a mission ends: whether it can, what goes on without limit, and where."""
+"""Diagnostics on the end of a mission: whether it can end, loops without limit, and the dock."""
 
 from collections.abc import Iterable, Iterator
 
@@ -10,7 +10,7 @@ from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Task
 from argo_compiler.il.docked import at_dock
 
-_MOST_PATHS = 200  # diagnostics that come with a path
+_MOST_PATHS = 200  # diagnostics that show a path
 _REMEDY = (
     "lead a transition out of it, or make it a group with max_repeat_count or max_repeat_duration"
 )
@@ -19,7 +19,10 @@ _REMEDY = (
 def diagnose_endings(
     study: Study, loops: Iterable[NonTerminatingLoop] = ()
 ) -> Iterator[Diagnostic]:
-    """Whether the mission comes to its end, and where; `kept` are the loops that readings keep."""
+    """Yield diagnostics on loops without end or limit, and on where the mission ends.
+
+    `loops` are the loops that some reading keeps going.
+    """
     if not study.mission.tasks:
         return
     traps = study.traps
@@ -39,7 +42,7 @@ def _endless_loops(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator
         path = study.path_words(trap[0])
         yield study.diagnostic(
             "endless-loop",
-            f"{_tasks(study, trap)} {_follow(trap)} for ever: {but} or a person ends that "
+            f"{_tasks(study, trap)} {_follow(trap)} for ever: {but} or a person ends the loop "
             f"(path: {path})",
             _REMEDY,
             trap[0],
@@ -75,9 +78,9 @@ def _held_loops(study: Study, loops: Iterable[NonTerminatingLoop]) -> Iterator[D
         yield study.diagnostic(
             "kept-loop",
             f"{_tasks(study, leaves)} {_follow(leaves)} for ever if {name} "
-            f"{' or '.join(shown)} when '{study.name(loop.leaf)}' is come to: "
-            f"nothing in the loop measures it, so {but}, a person or a value that is told ends "
-            "that",
+            f"{' or '.join(shown)} when '{study.name(loop.leaf)}' is reached: "
+            f"nothing in the loop measures it, so {but}, a person or a value that others "
+            "report ends the loop",
             f"measure {name} in the loop, or make it a group with a limit",
             loop.leaf,
         )
@@ -92,7 +95,7 @@ def _tasks(study: Study, leaves: tuple[int, ...]) -> str:
 
 
 def _unbounded_loops(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
-    """Loops of which nobody knows when they are left, or whether they are."""
+    """Yield diagnostics on loops that may be repeated without limit."""
     bounds = study.bounds
     if bounds is None:
         return
@@ -108,21 +111,22 @@ def _unbounded_loops(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
         single = len(loop.leaves) + len(loop.groups) == 1
         they = "it" if single else "they"
         remark = (
-            f"{they} can be left, but no count and no duration says when"
+            f"{they} can be left, but no count and no duration limits the repetitions"
             if loop.has_exit
-            else f"what leads out of {'it' if single else 'them'} comes too late for a hard stop"
+            else f"the transitions out of {'it' if single else 'them'} come too late for a "
+            "hard stop"
         )
         yield study.diagnostic(
             "unbounded-loop",
             f"{' and '.join(parts)} may be repeated without limit: "
-            f"{remark}, so no duration of the mission can be promised",
-            "make it a group with max_repeat_count or max_repeat_duration that goes on in any case",
+            f"{remark}, so the duration of the mission has no upper bound",
+            "make it a group with max_repeat_count or max_repeat_duration that always ends",
             first,
         )
 
 
 def _ends_elsewhere(study: Study) -> Iterator[Diagnostic]:
-    """Paths that end elsewhere than where the mission is to end."""
+    """Yield diagnostics on paths that do not end at the dock of the mission's end area."""
     area = study.mission.end_area
     if area is None:
         return
@@ -138,7 +142,7 @@ def _ends_elsewhere(study: Study) -> Iterator[Diagnostic]:
         if any(
             _leads_to_end(study, target) for target in study.nominal.targets_when_missed(flow, leaf)
         ):
-            where = f"wherever the robot is when the window of task '{study.name(leaf)}' is over"
+            where = f"wherever the robot is when the window of task '{study.name(leaf)}' has closed"
             last_elsewhere[leaf] = where
         elif not _is_docked_after(study, leaf, dock) and any(
             _leads_to_end(study, target) for target in study.nominal.targets(flow, leaf)
@@ -157,14 +161,14 @@ def _ends_elsewhere(study: Study) -> Iterator[Diagnostic]:
         path = f" (path: {study.path_words(leaf)})" if k < _MOST_PATHS else ""
         yield study.diagnostic(
             "end-elsewhere",
-            f"the mission is to end docked in starting area {area}, but it can end {where}{path}",
+            f"the mission must end docked in starting area {area}, but it can end {where}{path}",
             f"let each path end with a WAYPOINT task at the dock of starting area {area}",
             leaf,
         )
 
 
 def _leads_to_end(study: Study, node: int) -> bool:
-    """Whether a node is the end of the mission, or may lead there without another task."""
+    """Return True if a node is the end of the mission, or may lead there without another task."""
     flow = study.flow
     group = flow.group_of_round_end(node)
     while group is not None:
@@ -176,7 +180,7 @@ def _leads_to_end(study: Study, node: int) -> bool:
 
 
 def _is_docked_after(study: Study, leaf: int, dock: Pose) -> bool:
-    """Whether the robot is at the dock after a task; after a WAIT it is where it was before."""
+    """Return True if the robot is at the dock after a task; a WAIT leaves it where it was."""
     seen = {leaf}
     pending = [leaf]
     while pending:

@@ -1,8 +1,8 @@
-"""The ways through a machine as a flat graph: what may come after what.
+"""Control-flow graph of a state machine: which node can follow which.
 
-Nodes are numbers. A leaf is its place among the machine's leaves; each group has two nodes, one
-for the end of a round (where it decides about another one) and one for the moment when its time is
-up, whatever was under way; and one node is the end of the mission.
+Nodes are numbers. The number of a leaf is its index among the machine's leaves. Each group has two
+nodes: the end of a round, where the group decides about another one, and the moment when its time
+is up, whatever was under way. The last node is the end of the mission.
 """
 
 from dataclasses import dataclass, field
@@ -12,31 +12,33 @@ from argo_compiler.hfsm.model import MISSION, Hfsm, Leaf, StateTransition
 from argo_compiler.il import Action, Condition, Mission, Stop, WaitRule
 
 NOWHERE = -1
-"""the parent of what lies directly in the mission"""
+"""parent of the leaves and groups that lie directly in the mission"""
 
 
 @dataclass(frozen=True, slots=True)
 class GroupFlow:
-    """A group, and how it goes on at the end of a round."""
+    """Group of a control-flow graph, and what can follow at the end of a round."""
 
     name: str
     parent: int
-    """number of the group around it, or NOWHERE"""
+    """number of the enclosing group, or NOWHERE"""
     first: int
     last: int
-    """its leaves are `first` to `last`"""
+    """last leaf; the group's leaves are `first` to `last`"""
     start: int
-    """the leaf that a round begins with"""
+    """first leaf of a round"""
     successor: int
-    """the node after the last round"""
+    """node after the last round"""
     count: int
+    """greatest number of rounds; 0 if unlimited"""
     duration: float
+    """time limit in s; 0 if unlimited"""
     hard: bool
-    """whether a time-out ends the round"""
+    """whether the time limit also interrupts the round that is under way"""
     every: float = 0.0
-    """s from the beginning of one round to that of the next; 0: at once"""
+    """s from the start of one round to the start of the next; 0 if it follows at once"""
     until: tuple[Condition, ...] = ()
-    """no other round begins once all of these hold"""
+    """the rounds end once all of these conditions hold at the end of a round"""
 
     @property
     def may_repeat(self) -> bool:
@@ -44,7 +46,7 @@ class GroupFlow:
 
     @property
     def limited(self) -> bool:
-        """Whether a count or a time ends it, whatever is measured."""
+        """True if a count or a time limit ends the group, whatever is measured."""
         return self.count > 0 or self.duration > 0
 
     @property
@@ -57,25 +59,26 @@ class GroupFlow:
 
 @dataclass(frozen=True, slots=True)
 class LeafFlow:
-    """A leaf and its ways on, in the order in which they are tried."""
+    """Leaf of a control-flow graph, with its successors in the order in which they are tried."""
 
     leaf: Leaf
     parent: int
     conditional: tuple[tuple[tuple[Condition, ...], int], ...]
+    """conditions and target node of each conditional transition"""
     unconditional: int
-    """the node if no condition holds"""
+    """node that follows if no condition holds"""
     failure: int | None
-    """the node after a failure for good, where that is not the same as any other end"""
+    """node after a final failure; None if a failure is treated like any other end"""
     measures: str | None
-    """the object whose value its action measures"""
+    """id of the object whose value the action measures; None if it measures nothing"""
     missed: int | None
-    """the node after a missed window, where that is not the same as after a failure for good"""
+    """node after a missed window; None if that is treated like a final failure"""
     wait: WaitRule | None
-    """how long it lasts, of a task that runs no action"""
+    """rule of a WAIT task, which runs no action; None for other tasks"""
     earliest: float
-    """s since the mission's start before which it does not begin at its place"""
+    """s since the mission's start; the action does not start before, even if the robot is there"""
     deadline: float | None
-    """s since the mission's start at which it has failed if it has not ended; None: never"""
+    """s since the mission's start, at which an unfinished task fails; None if there is none"""
 
     @property
     def name(self) -> str:
@@ -83,21 +86,21 @@ class LeafFlow:
 
     @property
     def may_give_up(self) -> bool:
-        """Whether it is a wait that fails if nothing ends it in time."""
+        """True if this is a WAIT that fails unless something ends it in time."""
         return self.wait is not None and self.wait.limit is not None
 
 
 @dataclass(frozen=True)
 class Flow:
-    """All leaves and groups of a machine, by number; groups before those that lie in them."""
+    """Control-flow graph: all leaves and groups, each group before the groups that lie in it."""
 
     leaves: tuple[LeafFlow, ...]
     groups: tuple[GroupFlow, ...]
     initial: int
     depth: tuple[int, ...] = field(default=())
-    """of each group: how many groups are around it"""
+    """for each group, the number of groups that enclose it"""
     timed: tuple[bool, ...] = field(default=())
-    """of each group: whether its time, or that of a group around it, may be up at any moment"""
+    """for each group, whether it or an enclosing group has a hard time limit"""
 
     @cached_property
     def end_node(self) -> int:
@@ -108,11 +111,11 @@ class Flow:
         return self.end_node + 1
 
     def round_end(self, group: int) -> int:
-        """The node at which a round of the group has ended."""
+        """Return the node at which a round of the group has ended."""
         return len(self.leaves) + group
 
     def time_up(self, group: int) -> int:
-        """The node at which the time of the group, or of one around it, may be up."""
+        """Return the node at which the time of the group, or of an enclosing group, may be up."""
         return len(self.leaves) + len(self.groups) + group
 
     def is_leaf(self, node: int) -> bool:
@@ -124,7 +127,7 @@ class Flow:
 
     @classmethod
     def from_machine(cls, hfsm: Hfsm, mission: Mission) -> "Flow":
-        """The graph of a machine, in linear time."""
+        """Return the control-flow graph of a machine, in linear time."""
         return _Builder(hfsm, mission).flow()
 
 

@@ -1,4 +1,4 @@
-"""Diagnostics about duration, battery, ages of values, and places that can't be reached."""
+"""Diagnostics on duration, battery, ages of values, and locations that can't be reached."""
 
 import heapq
 import math
@@ -28,17 +28,19 @@ from argo_compiler.il import (
 )
 
 AGE_WORK = 3_000_000
-"""steps that ages of values may take to look at"""
+"""greatest effort of the search for ages: number of objects times number of steps"""
 RESERVE_SHARE = 0.2
-"""of the battery that is to be left at the dock: the charge that the robot calls low"""
-_SHOWN = 8  # stretches of a path that a message spells out
+"""share of the battery that must remain at the dock: the charge that the robot reports as low"""
+_SHOWN = 8  # parts of a path that a message lists
 
 
 def diagnose_limits(
     study: Study, travel: Travel, longest: Bound | None = None
 ) -> Iterator[Diagnostic]:
-    """What travel times and energy say about the mission. `worst` is how long it takes at most,
-    whatever fails and occurs."""
+    """Yield diagnostics on travel times, energy and locations.
+
+    `longest` bounds the duration whatever fails and whatever events occur.
+    """
     yield from _blocked_tasks(study)
     yield from _blocked_retreats(study, travel)
     yield from diagnose_time_limits(study)
@@ -60,14 +62,14 @@ def _blocked_tasks(study: Study) -> Iterator[Diagnostic]:
     for leaf, reason in sorted(study.costs.blocked.items()):
         yield study.diagnostic(
             "unreachable-place",
-            f"the robot can't carry out task '{study.name(leaf)}': {reason}",
-            "choose another place or checkpoint, or remove the task",
+            f"the robot can't execute task '{study.name(leaf)}': {reason}",
+            "choose another pose or checkpoint, or remove the task",
             leaf,
         )
 
 
 def _blocked_retreats(study: Study, travel: Travel) -> Iterator[Diagnostic]:
-    """Where reactions and failures send the robot."""
+    """Yield a diagnostic for each pose to which a reaction or a failure sends the robot in vain."""
     mission = study.mission
     retreats: list[tuple[Pose, str, str]] = []
     back = any(r.response is Response.RETURN and r.pose is None for r in mission.reactions) or any(
@@ -88,7 +90,7 @@ def _blocked_retreats(study: Study, travel: Travel) -> Iterator[Diagnostic]:
             yield study.diagnostic(
                 "unreachable-place",
                 f"the robot can't {aim}: {leg.reason}",
-                "choose a place that it can reach",
+                "choose a pose that it can reach",
                 subject=subject,
             )
 
@@ -109,7 +111,7 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
             "maybe-too-long",
             f"the mission may take up to {time_words(most)}, longer than its maximum duration of "
             f"{time_words(limit)} (longest: {path_words(duration.most, time_words)})",
-            "leave out tasks, shorten groups, or say by a reaction to time_up what happens then",
+            "leave out tasks, shorten groups, or add a reaction to time_up",
             subject="max_duration",
         )
     elif most is None:
@@ -118,7 +120,7 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
             f"the mission may take longer than its maximum duration of {time_words(limit)}, as "
             "something in it has no limit (shortest: "
             f"{path_words(duration.least, time_words)})",
-            "limit what is repeated, or say by a reaction to time_up what happens then",
+            "limit what is repeated, or add a reaction to time_up",
             subject="max_duration",
         )
 
@@ -126,7 +128,7 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
 def _cut_short(
     study: Study, bounds: MissionBounds, limit: float, longest: Bound | None
 ) -> Iterator[Diagnostic]:
-    """What the plan loses when a reaction to TIME_UP ends the mission."""
+    """Yield a diagnostic on the tasks that are lost when a reaction to TIME_UP ends the mission."""
     assert bounds.duration is not None
     most = bounds.duration.most.value
     if most is not None and most <= limit:
@@ -141,14 +143,14 @@ def _cut_short(
         if bounds.completion_times[i].soonest <= limit < bounds.completion_times[i].latest
     ]
     up_to = "without limit" if most is None else f"up to {time_words(most)}"
-    ends = "the reaction to time_up ends it then"
+    ends = "the reaction to time_up then ends it"
     if longest is not None and longest.value is not None:
         ends += f", after {time_words(longest.value)} at most"
     yield study.diagnostic(
         "cut-short",
-        f"the plan may take {up_to}, longer than the mission's maximum duration of "
+        f"the mission may take {up_to}, longer than its maximum duration of "
         f"{time_words(limit)}: {ends}"
-        + (f"; if nothing fails, {quoted(lost)} will not be done by then" if lost else "")
+        + (f"; if nothing fails, {quoted(lost)} will not be done in time" if lost else "")
         + (f"; {quoted(unsure)} may not be done, or not in all rounds" if unsure else ""),
         "leave out tasks, shorten groups, or allow more time",
         subject="max_duration",
@@ -178,8 +180,11 @@ def _battery_exceeded(study: Study, energy: Bounds, battery: float) -> Iterator[
 
 
 def _may_need_less_energy(study: Study) -> bool:
-    """Whether the robot may stand at a dock for a while, which charges it, or the mission may end
-    before its plan does, as its time is up."""
+    """Return True if a run may need less energy than the nominal least.
+
+    The robot may stand at a dock for a while, which charges it, or the mission may end early
+    because its time is up.
+    """
     waits = any(leaf.wait is not None or leaf.earliest for leaf in study.flow.leaves)
     return (
         waits
@@ -193,8 +198,10 @@ def _may_need_less_energy(study: Study) -> bool:
 
 
 def _no_way_back(study: Study, energy: Bounds, travel: Travel) -> Iterator[Diagnostic]:
-    """From which task on the battery may not suffice for the way back, on the path that needs the
-    most."""
+    """Yield a diagnostic on the first task after which the way back may exceed the battery.
+
+    Only the path that needs the most energy is considered.
+    """
     dock, battery, most = study.mission.dock, travel.battery, energy.most.value
     if dock is None or battery is None or most is None or most > battery:
         return
@@ -212,8 +219,8 @@ def _no_way_back(study: Study, energy: Bounds, travel: Travel) -> Iterator[Diagn
             yield study.diagnostic(
                 "no-way-back",
                 f"after {stretch.words} the battery may not suffice for the way back to the dock "
-                f"with a reserve of {RESERVE_SHARE:.0%}: by then up to "
-                f"{energy_words(stretch.until)} are used, the way back needs up to "
+                f"with a reserve of {RESERVE_SHARE:.0%}: up to "
+                f"{energy_words(stretch.until)} are used until then, the way back needs up to "
                 f"{energy_words(back)}, and the battery gives {energy_words(battery)}",
                 "leave out tasks or rounds, charge in between, or react to low_battery",
                 after[0],
@@ -222,7 +229,7 @@ def _no_way_back(study: Study, energy: Bounds, travel: Travel) -> Iterator[Diagn
 
 
 def ends_mission(reaction: Reaction) -> bool:
-    """Whether a reaction ends the mission for sure, unless it holds for ever."""
+    """Return True if a reaction always ends the mission, unless it holds the robot for ever."""
     limited = reaction.hold_limit is not None
     match reaction.response:
         case Response.ABORT:
@@ -236,8 +243,10 @@ def ends_mission(reaction: Reaction) -> bool:
 
 
 def diagnose_stale_values(study: Study) -> Iterator[Diagnostic] | None:
-    """Conditions whose value is always older than their `max_age`, or None if that is too much to
-    look at."""
+    """Return diagnostics on conditions whose value is always older than their `max_age`.
+
+    Returns None if the search would take too long.
+    """
     flow = study.flow
     comparisons: dict[str, list[tuple[int, int, int]]] = {}
     reported = reported_by_others(flow)
@@ -272,9 +281,9 @@ def _stale_conditions(
                 yield study.diagnostic(
                     "always-stale",
                     f"a condition of task '{study.name(leaf)}' never holds if nothing fails: "
-                    f"{words(condition)}, but from the measurement to here it takes at least "
-                    f"{time_words(youngest)}",
-                    f"measure checkpoint {o} again before, or allow a greater age",
+                    f"{words(condition)}, but it takes at least {time_words(youngest)} from the "
+                    "measurement to this task",
+                    f"measure checkpoint {o} again before this task, or allow a greater age",
                     leaf,
                     study.conditional_indices(leaf)[k],
                 )
@@ -283,7 +292,7 @@ def _stale_conditions(
 def _youngest_ages(
     sources: list[int], steps: dict[object, list[tuple[object, float]]]
 ) -> dict[object, float]:
-    """The least time from the end of one of the sources to the end of each leaf after it."""
+    """Return the least time from the end of one of the sources to the end of each later leaf."""
     age: dict[object, float] = {}
     heap: list[tuple[float, int, object]] = [(0.0, k, s) for k, s in enumerate(sources)]
     count = len(heap)
@@ -304,7 +313,10 @@ def _youngest_ages(
 
 
 def path_words(bound: Bound, quantity_words: Callable[[float], str]) -> str:
-    """The path to a bound, with when each of its stretches ends, the middle left out if long."""
+    """Return the text of the path to a bound, with the time or energy at the end of each part.
+
+    The middle of a long path is left out.
+    """
 
     def stretch_words(stretch: Stretch) -> str:
         return f"{stretch.words} ({quantity_words(stretch.until)})"

@@ -1,4 +1,4 @@
-"""Loops that only another reading would end, and in which nothing measures: they keep it."""
+"""Loops that some readings keep going for ever, as no task in them measures the checkpoint."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -12,19 +12,21 @@ from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.value_regions import Scale
 from argo_compiler.analysis.witness import KeptReading, Trap
 
-_MOST_STEPS = 50_000  # steps that are looked at
+_MOST_STEPS = 50_000  # greatest number of steps of the search
 
 
 @dataclass(frozen=True)
 class NonTerminatingLoop:
-    """A loop that goes on for ever once it is entered with some readings."""
+    """Loop that never ends once it is entered with some readings of a checkpoint."""
 
     leaf: int
-    """the first one that looks at the checkpoint"""
+    """first leaf whose conditions compare the checkpoint"""
     nodes: frozenset[int]
     scale: Scale
     object_id: str
+    """the checkpoint"""
     readings: int
+    """set of readings that keep the loop going, as bits of `scale`"""
 
     @property
     def kept_reading(self) -> KeptReading:
@@ -32,7 +34,7 @@ class NonTerminatingLoop:
 
 
 def find_non_terminating_loops(study: Study) -> Iterator[NonTerminatingLoop]:
-    """The loops that some readings keep, in the order of their tasks, the shortest ones."""
+    """Yield the shortest loops that some readings keep going, in the order of their tasks."""
     trapped = {node for nodes in study.trap_nodes for node in nodes}
     search = _Search(study)
     loops: list[NonTerminatingLoop] = []
@@ -56,7 +58,7 @@ def find_non_terminating_loops(study: Study) -> Iterator[NonTerminatingLoop]:
 
 
 def _is_within(inner: NonTerminatingLoop, outer: NonTerminatingLoop) -> bool:
-    """Whether a loop lies within another one that is kept by no other reading."""
+    """Return True if `inner` lies within `outer` and no further reading keeps `outer` going."""
     if inner.object_id != outer.object_id or outer.readings & ~inner.readings:
         return False
     smaller = inner.nodes < outer.nodes
@@ -66,7 +68,7 @@ def _is_within(inner: NonTerminatingLoop, outer: NonTerminatingLoop) -> bool:
 
 
 def make_trap(study: Study, nodes: Sequence[int], kept: KeptReading | None = None) -> Trap:
-    """The witness of nodes that no step leads out of."""
+    """Return the witness of a loop: nodes that no step leads out of, with the readings `kept`."""
     flow = study.flow
     groups = len(flow.groups)
     beyond = [node - len(flow.leaves) for node in nodes if not flow.is_leaf(node)]
@@ -79,7 +81,10 @@ def make_trap(study: Study, nodes: Sequence[int], kept: KeptReading | None = Non
 
 
 class _Search:
-    """Goes on from a task as long as one reading of a checkpoint is kept."""
+    """Search for the nodes that follow a task while a checkpoint keeps its reading.
+
+    `steps_left` decreases with each step; the search ends when it is negative.
+    """
 
     def __init__(self, study: Study) -> None:
         self.study = study
@@ -87,7 +92,7 @@ class _Search:
         self.reported = reported_by_others(study.flow)
         self.search = ReachabilitySearch(study.flow, study.nominal.fields, failures=False)
         self.guard_nodes: dict[str, set[int]] = {}
-        """for each checkpoint, the nodes at which a condition looks at it"""
+        """for each checkpoint, the nodes whose conditions compare it"""
         for i, leaf in enumerate(study.flow.leaves):
             for conditions, _ in leaf.conditional:
                 for condition in conditions:
@@ -97,7 +102,7 @@ class _Search:
                 self.guard_nodes.setdefault(condition.object_id, set()).add(study.flow.round_end(g))
 
     def old_comparisons(self) -> Iterator[tuple[int, str]]:
-        """Where a checkpoint is looked at that was not just measured."""
+        """Yield each leaf with a checkpoint that it compares but does not measure itself."""
         study = self.study
         for i, leaf in enumerate(study.flow.leaves):
             if not study.nominal.is_reached(i):
@@ -110,7 +115,7 @@ class _Search:
                     yield i, o
 
     def readings(self, leaf: int, object_id: str) -> Iterator[int]:
-        """One bit for each reading that may be possible."""
+        """Yield the possible readings of an object at a leaf, each as one bit."""
         state = self.study.nominal.states[leaf]
         assert state is not None
         possible = self.study.nominal.fields.get(state, object_id)
@@ -120,7 +125,11 @@ class _Search:
             possible ^= lowest
 
     def closure(self, leaf: int, object_id: str, reading: int) -> frozenset[int] | None:
-        """The nodes that follow as long as the reading is kept; None: some way ends it."""
+        """Return all nodes that follow while the checkpoint keeps the reading.
+
+        Returns None if some path leads to the mission's end or may change the reading, or if the
+        search takes too long.
+        """
         study, search = self.study, self.search
         flow, nominal = study.flow, study.nominal
         fields = nominal.fields
@@ -139,8 +148,8 @@ class _Search:
                 return None
             targets = study.successors[node]
             if node in guard_nodes:
-                kept = fields.set(state, object_id, reading)
-                targets = tuple(target for target, _ in search.successors(node, kept))
+                restricted = fields.set(state, object_id, reading)
+                targets = tuple(target for target, _ in search.successors(node, restricted))
             for target in targets:
                 if target not in seen:
                     seen.add(target)

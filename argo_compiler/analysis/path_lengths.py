@@ -1,9 +1,9 @@
-"""Shortest and longest continuations through a machine, level by level.
+"""Shortest and longest paths through a control-flow graph, level by level.
 
-A level is the mission or one round of a group. Its nodes are the leaves that lie in it directly and
-the groups in it, a group once for each way of entering it. What a group takes is computed once for
-each way of entering it, so rounds need not be counted off, and a loop that no count and no time
-limits shows as a cycle within a level.
+A level is the mission or one round of a group. Its nodes are the leaves that lie in it directly,
+and the groups that lie in it, each group once for each leaf and source of its entry. The cost of
+all rounds of a group is computed once for each entry, so that rounds need not be enumerated. A loop
+that no count and no time limits is then a cycle within one level.
 """
 
 import heapq
@@ -28,44 +28,48 @@ from argo_compiler.analysis.step_costs import (
 from argo_compiler.base.graphs import components, is_loop
 
 MOST_STEPS = 400_000
-"""steps after which the search is given up"""
-_TOLERANCE = 1e-9  # s: sums of floats are not exact
-_MOST_SOURCES = 8  # of one entry of a group that are told apart
+"""greatest number of steps of the computation"""
+_TOLERANCE = 1e-9  # s, as sums of floats are not exact
+_MOST_SOURCES = 8  # sources distinguished for one entry of a group
 
 Entry = tuple[int, int, Source]
-"""(group, leaf it is entered at, from where)"""
+"""group, leaf at which it is entered, and source of that step"""
 
 Key = int | tuple[str, int] | Entry
-"""a leaf that has ended, ("missed", leaf) when its window was over, or a group"""
+"""node of a level: a leaf that has ended, ("missed", leaf) if its window closed, or a group"""
 
 
 class BoundsTooLargeError(Exception):
-    """The bounds would take too long to compute."""
+    """Raised when the bounds would take too long to compute."""
 
 
 class Hop(NamedTuple):
-    """A step between two nodes of a level."""
+    """Step between two nodes of a level."""
 
     target: int
     cost: Cost
     group_exit: GroupExit | None
-    """how the group was left, if a group is"""
+    """exit by which the step leaves a group; None if it leaves no group"""
     before_target: Cost = FREE
-    """the part of it that is over when the target's turn has come"""
+    """part of `cost` until the target is the next leaf"""
     without_wait: QuantityRange = NOTHING
-    """s that the rest takes if no window has to be waited for"""
+    """s of the remaining part if the robot does not have to wait for a window"""
 
 
 @dataclass
 class LevelGraph:
-    """The graph of a level, entered in one way, and the distances in it."""
+    """Graph of a level that is entered at one leaf from one source, and the distances in it.
+
+    The distances `least` and `most`, and the predecessors on the shortest and longest paths, are
+    computed for each quantity, `time` and `energy`, when the graph is complete.
+    """
 
     keys: list[Key] = field(default_factory=list)
     hops: list[list[Hop]] = field(default_factory=list)
     exits: list[tuple[int, ExitKey, Cost, GroupExit | None]] = field(default_factory=list)
-    """node, how the level is left or its round ends, what it takes from the node on"""
+    """node, exit of the level or end of its round, cost from the node on, exit of an inner group"""
     first_hops: list[Hop] = field(default_factory=list)
-    """the steps to the first nodes"""
+    """steps to the first nodes"""
     least: dict[str, list[float]] = field(default_factory=dict)
     most: dict[str, list[float]] = field(default_factory=dict)
     least_predecessors: dict[str, list[tuple[int, GroupExit | None] | None]] = field(
@@ -78,17 +82,17 @@ class LevelGraph:
 
 @dataclass(frozen=True, slots=True)
 class Loop:
-    """Tasks and groups that may follow each other without limit."""
+    """Loop of tasks and groups that may be repeated without limit."""
 
     leaves: tuple[int, ...]
     groups: tuple[int, ...]
     has_exit: bool
-    """whether some way leads out of it; a way that would be taken too late for a hard stop does not
+    """whether some step leads out of the loop; steps that come too late for a hard stop don't
     count"""
 
 
 class PathLengths:
-    """Computes levels and keeps them."""
+    """Path lengths of all levels of a mission; caches the levels and records the loops."""
 
     def __init__(
         self, flow: Flow, reachability: Reachability, costs: StepCosts, work: int = MOST_STEPS
@@ -108,9 +112,13 @@ class PathLengths:
             self._children[group.parent].append(number)
 
     def mission_level(self) -> LevelGraph:
-        """The level of the mission. Raises TooLargeError."""
-        # Levels are computed inside each other; a stack of generators instead of calls, as groups
-        # may nest deeper than calls can.
+        """Return the graph of the mission's level.
+
+        Raises:
+            BoundsTooLargeError: The computation would take too long.
+        """
+        # A level needs the levels of its groups. Generators on a stack replace recursive calls, as
+        # groups may nest deeper than calls can.
         stack: list[Generator[Entry, Rounds, LevelGraph | Rounds]]
         stack = [self._build_level(NOWHERE, self.flow.initial, BEGIN)]
         keys: list[Entry | None] = [None]
@@ -131,7 +139,7 @@ class PathLengths:
                 keys.append(wanted)
 
     def graphs_for(self, entry: Entry) -> Iterator[LevelGraph]:
-        """The first round of a group that is entered so, and each other one."""
+        """Yield the graphs of a group's first round, for one entry, and of its later rounds."""
         yield self._graphs[entry]
         if entry[0] in self._later_graphs:
             yield self._later_graphs[entry[0]]
@@ -139,7 +147,7 @@ class PathLengths:
     def _group_rounds(
         self, group: int, entry: int, source: Source
     ) -> Generator[Entry, Rounds, Rounds]:
-        """All rounds of a group, entered at a leaf from a source."""
+        """Return the cost of all rounds of a group that is entered at a leaf from a source."""
         graph = yield from self._build_level(group, entry, source)
         self._graphs[group, entry, source] = graph
         first = self._group_round(group, graph)
@@ -150,7 +158,7 @@ class PathLengths:
                 level = yield from self._build_level(group, flow.start, ("repeat", group))
                 self._later_graphs[group] = level
                 self._later[group] = self._group_round(group, level)
-            # The way back to the start depends on what ended last.
+            # The cost of the step back to the start depends on the leaf that ended last.
             later = self._later[group]
         rounds = combine_rounds(group, flow, first, later, self.costs.standing_power)
         timed = flow.parent >= 0 and self.flow.timed[flow.parent]
@@ -180,7 +188,7 @@ class PathLengths:
     def _build_level(
         self, level: int, entry: int, source: Source
     ) -> Generator[Entry, Rounds, LevelGraph]:
-        """The graph of a level that is entered at a leaf from a source, with its distances."""
+        """Return the graph of a level that is entered at a leaf from a source, with distances."""
         graph = LevelGraph()
         number: dict[Key, int] = {}
 
@@ -194,7 +202,7 @@ class PathLengths:
         def hops(
             last: Source, target: int, cost: Cost, group_exit: GroupExit | None
         ) -> Iterator[Hop]:
-            """The steps to a leaf of the level: it may end, or its window may be over."""
+            """Yield the steps to a leaf of the level: it may end, or its window may close."""
             following = self._key_for(level, target, last)
             if not isinstance(following, int):
                 yield Hop(node(following), cost, group_exit, cost)
@@ -225,8 +233,8 @@ class PathLengths:
             elif is_entry(key):
                 rounds = yield key
                 continuations = [
-                    (without_wait, group_exit.cost, group_exit)
-                    for without_wait, group_exit in rounds.exits.items()
+                    (exit_key, group_exit.cost, group_exit)
+                    for exit_key, group_exit in rounds.exits.items()
                 ]
             else:
                 missed = cast(tuple[str, int], key)
@@ -248,7 +256,7 @@ class PathLengths:
         return level < 0 or self.flow.groups[level].contains(leaf)
 
     def _key_for(self, level: int, leaf: int, source: Source) -> Key:
-        """The node of a level that a leaf lies in."""
+        """Return the node of a level for a leaf: the leaf itself, or the group that contains it."""
         if self.flow.leaves[leaf].parent == level:
             return leaf
         children = self._children[level]
@@ -268,7 +276,7 @@ class PathLengths:
         return child, leaf, source
 
     def _compute_lengths(self, graph: LevelGraph, level: int) -> None:
-        """Distances to all nodes of a level, and its loops."""
+        """Compute the distances to all nodes of a level, and record its loops."""
         successors = [[hop.target for hop in hops] for hops in graph.hops]
         parts = components(successors)
         looping = [False] * len(graph.keys)
@@ -283,7 +291,7 @@ class PathLengths:
                     self._record_loop(
                         tuple(sorted(k for k in keys if isinstance(k, int))),
                         tuple(sorted({k[0] for k in keys if is_entry(k)})),
-                        has_exit=any(group_exit[0] in inside for group_exit in graph.exits)
+                        has_exit=any(exit[0] in inside for exit in graph.exits)
                         or any(t not in inside for node in part for t in successors[node]),
                     )
         order = [node for part in reversed(parts) for node in part]
@@ -296,13 +304,13 @@ class PathLengths:
         self, leaves: tuple[int, ...], groups: tuple[int, ...], *, has_exit: bool
     ) -> None:
         known = self.loops.get((leaves, groups))
-        # The same loop may be entered in several continuations, in time or not.
+        # The same loop may be entered from several sources, some of them too late to leave it.
         has_exit = has_exit or (known is not None and known.has_exit)
         self.loops[leaves, groups] = Loop(leaves, groups, has_exit)
 
 
 def _cost_to(level: LevelGraph, node: int) -> Cost:
-    """What it takes to come to a node of a level."""
+    """Return the cost to reach a node of a level."""
     return Cost(
         QuantityRange(level.least["time"][node], level.most["time"][node]),
         QuantityRange(level.least["energy"][node], level.most["energy"][node]),
@@ -310,13 +318,13 @@ def _cost_to(level: LevelGraph, node: int) -> Cost:
 
 
 class _Clock:
-    """The time since the mission's start, which windows go by."""
+    """Clock that counts from the mission's start, for steps with time windows."""
 
     def __init__(self, costs: StepCosts) -> None:
         self.costs = costs
 
     def soonest(self, hop: Hop, key: Key, here: float, latest_here: float) -> float:
-        """When a step is over at the soonest; infinite if it can't be taken."""
+        """Return the soonest end of a step in s; infinite if it can't be taken."""
         started = here + hop.before_target.time.least
         leaf = self._window(key)
         if leaf is None:
@@ -335,7 +343,7 @@ class _Clock:
         return max(started, flow.deadline) if ended >= flow.deadline - _TOLERANCE else math.inf
 
     def latest(self, hop: Hop, key: Key, here: float) -> float:
-        """When a step is over at the latest; minus infinity if it can't be taken."""
+        """Return the latest end of a step in s; minus infinity if it can't be taken."""
         started = here + hop.before_target.time.most
         leaf = self._window(key)
         if leaf is None:
@@ -350,7 +358,7 @@ class _Clock:
         return max(started, flow.deadline) if ended >= flow.deadline - _TOLERANCE else -math.inf
 
     def _window(self, key: Key) -> int | None:
-        """The leaf of a step whose window is to be looked at."""
+        """Return the leaf of a step if it has a window; None otherwise."""
         if is_entry(key):
             return None
         leaf = key if isinstance(key, int) else key[1]
@@ -360,12 +368,15 @@ class _Clock:
 
 
 def is_entry(key: Key) -> TypeGuard[Entry]:
-    """Whether a node is a group."""
+    """Return True if a node is a group."""
     return isinstance(key, tuple) and len(key) == 3
 
 
 def _find_shortest(graph: LevelGraph, quantity: str, clock: _Clock | None) -> None:
-    """Dijkstra's algorithm. With a clock, times are those since the mission's start."""
+    """Compute the shortest paths with Dijkstra's algorithm.
+
+    With a clock, the distances are times since the mission's start.
+    """
     of_time = quantity == "time"
     distance = [math.inf] * len(graph.keys)
     predecessors: list[tuple[int, GroupExit | None] | None] = [None] * len(graph.keys)
@@ -396,7 +407,7 @@ def _find_shortest(graph: LevelGraph, quantity: str, clock: _Clock | None) -> No
 def _find_longest(
     graph: LevelGraph, quantity: str, order: list[int], looping: list[bool], clock: _Clock | None
 ) -> None:
-    """The longest continuations; without bound in loops and after them."""
+    """Compute the longest paths; they are infinite in loops and after them."""
     of_time = quantity == "time"
     distance = [-math.inf] * len(graph.keys)
     predecessors: list[tuple[int, GroupExit | None] | None] = [None] * len(graph.keys)

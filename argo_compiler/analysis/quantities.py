@@ -1,8 +1,8 @@
-"""Durations and energies in words."""
+"""Texts for durations and energies."""
 
 
 def time_words(seconds: float) -> str:
-    """`47 s`, `12 min 30 s`, `2 h 5 min`."""
+    """Format a duration in s, such as `47 s`, `12 min 30 s` or `2 h 5 min`."""
     if seconds < 60:
         return f"{seconds:.3g} s"
     minutes, rest = divmod(round(seconds), 60)
@@ -13,5 +13,5 @@ def time_words(seconds: float) -> str:
 
 
 def energy_words(energy: float) -> str:
-    """`120 Wh`."""
+    """Format an energy in Wh, such as `120 Wh`."""
     return f"{energy:.3g} Wh" if energy < 1000 else f"{energy:.0f} Wh"

@@ -1,13 +1,14 @@
-"""What readings may be when a task has ended, over all paths, and which transitions that leaves.
+"""Reachability of nodes and transitions on all paths, with the readings that are possible there.
 
-A fixed point over the flow graph: at each node the set of regions that the last value of each
-object may lie in, and whether it may be missing, unreadable or failed. A transition that is taken
-narrows the sets to what its conditions say, one that is passed over to what they exclude. All sets
-are as large as they could be or larger, so what can't happen here can't happen at all.
+A fixed point over the control-flow graph. The state of a node says, for each object, in which
+regions its last value may lie, and whether its reading may be missing, unreadable or failed. A
+transition that is taken narrows the state to the readings that satisfy its conditions; a transition
+that is not taken narrows it to the others. The states are over-approximations: what can't happen in
+them can't happen at all.
 
-A value may also come late: an action that is cancelled may still succeed, while the machine
-already stands at a WAIT that follows. And a WAIT for conditions waits for values that others tell,
-which may be at any time. Such values are not narrowed.
+A value may also arrive late: an action that is being cancelled may still succeed while the machine
+is already at a WAIT that follows. And a WAIT for conditions waits for values that others report,
+which may happen at any time. Such values are not narrowed.
 """
 
 import heapq
@@ -21,37 +22,37 @@ from argo_compiler.base.catalog import Catalog
 from argo_compiler.il import Condition, ConditionType
 
 TRACKED_BITS = 800_000_000
-"""of all nodes together; beyond, the objects that need the most are not kept track of"""
-_WIDEN_AFTER = 20  # updates of a node, after which what still changes may be anything
-_GIVE_UP_AFTER = 40  # updates of a node, after which all its values may be anything
+"""greatest number of bits of all nodes together; beyond it, the largest objects are not tracked"""
+_WIDEN_AFTER = 20  # updates of a node, after which objects that still change may have any reading
+_GIVE_UP_AFTER = 40  # updates of a node, after which all objects may have any reading
 
 
 @dataclass(frozen=True, slots=True)
 class GuardStatus:
-    """What is known when one transition of a leaf is looked at."""
+    """Result of evaluating the conditions of one transition of a leaf."""
 
     possible: bool
-    """its conditions may hold"""
+    """whether the conditions can be satisfied"""
     certain: bool
-    """they do hold"""
+    """whether the conditions are always satisfied"""
     state: int
-    """the values that may be there"""
+    """readings that are possible before the evaluation"""
 
 
 @dataclass(frozen=True)
 class Reachability:
-    """Which nodes may be reached, with which values, and which ways on may be taken."""
+    """Nodes that can be reached, with the possible readings, and transitions that can be taken."""
 
     fields: Fields
     states: tuple[int | None, ...]
-    """at each node before its action; None where no path leads"""
-    looks: tuple[tuple[GuardStatus, ...], ...]
-    """of each leaf: its conditional transitions, up to the last one that may be looked at, and
-    then, if it may be, the tail"""
+    """for each node, the readings before its action; None if no path leads there"""
+    guards: tuple[tuple[GuardStatus, ...], ...]
+    """for each leaf, its conditional transitions up to the last one that may be evaluated, and then
+    the unconditional transition if it can be taken"""
     failures: bool = False
     """whether any action may fail"""
     late: tuple[int, ...] = ()
-    """at each node: what may still come there, from an action that is being cancelled"""
+    """for each node, the readings that an action that is being cancelled may still report there"""
 
     def is_reached(self, node: int) -> bool:
         return self.states[node] is not None
@@ -63,7 +64,10 @@ class Reachability:
         return len(self.guards[leaf]) > len(flow.leaves[leaf].conditional)
 
     def targets(self, flow: Flow, leaf: int) -> Iterator[int]:
-        """The nodes that may come next when a leaf has ended, or failed as it may."""
+        """Yield the nodes that can follow when a leaf has ended or failed.
+
+        Without `failures`, only a WAIT that gives up fails.
+        """
         successors = flow.leaves[leaf].conditional
         for guard, (_, target) in zip(self.guards[leaf], successors, strict=False):
             if guard.possible:
@@ -75,7 +79,7 @@ class Reachability:
             yield failure
 
     def targets_when_missed(self, flow: Flow, leaf: int) -> Iterator[int]:
-        """The nodes that may come next when the hard window of a leaf is over."""
+        """Yield the nodes that can follow when the hard window of a leaf has closed."""
         here = flow.leaves[leaf]
         if here.deadline is None:
             return
@@ -88,9 +92,10 @@ class Reachability:
 
 
 def make_fields(flow: Flow, catalog: Catalog | None, bits: int = TRACKED_BITS) -> Fields:
-    """The scales of all objects that conditions compare, as many tracked as `bits` allows.
+    """Return the scales of all compared objects, and a layout with as many as `bits` allows.
 
-    Objects that are compared where they were not just measured come first: those need it most.
+    Objects that are compared at a task that does not measure them are tracked first, as they need
+    it most.
     """
     known = (
         {} if catalog is None else {str(c.id): (c.range, c.nominal) for c in catalog.checkpoints}
@@ -117,12 +122,19 @@ def make_fields(flow: Flow, catalog: Catalog | None, bits: int = TRACKED_BITS) -
 
 
 def compute_reachability(flow: Flow, fields: Fields, failures: bool) -> Reachability:
-    """The fixed point. With `failures` any action may fail and any measurement lack its value."""
+    """Return the fixed point.
+
+    With `failures`, any action may fail and any measurement may lack its value.
+    """
     return ReachabilitySearch(flow, fields, failures).run()
 
 
 def reported_by_others(flow: Flow) -> frozenset[str]:
-    """The objects that conditions look at and a WAIT waits for, or no task measures."""
+    """Return the objects whose values others may report.
+
+    These are the objects that a WAIT waits for, and those that are compared but that no task
+    measures.
+    """
     compared = {
         condition.object_id
         for conditions in (
@@ -141,20 +153,21 @@ def reported_by_others(flow: Flow) -> frozenset[str]:
 
 
 _GuardResult = tuple[GuardStatus, int, int]
-"""what is known of a transition, where it leads, and the values if it is taken"""
+"""status of a transition, its target node, and the readings if it is taken"""
 
 
 @dataclass(frozen=True, slots=True)
 class _Effect:
-    """What the end of a measurement does to the values."""
+    """Change of the state at the end of a measurement."""
 
-    kept: int
-    """those of all other objects"""
+    mask: int
+    """bits of all other objects, which do not change"""
     added: int
+    """readings that become possible"""
 
 
 class ReachabilitySearch:
-    """The ways on from each node, and the fixed point in the making."""
+    """Successors of each node, and the search for the fixed point; its states grow during `run`."""
 
     def __init__(self, flow: Flow, fields: Fields, failures: bool) -> None:
         self.flow = flow
@@ -162,7 +175,7 @@ class ReachabilitySearch:
         self.failures = failures
         self.states: list[int | None] = [None] * flow.size
         self.updates = [0] * flow.size
-        # Nodes in the order of the mission's list, so that most are looked at once.
+        # Nodes in the order of the mission's list, so that most are visited only once.
         rank = [
             *((i, 0) for i in range(len(flow.leaves))),
             *((g.last, len(flow.groups) - k) for k, g in enumerate(flow.groups)),
@@ -171,11 +184,11 @@ class ReachabilitySearch:
         ]
         self.order = sorted(range(flow.size), key=rank.__getitem__)
         self.rank_of = [0] * flow.size
-        """of each node in the order"""
+        """for each node, its index in the order"""
         for number, node in enumerate(self.order):
             self.rank_of[node] = number
         self.pending: list[int] = []
-        """places of nodes, a heap"""
+        """heap of the ranks of nodes to visit"""
         self.queued = [False] * flow.size
         self.satisfying: dict[tuple[object, ...], int] = {}
         self.reported = sum_bits(self._values(o) for o in reported_by_others(flow))
@@ -183,12 +196,12 @@ class ReachabilitySearch:
         self.guards: list[tuple[GuardStatus, ...]] = [()] * len(flow.leaves)
         self._effects: dict[tuple[str, bool], _Effect] = {}
         self.effects = [*map(self._effect_of, flow.leaves)]
-        """for each leaf, what its end changes"""
+        """for each leaf, the change at its end; None if there is none"""
         self.only_successor = [
             *map(self._find_only_successor, flow.leaves),
             *([None] * (flow.size - len(flow.leaves))),
         ]
-        """for each node, the one that always follows, if it is so simple"""
+        """for each node, the node that always follows; None if there may be several"""
 
     def _find_only_successor(self, leaf: LeafFlow) -> int | None:
         timed = leaf.parent >= 0 and self.flow.timed[leaf.parent]
@@ -249,7 +262,7 @@ class ReachabilitySearch:
         return joined
 
     def successors(self, node: int, state: int) -> Iterator[tuple[int, int]]:
-        """Where to go on from a node with some readings, and with which ones then."""
+        """Yield the nodes that can follow a node in a state, each with the state there."""
         return self._successors(node, state, self._evaluate_guards(node, state))
 
     def _successors(
@@ -287,7 +300,7 @@ class ReachabilitySearch:
             yield flow.time_up(group.parent), state
 
     def _successors_of_round(self, number: int, state: int) -> Iterator[tuple[int, int]]:
-        """Where to go on at the end of a round."""
+        """Yield the nodes that can follow the end of a round, each with the state there."""
         group = self.flow.groups[number]
         guard, ended, repeated = self._evaluate(group.until, state, None)
         by_value = bool(group.until)
@@ -300,16 +313,19 @@ class ReachabilitySearch:
             yield group.successor, ended | changing
 
     def _fails_by_itself(self, leaf: LeafFlow) -> bool:
-        """Whether a leaf may fail although no action does."""
+        """Return True if a leaf may fail although no action fails."""
         return leaf.may_give_up or (leaf.deadline is not None and leaf.missed is None)
 
     def _values(self, object_id: str) -> int:
-        """The set in which an object has any value."""
+        """Return the state bits of all values of an object."""
         shift = self.fields.shift.get(object_id)
         return 0 if shift is None else self.fields.scales[object_id].possible << shift
 
     def _late_readings(self, object_id: str) -> int:
-        """What may come of a measurement that is cancelled: a success with a value or without."""
+        """Return the readings that a cancelled measurement may still report: it may succeed.
+
+        With failures, the success may have no value.
+        """
         shift = self.fields.shift.get(object_id)
         if shift is None or not self.failures:
             return self._values(object_id)
@@ -317,7 +333,7 @@ class ReachabilitySearch:
         return (scale.possible | scale.unreadable) << shift
 
     def _after_success(self, leaf: LeafFlow, state: int) -> int:
-        """After a measurement that succeeded."""
+        """Return the state after the leaf's measurement succeeded."""
         object_id = leaf.measures
         if object_id is None or object_id not in self.fields.scales:
             return state
@@ -327,7 +343,7 @@ class ReachabilitySearch:
         )
 
     def _after_failure(self, leaf: LeafFlow, state: int) -> int:
-        """After one that failed for good."""
+        """Return the state after the leaf's measurement finally failed."""
         object_id = leaf.measures
         if object_id is None or object_id not in self.fields.scales:
             return state
@@ -335,11 +351,12 @@ class ReachabilitySearch:
 
     def _without_value(self, object_id: str) -> int:
         scale = self.fields.scales[object_id]
-        # What is done by hand without a value leaves none; it is no failure, but comes here too.
+        # A task that a person does without giving a value leaves no reading. That is no failure,
+        # but it is treated here too.
         return scale.without_value if self.failures else scale.failed
 
     def _effect_of(self, leaf: LeafFlow) -> _Effect | None:
-        """What the end of a leaf changes, be it without a value."""
+        """Return the change of the state at the end of a leaf, with or without a value."""
         object_id = leaf.measures
         if object_id is None or object_id not in self.fields.scales:
             return None
@@ -350,27 +367,29 @@ class ReachabilitySearch:
             if unmeasured:
                 readings |= self._without_value(object_id)
             added = self.fields.set(0, object_id, readings)
-            kept = self.fields.set(self.fields.anything, object_id, 0)
-            self._effects[key] = _Effect(kept, added | self.reported)
+            mask = self.fields.set(self.fields.anything, object_id, 0)
+            self._effects[key] = _Effect(mask, added | self.reported)
         return self._effects[key]
 
     def _after_leaf(self, node: int, state: int) -> int:
-        """The values when a leaf has ended."""
-        change = self.effects[node]
-        return state if change is None else state & change.kept | change.added
+        """Return the state when a leaf has ended."""
+        effect = self.effects[node]
+        return state if effect is None else state & effect.mask | effect.added
 
     def _may_go_on_unmeasured(self, leaf: LeafFlow) -> bool:
-        """Whether a window that is missed counts as the end of the task."""
+        """Return True if a missed window counts as a usual end of the task."""
         return leaf.deadline is not None and leaf.missed is None and leaf.failure is None
 
     def _evaluate_guards(self, node: int, state: int) -> list[_GuardResult]:
-        """The transitions of a leaf with some readings as long as they may be looked at; nothing of
-        other nodes."""
+        """Return the results of the transitions of a leaf that may be evaluated, in order.
+
+        The unconditional transition comes last, if it can be taken. Other nodes have no results.
+        """
         if not self.flow.is_leaf(node):
             return []
         leaf = self.flow.leaves[node]
         results: list[_GuardResult] = []
-        # What was just measured is there and new, tracked or not.
+        # A value that was just measured exists and is new, whether its object is tracked or not.
         fresh = None if self.failures or self._may_go_on_unmeasured(leaf) else leaf.measures
         changing = self.reported if leaf.wait is None else self.reported | self.late[node]
         state = self._after_leaf(node, state) | changing
@@ -386,7 +405,7 @@ class ReachabilitySearch:
     def _evaluate(
         self, conditions: tuple[Condition, ...], state: int, fresh: str | None
     ) -> tuple[GuardStatus, int, int]:
-        """Whether conditions hold, and the values if they do and if they don't."""
+        """Return the status of conditions, and the states if they are satisfied and if not."""
         fields = self.fields
         taken = state
         possible = True
@@ -399,7 +418,7 @@ class ReachabilitySearch:
             if o == fresh and condition.type is ConditionType.STALE:
                 possible = False
             taken = fields.set(taken, o, possible_readings & satisfying)
-            # Those two say nothing of a value when they don't hold.
+            # If one of these two is not satisfied, that says nothing about the value.
             timely = condition.type not in (ConditionType.STALE, ConditionType.ABNORMAL)
             timely = timely and (condition.max_age is None or o == fresh)
             if not timely or self._possible_readings(state, o, fresh) & ~satisfying:
@@ -407,10 +426,10 @@ class ReachabilitySearch:
         rest = state
         if len(unsure) == 1 and unsure[0][1]:
             condition = unsure[0][0]
-            left = self._possible_readings(state, condition.object_id, fresh) & ~self._satisfying(
-                condition
-            )
-            rest = fields.set(state, condition.object_id, left)
+            excluded = self._possible_readings(
+                state, condition.object_id, fresh
+            ) & ~self._satisfying(condition)
+            rest = fields.set(state, condition.object_id, excluded)
         return GuardStatus(possible, possible and not unsure, state), taken, rest
 
     def _possible_readings(self, state: int, object_id: str, fresh: str | None) -> int:
@@ -422,21 +441,23 @@ class ReachabilitySearch:
     def _satisfying(self, condition: Condition) -> int:
         key = (condition.object_id, condition.type, condition.param1, condition.param2,
                condition.inclusive)  # fmt: skip
-        found = self.satisfying.get(key)
-        if found is None:
+        satisfying = self.satisfying.get(key)
+        if satisfying is None:
             scale: Scale = self.fields.scales[condition.object_id]
-            found = self.satisfying[key] = scale.satisfying(condition)
-        return found
+            satisfying = self.satisfying[key] = scale.satisfying(condition)
+        return satisfying
 
 
 def compared_objects(conditions: Iterable[Condition]) -> frozenset[str]:
-    """The objects whose readings the conditions look at."""
+    """Return the objects whose readings the conditions compare."""
     return frozenset(c.object_id for c in conditions)
 
 
 def _late_readings(flow: Flow, readings: Callable[[str], int]) -> list[int]:
-    """For each node, the readings that may come while the machine stands there, from an action that
-    is being cancelled."""
+    """Return for each node the readings that an action being cancelled may still report there.
+
+    `readings` gives the readings that the measurement of an object may report late.
+    """
     late = [0] * flow.size
     pending = [
         i
@@ -457,7 +478,7 @@ def _late_readings(flow: Flow, readings: Callable[[str], int]) -> list[int]:
 
 
 def _successors_while_cancelling(flow: Flow, node: int) -> tuple[int, ...]:
-    """What may follow a node before an action that is being cancelled has ended."""
+    """Return the nodes that can follow a node while an action is still being cancelled."""
     if node == flow.end_node:
         return ()
     if not flow.is_leaf(node):
@@ -468,11 +489,11 @@ def _successors_while_cancelling(flow: Flow, node: int) -> tuple[int, ...]:
         around = group.parent >= 0 and flow.timed[group.parent]
         return (group.successor, *((flow.time_up(group.parent),) if around else ()))
     leaf = flow.leaves[node]
-    found = []
+    targets = []
     if leaf.wait is not None or leaf.deadline is not None or leaf.leaf.task.time_limit is not None:
-        found += [target for _, target in leaf.conditional]
-        found += [leaf.unconditional]
-        found += [way for way in (leaf.failure, leaf.missed) if way is not None]
+        targets += [target for _, target in leaf.conditional]
+        targets += [leaf.unconditional]
+        targets += [target for target in (leaf.failure, leaf.missed) if target is not None]
     if leaf.parent >= 0 and flow.timed[leaf.parent]:
-        found.append(flow.time_up(leaf.parent))
-    return tuple(found)
+        targets.append(flow.time_up(leaf.parent))
+    return tuple(targets)

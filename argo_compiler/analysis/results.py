@@ -1,4 +1,4 @@
-"""What the analysis finds out about a mission, as data."""
+"""Results of the analysis of a mission, as data."""
 
 from enum import StrEnum
 
@@ -8,39 +8,39 @@ from argo_compiler.diagnostics import Diagnostic
 
 
 class Verdict(StrEnum):
-    """Whether something may happen on some path."""
+    """Verdict on whether something can happen on some execution path."""
 
     NEVER = "never"
     """on no path, whatever is measured and whatever fails"""
     AFTER_FAILURE = "after failure"
-    """only after an action has failed, a measurement gave no value, or a person did or skipped a
+    """only after an action failed, a measurement gave no value, or a person did or skipped a
     task"""
     POSSIBLE = "possible"
-    """nothing excludes it"""
+    """not excluded by the analysis"""
     ALWAYS = "always"
-    """whenever it is looked at, unless a measurement fails or a person does or skips a task"""
+    """whenever it is evaluated, unless a measurement fails or a person does or skips a task"""
 
 
 class TransitionFacts(Model):
-    """A transition of a task. Indices count from 0 in the task's list."""
+    """Verdict on one transition of a task; `index` counts from 0 in the task's list."""
 
     index: int
     target: str
     verdict: Verdict
-    """NEVER also where the task itself can't be reached"""
+    """NEVER also if the task itself can't be reached"""
 
 
 class TaskFacts(Model):
-    """A task, START excepted."""
+    """Verdicts on one task and its transitions; there are none on START."""
 
     task: str
     verdict: Verdict
-    """NEVER, AFTER_FAILURE or POSSIBLE: whether it can be reached"""
+    """whether the task can be reached: NEVER, AFTER_FAILURE or POSSIBLE"""
     transitions: tuple[TransitionFacts, ...] = ()
 
 
 class GroupFacts(Model):
-    """A group: whether it may begin another round, and whether it may end by itself."""
+    """Verdicts on one group: whether it can start another round, and can end by itself."""
 
     group: str
     repeats: Verdict
@@ -48,15 +48,15 @@ class GroupFacts(Model):
 
 
 class Stretch(Model):
-    """A part of a path: one task, or all rounds of a group."""
+    """Part of an execution path: one task, or all rounds of a group."""
 
     task: str | None = None
     group: str | None = None
     rounds: int = 1
     missed: bool = False
-    """whether the task's window was over before it had ended"""
+    """whether the task's window closed before the task ended"""
     until: float
-    """when it has ended, counted from the mission's start (s, or Wh)"""
+    """time (s) or energy (Wh) spent from the mission's start to the end of this part"""
 
     @property
     def words(self) -> str:
@@ -66,48 +66,56 @@ class Stretch(Model):
 
 
 class Bound(Model):
-    """A bound, and a path that comes to it where one could be given."""
+    """Bound on the duration or the energy, with a path that attains it if one is known."""
 
     value: float | None
-    """s or Wh; None: there is no bound"""
+    """s or Wh; None if there is no bound"""
     path: tuple[Stretch, ...] = ()
 
 
 class Bounds(Model):
-    """What the mission takes from its start to its end if no action fails and nothing happens, be
-    it that its time is up: as if there was no reaction to that."""
+    """Least and greatest duration or energy of a mission from its start to its end.
+
+    They hold if no action fails and no event occurs but those that a WAIT waits for. Reactions are
+    left out, also the reaction to the end of `max_duration`.
+    """
 
     least: Bound
     most: Bound
 
 
 class Analysis(Model):
-    """All that was found. `diagnostics` says in words what a person should know."""
+    """All results of an analysis; `diagnostics` are the messages for people."""
 
     diagnostics: tuple[Diagnostic, ...]
     tasks: tuple[TaskFacts, ...]
     groups: tuple[GroupFacts, ...]
     ends: Verdict
-    """whether the mission can come to its end"""
+    """whether the mission can reach its end"""
     duration: Bounds | None = None
-    """s; None without travel times, or where the mission can't end"""
+    """s; None without travel times, or if the mission can't end"""
     energy: Bounds | None = None
     """Wh"""
     duration_with_failures: Bound | None = None
-    """s at most whatever fails and occurs, reactions included, if no person interrupts; a `value`
-    of None: there is no bound. None: it was not looked at"""
+    """upper bound in s, whatever fails and whatever events occur, reactions included, if no person
+    interrupts; its `value` is None if there is no bound; None if it was not computed"""
     unjudged: tuple[str, ...] = ()
-    """what was left out because the mission is too large or too deeply nested, in words"""
+    """texts that name what was left out: the mission is too large or too deeply nested, or no
+    witness proves a claim"""
     witnesses: Witnesses | None = None
-    """what shows that the verdicts are right"""
+    """evidence for the verdicts, which a checker can verify"""
 
     @property
     def reachable(self) -> frozenset[str]:
-        """The names of all tasks that may be reached."""
+        """Names of all tasks that can be reached."""
         return frozenset(t.task for t in self.tasks if t.verdict is not Verdict.NEVER)
 
     def task(self, name: str) -> TaskFacts:
-        """The facts of a task; KeyError if there is none of that name."""
+        """Return the verdicts on a task.
+
+        Raises:
+            KeyError: There is no task of that name.
+        """
         for facts in self.tasks:
             if facts.task == name:
                 return facts

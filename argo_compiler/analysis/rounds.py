@@ -1,4 +1,4 @@
-"""What all rounds of a group take together, from what one round takes."""
+"""Cost of all rounds of a group, computed from the cost of one round."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -7,21 +7,22 @@ from dataclasses import dataclass
 from argo_compiler.analysis.flow import GroupFlow
 from argo_compiler.analysis.step_costs import NOTHING, Cost, QuantityRange, Source
 
-_TOLERANCE = 1e-9  # of a round: sums of floats are not exact
-_MOST_COUNTED = 1e12  # rounds; more of them are not counted
+_TOLERANCE = 1e-9  # share of a round, as sums of floats are not exact
+_MOST_COUNTED = 1e12  # rounds; a greater number counts as infinite
 
 ExitKey = tuple[Source, int]
-"""how a group is left: what ended last, and the node that is next"""
+"""exit of a group: the source of the step out of it, and the next node"""
 
 
 @dataclass(frozen=True, slots=True)
 class GroupExit:
-    """A way out of a group, counted from when it was entered."""
+    """Cost of one exit of a group since it was entered, with the number of rounds."""
 
     cost: Cost
     fewest: float
+    """least number of rounds, the last one included"""
     most: float
-    """rounds, the last one included"""
+    """greatest number of rounds, the last one included"""
 
     def __or__(self, other: "GroupExit") -> "GroupExit":
         return GroupExit(
@@ -31,16 +32,16 @@ class GroupExit:
 
 @dataclass(frozen=True)
 class GroupRound:
-    """One round of a group."""
+    """Cost of one round of a group."""
 
     ends: Mapping[Source, Cost]
-    """where the round comes to its end, by what ended last"""
+    """cost until the end of the round, for each source of the last step"""
     exits: Mapping[ExitKey, Cost]
-    """where the group is left within the round"""
+    """cost of each exit that leaves the group within the round"""
     energy: float
-    """Wh at most at any moment of it"""
+    """greatest energy in Wh at any moment of the round"""
     time: float
-    """s at most that it may go on, be it without coming to an end"""
+    """greatest duration in s, also if the round does not reach its end"""
 
     @property
     def end(self) -> Cost | None:
@@ -49,19 +50,19 @@ class GroupRound:
 
 @dataclass(frozen=True)
 class Rounds:
-    """All ways out of a group, entered in one way."""
+    """Cost of all rounds of a group that is entered at one leaf from one source."""
 
     exits: Mapping[ExitKey, GroupExit]
     energy: float
-    """Wh at most at any moment inside"""
+    """greatest energy in Wh at any moment inside the group"""
     time: float
-    """s at most that may be spent inside"""
+    """greatest time in s inside the group"""
     unlimited: bool
-    """rounds may follow each other without any limit of the group's own"""
+    """whether the rounds may repeat without a limit of the group itself"""
 
 
 def union(costs: Iterable[Cost]) -> Cost | None:
-    """The smallest cost that holds all of them."""
+    """Return the smallest cost range that contains all costs; None if there are none."""
     joined: Cost | None = None
     for cost in costs:
         joined = cost if joined is None else joined | cost
@@ -75,8 +76,15 @@ def combine_rounds(
     later: GroupRound | None,
     standing_power: float = 0.0,
 ) -> Rounds:
-    """The ways out of group `number` when its first round is `first`, and each other `later`.
-    `standing_power` (W) is drawn while a round is not due."""
+    """Return the cost of all rounds of a group.
+
+    Args:
+        number: Number of the group.
+        group: The group.
+        first: Cost of its first round.
+        later: Cost of each later round; None if there is none.
+        standing_power: Power in W that the robot draws while the next round is not yet due.
+    """
     return _Combination(number, group, first, later, standing_power).rounds()
 
 
@@ -116,8 +124,7 @@ class _Combination:
         )
 
     def _range(self) -> tuple[float, float]:
-        """How many rounds are completed at least when the group ends with one, and begun at
-        most."""
+        """Return the fewest rounds completed if a round ends the group, and the most started."""
         end, period = self.first_end, self.period
         if end is None:
             return 0, 1
@@ -128,7 +135,7 @@ class _Combination:
         elif math.isinf(self.limit):
             fewest = math.inf
         else:
-            # With a period each round begins after the one before, or when it is due.
+            # With `every`, each round starts after the previous one, or when it is due.
             first = max(end.time.most, period.time.most if self.every else 0.0)
             longest = max(period.time.most, self.every)
             fewest = 1
@@ -142,13 +149,13 @@ class _Combination:
         elif math.isinf(self.limit) or period is None or period.time.least == 0:
             most = math.inf if period is not None else 2
         else:
-            # Before a hard stop a round may begin at the very moment, and be cut at once.
+            # A round may start at the very moment of a hard stop, which interrupts it at once.
             count_periods = _periods_started if self.group.hard else _periods_to_fill
             most = 1 + count_periods(self.limit - end.time.least, period.time.least, 1)
         return min(fewest, self.count), min(most, self.count)
 
     def _end_after(self, rounds: float) -> Cost | None:
-        """When so many rounds have been completed."""
+        """Return the cost until `rounds` rounds have been completed; None if they can't be."""
         if self.first_end is None or rounds < 1:
             return None
         if rounds == 1:
@@ -158,7 +165,7 @@ class _Combination:
         cost = self.first_end + self.period.times(rounds - 1)
         if not self.every:
             return cost
-        # The last round that had to be waited for is the second one, or the last of all, or none.
+        # The last round that the robot had to wait for is the second one, the last one, or none.
         time = QuantityRange(
             max(cost.time.least, self._end_if_waited(rounds, self.period.time.least)),
             max(cost.time.most, self._end_if_waited(rounds, self.period.time.most)),
@@ -166,14 +173,16 @@ class _Combination:
         return Cost(time, cost.energy + self._idle_energy(rounds))
 
     def _end_if_waited(self, rounds: float, period: float) -> float:
-        """When so many rounds are over if one of them had to be waited for."""
+        """Return the time until `rounds` rounds have ended if the robot had to wait for one."""
         if math.isinf(rounds):
             return math.inf
         return max(self.every + (rounds - 1) * period, (rounds - 1) * self.every + period)
 
     def _last_start(self, rounds: float) -> Cost:
-        """When the last of so many rounds begins: two or more, and no more than two if only the
-        first one comes to its end."""
+        """Return the cost until the last of `rounds` rounds starts.
+
+        `rounds` is at least two, and two if only the first round reaches its end.
+        """
         previous_end = self._end_after(rounds - 1)
         assert previous_end is not None
         if not self.every:
@@ -183,13 +192,13 @@ class _Combination:
         return Cost(time, previous_end.energy + self._idle_energy(rounds))
 
     def _idle_energy(self, rounds: float) -> QuantityRange:
-        """Wh while rounds are not due."""
+        """Return the energy in Wh drawn while the robot waits for rounds that are not yet due."""
         if not self.standing_power:
             return NOTHING
         return QuantityRange(0.0, self.standing_power * (rounds - 1) * self.every / 3600)
 
     def _leave_within(self) -> None:
-        """By transitions of members."""
+        """Add the exits by transitions of tasks within a round."""
         for exit_key, cost in self.first.exits.items():
             self._add(exit_key, cost, 1, 1)
         if self.later is None or self.first_end is None or self.most < 2:
@@ -197,7 +206,7 @@ class _Combination:
         soonest, latest = self._last_start(2), self._last_start(self.most)
         for exit_key, cost in self.later.exits.items():
             least = soonest.time.least + cost.time.least
-            # No round begins after the limit.
+            # No round starts after the limit.
             most = min(latest.time.most, self.limit) + cost.time.most
             later = Cost(
                 QuantityRange(least, max(most, least)),
@@ -208,7 +217,7 @@ class _Combination:
             self._add(exit_key, later, 2, self.most)
 
     def _leave_at_end(self) -> None:
-        """By the unconditional transition, after the last round."""
+        """Add the exits by the unconditional transition, after the last round."""
         cost, fewest, most = self._end_of_last()
         if cost is None:
             return
@@ -228,7 +237,7 @@ class _Combination:
         if math.isinf(self.limit):
             return by_count, self.count, self.count
         if self.group.hard:
-            # At the limit itself the time-out takes over.
+            # At the limit, the time-out ends the group instead.
             return by_count, self.count, self.count
         by_time = self._end_after(self.fewest)
         if by_time is None:
@@ -242,7 +251,7 @@ class _Combination:
         return Cost(QuantityRange(min(least, most), most), energy), self.fewest, self.most
 
     def _end_by_value(self) -> tuple[Cost, float, float]:
-        """After any round, if what it is repeated until holds then."""
+        """Return cost, fewest and most rounds if `until` may end the group after any round."""
         assert self.first_end is not None
         last = self._end_after(self.most)
         if last is None:
@@ -252,14 +261,14 @@ class _Combination:
         return Cost(QuantityRange(ends.time.least, most), ends.energy), 1, self.most
 
     def _longest(self, last: Cost | None) -> float:
-        """s after which a round that was completed has been the last one."""
+        """Return the latest time in s at which the last round can end, at or after the limit."""
         assert self.first_end is not None
         round_most = 0.0 if self.period is None else self.period.time.most
         most = max(self.first_end.time.most, self.limit + round_most)
         return most if last is None else min(most, last.time.most)
 
     def _time_out(self) -> None:
-        # Rounds need not come to their end before the time is up.
+        # Rounds need not reach their end before the time is up.
         first = self.first.time
         longest = 0.0
         if self.later is not None:
@@ -271,11 +280,11 @@ class _Combination:
         if all_rounds < self.limit:
             return
         completed = 0.0
-        # What begins when the time is up has not ended, even if it takes no time.
+        # An action that starts when the time is up has not ended, even if it takes no time.
         if self.first_end is not None and first < self.limit:
             completed = 1.0
             if self.period is not None and self.count > 1:
-                # The round that reaches the limit is not among those completed for sure.
+                # The round that reaches the limit may not be completed.
                 completed = max(1.0, _periods_to_fill(self.limit - first, longest, -1))
             completed = min(completed, self.count)
         least = self._end_after(1 if math.isinf(completed) else completed)
@@ -313,7 +322,10 @@ class _Combination:
 
 
 def _due_before(limit: float, every: float) -> float:
-    """How many rounds are due before a time is up, if one is due each so many seconds."""
+    """Return how many rounds are due before `limit` (s) if one is due each `every` seconds.
+
+    It is infinite if `every` is 0.
+    """
     if not every or limit / every > _MOST_COUNTED:
         return math.inf
     rounds = math.ceil(limit / every)
@@ -325,16 +337,19 @@ def _due_before(limit: float, every: float) -> float:
 
 
 def _periods_started(time: float, period: float, side: int) -> float:
-    """How many periods begin within the time, one that begins at its very end included."""
+    """Return how many periods start within a time, one that starts at its very end included.
+
+    `side` is 1 or -1: the direction in which rounding may err.
+    """
     return 1 + math.floor(time / period + side * _TOLERANCE)
 
 
 def _periods_to_fill(time: float, period: float, side: int) -> float:
-    """How many periods it takes to fill the time; `side` says where rounding may err to."""
+    """Return how many periods fill a time; `side`, 1 or -1, is the sign of a rounding error."""
     if period == 0:
         return math.inf
     if math.isinf(period):
         return 1
-    # Whole seconds add up exactly, other times nearly.
+    # Sums of whole seconds are exact; sums of other times are not.
     exact = time.is_integer() and period.is_integer()
     return math.ceil(time / period + (0.0 if exact else side * _TOLERANCE))

@@ -1,4 +1,4 @@
-"""What each step of a flow takes: between which durations and energies, over all standings."""
+"""Costs of the steps of a control-flow graph: ranges of time and energy over all robot poses."""
 
 import math
 from collections import deque
@@ -12,18 +12,16 @@ from argo_compiler.base.graphs import components
 from argo_compiler.il import Mission, Task
 
 BEGIN = "begin"
-"""the source of the first step"""
+"""source of the first step"""
 ANY = "any"
-"""the source where many are not told apart"""
-_MOST_POSES = (
-    4  # of one leaf that are told apart: from where a checkpoint is read depends on the way
-)
-_MOST_WAIT_POSITIONS = 64  # of one wait, likewise
+"""source that stands for all sources"""
+_MOST_POSES = 4  # distinguished after one leaf; the pose to read from depends on the path there
+_MOST_WAIT_POSITIONS = 64  # positions distinguished at one WAIT
 
 
 @dataclass(frozen=True, slots=True)
 class QuantityRange:
-    """Between what a quantity lies, `most` perhaps infinite."""
+    """Range of a quantity; `most` may be infinite."""
 
     least: float
     most: float
@@ -35,7 +33,7 @@ class QuantityRange:
         return QuantityRange(min(self.least, other.least), max(self.most, other.most))
 
     def times(self, count: float) -> "QuantityRange":
-        """For as many of it; nothing, if none are."""
+        """Return the range multiplied by a count; NOTHING if the count is not positive."""
         if count <= 0:
             return NOTHING
         return QuantityRange(
@@ -48,7 +46,7 @@ NOTHING = QuantityRange(0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class Cost:
-    """What something takes."""
+    """Cost in time and energy."""
 
     time: QuantityRange
     """s"""
@@ -71,27 +69,27 @@ FREE = Cost(NOTHING, NOTHING)
 _UNLIMITED = Cost(QuantityRange(0.0, math.inf), QuantityRange(0.0, math.inf))
 
 Source = int | tuple[str, int] | str
-"""Where a step begins: after a leaf, BEGIN, ANY, ("cut", g) when the time of group g was up,
-("missed", i) when the window of leaf i was over, or ("repeat", g) at the end of a round of g,
-whatever ended last."""
+"""Start of a step: a leaf that has ended, BEGIN, ANY, ("cut", g) after the time of group g was up,
+("missed", i) after the window of leaf i had closed, or ("repeat", g) after a round of group g,
+whichever leaf ended last."""
 
 
 @dataclass(frozen=True, slots=True)
 class RobotPosition:
-    """Where the robot is: at a standing, or somewhere on its way to it."""
+    """Position of the robot: at a pose, or somewhere on its way to a leaf's pose."""
 
     pose: RobotPose
     on_way_to: int | None = None
-    """the leaf whose action was cancelled on the way; None: it stands there"""
+    """leaf whose action was cancelled on the way; None if the robot stands at the pose"""
 
 
 class StepCosts:
-    """The steps of a mission. Holds what was asked of the travel before.
+    """Costs of all steps of a mission, computed once from the travel.
 
-    Without travel all steps are free. If the paths have failures, any action may fail, at the
-    latest when it would have been done, and is tried again as its task says. Then only what a step
-    takes at most is right, and where a failed action has left the robot is known less well: between
-    two places of the plan of which one follows the other.
+    Without travel, all steps cost between nothing and any amount. If the reachability includes
+    failures, any action may fail, at the latest when it would have ended, and is retried as its
+    task says. Then only the upper bounds of the costs are valid, and a failed action may have left
+    the robot anywhere between two consecutive poses of the planned paths.
     """
 
     def __init__(
@@ -101,21 +99,21 @@ class StepCosts:
         self.reachability = reachability
         self.travel = travel
         self.blocked: dict[int, str] = {}
-        """leaves that there is a standing without a way from, and why"""
+        """leaves that the robot can't get to from some pose, and why"""
         self.positions: list[list[RobotPosition]] = [[] for _ in flow.leaves]
-        """where the robot may be after each leaf"""
+        """for each leaf, the possible positions of the robot when it has ended"""
         self.too_slow: dict[int, float] = {}
-        """leaves that can't be done within their time limit, and what they take (s) at least"""
+        """leaves that always exceed their time limit, and the least time (s) that they take"""
         self.too_many = False
-        """whether there are waits at more places than are told apart"""
+        """whether there are more positions at a WAIT than are distinguished"""
         self.standing_power = 0.0 if travel is None else travel.standing_power
         self._steps: dict[tuple[Source, int], Cost] = {}
         self._positions_before: list[list[RobotPosition]] = [[] for _ in flow.leaves]
-        """where it may be before each leaf, as far as that matters for what follows"""
+        """for each leaf, the positions of the robot before it, if they matter for what follows"""
         self._origins: list[dict[RobotPose, None]] = [{} for _ in flow.leaves]
-        """where it may stand before each leaf that it goes to from there"""
+        """for each leaf, the poses from which the robot drives to it"""
         self._cuts: dict[Source, dict[tuple[int, int], None]] = {}
-        """for each source, the leaf that the robot was on the way to, and the one that follows"""
+        """for each source, the leaf that the robot was driving to and the leaf that follows"""
         self._action_costs: dict[int, Cost] = {}
         self._round_starts = frozenset(g.start for g in flow.groups if g.every)
         self._pending: deque[tuple[int, RobotPosition, bool]] = deque()
@@ -130,7 +128,10 @@ class StepCosts:
                 self._join(ANY, target, cost)
 
     def step_cost(self, source: Source, target: int) -> Cost:
-        """The way from a source to a leaf, and the leaf's action, whenever its turn comes."""
+        """Return the cost of a step: the drive from a source to a leaf, and the leaf's action.
+
+        The robot may have to wait there until the leaf's `earliest` time.
+        """
         cost = self.cost_without_wait(source, target)
         if self.travel is None or not self.flow.is_leaf(target):
             return cost
@@ -142,7 +143,7 @@ class StepCosts:
         return Cost(QuantityRange(cost.time.least, most), cost.energy + waiting)
 
     def cost_without_wait(self, source: Source, target: int) -> Cost:
-        """The same, if the robot does not have to wait at the place."""
+        """Return the cost of a step if the robot does not have to wait for the `earliest` time."""
         if not self.flow.is_leaf(target):
             return FREE
         if self.travel is None:
@@ -150,7 +151,7 @@ class StepCosts:
         return self._steps.get((source, target), FREE)
 
     def cost_until_missed(self, source: Source, target: int) -> Cost:
-        """What passes from a source until the hard window of a leaf is over."""
+        """Return the cost from a source until the hard window of a leaf has closed."""
         cost = self.step_cost(source, target)
         deadline = self.flow.leaves[target].deadline
         assert deadline is not None
@@ -159,23 +160,23 @@ class StepCosts:
         )
 
     def action_cost(self, leaf: int) -> Cost:
-        """What the action of a leaf takes at its place."""
+        """Return the cost of a leaf's action, without the drive to it."""
         return self._action_costs.get(leaf, FREE)
 
     def successor_times(self) -> dict[object, list[tuple[object, float]]]:
-        """What may come next after each leaf and each cut, and the least time (s) it takes."""
+        """Return what can follow each leaf and each interruption, with the least time in s."""
         following: dict[object, list[tuple[object, float]]] = {}
         for (source, target), cost in self._steps.items():
             if isinstance(source, str) or (not isinstance(source, int) and source[0] == "repeat"):
                 continue
             after = following.setdefault(source, [])
             after.append((target, cost.time.least))
-            # It may be cancelled as soon as it is begun.
+            # The action may be cancelled as soon as it is started.
             after += [(cut, 0.0) for cut, _ in self._successors_when_cut(target)]
         return following
 
     def last_clean_up(self, source: Source) -> float:
-        """s at most until the mission has ended, if it ends after this source."""
+        """Return the longest clean-up in s before the mission's end, if it ends after a source."""
         if self.travel is None or isinstance(source, str):
             return 0.0
         if isinstance(source, int):
@@ -185,13 +186,13 @@ class StepCosts:
         return self.travel.clean_up if cancelled else 0.0
 
     def _successors(self, leaf: int) -> Iterator[tuple[Source, int]]:
-        """The leaves that may follow a leaf that has ended, or was cancelled."""
+        """Yield the source and leaf of each step that can follow an ended or cancelled leaf."""
         for target in self.reachability.targets(self.flow, leaf):
             yield from ((leaf, t) for t in self._resolve(target))
         yield from self._successors_when_cut(leaf)
 
     def _successors_when_cut(self, leaf: int) -> Iterator[tuple[Source, int]]:
-        """The leaves that may follow a leaf whose time was up."""
+        """Yield the source and leaf of each step that can follow if time interrupts a leaf."""
         flow = self.flow
         group = flow.leaves[leaf].parent
         while group >= 0 and flow.timed[group]:
@@ -204,23 +205,23 @@ class StepCosts:
                 yield ("missed", leaf), t
 
     def _resolve(self, node: int) -> tuple[int, ...]:
-        """The leaves that a node leads to at once."""
+        """Return the leaves that follow a node without another leaf in between."""
         flow = self.flow
-        found = []
+        leaves = []
         group = flow.group_of_round_end(node)
         while group is not None:
             if flow.groups[group].may_repeat:
-                found.append(flow.groups[group].start)
+                leaves.append(flow.groups[group].start)
             if not flow.groups[group].may_end:
-                return tuple(found)
+                return tuple(leaves)
             node = flow.groups[group].successor
             group = flow.group_of_round_end(node)
         if flow.is_leaf(node):
-            found.append(node)
-        return tuple(found)
+            leaves.append(node)
+        return tuple(leaves)
 
     def _explore(self, travel: Travel, mission: Mission) -> None:
-        """Where the robot may be after each leaf, and the steps between."""
+        """Add the positions of the robot after each leaf, and the costs of the steps between."""
         flow = self.flow
         if not flow.is_leaf(flow.initial):
             return
@@ -270,7 +271,7 @@ class StepCosts:
             or leaf.deadline is not None
             or target in self._round_starts
         ):
-            # It may be cancelled before it is begun.
+            # The action may be cancelled before it is started.
             self._record_position(self._positions_before[target], position, target, before=True)
         self._record_position(
             self.positions[target], RobotPosition(leg.arrival), target, before=False
@@ -279,7 +280,7 @@ class StepCosts:
     def _record_position(
         self, known: list[RobotPosition], position: RobotPosition, leaf: int, *, before: bool
     ) -> bool:
-        """Whether a place is a new one; it is gone on from then."""
+        """Add a position to `known` and to the pending ones; return True if it is new."""
         if position in known:
             return False
         if len(known) >= (_MOST_WAIT_POSITIONS if before else _MOST_POSES):
@@ -290,14 +291,14 @@ class StepCosts:
         return True
 
     def _wait_cost(self, leaf: int) -> Cost:
-        """What a WAIT takes, its window apart."""
+        """Return the cost of a WAIT, without regard to its window."""
         rule = self.flow.leaves[leaf].wait
         assert rule is not None
         if rule.duration is not None:
             time = QuantityRange(rule.duration, rule.duration)
         else:
             time = QuantityRange(0.0, math.inf if rule.limit is None else rule.limit)
-        # At a dock it takes nothing from the battery.
+        # At a dock, waiting takes nothing from the battery.
         energy = self.standing_power * time.most / 3600 if self.standing_power else 0.0
         return Cost(time, QuantityRange(0.0, energy))
 
@@ -306,7 +307,7 @@ class StepCosts:
         self._steps[source, target] = cost if known is None else known | cost
 
     def _join_repeats(self) -> None:
-        """The steps from the end of a round to the next one."""
+        """Add the costs of the steps from the end of a round to the next round."""
         flow = self.flow
         ends: list[tuple[Source, int]] = [
             (i, leaf.unconditional)
@@ -334,13 +335,13 @@ class StepCosts:
         for target, taken in fastest.items():
             leaf = self.flow.leaves[target]
             limit = leaf.leaf.task.time_limit
-            # The time before `earliest` does not count, so the robot may have arrived by then.
+            # The time before `earliest` does not count: the robot may have arrived before it.
             counted = self.action_cost(target).time.least if leaf.earliest else taken
             if limit is not None and counted > limit:
                 self.too_slow[target] = counted
 
     def _include_retries(self, clean_up: float) -> None:
-        """The steps with all attempts, each as long as the first one at most."""
+        """Replace the costs of the steps by those with all attempts, none longer than the first."""
         longest: dict[int, Cost] = {}
         for (source, target), cost in self._steps.items():
             leaf = self.flow.leaves[target]
@@ -360,7 +361,10 @@ class StepCosts:
         self._action_costs |= longest
 
     def cost_to(self, leaf: int, target: Task) -> Cost | NoPath:
-        """The way to any other task from where the robot is after a leaf."""
+        """Return the cost to any other task from the positions of the robot after a leaf.
+
+        Returns NoPath if there is a position without a path.
+        """
         assert self.travel is not None
         cost = FREE
         for position in self.positions[leaf]:
@@ -371,7 +375,10 @@ class StepCosts:
         return cost
 
     def retreat_cost(self, leaf: int, target: Task) -> Cost | NoPath:
-        """The same from wherever it is on the way to the leaf, or after it."""
+        """Return the cost to any other task from all positions on the way to a leaf or after it.
+
+        Returns NoPath if there is a position after the leaf without a path.
+        """
         assert self.travel is not None
         direct = self.cost_to(leaf, target)
         if isinstance(direct, NoPath) or self.flow.leaves[leaf].wait is not None:
@@ -380,11 +387,11 @@ class StepCosts:
         return direct + cut_costs.remainder(leaf, target.velocity)
 
     def _add_cut_costs(self, travel: Travel) -> None:
-        """What the way takes from wherever the robot was when an action was cancelled.
+        """Add the costs of the steps from any position at which an action was cancelled.
 
-        The robot was on its way to a leaf x, or at its action: it could have gone on there and then
-        to the target, at the target's speed, so the rest of that step and the way from x are
-        enough, after cleaning up. It may almost be there, so the target's action is the least.
+        The robot was on its way to a leaf x, or executing its action. Upper bound: after cleaning
+        up, it could continue to x and then drive to the target, at the target's speed. Lower bound:
+        the robot may almost be at the target, so only the target's action counts.
         """
         cut_costs = _CutCosts(self.flow, travel, self._origins, self.positions)
         if not self.reachability.failures:
@@ -402,7 +409,7 @@ class StepCosts:
 
 
 class _CutCosts:
-    """The longest ways from where an action was cancelled. Keeps those that it has found."""
+    """Longest drives from the positions at which an action was cancelled; caches its results."""
 
     def __init__(
         self,
@@ -416,15 +423,15 @@ class _CutCosts:
         self.origins = origins
         self.positions = positions
         self.detours: list[list[int]] = []
-        """for each leaf, those that the robot may have been on the way to when it was begun"""
+        """for each leaf, the leaves that the robot may have been driving to when it was started"""
         self._remainders: dict[tuple[int, float | None], Cost] = {}
         self._order: dict[int, int] = {}
-        """of each leaf, so that it comes after its detours"""
+        """for each leaf, its rank in an order in which it follows its detours"""
         self._endless: set[int] = set()
         """leaves with detours that lead back to them"""
 
     def allow_chains(self, cuts: dict[Source, dict[tuple[int, int], None]]) -> None:
-        """From now on, cancelled actions may follow each other."""
+        """Allow several cancelled actions in a row from now on."""
         self.detours = [[] for _ in self.flow.leaves]
         for pairs in cuts.values():
             for x, target in pairs:
@@ -435,13 +442,13 @@ class _CutCosts:
             self._endless.update(part if len(part) > 1 else ())
 
     def longest_to(self, x: int, target: int) -> Cost:
-        """From on the way to x to another leaf, at most."""
+        """Return the longest drive to a leaf from any position on the way to leaf `x`."""
         velocity = self.flow.leaves[target].leaf.task.velocity
         cost = self.remainder(x, velocity)
         return cost if x == target else cost + self._cost_between(x, target, velocity)
 
     def remainder(self, x: int, velocity: float | None) -> Cost:
-        """The rest of the way to x at a speed, at most."""
+        """Return the longest rest of the drive to leaf `x` at a speed."""
         if (x, velocity) not in self._remainders:
             if self.detours:
                 self._compute_remainder(x, velocity)
@@ -450,8 +457,10 @@ class _CutCosts:
         return self._remainders[x, velocity]
 
     def _compute_remainder(self, leaf: int, velocity: float | None) -> None:
-        """The longest way to a leaf at a speed, from wherever the robot may be before it, and to
-        those that it may have been on the way to before."""
+        """Compute the longest drive to a leaf at a speed, from all positions before it.
+
+        The same is computed for the leaves that the robot may have been driving to before.
+        """
         needed: set[int] = set()
         pending = [leaf]
         while pending:

@@ -1,4 +1,4 @@
-"""All that the diagnostics are made from, put together once for a mission."""
+"""Shared inputs of all diagnostics, computed once for a mission."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -16,35 +16,35 @@ from argo_compiler.diagnostics import Diagnostic, Severity, diagnostic_of
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Afterwards, Mission, Response, Task
 
-_MOST_NAMES = 6  # of a list or path that a message spells out
+_MOST_NAMES = 6  # names of a path that a message lists
 
 
 @dataclass(frozen=True)
 class Study:
-    """A mission, its flow, and what may happen on it. Nothing of it changes."""
+    """Mission with its control-flow graph, reachability, costs and bounds; immutable."""
 
     mission: Mission
     catalog: Catalog | None
     travel: Travel | None
     flow: Flow
     nominal: Reachability
-    """if every action succeeds and every measurement gives a value"""
+    """reachability if every action succeeds and every measurement gives a value"""
     with_failures: Reachability
-    """whatever fails"""
+    """reachability if any action or measurement may fail"""
 
     @cached_property
     def position(self) -> dict[str, int]:
-        """The place of each task in the mission's list."""
+        """Index of each task in the mission's list."""
         return {task.name: i for i, task in enumerate(self.mission.tasks)}
 
     @cached_property
     def successors(self) -> tuple[tuple[int, ...], ...]:
-        """What may come next after each node, if nothing fails."""
+        """Nodes that can follow each node if nothing fails."""
         return tuple(tuple(dict.fromkeys(self._successors_of(n))) for n in range(self.flow.size))
 
     @cached_property
     def trap_nodes(self) -> tuple[tuple[int, ...], ...]:
-        """The nodes of each loop that may be entered and that nothing but a failure leaves."""
+        """Nodes of each loop that can be reached and that only a failure leaves."""
         ends = leading_to(self.successors, [self.flow.end_node])
         traps = []
         for part in components(self.successors):
@@ -57,7 +57,7 @@ class Study:
 
     @cached_property
     def predecessors(self) -> tuple[tuple[int, ...], ...]:
-        """What may come before each node, if nothing fails."""
+        """Nodes that can precede each node if nothing fails."""
         before: list[list[int]] = [[] for _ in range(self.flow.size)]
         for node, following in enumerate(self.successors):
             for other in following:
@@ -66,7 +66,7 @@ class Study:
 
     @cached_property
     def traps(self) -> tuple[tuple[int, ...], ...]:
-        """The leaves of each of them."""
+        """Leaves of each loop in `trap_nodes`, in the same order."""
         return tuple(tuple(filter(self.flow.is_leaf, nodes)) for nodes in self.trap_nodes)
 
     @cached_property
@@ -75,7 +75,7 @@ class Study:
 
     @cached_property
     def bounds(self) -> MissionBounds | None:
-        """None where the mission is too large or too deeply nested to measure."""
+        """Bounds on duration and energy; None if the mission is too large or too deeply nested."""
         if has_too_many_cuts(self.flow):
             return None
         if self.costs.too_many:
@@ -89,7 +89,7 @@ class Study:
         return self.flow.leaves[leaf].name
 
     def object_name(self, object_id: str) -> str:
-        """A checkpoint for people."""
+        """Return the text that messages use for a checkpoint."""
         if self.catalog is not None and object_id.isdecimal():
             info = self.catalog.checkpoint(int(object_id))
             if info is not None:
@@ -100,16 +100,16 @@ class Study:
         return self.flow.leaves[leaf].leaf.task
 
     def is_own(self, leaf: int) -> bool:
-        """Whether a leaf is a task of the mission, and not one that the machine adds."""
+        """Return True if a leaf is a task of the mission, not one that the machine adds."""
         return self.name(leaf) in self.position
 
     def conditional_indices(self, leaf: int) -> list[int]:
-        """Where a leaf's ways stand in its task's list: those with conditions, in order."""
+        """Return the indices of the task's transitions that have conditions, in order."""
         return [k for k, t in enumerate(self.task(leaf).transitions) if t.conditions]
 
     @cached_property
     def ended_by_reaction(self) -> bool:
-        """Whether an event may end the mission."""
+        """True if the reaction to some event can end the mission."""
         return any(
             r.response is Response.ABORT
             or (r.response.drives and r.afterwards is Afterwards.END)
@@ -118,12 +118,12 @@ class Study:
         )
 
     def path_words(self, leaf: int) -> str:
-        """A shortest path to a leaf if nothing fails, for people; empty if there is none."""
+        """Return the text of a shortest path to a leaf if nothing fails; empty if there is none."""
         path = way_to(self._path_tree, self.flow.initial, leaf)
         return "" if path is None else self.words(path)
 
     def words(self, path: tuple[int, ...]) -> str:
-        """The tasks of a path, the middle left out if it is long."""
+        """Return the text of a path: its tasks, without the middle ones if there are many."""
         leaves = [n for n in path if n < len(self.flow.leaves)]
         if len(leaves) <= _MOST_NAMES + 1:
             return " > ".join(map(self.name, leaves))
@@ -169,8 +169,10 @@ class Study:
         subject: str | None = None,
         severity: Severity | None = None,
     ) -> Diagnostic:
-        """A diagnostic about a leaf's task, one of its transitions, or what `subject` names;
-        without a severity it is as bad as its code is."""
+        """Return a diagnostic about a leaf's task, one of its transitions, or a `subject`.
+
+        Without a severity, the diagnostic has the severity of its code.
+        """
         span = None
         if leaf is not None and self.is_own(leaf):
             span = self.task(leaf).source

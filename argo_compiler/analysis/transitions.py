@@ -1,4 +1,4 @@
-"""Diagnostics about transitions never or always taken, and about values not measured yet."""
+"""Diagnostics on transitions that are never or always taken, and on values not measured yet."""
 
 from collections.abc import Iterator
 
@@ -10,12 +10,12 @@ from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.hfsm.conditions import all_words, words
 from argo_compiler.il import Action, Condition
 
-_MOST_SEARCHES = 10  # objects for which a path that does not measure them is looked up
-_MOST_PATHS = 200  # diagnostics that come with a path
+_MOST_SEARCHES = 10  # objects for which a path that does not measure them is searched
+_MOST_PATHS = 200  # diagnostics that show a path
 
 
 def diagnose_transitions(study: Study) -> Iterator[Diagnostic]:
-    """What is odd about the transitions of the tasks that can be reached."""
+    """Yield diagnostics on the transitions of all tasks that can be reached."""
     measured = {t.object_id for t in study.mission.tasks if t.action is Action.MEASURE}
     unmeasured = _UnmeasuredPaths(study)
     for leaf, flow in enumerate(study.flow.leaves):
@@ -26,7 +26,7 @@ def diagnose_transitions(study: Study) -> Iterator[Diagnostic]:
         for k, index in enumerate(study.conditional_indices(leaf)):
             conditions = flow.conditional[k][0]
             if k >= len(guards) or not guards[k].possible:
-                # What no task measures is a diagnostic of the check.
+                # The check reports objects that no task measures.
                 if compared_objects(conditions) <= measured:
                     yield _never_taken(study, leaf, k, index)
                 continue
@@ -40,7 +40,7 @@ def diagnose_transitions(study: Study) -> Iterator[Diagnostic]:
 
 
 def why_never(study: Study, leaf: int, k: int) -> str:
-    """Why conditional transition k of a leaf that is reached is never taken."""
+    """Return the reason why conditional transition `k` of a reached leaf is never taken."""
     guards = study.with_failures.conditional_guards(study.flow, leaf)
     if k >= len(guards):
         return "a transition before it is always taken"
@@ -69,7 +69,7 @@ def _why_not(study: Study, condition: Condition, taken: int, before: int) -> str
         if condition.object_id in study.with_failures.fields.shift and possible:
             return (
                 f"{name} has no value here: no path measures it before, or only where a "
-                "transition that was looked at before covers all its values"
+                "transition that is evaluated earlier covers all its values"
             )
     if at_first & satisfying:
         return "its conditions exclude each other"
@@ -85,13 +85,13 @@ def _possible_readings(study: Study, condition: Condition, state: int) -> tuple[
 
 
 def _first_state(study: Study, leaf: int) -> int | None:
-    """The values when the first transition of a leaf is looked at."""
+    """Return the readings when the first transition of a leaf is evaluated; None if none is."""
     guards: tuple[GuardStatus, ...] = study.with_failures.guards[leaf]
     return guards[0].state if guards else None
 
 
 def _is_never_measured(study: Study, leaf: int, object_id: str) -> bool:
-    """Whether no path to a leaf measures an object, its own action included."""
+    """Return True if no path to a leaf measures an object, the leaf's own action included."""
     state = _first_state(study, leaf)
     fields = study.with_failures.fields
     if state is None or object_id not in fields.shift:
@@ -123,8 +123,11 @@ def _never_taken(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
 
 
 def _is_always_taken(study: Study, leaf: int, k: int) -> bool:
-    """Whether a transition is taken whatever was measured, and not just because those before it
-    leave it no other values."""
+    """Return True if a transition is taken whatever was measured.
+
+    A transition that is always taken only because earlier ones leave no other values does not
+    count.
+    """
     guards = study.nominal.conditional_guards(study.flow, leaf)
     if not study.nominal.is_reached(leaf) or k >= len(guards) or not guards[k].certain:
         return False
@@ -147,16 +150,16 @@ def _always_taken(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
     return study.diagnostic(
         "transition-always",
         f"the transition from task '{task.name}' to '{task.transitions[index].target}' is always "
-        f"taken{' if it is looked at' if k else ''}: {held} holds for every value that can be "
-        "there" + ("; only a failed measurement leads elsewhere" if after else ""),
-        "correct its bounds, or make it unconditional if that is meant",
+        f"taken{' if it is evaluated' if k else ''}: {held} holds for every possible value"
+        + ("; only a failed measurement leads elsewhere" if after else ""),
+        "correct its bounds, or make it unconditional if that is intended",
         leaf,
         index,
     )
 
 
 class _UnmeasuredPaths:
-    """Looks for paths on which a value that is compared was not measured. Keeps what it found."""
+    """Search for paths that compare a value before it was measured; caches its results."""
 
     def __init__(self, study: Study) -> None:
         self.study = study
@@ -164,7 +167,10 @@ class _UnmeasuredPaths:
         self.count = 0
 
     def diagnostic(self, leaf: int, k: int, index: int, object_id: str) -> Diagnostic | None:
-        """The diagnostic where a path without a failure comes to a transition without the value."""
+        """Return a diagnostic if a path without failures reaches a transition without the value.
+
+        Returns None if every path has measured the object.
+        """
         study = self.study
         fields = study.nominal.fields
         guards = study.nominal.conditional_guards(study.flow, leaf)
@@ -183,14 +189,17 @@ class _UnmeasuredPaths:
             f"a transition from task '{task.name}' to '{task.transitions[index].target}' compares "
             f"{name}, which has no value yet on some paths, so it is not taken there"
             + (f", such as {path}" if path else ""),
-            f"measure {name} on every path to '{task.name}', or mean it: without a value the "
-            "condition is false",
+            f"measure {name} on every path to '{task.name}', or keep it if that is intended: "
+            "without a value the condition is false",
             leaf,
             index,
         )
 
     def _path(self, leaf: int, object_id: str) -> str:
-        """A path to the leaf that does not measure the object."""
+        """Return the text of a path to the leaf that does not measure the object.
+
+        Returns an empty text if there is none, or if too many were requested already.
+        """
         study = self.study
         flow = study.flow
         self.count += 1

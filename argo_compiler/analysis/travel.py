@@ -1,4 +1,4 @@
-"""What the analysis has to know of a site and a robot: how long ways take, and what they use."""
+"""Interface through which the analysis gets travel times and energy of a robot on a site."""
 
 from collections.abc import Hashable
 from dataclasses import dataclass
@@ -7,56 +7,67 @@ from typing import Protocol
 from argo_compiler.il import Mission, Task
 
 RobotPose = Hashable
-"""Where the robot stands, as the `Travel` names it; equal where it makes no difference."""
+"""Pose of the robot in the form that a `Travel` uses; equal poses have the same travel times."""
 
 
 @dataclass(frozen=True, slots=True)
 class Leg:
-    """The way to a task's place and its action there."""
+    """Cost of driving to a task and of its action there."""
 
     duration: float
-    """s"""
+    """s, the action included"""
     energy: float
-    """Wh"""
+    """Wh, the action included"""
     arrival: RobotPose
-    """where the robot stands when the action has ended"""
+    """pose of the robot when the action has ended"""
     work: float = 0.0
-    """s of the duration that the action takes even if the robot is there already"""
+    """s of `duration` that the action takes even if the robot is there already"""
     work_energy: float = 0.0
-    """Wh of the energy, likewise"""
+    """Wh of `energy` that the action needs even if the robot is there already"""
 
 
 @dataclass(frozen=True, slots=True)
 class NoPath:
-    """The task can't be carried out."""
+    """Result for a task that the robot can't execute."""
 
     reason: str
-    """in words, as the end of a sentence such as `task 'A' can't be carried out: ...`"""
+    """text that completes a sentence such as `the robot can't execute task 'A': ...`"""
 
 
 class Travel(Protocol):
-    """Durations and energy of a robot on a site, as planned."""
+    """Planned travel times and energy of a robot on a site."""
 
     @property
     def battery(self) -> float | None:
-        """Wh that may be used on one charge; None: not known."""
+        """Energy of one battery charge in Wh; None if it is unknown."""
         ...
 
     @property
     def clean_up(self) -> float:
-        """s at most from the cancellation of an action until the next one can start."""
+        """Greatest time in s from the cancellation of an action until the next one can start."""
         ...
 
     @property
     def standing_power(self) -> float:
-        """W that the robot draws while it stands and waits."""
+        """Power in W that the robot draws while it stands and waits."""
         ...
 
     def start(self, mission: Mission) -> RobotPose:
-        """Where the robot stands when the mission begins. Raises ArgoError if it can't."""
+        """Return the pose of the robot when the mission starts.
+
+        Raises:
+            ArgoError: The robot can't stand there.
+        """
         ...
 
     def leg(self, origin: RobotPose, task: Task, velocity: float | None) -> Leg | NoPath:
-        """From a standing to the task's place at `velocity` (m/s; None: the robot's planning
-        speed), and the task's action there. Called often with the same arguments."""
+        """Return the cost of driving from a pose to a task, and of the task's action there.
+
+        Called often with the same arguments.
+
+        Args:
+            origin: Pose from which the robot starts.
+            task: Task to execute.
+            velocity: Speed in m/s; None for the robot's planning speed.
+        """
         ...

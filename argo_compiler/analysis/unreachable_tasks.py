@@ -1,4 +1,4 @@
-"""Diagnostics about tasks that no path leads to, and why."""
+"""Diagnostics on tasks that no path leads to, with the reasons."""
 
 from collections.abc import Iterator
 
@@ -7,11 +7,11 @@ from argo_compiler.analysis.transitions import why_never
 from argo_compiler.base.listing import quoted
 from argo_compiler.diagnostics import Diagnostic
 
-_MOST_REASONS = 3  # ways to a task that a message speaks of
+_MOST_REASONS = 3  # transitions to a task that a message mentions
 
 
 def diagnose_unreachable_tasks(study: Study) -> Iterator[Diagnostic]:
-    """One for each task that can't be reached, whatever is measured and whatever fails."""
+    """Yield a diagnostic for each task that can't be reached, whatever is measured or fails."""
     unreachable = [
         i
         for i in range(len(study.flow.leaves))
@@ -28,11 +28,15 @@ def diagnose_unreachable_tasks(study: Study) -> Iterator[Diagnostic]:
 
 
 _Reasons = tuple[list[str], list[str]]
+"""reasons why transitions to a task aren't taken, and names of the unreachable tasks before it"""
 
 
 def _find_reasons(study: Study, unreachable: list[int]) -> dict[int, _Reasons]:
-    """For each lost leaf, why the transitions that lead to it from reached tasks aren't taken, and
-    the names of the lost tasks that lead to it. Linear time."""
+    """Return for each unreachable leaf the reasons why no transition leads to it.
+
+    The first list says why the transitions from reached tasks are not taken, the second one names
+    the unreachable tasks that lead to the leaf. Linear time.
+    """
     flow = study.flow
     reasons_for: dict[int, _Reasons] = {leaf: ([], []) for leaf in unreachable}
     for i, leaf in enumerate(flow.leaves):
@@ -41,9 +45,9 @@ def _find_reasons(study: Study, unreachable: list[int]) -> dict[int, _Reasons]:
                 _add_reason(study, reasons_for[target], i, k)
         if leaf.unconditional in reasons_for and leaf.unconditional != i:
             _add_reason(study, reasons_for[leaf.unconditional], i, None)
-        for target in (leaf.failure, leaf.missed):
-            if target in reasons_for and target != i and not study.with_failures.is_reached(i):
-                reasons_for[target][1].append(study.name(i))
+        for fallback in (leaf.failure, leaf.missed):
+            if fallback in reasons_for and fallback != i and not study.with_failures.is_reached(i):
+                reasons_for[fallback][1].append(study.name(i))
     for number, group in enumerate(flow.groups):
         if group.successor not in reasons_for:
             continue

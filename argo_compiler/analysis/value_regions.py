@@ -1,10 +1,10 @@
-"""Sets of values as bits: which stretches of a checkpoint's scale its last value may lie in.
+"""Abstract domain of readings: bit sets of the regions in which a checkpoint's last value may lie.
 
-The bounds that a mission compares an object with cut the line of values into finitely many regions:
+The bounds that a mission compares an object with divide the number line into finitely many regions:
 the bounds themselves, the open intervals between them, and the two rays outside. A set of regions
-is a number with one bit each, from the lowest region up. Three more bits, the topmost, say that
-there may be no reading, an unreadable one, or a failed one. The sets of all objects lie beside each
-other in one long number, so that joining what is known on two paths is a single `|`.
+is an integer with one bit for each region, from the lowest one up. The three topmost bits say that
+there may be no reading, an unreadable one, or a failed one. The sets of all objects are packed into
+one long integer, so that a single `|` joins the states of two paths.
 """
 
 from bisect import bisect_left
@@ -19,28 +19,28 @@ from argo_compiler.il import Condition, ConditionType
 
 @dataclass(frozen=True)
 class Scale:
-    """The regions of one object."""
+    """Regions of the values of one object."""
 
     bounds: tuple[float, ...]
     """ascending; region 2k + 1 is bound k itself, region 2k lies below it"""
     possible: int
-    """the regions that a measured value can lie in"""
+    """regions in which a measured value can lie"""
     abnormal: int = -1
-    """the regions of values that the robot may call abnormal; -1: all of them"""
+    """regions of the values that the robot may call abnormal; -1 for all regions"""
 
     @cached_property
     def missing(self) -> int:
-        """The bit for: there may be no reading."""
+        """Bit that says: there may be no reading."""
         return 1 << (2 * len(self.bounds) + 1)
 
     @cached_property
     def unreadable(self) -> int:
-        """The bit for: the reading may be unreadable."""
+        """Bit that says: the reading may be unreadable."""
         return self.missing << 1
 
     @cached_property
     def failed(self) -> int:
-        """The bit for: the reading may have failed otherwise."""
+        """Bit that says: the reading may have failed for another reason."""
         return self.missing << 2
 
     @cached_property
@@ -49,16 +49,16 @@ class Scale:
 
     @cached_property
     def width(self) -> int:
-        """How many bits a set takes."""
+        """Number of bits of a set."""
         return 2 * len(self.bounds) + 4
 
     @cached_property
     def full(self) -> int:
-        """All bits of a set."""
+        """Set with all bits, those without a value included."""
         return (1 << self.width) - 1
 
     def satisfying(self, condition: Condition) -> int:
-        """What a reading may be that satisfies a condition on this object, its age apart."""
+        """Return the readings that satisfy a condition on this object, whatever their age."""
         match condition.type:
             case ConditionType.UNREADABLE:
                 return self.unreadable
@@ -80,7 +80,7 @@ class Scale:
         return self._above(low, condition.inclusive) & self._below(high, condition.inclusive)
 
     def words(self, regions: int) -> str:
-        """A set of regions for people: `below 2, 5 or 7 to 9`."""
+        """Format a set of regions for people, such as `below 2, 5 or 7 to 9`."""
         pieces = []
         k = 0
         count = 2 * len(self.bounds) + 1
@@ -125,8 +125,13 @@ class Scale:
 def make_scale(
     conditions: Iterable[Condition], range_: Interval | None, nominal: Interval | None = None
 ) -> Scale:
-    """The regions for the conditions on one object, measured values lying in `range_`, and those
-    that are called abnormal outside `nominal`."""
+    """Return the regions that the conditions on one object distinguish.
+
+    Args:
+        conditions: All conditions on the object.
+        range_: Interval of the values that can be measured; None if it is unknown.
+        nominal: Interval outside of which a value may be called abnormal; None if it is unknown.
+    """
     bounds: set[float] = set()
     abnormal = False
     for condition in conditions:
@@ -139,7 +144,7 @@ def make_scale(
         bounds |= {range_.low, range_.high}
     if abnormal and nominal is not None:
         bounds |= {nominal.low, nominal.high}
-    # -0.0 and 0.0 are one bound: a set keeps one of two equal floats.
+    # -0.0 and 0.0 are the same bound, as a set has only one of two equal floats.
     ordered = tuple(sorted(bounds))
     scale = Scale(ordered, 0)
     possible = scale.missing - 1
@@ -153,18 +158,18 @@ def make_scale(
 
 @dataclass(frozen=True)
 class Fields:
-    """Where the set of each object lies in the long number."""
+    """Layout of the objects' sets in the long integer, which is called a state."""
 
     scales: Mapping[str, Scale]
-    """of every object that a condition looks at"""
+    """for every object that a condition compares"""
     shift: Mapping[str, int]
-    """of those that are kept track of along the paths"""
+    """number of the first bit of each tracked object; an object without it may have any reading"""
     width: int
-    """bits in all"""
+    """total number of bits"""
 
     @property
     def unmeasured(self) -> int:
-        """At the mission's start: no object has a value."""
+        """State at the mission's start: no object has a reading."""
         return sum_bits(self.scales[o].missing << shift for o, shift in self.shift.items())
 
     @property
@@ -187,7 +192,7 @@ class Fields:
 
 
 def sum_bits(parts: Iterable[int]) -> int:
-    """The union of sets that don't overlap, without a long number for each intermediate one."""
+    """Return the union of bit sets; pairwise, so that few intermediate results are long."""
     pending = list(parts)
     while len(pending) > 1:
         pending = [

@@ -1,7 +1,7 @@
-"""A checker of witnesses, independent of how they were found.
+"""Checker of witnesses, independent of the code that constructs them.
 
 It reads a mission by the rules of `docs/language.md` alone and uses nothing of the analysis but the
-form of its witnesses. Each step of the mission is looked at once.
+format of its witnesses. It visits each step of the mission once.
 """
 
 from argo_compiler.analysis.verification_layout import END, GroupLayout, ProgramPoint
@@ -13,7 +13,7 @@ from argo_compiler.il import Mission
 
 
 class Verifier:
-    """Checks witnesses about one mission."""
+    """Checker of witnesses for one mission."""
 
     def __init__(self, mission: Mission, catalog: Catalog | None) -> None:
         self._mission = mission
@@ -25,7 +25,10 @@ class Verifier:
         }
 
     def check_invariant(self, witness: Invariant) -> Proved | None:
-        """What an invariant proves; None: some step leads out of it, or its form is wrong."""
+        """Return what an invariant proves about the mission.
+
+        Returns None if some step leads out of the invariant, or if its format is wrong.
+        """
         states = self._states(witness)
         if states is None:
             return None
@@ -42,17 +45,19 @@ class Verifier:
         return proved
 
     def check_trap(self, witness: Trap, invariant: Invariant) -> bool:
-        """Whether no step leads out of a trap, if what is there is as an invariant says, which has
-        been checked."""
+        """Return True if no step leads out of a trap, with the readings of a valid invariant.
+
+        The invariant must have passed `check_invariant`.
+        """
         states = self._states(invariant)
         points = self._points_of(witness)
         if states is None or points is None or not points or invariant.failures:
             return False
         if witness.kept is not None:
-            kept = states.with_kept(witness.kept, self._ranges)
-            if kept is None:
+            restricted = states.restricted_to(witness.kept, self._ranges)
+            if restricted is None:
                 return False
-            states = kept
+            states = restricted
         walk = MissionWalk(self._mission, self._layout, states, False, Proved(), self._ranges)
         for here in points:
             if here not in states.readings:

@@ -1,4 +1,4 @@
-"""The claims of an analysis beside what its witnesses prove."""
+"""Comparison of the claims of an analysis with what its witnesses prove."""
 
 from argo_compiler.analysis.results import (
     Analysis,
@@ -14,7 +14,10 @@ from argo_compiler.il import Mission
 
 
 def unproved(mission: Mission, catalog: Catalog | None, analysis: Analysis) -> tuple[str, ...]:
-    """The claims of an analysis that its witnesses do not show, in words; none: all are right."""
+    """Return texts for the claims of an analysis that its witnesses do not prove.
+
+    There are none if all claims are proved.
+    """
     witnesses = analysis.witnesses
     if witnesses is None:
         return ("there are no witnesses",)
@@ -41,14 +44,17 @@ def unproved(mission: Mission, catalog: Catalog | None, analysis: Analysis) -> t
 
 
 def _is_proved(verdict: Verdict, with_failures: bool, nominal: bool) -> bool:
-    """Whether what a verdict excludes is excluded, by what may be with failures and without."""
+    """Return True if what a verdict excludes is proved impossible.
+
+    `with_failures` and `nominal` say whether it is possible with failures and without.
+    """
     if verdict is Verdict.NEVER:
         return not with_failures
     return not (verdict is Verdict.AFTER_FAILURE and nominal)
 
 
 class _Claims:
-    """The verdicts of an analysis beside what is proved."""
+    """Check of an analysis's verdicts against what is proved with failures and without."""
 
     def __init__(self, mission: Mission, nominal: Proved, with_failures: Proved) -> None:
         self.mission = mission

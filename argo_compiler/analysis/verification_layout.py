@@ -1,14 +1,15 @@
-"""The places of a mission, and its groups, as a checker of witnesses reads them."""
+"""Points and groups of a mission, for the checkers of witnesses."""
 
 from argo_compiler.il import Action, Mission, Stop
 
 ProgramPoint = tuple[str, int]
-"""`task`, `round` or `cut` with a position in the mission's list, or `END`"""
+"""point of a run: `task`, `round` or `cut` with an index into the mission's list of tasks or
+groups; or END"""
 END: ProgramPoint = ("end", 0)
 
 
 class GroupLayout:
-    """Which tasks lie in which groups (G1), by position."""
+    """Nesting of a mission's tasks and groups (G1), by their indices in the mission's lists."""
 
     def __init__(self, mission: Mission) -> None:
         self.position = {task.name: i for i, task in enumerate(mission.tasks)}
@@ -19,11 +20,11 @@ class GroupLayout:
         self.parent = [self.group_position.get(g.name.rpartition("/")[0]) for g in groups]
         self.innermost: list[int | None] = [None] * len(mission.tasks)
         self.ending: list[int | None] = [None] * len(mission.tasks)
-        """for each task the innermost group that ends with it"""
+        """for each task, the innermost group that ends with it"""
         self.hard = [g.max_repeat_duration > 0 and g.stop is Stop.HARD for g in groups]
         self.timed = [False] * len(groups)
         self.ending_around: list[int | None] = [None] * len(groups)
-        """for each group the one around it, if that ends with the same task"""
+        """for each group, the enclosing group if that ends with the same task"""
         depth = [group.name.count("/") for group in groups]
         opened: dict[int, list[int]] = {}
         for g in sorted(range(len(groups)), key=lambda g: depth[g]):

@@ -1,6 +1,6 @@
-"""The readings that a witness says there may be at each place of a mission, as bits.
+"""Readings that a witness claims to be possible at each point of a mission, as bits.
 
-This shares nothing with the bits of the analysis but the form of its witnesses.
+The code shares nothing with the bit sets of the analysis but the format of the witnesses.
 """
 
 from bisect import bisect_left
@@ -14,19 +14,19 @@ from argo_compiler.analysis.witness import KeptReading
 from argo_compiler.il import Condition, ConditionType
 
 Ranges = tuple[float, float, float, float]
-"""of a checkpoint: between what its values lie, and its nominal ones"""
+"""of a checkpoint: low and high end of its values, low and high end of its nominal values"""
 
 
 @dataclass(frozen=True)
 class ClaimedScale:
-    """The readings of one checkpoint, and where its bits lie among those of all."""
+    """Readings of one checkpoint, and the position of their bits in the states."""
 
     bounds: tuple[float, ...]
     shift: int
     values: int
-    """the bits of the values that it may show"""
+    """bits of the values that the checkpoint may show"""
     abnormal: int
-    """and of those that may be called abnormal"""
+    """bits of the values that may be called abnormal"""
 
     @cached_property
     def missing(self) -> int:
@@ -49,21 +49,21 @@ class ClaimedScale:
         return (1 << self.width) - 1
 
     def reaching(self, low: float, high: float) -> int:
-        """The values from `low` to `high`, both included, and those of the same regions."""
+        """Return the values from `low` to `high`, both included, and those in the same regions."""
         first, last = bisect_left(self.bounds, low), bisect_left(self.bounds, high)
         first_bit = 2 * first + (low in self.bounds[first : first + 1])
         last_bit = 2 * last + (high in self.bounds[last : last + 1])
         return (1 << (last_bit + 1)) - (1 << first_bit)
 
     def at_most(self, bound: float, inclusive: bool) -> int | None:
-        """The values below a bound; None if it is not one of the bounds."""
+        """Return the values below a bound, or up to it; None if it is not one of the bounds."""
         k = bisect_left(self.bounds, bound)
         if k == len(self.bounds) or self.bounds[k] != bound:
             return None
         return (1 << (2 * k + 1 + inclusive)) - 1
 
     def satisfying(self, condition: Condition) -> int:
-        """The readings with which a condition may hold, its age apart."""
+        """Return the readings that may satisfy a condition, whatever their age."""
         all_values = self.missing - 1
         match condition.type:
             case ConditionType.UNREADABLE:
@@ -88,32 +88,36 @@ class ClaimedScale:
         return held
 
     def decides(self, condition: Condition) -> bool:
-        """Whether a condition is true of all or none of the values of each bit."""
+        """Return True if a condition is true for all or for none of the values of each bit."""
         return not condition.type.compares or all(
             self.at_most(bound, False) is not None for bound in bounds_of(condition)
         )
 
 
 def bounds_of(condition: Condition) -> list[float]:
-    """What a condition compares values with."""
+    """Return the bounds with which a condition compares values."""
     return [bound for bound in (condition.param1, condition.param2) if bound is not None]
 
 
 @dataclass
 class ClaimedStates:
-    """The readings at each place, all checkpoints beside each other in one number."""
+    """Claimed readings at each point, those of all checkpoints packed into one integer."""
 
     readings: dict[ProgramPoint, int]
     late: dict[ProgramPoint, int]
-    """what may still come there from an action that is being cancelled (I3)"""
+    """for each point, the readings that an action being cancelled may still report there (I3)"""
     scales: dict[str, ClaimedScale]
     width: int
-    """bits in all"""
+    """total number of bits"""
 
     def add_scale(
         self, object_id: str, bounds: tuple[float, ...], shift: int, ranges: Mapping[str, Ranges]
     ) -> bool:
-        """Whether the scale may lie there: above those before."""
+        """Add the scale of a checkpoint; return True if its bits lie above those of the others.
+
+        Returns False, without a change, if the checkpoint has a scale already, or if the bounds do
+        not ascend.
+        """
         if object_id in self.scales or shift < self.width:
             return False
         if any(not a < b for a, b in pairwise(bounds)):
@@ -123,7 +127,7 @@ class ClaimedStates:
         if object_id in ranges:
             low, high, normal_low, normal_high = ranges[object_id]
             values = scale.reaching(low, high)
-            # A region belongs to the nominal values for sure only if it lies among them.
+            # A region has only nominal values if it lies within their bounds.
             first, last = bisect_left(bounds, normal_low), bisect_left(bounds, normal_high)
             if normal_low in bounds[first : first + 1] and normal_high in bounds[last : last + 1]:
                 abnormal &= ~scale.reaching(normal_low, normal_high)
@@ -132,17 +136,22 @@ class ClaimedStates:
         return True
 
     def late_readings(self, object_id: str, failures: bool) -> int:
-        """What may come late: a value, or a success without one."""
+        """Return the readings that a cancelled measurement may still report.
+
+        With failures, it may succeed without a value.
+        """
         scale = self.scales[object_id]
         return (scale.values | (scale.unreadable if failures else 0)) << scale.shift
 
     def contains(self, point: ProgramPoint, state: int, late: int) -> bool:
+        """Return True if a step to a point, with its late readings, stays in the claimed ones."""
         known = self.readings.get(point)
         if known is None or late & ~self.late.get(point, 0):
             return False
         return not (state | late) & ~known
 
     def stays_in_trap(self, point: ProgramPoint, state: int, kept: KeptReading | None) -> bool:
+        """Return True if a step to a point does not end the mission and keeps a trap's readings."""
         if point == END or kept is None:
             return point != END
         return not self.get(state, kept.object_id) & ~kept.readings
@@ -155,8 +164,13 @@ class ClaimedStates:
         scale = self.scales[object_id]
         return state & ~(scale.full << scale.shift) | readings << scale.shift
 
-    def with_kept(self, kept: KeptReading, ranges: Mapping[str, Ranges]) -> "ClaimedStates | None":
-        """The same with one checkpoint's readings as they are kept."""
+    def restricted_to(
+        self, kept: KeptReading, ranges: Mapping[str, Ranges]
+    ) -> "ClaimedStates | None":
+        """Return the states with one checkpoint restricted to the readings that a loop keeps.
+
+        Returns None if the bounds or the readings are not valid.
+        """
         states = ClaimedStates({}, dict(self.late), dict(self.scales), self.width)
         old = states.scales.pop(kept.object_id, None)
         if not states.add_scale(kept.object_id, kept.bounds, states.width, ranges):

@@ -1,4 +1,4 @@
-"""The steps of a mission by the rules of `docs/language.md`, and what they prove possible."""
+"""Steps of a mission by the rules of `docs/language.md`, and what they prove possible."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -13,9 +13,9 @@ from argo_compiler.analysis.verification_states import (
 from argo_compiler.il import Action, Condition, ConditionType, Mission, OnFailure, Task
 
 Step = tuple[ProgramPoint, int, int]
-"""where to, the readings that may be there, and those that may still come there"""
+"""next point, the readings that are possible there, and those that may still arrive late"""
 
-# An enumeration's members are found slowly, and these are looked at with each task.
+# Access to an enumeration's members is slow, and each task needs these.
 _MEASURE, _WAIT = Action.MEASURE, Action.WAIT
 _CONTINUE, _BRANCH = OnFailure.CONTINUE, OnFailure.BRANCH
 _ENDING = (OnFailure.RETURN, OnFailure.ABORT)
@@ -24,22 +24,27 @@ _AGED = (ConditionType.STALE, ConditionType.ABNORMAL)
 
 @dataclass
 class Proved:
-    """What a witness leaves possible, by positions in the mission's lists; all else never is."""
+    """What a witness leaves possible, by indices in the mission's lists; grows during a walk.
+
+    Everything else is proved impossible.
+    """
 
     tasks: set[int] = field(default_factory=set)
+    """tasks that can be reached"""
     transitions: set[tuple[int, int]] = field(default_factory=set)
-    """task and transition"""
+    """task and transition, for each transition that can be taken"""
     certain: set[tuple[int, int]] = field(default_factory=set)
-    """transitions that are taken whenever they are looked at"""
+    """transitions that are taken whenever they are evaluated"""
     repeats: set[int] = field(default_factory=set)
-    """groups that may begin another round"""
+    """groups that can start another round"""
     ends: set[int] = field(default_factory=set)
-    """groups that may end by themselves"""
+    """groups that can end by themselves"""
     ended: bool = False
+    """whether the mission can end"""
 
 
 class MissionWalk:
-    """The steps of a mission from each of its places."""
+    """Steps of a mission from each of its points; adds what is possible to `proved`."""
 
     def __init__(
         self,
@@ -65,19 +70,19 @@ class MissionWalk:
         }
         measured = {task.object_id for task in mission.tasks if task.action is _MEASURE}
         for object_id, scale in states.scales.items():
-            # What a mission waits for or never measures may be told at any time (C8).
+            # Others may report what a mission waits for or never measures at any time (C8).
             if object_id in waited or object_id not in measured:
                 self._reported |= scale.values << scale.shift
 
     def first_step(self) -> Step:
-        """M1: where the mission begins. Nothing has been measured."""
+        """Return the step to the mission's start (M1), where nothing has been measured."""
         state = self._reported
         for scale in self.states.scales.values():
             state |= scale.missing << scale.shift
         return self.layout.begin, state, 0
 
     def steps(self, here: ProgramPoint) -> list[Step]:
-        """Where the mission may go on from a place, with which readings."""
+        """Return the steps that can follow a point."""
         kind, at = here
         late = self.states.late.get(here, 0)
         state = self.states.readings[here]
@@ -100,8 +105,8 @@ class MissionWalk:
         task = self.mission.tasks[at]
         own = self._late_readings(task)
         ended = self._after_success(task, state)
-        # A WAIT runs no action, so what is late may still come when it has ended. Other tasks begin
-        # when the action before has ended, but may have failed by time before they begin.
+        # A WAIT runs no action, so late readings may still arrive when it has ended. Other tasks
+        # start when the previous action has ended, but time may let them fail before they start.
         by_time = self._may_fail_by_time(task)
         passing = late if task.wait is not None or by_time else 0
         continues = False
@@ -126,18 +131,18 @@ class MissionWalk:
         )
 
     def _late_readings(self, task: Task) -> int:
-        """What may come from the task's action while it is cancelled."""
+        """Return the readings that the task's action may still report while it is cancelled."""
         if task.action is not _MEASURE or task.object_id not in self.states.scales:
             return 0
         return self.states.late_readings(task.object_id, self.failures)
 
     def _after_success(self, task: Task, state: int) -> int:
-        """The readings when a task has ended (C3), by the robot or by hand (H3)."""
+        """Return the readings when the robot (C3) or a person (H3) has done a task."""
         o = task.object_id
         if task.action is not _MEASURE or o not in self.states.scales:
             return state
         scale = self.states.scales[o]
-        # A success without a number is unreadable; by hand there may be no value.
+        # A success without a number is unreadable; a person may do a task without a value.
         others = scale.unreadable | scale.missing if self.failures else 0
         return self.states.set(state, o, scale.values | others) | self._reported
 
@@ -150,7 +155,7 @@ class MissionWalk:
         return self.states.set(state, o, scale.failed | others) | self._reported
 
     def _may_fail(self, task: Task) -> bool:
-        """Whether a task may fail for good; without failures, by time alone (W3, W5)."""
+        """Return True if a task may finally fail; without failures, only by time (W3, W5)."""
         waits = task.wait is not None and task.wait.limit is not None
         return self._can_miss_window(task) or waits or (self.failures and task.action is not _WAIT)
 
@@ -159,11 +164,11 @@ class MissionWalk:
         return window is not None and window.hard and window.latest is not None
 
     def _may_fail_by_time(self, task: Task) -> bool:
-        """Whether a task may fail while its action, or one before, is being cancelled."""
+        """Return True if a task may fail while its action or an earlier one is being cancelled."""
         return self._can_miss_window(task) or (self.failures and task.time_limit is not None)
 
     def _may_fail_otherwise(self, task: Task) -> bool:
-        """Whether it may fail otherwise than by a missed window."""
+        """Return True if a task may fail for another reason than a missed window."""
         waits = task.wait is not None and task.wait.limit is not None
         return waits or (self.failures and task.action is not _WAIT)
 
@@ -171,14 +176,14 @@ class MissionWalk:
         return None if task.window is None else task.window.missed_target
 
     def _failure_may_continue(self, task: Task) -> bool:
-        """Whether some failure for good counts as any other end (T8)."""
+        """Return True if some final failure counts like any other end (T8)."""
         continues = task.on_failure is _CONTINUE or (
             task.on_failure is _BRANCH and task.failure_target is None
         )
         return continues and (self._may_fail_otherwise(task) or self._missed_target(task) is None)
 
     def _failure_points(self, task: Task) -> Iterator[ProgramPoint]:
-        """Where a task leads that has failed for good, if not where any end leads (T8, W5)."""
+        """Yield the points after a final failure that are not those after any end (T8, W5)."""
         missed = self._missed_target(task)
         if self._can_miss_window(task) and missed is not None:
             yield self.layout.task_point(missed)
@@ -192,8 +197,10 @@ class MissionWalk:
     def _transition_steps(
         self, at: int, task: Task, state: int, late: int, fresh: str | None
     ) -> list[Step]:
-        """T2 and T3: the transitions in order, then the unconditional one. The checkpoint `fresh`
-        was just measured."""
+        """Return the steps by a task's transitions, the unconditional one last (T2, T3).
+
+        The checkpoint `fresh` was just measured.
+        """
         steps: list[Step] = []
         changing = late | self._reported
         for k, transition in enumerate(task.transitions):
@@ -217,7 +224,10 @@ class MissionWalk:
     def _evaluate(
         self, conditions: tuple[Condition, ...], state: int, fresh: str | None
     ) -> tuple[int | None, int, bool]:
-        """The readings if all conditions hold (None: they can't), and if not; whether they do."""
+        """Return the readings if all conditions hold, those if not, and whether they always hold.
+
+        The first result is None if the conditions can't hold.
+        """
         states = self.states
         taken, possible = state, True
         unsure: list[tuple[Condition, bool]] = []
@@ -240,13 +250,17 @@ class MissionWalk:
         rest = state
         if len(unsure) == 1 and unsure[0][1]:
             condition = unsure[0][0]
-            left = states.get(state, condition.object_id) & ~self._satisfying_readings(condition)
-            rest = states.set(state, condition.object_id, left)
+            excluded = states.get(state, condition.object_id) & ~self._satisfying_readings(
+                condition
+            )
+            rest = states.set(state, condition.object_id, excluded)
         return taken if possible else None, rest, possible and not unsure
 
     def _in_range(self, condition: Condition) -> tuple[bool, bool]:
-        """Whether a condition on a checkpoint without a scale may hold, and whether it does for
-        every value in range."""
+        """Return whether a condition can hold for some value in range, and for every one.
+
+        For checkpoints without a scale.
+        """
         known = self.ranges.get(condition.object_id)
         if known is None or not condition.type.compares:
             return True, False
@@ -255,14 +269,14 @@ class MissionWalk:
         return values & holding != 0, not values & ~holding
 
     def _exact(self, condition: Condition, fresh: str | None) -> bool:
-        """Whether each set of readings says for sure if a condition holds."""
+        """Return True if each set of readings decides whether a condition holds."""
         scale = self.states.scales.get(condition.object_id)
         timely = condition.max_age is None or condition.object_id == fresh
         exact = timely and condition.type not in _AGED
         return exact and scale is not None and scale.decides(condition)
 
     def _satisfying_readings(self, condition: Condition) -> int:
-        # The mission is kept as long as this, so ids stay what they are; hashing takes long.
+        # Hashing conditions is slow. Ids stay valid, as the mission lives as long as this object.
         satisfying = self._satisfying.get(id(condition))
         if satisfying is None:
             satisfying = self.states.scales[condition.object_id].satisfying(condition)
@@ -277,25 +291,29 @@ class MissionWalk:
         return END, 0, 0
 
     def _end_round(self, number: int, state: int, late: int) -> list[Step]:
-        """G5 to G8."""
+        """Return the steps at the end of a round (G5 to G8)."""
         steps: list[Step] = []
         group = self.mission.groups[number]
         changing = late | self._reported
-        held, left, certain = self._evaluate(group.until, state, None)
+        ended, repeated, certain = self._evaluate(group.until, state, None)
         if group.max_repeat_count != 1 and not (group.until and certain):
             self.proved.repeats.add(number)
             start = "task", self.layout.position[group.start]
-            steps.append((start, left | changing if group.until else state, late))
+            steps.append((start, repeated | changing if group.until else state, late))
         limited = group.max_repeat_count > 0 or group.max_repeat_duration > 0
-        if limited or (group.until and held is not None):
+        if limited or (group.until and ended is not None):
             if not self.layout.hard[number]:
                 self.proved.ends.add(number)
-            after = state if limited or held is None else held | changing
+            after = state if limited or ended is None else ended | changing
             steps.append(self._after_last(number, after, late))
         return steps
 
     def _after_last(self, number: int, state: int, late: int) -> Step:
-        """G6, G7: the next group outward decides, or the unconditional transition is taken."""
+        """Return the step after a group's last round (G6, G7).
+
+        The enclosing group decides if it ends with the same task; otherwise the unconditional
+        transition is taken.
+        """
         around = self.layout.ending_around[number]
         if around is not None:
             return ("round", around), state, late

@@ -1,4 +1,4 @@
-"""Diagnostics about time windows that are over too soon, and time limits that are too short."""
+"""Diagnostics on time windows that close too early, and on time limits that are too short."""
 
 import math
 from collections.abc import Iterator
@@ -8,11 +8,11 @@ from argo_compiler.analysis.quantities import time_words
 from argo_compiler.analysis.study import Study
 from argo_compiler.diagnostics import Diagnostic
 
-_TOLERANCE = 1e-6  # s: sums of floats are not exact
+_TOLERANCE = 1e-6  # s, as sums of floats are not exact
 
 
 def diagnose_windows(study: Study, bounds: MissionBounds) -> Iterator[Diagnostic]:
-    """Tasks that end too late for their window, at the planned times."""
+    """Yield diagnostics on tasks that end too late for their window, at the planned times."""
     for leaf, flow in enumerate(study.flow.leaves):
         window = flow.leaf.task.window
         if window is None or window.latest is None or not study.nominal.is_reached(leaf):
@@ -25,29 +25,29 @@ def diagnose_windows(study: Study, bounds: MissionBounds) -> Iterator[Diagnostic
                 soonest = f": it ends after {time_words(end.soonest)} at the soonest"
             yield study.diagnostic(
                 "window-missed" if window.hard else "window-late",
-                f"if nothing fails, no path is in time for task '{name}', which is to have ended "
+                f"if nothing fails, no path is in time for task '{name}', whose window closes "
                 f"{latest} after the mission's start{soonest}",
-                "do it earlier, or let its window end later",
+                "do it earlier, or let its window close later",
                 leaf,
             )
         elif end.latest > window.latest + _TOLERANCE:
             yield study.diagnostic(
                 "window-maybe-missed",
-                f"task '{name}' may come too late: it is to have ended {latest} after the "
+                f"task '{name}' may come too late: its window closes {latest} after the "
                 "mission's start, and some path may take longer",
-                "do it earlier, or let its window end later"
-                + ("" if not window.hard else ", and say by missed_target what follows"),
+                "do it earlier, or let its window close later"
+                + ("" if not window.hard else ", and give the next task with missed_target"),
                 leaf,
             )
 
 
 def diagnose_time_limits(study: Study) -> Iterator[Diagnostic]:
-    """Tasks that can't be done within their time limit, as planned."""
+    """Yield diagnostics on tasks that take longer than their time limit, at the planned times."""
     for leaf, taken in sorted(study.costs.too_slow.items()):
         limit = study.task(leaf).time_limit
         assert limit is not None
         if study.task(leaf).retries:
-            continue  # each attempt goes on from where the last one stopped
+            continue  # each attempt continues from where the previous one stopped
         yield study.diagnostic(
             "time-limit",
             f"task '{study.name(leaf)}' takes at least {time_words(taken)} as planned, longer than "

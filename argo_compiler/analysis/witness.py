@@ -1,9 +1,10 @@
-"""Witnesses: what each claim of the analysis rests on, as data that can be checked in one pass.
+"""Witnesses: evidence for the claims of the analysis, as data that can be checked in one pass.
 
-A set of readings of a checkpoint is a number with one bit each. Its bounds cut the line of values:
-bit 2k is what lies below bound k and above the one before, bit 2k + 1 the bound itself, and bit 2n,
-with n bounds, what lies above the last one. Then come three bits: no reading, unreadable, failed.
-The sets of all checkpoints lie beside each other in one long number.
+A set of readings of a checkpoint is an integer with one bit for each of them. The checkpoint's
+bounds divide the number line: bit 2k stands for the values between bound k - 1 and bound k, bit
+2k + 1 for bound k itself, and bit 2n, with n bounds, for the values above the last one. Three more
+bits follow: no reading, unreadable, failed. The sets of all checkpoints are packed into one long
+integer.
 """
 
 from dataclasses import dataclass
@@ -11,90 +12,94 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class ReadingScale:
-    """Where the readings of a checkpoint lie in the long numbers, and what they mean."""
+    """Position and meaning of the bits of a checkpoint's readings in the long integers."""
 
     object_id: str
     bounds: tuple[float, ...]
     """ascending"""
     shift: int
-    """the number of its first bit"""
+    """number of the first bit"""
 
 
 @dataclass(frozen=True, slots=True)
 class Invariant:
-    """What may be on a mission, large enough that no step leads out of it.
+    """Inductive invariant of a mission: states so large that no step of the mission leaves them.
 
-    What lies outside can't happen. The readings are those that may be there before anything is
-    done at a place; a checkpoint without a scale may have any reading anywhere.
+    Whatever lies outside of them can't happen. The readings are those that are possible at a task,
+    before its action, or at a group; a checkpoint without a scale may have any reading anywhere.
     """
 
     failures: bool
-    """whether any action may fail, and any task be done by hand or skipped"""
+    """whether any action may fail, and a person may do or skip any task"""
     scales: tuple[ReadingScale, ...]
     tasks: tuple[int | None, ...]
-    """of each task, in the mission's order: the readings; None: it is not come to"""
+    """for each task, in the mission's order, the readings; None if it is not reached"""
     rounds: tuple[int | None, ...]
-    """of each group, in the mission's order, likewise, when a round of it has ended"""
+    """for each group, in the mission's order, the readings when a round of it has ended"""
     cuts: tuple[int | None, ...]
-    """of each group, likewise, when its time or that of a group around it is up"""
+    """for each group, the readings when its time or that of an enclosing group is up"""
     ended: bool
-    """whether the mission ends"""
+    """whether the mission can end"""
     late_tasks: tuple[int, ...]
-    """of each task: the readings that may still come there, from an action that is cancelled"""
+    """for each task, the readings that an action being cancelled may still report there"""
     late_rounds: tuple[int, ...]
+    """the same for each element of `rounds`"""
     late_cuts: tuple[int, ...]
+    """the same for each element of `cuts`"""
 
 
 @dataclass(frozen=True, slots=True)
 class KeptReading:
-    """Readings of a checkpoint that a loop keeps, as nothing in it measures it."""
+    """Readings of a checkpoint that do not change in a loop, as no task in it measures them."""
 
     object_id: str
     bounds: tuple[float, ...]
     """ascending"""
     readings: int
+    """set of readings, as bits"""
 
 
 @dataclass(frozen=True, slots=True)
 class Trap:
-    """Places that follow each other for ever, if no action fails: no step leads out of them."""
+    """Tasks and groups that follow each other for ever if no action fails: no step leaves them."""
 
     tasks: tuple[str, ...]
+    """names of the tasks"""
     rounds: tuple[str, ...] = ()
-    """the groups of which a round ends there"""
+    """names of the groups whose rounds end in the loop"""
     cuts: tuple[str, ...] = ()
-    """the groups that a time-out leaves there"""
+    """names of the groups that a time-out leaves in the loop"""
     kept: KeptReading | None = None
-    """with what readings it is entered; None: with any that may be there"""
+    """readings with which the loop is entered; None if it does not end with any possible reading"""
 
 
 @dataclass(frozen=True, slots=True)
 class LeastSpent:
-    """What has been spent at least since the mission's start, in s or Wh, place by place.
+    """Lower bounds of the time (s) or energy (Wh) spent from the mission's start to each point.
 
-    In the round n of each group around a place it is (n - 1) times that group's period more. None:
-    the place is not come to.
+    The values hold for the first round of each enclosing group. Round n adds n - 1 times the
+    group's period. A value is None if the point is not reached.
     """
 
     tasks: tuple[float | None, ...]
-    """of each task, in the mission's order: when it has ended"""
+    """for each task, in the mission's order, until it has ended"""
     missed: tuple[float | None, ...]
-    """likewise, when its hard window is over"""
+    """for each task, until its hard window has closed"""
     rounds: tuple[float | None, ...]
-    """of each group, in the mission's order: when a round of it has ended"""
+    """for each group, in the mission's order, until a round of it has ended"""
     left: tuple[float | None, ...]
-    """likewise, when it has had its last round, or its time is up"""
+    """for each group, until its last round has ended or its time is up"""
     entered: tuple[float | None, ...]
-    """likewise, when it is entered"""
+    """for each group, until it is entered"""
     periods: tuple[float, ...]
-    """likewise, from one round to the next"""
+    """for each group, lower bound from one round to the next"""
     end: float | None
-    """when the mission has ended"""
+    """until the mission has ended"""
 
 
 @dataclass(frozen=True, slots=True)
 class LeastWitness:
-    """What shows that a mission takes at least so much."""
+    """Witness of the least time and the least energy of a mission."""
 
     time: LeastSpent
     """s"""
@@ -104,12 +109,12 @@ class LeastWitness:
 
 @dataclass(frozen=True, slots=True)
 class Witnesses:
-    """All that an analysis can show for its claims."""
+    """All witnesses of an analysis."""
 
     nominal: Invariant
-    """if no action fails"""
+    """invariant if no action fails"""
     all: Invariant
-    """whatever fails"""
+    """invariant whatever fails"""
     traps: tuple[Trap, ...] = ()
     least: LeastWitness | None = None
-    """of what is taken at least, where something is said of that"""
+    """lower bounds; None if no diagnostic claims one"""

@@ -1,4 +1,4 @@
-"""The witnesses of what an analysis claims, from what it has found on its way."""
+"""Construction of the witnesses of an analysis from its intermediate results."""
 
 from collections.abc import Iterable
 
@@ -9,7 +9,7 @@ from argo_compiler.analysis.witness import Invariant, ReadingScale, Witnesses
 
 
 def make_witnesses(study: Study, loops: Iterable[NonTerminatingLoop]) -> Witnesses:
-    """What shows that the claims of a study are right, in linear time."""
+    """Return the witnesses for the verdicts and the loops of a study, in linear time."""
     return Witnesses(
         nominal=_invariant(study, study.nominal, failures=False),
         all=_invariant(study, study.with_failures, failures=True),

@@ -1,4 +1,4 @@
-"""Short ways to write a mission for the analysis, and travel with simple times."""
+"""Helpers that build missions for tests of the analysis, and a travel with simple times."""
 
 import itertools
 
@@ -19,7 +19,10 @@ CATALOG = Catalog(
 
 
 def compare(text, max_age=None):
-    """A condition from text such as `1 < 5`, `1 >= 5` or `2 < 1 < 5` (values of checkpoint 1)."""
+    """Return a condition from a text such as `1 < 5`, `1 >= 5` or `2 < 1 < 5`.
+
+    These three compare the value of checkpoint 1.
+    """
     words = text.split()
     if len(words) == 5:
         low, op, object_id, _, high = words
@@ -38,13 +41,15 @@ def compare(text, max_age=None):
     )
 
 
-def way(target, *texts, max_age=None):
+def transition(target, *texts, max_age=None):
     return Transition(target=target, conditions=tuple(compare(t, max_age) for t in texts))
 
 
 def task(name, *ways, **more):
-    """A task that measures the checkpoint whose number its name ends with after an `m`, as in
-    `Am1`; any other drives."""
+    """Return a task that measures a checkpoint or drives.
+
+    A name that ends with `m` and a number, as in `Am1`, measures the checkpoint with that number.
+    """
     head, m, number = name.rpartition("m")
     if m == "m" and number.isdigit() and head != "":
         return measure(name, *ways, object_id=number, **more)
@@ -52,7 +57,7 @@ def task(name, *ways, **more):
 
 
 def mission(*tasks, groups=(), **more):
-    """Tasks without any way on lead to the next one, if they are given by name."""
+    """Return a mission of tasks; a task that is given by its name leads to the next one."""
     names = [t if isinstance(t, str) else t.name for t in tasks]
     following = dict(itertools.pairwise(names))
     return Mission(
@@ -65,8 +70,11 @@ def mission(*tasks, groups=(), **more):
     )
 
 
-class Steady:
-    """Every way takes 10 s and 1 Wh, but none to where the robot is; a measurement takes 2 s."""
+class ConstantTravel:
+    """Travel in which each leg uses 1 Wh, and a drive takes 10 s at 1 m/s.
+
+    A drive to where the robot is takes no time; a measurement takes 2 s.
+    """
 
     clean_up = 1.0
     standing_power = 0.0

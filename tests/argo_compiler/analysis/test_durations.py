@@ -1,4 +1,4 @@
-"""Durations and energy of missions small enough to count by hand."""
+"""Durations and energy of missions that are small enough to compute by hand."""
 
 import pytest
 
@@ -17,17 +17,17 @@ from argo_compiler.il import (
 from tests.argo_compiler.analysis.building import (
     CATALOG,
     DOCK,
-    Steady,
+    ConstantTravel,
     compare,
     mission,
     task,
-    way,
+    transition,
 )
 from tests.mission_writing import wait
 
 
 def bounds(*tasks, **more):
-    found = analyse(mission(*tasks, **more), CATALOG, Steady())
+    found = analyse(mission(*tasks, **more), CATALOG, ConstantTravel())
     assert found.duration is not None
     return found.duration.least.value, found.duration.most.value
 
@@ -46,10 +46,10 @@ def test_one_task_after_the_other():
 
 
 def test_a_branch_has_a_short_and_a_long_side():
-    ways = task("Am1", way("End", "1 < 5"), "B")
+    ways = task("Am1", transition("End", "1 < 5"), "B")
     assert bounds(ways, "B", "C", "End") == (22, 42)
     # The long side alone is left if no reading leads to the other.
-    assert bounds(task("Am1", way("End", "1 < 0"), "B"), "B", "C", "End") == (42, 42)
+    assert bounds(task("Am1", transition("End", "1 < 0"), "B"), "B", "C", "End") == (42, 42)
 
 
 @pytest.mark.parametrize(
@@ -74,7 +74,8 @@ def test_a_hard_stop_leaves_at_its_time_from_wherever_the_robot_is():
     least, most = bounds(
         "A", "B", "Cm1", groups=[group("G", "A", "B", max_repeat_duration=35, **HARD)]
     )
-    # A measurement alone takes 2 s; the way back and on again 10 s and 12 s, cleaning up 1 s.
+    # At least only the measurement, 2 s. At most cleaning up, 1 s, the rest of the drive, 10 s,
+    # and the drive to C with its measurement, 12 s.
     assert (least, most) == (35 + 2, 35 + 1 + 10 + 12)
 
 
@@ -86,7 +87,7 @@ def test_the_clock_of_the_next_group_runs_while_the_robot_cleans_up():
             group("H", "C", "D", max_repeat_duration=20, **SOFT),
         ],
     )
-    # The first round of H takes 10 to 31 s, the next one 20 s, and it begins before 20 s are over.
+    # The first round of H takes 10 to 31 s, the next one 20 s; it starts before 20 s are over.
     assert (least, most) == (35 + 20 + 10, 35 + 40 + 10)
 
 
@@ -104,35 +105,35 @@ def test_rounds_in_rounds():
 
 
 def test_a_group_entered_in_the_middle_has_a_short_first_round():
-    middle = task("S", way("B", "1 < 5"), "A")
+    middle = task("S", transition("B", "1 < 5"), "A")
     found = bounds("Xm1", middle, "A", "B", "C", groups=[group("G", "A", "C", max_repeat_count=2)])
     assert found == (12 + 10 + 20 + 30, 12 + 10 + 30 + 30)
 
 
 def test_a_group_may_be_left_in_any_round():
-    leave = task("Am1", way("End", "1 < 5"), "B")
+    leave = task("Am1", transition("End", "1 < 5"), "B")
     found = bounds(leave, "B", "End", groups=[group("G", "Am1", "B", max_repeat_count=3)])
-    # At once, or after three whole rounds, the last one of which could also be left.
+    # At once, or after three complete rounds, the last of which could also be left.
     assert found == (22, 3 * 22 + 10)
 
 
 def test_an_endless_group_that_may_be_left_has_no_longest_duration():
-    leave = task("Am1", way("End", "1 < 5"), "B")
+    leave = task("Am1", transition("End", "1 < 5"), "B")
     assert bounds(leave, "B", "End", groups=[group("G", "Am1", "B")]) == (22, None)
 
 
 def test_a_loop_within_a_time_limit_is_limited():
-    loop = [task("Am1", way("Am1", "1 < 5"), "B"), "B", "End"]
+    loop = [task("Am1", transition("Am1", "1 < 5"), "B"), "B", "End"]
     assert bounds(*loop) == (32, None)
     least, most = bounds(*loop, groups=[group("G", "Am1", "B", max_repeat_duration=60, **HARD)])
     assert (least, most) == (60, 60 + 1 + 12 + 10)
 
 
-def test_the_path_says_how():
+def test_the_path_lists_tasks_and_rounds():
     found = analyse(
         mission("A", "B", "C", groups=[group("G", "A", "B", max_repeat_count=3)]),
         CATALOG,
-        Steady(),
+        ConstantTravel(),
     )
     assert found.duration is not None
     assert [(s.words, s.until) for s in found.duration.least.path] == [
@@ -156,15 +157,15 @@ def test_a_wait_that_fails_may_lead_elsewhere():
     assert bounds("A", gives_up, task("C", "End"), "End") == (20, 37)
 
 
-def test_where_ways_join_the_robot_is_where_it_came_from():
-    """A WAIT of no time leaves the robot at its place: the way on is that from there."""
+def test_where_paths_join_the_robot_is_where_it_came_from():
+    """A WAIT of no time leaves the robot where it is; the next drive starts there."""
     join = wait("J", "Bm1", duration=0)
-    # Both measure the same checkpoint, the second time without a way.
+    # Both measure the same checkpoint, the second time without a drive.
     assert bounds(task("Am1", "J"), join, task("Bm1")) == (14, 14)
 
 
-def test_rounds_with_a_plan_do_not_drift():
-    # A round takes 20 s; the last one begins at 2 x 60 s, or when the one before has ended.
+def test_rounds_with_fixed_starts_do_not_drift():
+    # A round takes 20 s; the last one starts at 2 x 60 s, or when the previous one has ended.
     three = {"max_repeat_count": 3}
     assert bounds("A", "B", "C", groups=[group("G", "A", "B", every=60, **three)]) == (150, 150)
     assert bounds("A", "B", "C", groups=[group("G", "A", "B", every=15, **three)]) == (70, 70)
@@ -176,7 +177,7 @@ def test_no_round_begins_that_is_due_too_late():
     assert bounds("A", "B", "C", groups=[limited]) == (90, 90)
 
 
-def test_rounds_until_something_holds():
+def test_rounds_until_a_condition_holds():
     found = bounds(
         "Am1",
         "B",
@@ -195,19 +196,19 @@ def test_a_window_is_waited_for():
 
 def test_a_hard_window_ends_a_task():
     missed = task("B", "C", window=TimeWindow(latest=15, missed_target="D"))
-    # Cut on the way: from there to B and on to D takes 20 s at most, after cleaning up.
+    # Interrupted on the way: from there to B and then to D takes 20 s at most, after cleaning up.
     assert bounds("A", missed, task("C"), "D") == (15, 15 + 1 + 20)
 
 
 def test_a_time_out_need_not_come_after_a_whole_round():
-    """T1 may be repeated until the time is up, so that no round is ever completed."""
+    """T1 may be repeated until the time is up, so that no round is completed."""
 
-    class Costly(Steady):
+    class Costly(ConstantTravel):
         def leg(self, origin, task, velocity):  # noqa: ARG002
             return Leg(2.0, 10.0 if task.name == "T2" else 0.1, task.name)
 
     plan = mission(
-        task("T0m1", way("T2", "1 > 3"), "T1"),
+        task("T0m1", transition("T2", "1 > 3"), "T1"),
         task("T1", "T1"),
         task("T2"),
         groups=[group("G", "T0m1", "T2", max_repeat_duration=8, max_repeat_count=3, **HARD)],
@@ -218,13 +219,13 @@ def test_a_time_out_need_not_come_after_a_whole_round():
 
 
 @pytest.mark.rule("T6")
-def test_the_speed_of_a_way_is_that_of_its_target():
+def test_the_speed_of_a_drive_is_that_of_its_target():
     fast = task("B", "C", velocity=2.0)
     assert bounds("A", fast, "C") == (10 + 5 + 10,) * 2
 
 
 def worst(*tasks, **more):
-    found = analyse(mission(*tasks, **more), CATALOG, Steady()).duration_with_failures
+    found = analyse(mission(*tasks, **more), CATALOG, ConstantTravel()).duration_with_failures
     assert found is not None
     return found.value
 
@@ -239,9 +240,9 @@ def test_failures_take_no_longer_than_all_attempts():
     assert worst(task("A", "A")) is None
 
 
-def test_when_the_time_is_up_the_way_home_is_the_rest():
-    loop = task("Am1", way("Am1", "1 < 5"))
-    # 100 s, cleaning up, the rest of the way to A with its 2 s, and the way from there.
+def test_when_the_time_is_up_only_the_way_home_is_left():
+    loop = task("Am1", transition("Am1", "1 < 5"))
+    # 100 s, cleaning up, the rest of the drive to A with its 2 s, and the drive from there.
     assert worst(loop, max_duration=100, dock=DOCK, reactions=(HOME,)) == 100 + 1 + 12 + 10
     assert worst(loop, max_duration=100, dock=DOCK) is None
     again = HOME.model_copy(update={"afterwards": Afterwards.RESUME})
@@ -249,7 +250,7 @@ def test_when_the_time_is_up_the_way_home_is_the_rest():
 
 
 def test_a_reaction_of_higher_rank_may_keep_the_robot_from_going_home():
-    loop = task("Am1", way("Am1", "1 < 5"))
+    loop = task("Am1", transition("Am1", "1 < 5"))
     alarm = Reaction(event=EventKind.GAS_LEAK, response=Response.PAUSE, until=EventKind.ALL_CLEAR)
     assert worst(loop, max_duration=100, dock=DOCK, reactions=(HOME, alarm)) is None
     lower = alarm.model_copy(update={"priority": 1})
@@ -261,9 +262,9 @@ def test_a_reaction_of_higher_rank_may_keep_the_robot_from_going_home():
 
 
 def test_an_action_that_begins_when_the_time_is_up_has_not_ended():
-    """B takes no time, but needs energy: the stop comes before its end."""
+    """B takes no time but needs energy; the stop comes before its end."""
 
-    class Quick(Steady):
+    class Quick(ConstantTravel):
         def leg(self, origin, task, velocity):  # noqa: ARG002
             return Leg(0.0 if task.name == "B" else 10.0, 1.0, task.name)
 

@@ -1,4 +1,4 @@
-"""What the analysis calls possible does happen, in most cases: random missions, run many times."""
+"""Most of what the analysis calls possible happens in many runs of random missions."""
 
 import random
 from collections import Counter
@@ -15,9 +15,9 @@ from tests.argo_compiler.analysis.worlds import MadeUpTravel, catalogs, missions
 from tests.conftest import EXAMPLES, examples
 
 NOMINAL = 25
-"""runs of each mission in which nothing happens but what it waits for: as bounds are meant"""
+"""runs of each mission in which only the events occur that it waits for, as the bounds assume"""
 EVENTFUL = 50
-"""further runs at most, until all that is called possible has happened"""
+"""greatest number of further runs, until everything that is called possible has happened"""
 
 SHARES = (
     ("tasks entered", "tasks", 30, 0.75, 0.89, 0.04),
@@ -25,21 +25,23 @@ SHARES = (
     ("least met", "bounds", 5, 0.6, 0.84, 0.10),
     ("most met", "bounds", 5, 0.6, 0.85, 0.10),
 )
-"""Counts: of what happens, of all that may, and how many of these there are more than; the least
-share for the suite's 40 examples, which are always the same; and for others the share among 1,440
-examples, with the standard deviation between samples of 40, which is less for more examples.
+"""Name of the count of what happens; name of the count of what is called possible; a number that
+the latter count must exceed; the least share in the suite's 40 examples, which are always the same;
+and for other examples the share among 1,440, with the standard deviation between samples of 40,
+which is smaller for more examples.
 
-Of 88 ways that no nominal run took, 47 were taken by eventful ones, if need be by thousands. Of the
-others some can't be taken, as the analysis does not look at how ages exclude each other, at windows
-and rounds that are too short, or at what a WAIT awaits in vain; and it takes readings of cancelled
-measurements to come from tasks that are never reached, and by ways that only a failure opens."""
+Of 88 transitions that no nominal run took, eventful runs took 47, some only in thousands of runs.
+Some of the others can't be taken: the analysis does not consider that ages exclude each other,
+that windows and rounds are too short, or that a WAIT waits in vain. It also assumes that late
+readings of cancelled measurements may come from tasks that are never reached, and by transitions
+that only a failure opens."""
 
 
 def test_most_of_what_is_called_possible_happens():
     counts, seen = Counter(), set()
 
-    # Ten at a time: the first ones of Hypothesis are drawn anew, each of the others varies one of
-    # them, so that what is counted of them is hardly more than of one.
+    # Ten at a time: Hypothesis draws the first ones anew and then only varies them, so that further
+    # ones would hardly add anything to the counts.
     @settings(max_examples=10, suppress_health_check=list(HealthCheck))
     @given(missions(least=4, most=6), catalogs(), st.integers(0, 1000))
     def explore(mission, catalog, seed):

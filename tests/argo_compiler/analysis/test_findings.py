@@ -1,4 +1,4 @@
-"""What the analysis says about ends, loops, limits and places."""
+"""Diagnostics of the analysis on ends, loops, limits and unreachable locations."""
 
 import pytest
 
@@ -15,7 +15,14 @@ from argo_compiler.il import (
     Task,
     TimeWindow,
 )
-from tests.argo_compiler.analysis.building import CATALOG, DOCK, Steady, mission, task, way
+from tests.argo_compiler.analysis.building import (
+    CATALOG,
+    DOCK,
+    ConstantTravel,
+    mission,
+    task,
+    transition,
+)
 from tests.mission_writing import drive, wait
 
 FAR = Pose(x=-1, y=0, z=0)
@@ -31,11 +38,11 @@ def findings(made, travel=None):
 
 
 SOFTENED = {"analysis.endless-loop", "analysis.no-end"}
-"""a warning where a reaction may end the mission"""
+"""codes of errors that are warnings if a reaction may end the mission"""
 
 
 def test_a_mission_that_ends_has_no_findings():
-    assert findings(mission("A", "Bm1", "C"), Steady()) == {}
+    assert findings(mission("A", "Bm1", "C"), ConstantTravel()) == {}
 
 
 def test_a_loop_that_nothing_leaves():
@@ -46,8 +53,8 @@ def test_a_loop_that_nothing_leaves():
     assert found["no-end"].severity is Severity.ERROR
 
 
-def test_a_trap_beside_the_way_to_the_end():
-    found = findings(mission(task("Am1", way("B", "1 < 5"), "End"), task("B", "B"), "End"))
+def test_an_endless_loop_beside_the_path_to_the_end():
+    found = findings(mission(task("Am1", transition("B", "1 < 5"), "End"), task("B", "B"), "End"))
     assert set(found) == {"endless-loop"}
     assert found["endless-loop"].subject == "tasks['B']"
 
@@ -59,24 +66,24 @@ def test_a_reaction_that_ends_the_mission_makes_it_a_warning():
 
 
 def test_a_loop_that_may_go_on():
-    loop = [task("Am1", way("Am1", "1 < 5"), "B"), "B"]
+    loop = [task("Am1", transition("Am1", "1 < 5"), "B"), "B"]
     assert set(findings(mission(*loop))) == {"unbounded-loop"}
     limited = Group(name="G", start="Am1", end="B", max_repeat_duration=60)
     assert findings(mission(*loop, groups=(limited,))) == {}
-    leave = task("Am1", way("End", "1 < 5"), "B")
+    leave = task("Am1", transition("End", "1 < 5"), "B")
     endless = mission(leave, "B", "End", groups=(Group(name="G", start="Am1", end="B"),))
     assert "group 'G' may be repeated without limit" in findings(endless)["unbounded-loop"].message
 
 
 def test_what_follows_a_round_whose_time_is_up_is_looked_at_without_travel_times():
-    loop = [task("Bm1", way("Bm1", "1 < 5"), "End"), "End"]
+    loop = [task("Bm1", transition("Bm1", "1 < 5"), "End"), "End"]
     timed = Group(name="G", start="A", end="A", max_repeat_duration=60, stop=Stop.HARD)
     assert set(findings(mission("A", *loop, groups=(timed,)))) == {"unbounded-loop"}
 
 
 def test_where_the_mission_ends():
     home = drive("Home", pose=DOCK)
-    early = task("Am1", way("B", "1 < 5"), "Home")
+    early = task("Am1", transition("B", "1 < 5"), "Home")
     found = findings(mission(early, home, "B", end_area=1))
     assert set(found) == {"end-elsewhere"}
     assert "path: Am1 > B" in found["end-elsewhere"].message
@@ -89,7 +96,7 @@ def test_where_the_mission_ends():
 def test_after_a_wait_the_robot_is_where_it_was():
     home, join = drive("Home", "J", pose=DOCK), wait("J", duration=0)
     assert findings(mission(task("A", "Home"), home, join, end_area=1)) == {}
-    away = mission(task("Am1", way("J", "1 < 5"), "Home"), home, join, end_area=1)
+    away = mission(task("Am1", transition("J", "1 < 5"), "Home"), home, join, end_area=1)
     assert "after task 'J'" in findings(away)["end-elsewhere"].message
     late = home.model_copy(update={"window": TimeWindow(latest=5)})
     found = findings(mission(task("A", "Home"), late, join, end_area=1))
@@ -101,8 +108,10 @@ def test_after_a_wait_the_robot_is_where_it_was():
     [(32, None), (31, "maybe-too-long"), (22, "maybe-too-long"), (21, "too-long")],
 )
 def test_the_maximum_duration(limit, expected):
-    made = mission(task("Am1", way("C", "1 < 5"), "B"), task("B", "C"), "C", max_duration=limit)
-    found = findings(made, Steady())
+    made = mission(
+        task("Am1", transition("C", "1 < 5"), "B"), task("B", "C"), "C", max_duration=limit
+    )
+    found = findings(made, ConstantTravel())
     assert set(found) == ({expected} if expected else set())
     if expected == "too-long":
         assert "at least 22 s" in found[expected].message
@@ -114,47 +123,47 @@ def test_the_maximum_duration(limit, expected):
     [(3.0, None), (2.5, "battery-maybe-exceeded"), (1.5, "battery-exceeded")],
 )
 def test_the_battery(battery, expected):
-    travel = Steady(battery=battery)
-    made = mission(task("Am1", way("C", "1 < 5"), "B"), task("B", "C"), "C")
+    travel = ConstantTravel(battery=battery)
+    made = mission(task("Am1", transition("C", "1 < 5"), "B"), task("B", "C"), "C")
     assert set(findings(made, travel)) == ({expected} if expected else set())
 
 
 def test_a_value_that_is_always_too_old():
-    made = ["Am1", "B", task("C", way("Last", "1 < 5", max_age=19), "End"), "End", "Last"]
-    found = findings(mission(*made), Steady())
+    made = ["Am1", "B", task("C", transition("Last", "1 < 5", max_age=19), "End"), "End", "Last"]
+    found = findings(mission(*made), ConstantTravel())
     assert set(found) == {"always-stale"}
     assert "at least 20 s" in found["always-stale"].message
-    made[2] = task("C", way("Last", "1 < 5", max_age=20), "End")
-    assert findings(mission(*made), Steady()) == {}
+    made[2] = task("C", transition("Last", "1 < 5", max_age=20), "End")
+    assert findings(mission(*made), ConstantTravel()) == {}
 
 
-def test_places_that_cannot_be_reached():
-    found = findings(mission("A", "Bm1", "C"), Steady(blocked={"1"}))
+def test_locations_that_cannot_be_reached():
+    found = findings(mission("A", "Bm1", "C"), ConstantTravel(blocked={"1"}))
     assert set(found) == {"unreachable-place"}
     assert "a wall stands in the way" in found["unreachable-place"].message
     shelter = Reaction(event=EventKind.GAS_LEAK, response=Response.SAFE_AREA, pose=FAR)
-    found = findings(mission("A", reactions=(shelter,)), Steady())
+    found = findings(mission("A", reactions=(shelter,)), ConstantTravel())
     assert found["unreachable-place"].subject == "reactions['gas_leak'].pose"
     back = Reaction(event=EventKind.LOW_BATTERY, response=Response.RETURN)
-    found = findings(mission("A", dock=FAR, reactions=(back,)), Steady())
+    found = findings(mission("A", dock=FAR, reactions=(back,)), ConstantTravel())
     assert found["unreachable-place"].subject == "dock"
     other = Reaction(event=EventKind.LOW_BATTERY, response=Response.RETURN, pose=FAR)
-    found = findings(mission("A", dock=DOCK, reactions=(other,)), Steady())
+    found = findings(mission("A", dock=DOCK, reactions=(other,)), ConstantTravel())
     assert found["unreachable-place"].subject == "reactions['low_battery'].pose"
     near = other.model_copy(update={"pose": DOCK})
-    assert findings(mission("A", dock=FAR, reactions=(near,)), Steady()) == {}
+    assert findings(mission("A", dock=FAR, reactions=(near,)), ConstantTravel()) == {}
 
 
 def test_groups_nested_a_thousand_deep():
     names = ["/".join(map(str, range(k + 1))) for k in range(1000)]
     groups = [Group(name=n, start="A", end="C", max_repeat_count=2) for n in names]
-    found = analyse(mission("A", "B", "C", groups=groups), CATALOG, Steady())
+    found = analyse(mission("A", "B", "C", groups=groups), CATALOG, ConstantTravel())
     assert found.reachable == {"A", "B", "C"}
 
 
 def test_a_mission_of_a_start_alone():
     start = Task(name="S", action=Action.START)
-    found = analyse(mission(start), CATALOG, Steady())
+    found = analyse(mission(start), CATALOG, ConstantTravel())
     assert found.diagnostics == ()
     assert found.duration is not None
     assert found.duration.most.value == 0
@@ -163,19 +172,19 @@ def test_a_mission_of_a_start_alone():
 HOME = Reaction(event=EventKind.TIME_UP, response=Response.RETURN)
 
 
-def test_a_plan_that_its_maximum_duration_cuts_short():
+def test_a_mission_that_its_maximum_duration_cuts_short():
     patrol = Group(name="G", start="B", end="C", max_repeat_duration=600, stop=Stop.HARD)
     plan = {"groups": (patrol,), "max_duration": 120, "dock": DOCK}
-    found = findings(mission("A", "B", "C", "D", reactions=(HOME,), **plan), Steady())
+    found = findings(mission("A", "B", "C", "D", reactions=(HOME,), **plan), ConstantTravel())
     assert set(found) == {"cut-short"}
-    # 2 min, cleaning up, the rest of a way and the way home.
-    assert "ends it then, after 2 min 21 s at most" in found["cut-short"].message
-    assert "'D' will not be done by then" in found["cut-short"].message
+    # 2 min, cleaning up, the rest of a drive and the drive home.
+    assert "then ends it, after 2 min 21 s at most" in found["cut-short"].message
+    assert "'D' will not be done in time" in found["cut-short"].message
     assert "'B' and 'C' may not be done, or not in all rounds" in found["cut-short"].message
     # Nothing ends it without the reaction.
-    assert set(findings(mission("A", "B", "C", "D", **plan), Steady())) == {"too-long"}
+    assert set(findings(mission("A", "B", "C", "D", **plan), ConstantTravel())) == {"too-long"}
     enough = mission("A", "B", max_duration=20, dock=DOCK, reactions=(HOME,))
-    assert findings(enough, Steady()) == {}
+    assert findings(enough, ConstantTravel()) == {}
 
 
 @pytest.mark.parametrize(
@@ -189,7 +198,7 @@ def test_a_plan_that_its_maximum_duration_cuts_short():
 )
 def test_windows_that_every_path_misses(latest, hard, expected):
     late = task("B", "C", window=TimeWindow(latest=latest, hard=hard))
-    found = findings(mission("A", late, "C"), Steady())
+    found = findings(mission("A", late, "C"), ConstantTravel())
     assert set(found) == ({expected} if expected else set())
     if expected:
         assert "no path is in time for task 'B'" in found[expected].message
@@ -197,26 +206,28 @@ def test_windows_that_every_path_misses(latest, hard, expected):
 
 def test_a_window_that_some_path_misses():
     late = task("C", "D", window=TimeWindow(latest=25))
-    found = findings(mission(task("Am1", way("C", "1 < 5"), "B"), "B", late, "D"), Steady())
+    found = findings(
+        mission(task("Am1", transition("C", "1 < 5"), "B"), "B", late, "D"), ConstantTravel()
+    )
     assert set(found) == {"window-maybe-missed"}
     rounds = Group(name="G", start="A", end="B", max_repeat_count=2)
     soft = task("B", "C", window=TimeWindow(latest=25, hard=False))
-    found = findings(mission("A", soft, "C", groups=(rounds,)), Steady())
+    found = findings(mission("A", soft, "C", groups=(rounds,)), ConstantTravel())
     assert set(found) == {"window-maybe-missed"}
 
 
 def test_a_time_limit_that_is_too_short_promises_nothing():
     made = mission("A", task("B", "C", time_limit=9), "C", max_duration=25)
-    found = analyse(made, CATALOG, Steady())
+    found = analyse(made, CATALOG, ConstantTravel())
     assert {d.code for d in found.diagnostics} == {"analysis.time-limit"}
     assert found.duration is None
 
 
 @pytest.mark.rule("T7")
 def test_with_retries_a_time_limit_that_is_too_short_for_one_attempt_says_nothing():
-    """Each attempt goes on from where the last one stopped, so several may do."""
+    """Each attempt continues from where the last one stopped, so several may suffice."""
     made = mission("A", task("B", "C", time_limit=9, retries=1), "C", max_duration=25)
-    found = analyse(made, CATALOG, Steady())
+    found = analyse(made, CATALOG, ConstantTravel())
     assert found.diagnostics == ()
     assert found.duration is None
 
@@ -225,14 +236,14 @@ def test_with_retries_a_time_limit_that_is_too_short_for_one_attempt_says_nothin
 def test_the_time_before_a_window_opens_does_not_count_for_the_limit():
     late = TimeWindow(earliest=100)
     limited = task("B", "C", time_limit=9, window=late)
-    assert analyse(mission("A", limited, "C"), CATALOG, Steady()).diagnostics == ()
+    assert analyse(mission("A", limited, "C"), CATALOG, ConstantTravel()).diagnostics == ()
     limited = task("B", "C", time_limit=9)
-    assert "time-limit" in findings(mission("A", limited, "C"), Steady())
+    assert "time-limit" in findings(mission("A", limited, "C"), ConstantTravel())
 
 
 def test_the_way_back_with_a_reserve():
-    travel = Steady(battery=5.0)
-    # Each way takes 1 Wh, the way back too, and 1 Wh is to be left.
+    travel = ConstantTravel(battery=5.0)
+    # Each drive takes 1 Wh, also the way back, and 1 Wh must remain.
     made = mission("A", "B", "C", "D", dock=DOCK)
     found = findings(made, travel)
     assert set(found) == {"no-way-back"}
@@ -242,6 +253,6 @@ def test_the_way_back_with_a_reserve():
 
 
 def test_a_robot_that_may_charge_meanwhile_may_go_farther():
-    travel = Steady(battery=1.5)
+    travel = ConstantTravel(battery=1.5)
     stays = wait("W", "B", duration=3600)
     assert set(findings(mission(task("A", "W"), stays, "B"), travel)) == {"battery-maybe-exceeded"}

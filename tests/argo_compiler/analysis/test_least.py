@@ -1,4 +1,4 @@
-"""What is said to be taken at least has a witness, and the checker takes no wrong one."""
+"""Claims on lower bounds have a witness, and the checker accepts no wrong witness."""
 
 import json
 import math
@@ -15,7 +15,7 @@ from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.hfsm import Cause, lower
 from argo_compiler.il import Group, Stop, TimeWindow
-from tests.argo_compiler.analysis.building import CATALOG, Steady, mission, task, way
+from tests.argo_compiler.analysis.building import CATALOG, ConstantTravel, mission, task, transition
 from tests.argo_compiler.analysis.worlds import MadeUpTravel, catalogs, missions, run
 from tests.conftest import examples
 
@@ -24,7 +24,7 @@ SOON = 1e-6
 
 
 def witnessed(plan, catalog, travel):
-    """The witness of a mission, and the steps to check it with."""
+    """Return the witness of a mission, and the steps that check it; None twice if there is none."""
     witnesses = analyse(plan, catalog, travel).witnesses
     if witnesses is None:
         return None, None
@@ -64,12 +64,12 @@ def test_no_run_takes_less_than_what_is_accepted(plan, catalog, seed, clean_up, 
             assert done.energy >= witness.energy.end - SOON
 
 
-# Why a task is left when it has ended, by itself and in time.
+# Causes of leaving a task that has ended by itself, failed, or missed its window.
 ENDS = {Cause.CONDITION, Cause.REPEAT, Cause.DEFAULT, Cause.FAILURE, Cause.MISSED}
 
 
 def rounds(**limits):
-    """A, two measurements in a group, and D."""
+    """Return a mission of A, two measurements in a group, and D."""
     group = Group(name="G", start="Bm1", end="Cm2", **limits)
     return mission("A", "Bm1", "Cm2", "D", groups=[group], max_duration=60)
 
@@ -87,7 +87,7 @@ USUAL = {
         max_duration=60,
     ),
     "a branch that leaves out a task": mission(
-        task("Am1", way("C", "1 < 5"), "B"),
+        task("Am1", transition("C", "1 < 5"), "B"),
         task("B", "C"),
         task("C", "D"),
         task("D", window=TimeWindow(earliest=500)),
@@ -97,8 +97,8 @@ USUAL = {
 
 
 @pytest.mark.parametrize("name", USUAL)
-def test_what_usual_missions_take_at_least_is_shown(name):
-    plan, travel = USUAL[name], Steady()
+def test_the_lower_bounds_of_usual_missions_are_proved(name):
+    plan, travel = USUAL[name], ConstantTravel()
     analysis = analyse(plan, CATALOG, travel)
     assert "analysis.too-long" in {d.code for d in analysis.diagnostics}
     assert unproved_bounds(plan, CATALOG, travel, analysis) == ()
@@ -108,10 +108,10 @@ def test_what_usual_missions_take_at_least_is_shown(name):
     json.dumps(asdict(least))
 
 
-def test_what_the_battery_and_windows_need_is_shown():
+def test_claims_on_battery_and_windows_are_proved():
     windowed = task("D", window=TimeWindow(latest=20))
     plan = mission(*COUNTED.tasks[:3], windowed, groups=COUNTED.groups)
-    travel = Steady(battery=5.0)
+    travel = ConstantTravel(battery=5.0)
     analysis = analyse(plan, CATALOG, travel)
     found = {d.code for d in analysis.diagnostics}
     assert {"analysis.window-missed", "analysis.battery-exceeded"} <= found
@@ -119,7 +119,7 @@ def test_what_the_battery_and_windows_need_is_shown():
 
 
 def corrupted(spent):
-    """Each value of a witness greater, left out, or no number; fewer of them."""
+    """Yield the witness with one value greater, missing or no number, or with a value too few."""
     for field in fields(spent):
         column = getattr(spent, field.name)
         if not isinstance(column, tuple):
@@ -137,7 +137,7 @@ def corrupted(spent):
 
 @pytest.mark.parametrize("name", USUAL)
 def test_a_witness_that_claims_more_is_rejected(name):
-    plan, travel = USUAL[name], Steady()
+    plan, travel = USUAL[name], ConstantTravel()
     witness, steps = witnessed(plan, CATALOG, travel)
     assert is_valid(steps, witness)
     for field, other in corrupted(witness.time):
@@ -146,9 +146,9 @@ def test_a_witness_that_claims_more_is_rejected(name):
         assert not is_valid(steps, replace(witness, energy=other)), (field, other)
 
 
-def test_what_is_not_shown_is_not_said():
-    """A witness that is right but shows too little, one that is wrong, and none at all."""
-    travel = Steady()
+def test_claims_without_a_valid_witness_are_unproved():
+    """A valid witness that proves too little, a wrong one, and none at all prove no claim."""
+    travel = ConstantTravel()
     analysis = analyse(COUNTED, CATALOG, travel)
     (claim,) = [d for d in analysis.diagnostics if d.code == "analysis.too-long"]
     least = analysis.witnesses.least
@@ -163,16 +163,16 @@ def test_what_is_not_shown_is_not_said():
         assert unproved_bounds(COUNTED, CATALOG, travel, weak) == (claim,)
 
 
-class Wandering(Steady):
-    """The robot never stands at the same place again."""
+class WanderingTravel(ConstantTravel):
+    """Travel in which the robot never stands at the same pose again."""
 
     def leg(self, origin, task, velocity):
         leg = super().leg(origin, task, velocity)
         return replace(leg, arrival=f"{origin}+")
 
 
-def test_a_claim_that_can_not_be_shown_is_withdrawn():
-    analysis = analyse(COUNTED, CATALOG, Wandering())
+def test_a_claim_that_cannot_be_proved_is_withdrawn():
+    analysis = analyse(COUNTED, CATALOG, WanderingTravel())
     assert analysis.duration.least.value > COUNTED.max_duration
     assert "analysis.too-long" not in {d.code for d in analysis.diagnostics}
     assert analysis.unjudged == ("whether the mission takes too long on all paths",)

@@ -1,4 +1,4 @@
-"""What the analysis calls impossible never happens: random missions, run at random."""
+"""Nothing that the analysis calls impossible happens in random runs of random missions."""
 
 import pytest
 from hypothesis import HealthCheck, assume, event, given, settings
@@ -11,7 +11,7 @@ from argo_compiler.diagnostics import has_errors
 from argo_compiler.hfsm import Cause, lower
 from argo_compiler.hfsm.conditions import words
 from argo_compiler.il import Group, Stop
-from tests.argo_compiler.analysis.building import mission, task, way
+from tests.argo_compiler.analysis.building import mission, task, transition
 from tests.argo_compiler.analysis.worlds import (
     MadeUpTravel,
     catalogs,
@@ -39,7 +39,7 @@ def steps_of(done):
 
 
 def require_allowed(mission, analysis, done, failures):
-    """No task, transition or round of the run is one that the analysis excludes."""
+    """Require that the run has no task, transition or round that the analysis excludes."""
     facts = {t.task: t for t in analysis.tasks}
     groups = {g.group: g for g in analysis.groups}
     excluded = {Verdict.NEVER} if failures else {Verdict.NEVER, Verdict.AFTER_FAILURE}
@@ -59,7 +59,7 @@ def require_allowed(mission, analysis, done, failures):
 
 
 def taken(task, entry):
-    """The indices of the transitions that a step may have taken."""
+    """Return the indices of the transitions that a step may have taken."""
     if entry.cause is Cause.CONDITION:
         return [
             k
@@ -79,16 +79,16 @@ def require_transition(task, facts, entry, excluded):
 
 
 def require_not_passed_over(mission, facts, entry):
-    """Before the one taken there is none that is always taken."""
+    """Require that no transition before the one taken is called always taken."""
     task = mission.task(entry.source)
     if entry.cause not in (Cause.CONDITION, Cause.DEFAULT, Cause.REPEAT):
         return
     last = len(task.transitions)
     if entry.cause is Cause.CONDITION:
         last = min(taken(task, entry))
-    for transition in facts.transitions[:last]:
-        if task.transitions[transition.index].conditions:
-            assert transition.verdict is not Verdict.ALWAYS, entry
+    for earlier in facts.transitions[:last]:
+        if task.transitions[earlier.index].conditions:
+            assert earlier.verdict is not Verdict.ALWAYS, entry
 
 
 def within(bounds, value, finished):
@@ -99,7 +99,7 @@ def within(bounds, value, finished):
 
 
 def require_within(analysis, done):
-    """A run in which nothing failed lies between the bounds, unless its time was up before."""
+    """Require a run between the bounds, unless something failed or a reaction started."""
     if not done.nominal or not done.in_time:
         return
     if analysis.duration is None or analysis.energy is None:
@@ -110,7 +110,7 @@ def require_within(analysis, done):
 
 
 def require_within_worst(analysis, done):
-    """Whatever failed and occurred."""
+    """Require a run within the bound with failures, whatever failed and occurred."""
     worst = analysis.duration_with_failures
     if worst is not None and worst.value is not None and not done.astray:
         event(f"worst, finished {done.finished}")
@@ -147,12 +147,16 @@ def test_nothing_impossible_happens(mission, catalog, seed, clean_up, standing_p
 
 
 def test_a_loop_whose_way_out_always_comes_too_late_is_never_over():
-    """From W3 the way back to the group takes longer than the group lasts, so that the value which
-    would lead out of it is not measured any more."""
+    """The drive from W3 to the group takes longer than the group lasts.
+
+    The value that would lead out of the group is then never measured again.
+    """
     group = Group(name="0", start="M1x0", end="M1x1", max_repeat_duration=1, stop=Stop.HARD)
     plan = mission(
         measure("M1x0", "M1x1", object_id="1"),
-        measure("M1x1", "W2", way("M1x0", "1 < 0"), way("W4", "1 > 0"), object_id="1"),
+        measure(
+            "M1x1", "W2", transition("M1x0", "1 < 0"), transition("W4", "1 > 0"), object_id="1"
+        ),
         task("W2", "W3"),
         task("W3", "M1x0"),
         task("W4", "W5"),
@@ -173,4 +177,4 @@ def test_a_loop_whose_way_out_always_comes_too_late_is_never_over():
     assert analysis.duration.most.value is None
     assert done.now > 10 * analysis.duration.least.value
     (loop,) = [d for d in analysis.diagnostics if d.code == "analysis.unbounded-loop"]
-    assert "what leads out of them comes too late for a hard stop" in loop.message
+    assert "the transitions out of them come too late for a hard stop" in loop.message

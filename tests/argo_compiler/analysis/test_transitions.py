@@ -1,4 +1,4 @@
-"""Which transitions can be taken: cases with known answers."""
+"""Verdicts on transitions in cases with known answers."""
 
 import pytest
 
@@ -11,7 +11,7 @@ from argo_compiler.il import (
     TimeWindow,
     Transition,
 )
-from tests.argo_compiler.analysis.building import CATALOG, mission, task, way
+from tests.argo_compiler.analysis.building import CATALOG, mission, task, transition
 from tests.mission_writing import checkpoint, wait
 
 NEVER, AFTER, POSSIBLE, ALWAYS = (
@@ -22,8 +22,8 @@ NEVER, AFTER, POSSIBLE, ALWAYS = (
 )
 
 
-def analysed(*tasks, **more):
-    """Return the analysis of such a mission on the site of the catalogue."""
+def analyse_tasks(*tasks, **more):
+    """Return the analysis of a mission with the catalogue."""
     return analyse(mission(*tasks, **more), CATALOG)
 
 
@@ -61,29 +61,29 @@ def verdicts(analysis, name):
     ],
 )
 def test_transitions_of_the_task_that_measures(tests, expected):
-    ways = [way("B", *texts) for texts in tests]
-    analysis = analysed(task("Am1", *ways, "C"), "B", "C")
+    ways = [transition("B", *texts) for texts in tests]
+    analysis = analyse_tasks(task("Am1", *ways, "C"), "B", "C")
     assert verdicts(analysis, "Am1") == expected
     if NEVER in expected and "2 < 6" not in str(tests):
         assert "transition-never" in codes(analysis)
 
 
 def test_without_a_catalogue_a_checkpoint_may_show_anything():
-    analysis = analyse(mission(task("Am1", way("B", "1 > 12"), "C"), "B", "C"))
+    analysis = analyse(mission(task("Am1", transition("B", "1 > 12"), "C"), "B", "C"))
     assert verdicts(analysis, "Am1") == [POSSIBLE, POSSIBLE]
 
 
-def test_a_value_is_remembered_along_the_way():
-    analysis = analysed(
-        task("Am1", way("Low", "1 < 5"), "High"),
-        task("Low", way("Never", "1 > 6"), way("Join", "1 < 5"), "Never"),
-        task("High", way("Never", "1 < 5"), "Join"),
+def test_a_value_is_known_along_the_path():
+    analysis = analyse_tasks(
+        task("Am1", transition("Low", "1 < 5"), "High"),
+        task("Low", transition("Never", "1 > 6"), transition("Join", "1 < 5"), "Never"),
+        task("High", transition("Never", "1 < 5"), "Join"),
         task("Never", "Join"),
-        task("Join", way("Am1", "1 > 9"), "End"),
+        task("Join", transition("Am1", "1 > 9"), "End"),
         "End",
     )
     assert verdicts(analysis, "Low") == [NEVER, ALWAYS, NEVER]
-    # The value is not there if its measurement failed; no condition holds then.
+    # If the measurement failed there is no value, and no condition holds.
     assert verdicts(analysis, "High") == [NEVER, ALWAYS]
     assert analysis.task("Never").verdict is NEVER
     assert verdicts(analysis, "Join") == [POSSIBLE, POSSIBLE]
@@ -91,18 +91,23 @@ def test_a_value_is_remembered_along_the_way():
 
 def test_measuring_again_forgets_the_old_value():
     again = [
-        task("Am1", way("B", "1 < 5"), "End"),
+        task("Am1", transition("B", "1 < 5"), "End"),
         "B",
-        task("Cm1", way("Am1", "1 > 6"), "End"),
+        task("Cm1", transition("Am1", "1 > 6"), "End"),
         "End",
     ]
-    assert verdicts(analysed(*again), "Cm1") == [POSSIBLE, POSSIBLE]
+    assert verdicts(analyse_tasks(*again), "Cm1") == [POSSIBLE, POSSIBLE]
 
 
 def test_an_old_value_may_be_too_old_for_any_verdict_but_never():
     old = mission(
-        task("Am1", way("Low", "1 < 5"), "Low2"),
-        task("Low", way("End", "1 < 5", max_age=20), way("End", "1 > 5", max_age=20), "End"),
+        task("Am1", transition("Low", "1 < 5"), "Low2"),
+        task(
+            "Low",
+            transition("End", "1 < 5", max_age=20),
+            transition("End", "1 > 5", max_age=20),
+            "End",
+        ),
         task("Low2", "End"),
         "End",
     )
@@ -110,11 +115,11 @@ def test_an_old_value_may_be_too_old_for_any_verdict_but_never():
 
 
 def test_what_only_a_failure_leads_to():
-    analysis = analysed(
-        task("Am1", way("Low", "1 < 5"), way("High", "1 >= 5"), "Broken"),
+    analysis = analyse_tasks(
+        task("Am1", transition("Low", "1 < 5"), transition("High", "1 >= 5"), "Broken"),
         task("Low"),
         task("High"),
-        task("Broken", way("Low", "1 < 20")),
+        task("Broken", transition("Low", "1 < 20")),
     )
     assert analysis.task("Broken").verdict is AFTER
     assert verdicts(analysis, "Broken") == [NEVER]
@@ -122,13 +127,15 @@ def test_what_only_a_failure_leads_to():
 
 
 def test_after_an_abort_nothing_follows():
-    aborts = task("Am1", way("Low", "1 < 5"), way("Low", "1 >= 5"), on_failure=OnFailure.ABORT)
-    assert analysed(aborts, "Low").ends is POSSIBLE
+    aborts = task(
+        "Am1", transition("Low", "1 < 5"), transition("Low", "1 >= 5"), on_failure=OnFailure.ABORT
+    )
+    assert analyse_tasks(aborts, "Low").ends is POSSIBLE
 
 
 def test_why_a_task_is_unreachable():
-    found = analysed(
-        task("Am1", way("X", "1 > 12"), way("Y", "2 > 1"), "End"),
+    found = analyse_tasks(
+        task("Am1", transition("X", "1 > 12"), transition("Y", "2 > 1"), "End"),
         task("X", "Behind"),
         task("Y", "End"),
         task("Behind", "End"),
@@ -146,22 +153,22 @@ def test_why_a_task_is_unreachable():
     assert all(d.hint for d in found.diagnostics)
 
 
-def test_transitions_that_are_never_and_always_taken_are_told():
-    found = analysed(task("Am1", way("B", "1 < 4"), way("B", "1 < 3"), "B"), "B")
+def test_transitions_that_are_never_and_always_taken_are_reported():
+    found = analyse_tasks(task("Am1", transition("B", "1 < 4"), transition("B", "1 < 3"), "B"), "B")
     assert codes(found) == ["transition-never"]
     assert found.diagnostics[0].subject == "tasks['Am1'].transitions[1]"
     assert "can only be 4 to 10 here" in found.diagnostics[0].message
-    found = analysed(task("Am1", way("B", "1 < 11"), "B"), "B")
+    found = analyse_tasks(task("Am1", transition("B", "1 < 11"), "B"), "B")
     assert codes(found) == ["transition-always"]
-    complete = task("Am1", way("B", "1 < 5"), way("B", "1 >= 5"), "B")
-    assert codes(analysed(complete, "B")) == []
+    complete = task("Am1", transition("B", "1 < 5"), transition("B", "1 >= 5"), "B")
+    assert codes(analyse_tasks(complete, "B")) == []
 
 
 def test_values_that_are_compared_before_they_are_measured():
-    found = analysed(
-        task("Am1", way("Bm2", "1 < 5"), "C"),
+    found = analyse_tasks(
+        task("Am1", transition("Bm2", "1 < 5"), "C"),
         "Bm2",
-        task("C", way("End", "2 < 5"), way("End", "3 < 5"), "Dm3"),
+        task("C", transition("End", "2 < 5"), transition("End", "3 < 5"), "Dm3"),
         "Dm3",
         "End",
     )
@@ -182,9 +189,9 @@ def test_values_that_are_compared_before_they_are_measured():
     ],
 )
 def test_rounds_of_a_group(group, repeats, ends):
-    found = analysed(
+    found = analyse_tasks(
         "A",
-        task("Bm1", way("Out", "1 > 5"), "C"),
+        task("Bm1", transition("Out", "1 > 5"), "C"),
         task("C", "End"),
         "Out",
         "End",
@@ -195,7 +202,7 @@ def test_rounds_of_a_group(group, repeats, ends):
     assert verdicts(found, "C") == [NEVER if ends is NEVER else POSSIBLE]
 
 
-def reading(kind, target, object_id="1", **more):
+def on_reading(kind, target, object_id="1", **more):
     return Transition(
         target=target, conditions=(Condition(type=kind, object_id=object_id, **more),)
     )
@@ -204,83 +211,87 @@ def reading(kind, target, object_id="1", **more):
 @pytest.mark.parametrize("kind", [ConditionType.FAILED, ConditionType.UNREADABLE])
 @pytest.mark.rule("C3", "C7")
 def test_a_reading_fails_only_after_a_failure(kind):
-    analysis = analysed(task("Am1", reading(kind, "B"), "C"), "B", "C")
+    analysis = analyse_tasks(task("Am1", on_reading(kind, "B"), "C"), "B", "C")
     assert verdicts(analysis, "Am1") == [AFTER, ALWAYS]
-    unmeasured = analysed("X", task("A", reading(kind, "B"), "C"), "B", "C")
+    unmeasured = analyse_tasks("X", task("A", on_reading(kind, "B"), "C"), "B", "C")
     assert verdicts(unmeasured, "A") == [NEVER, ALWAYS]
 
 
 @pytest.mark.rule("C4")
 def test_a_failed_measurement_leaves_nothing_of_the_value_before():
-    high = task("Am1", way("Bm1", "1 > 5"), "End")
-    again = task("Bm1", reading(ConditionType.FAILED, "Known"), "End")
-    known = task("Known", way("Never", "1 > 5"), "End")
-    analysis = analysed(high, again, known, "Never", "End")
+    high = task("Am1", transition("Bm1", "1 > 5"), "End")
+    again = task("Bm1", on_reading(ConditionType.FAILED, "Known"), "End")
+    known = task("Known", transition("Never", "1 > 5"), "End")
+    analysis = analyse_tasks(high, again, known, "Never", "End")
     assert verdicts(analysis, "Known") == [NEVER, AFTER]
 
 
 @pytest.mark.rule("W5", "C3")
 def test_a_missed_window_leaves_a_failed_reading():
-    late = task("Am1", reading(ConditionType.FAILED, "B"), "C", window=TimeWindow(latest=5))
-    assert verdicts(analysed(late, "B", "C"), "Am1") == [POSSIBLE, POSSIBLE]
+    late = task("Am1", on_reading(ConditionType.FAILED, "B"), "C", window=TimeWindow(latest=5))
+    assert verdicts(analyse_tasks(late, "B", "C"), "Am1") == [POSSIBLE, POSSIBLE]
 
 
 @pytest.mark.rule("C7")
 def test_what_is_abnormal_lies_outside_the_nominal_range():
     narrow = CATALOG.model_copy(update={"checkpoints": (checkpoint(1, 0, 10, 2, 8),)})
-    odd = reading(ConditionType.ABNORMAL, "Odd")
-    plan = mission(task("Am1", odd, "End"), task("Odd", way("X", "2 <= 1 <= 8")), "X", "End")
+    odd = on_reading(ConditionType.ABNORMAL, "Odd")
+    plan = mission(task("Am1", odd, "End"), task("Odd", transition("X", "2 <= 1 <= 8")), "X", "End")
     analysis = analyse(plan, narrow)
     assert verdicts(analysis, "Am1") == [POSSIBLE, POSSIBLE]
     assert verdicts(analysis, "Odd") == [NEVER]
-    # Here all that it can show is normal.
+    # Here all values that the checkpoint can show are normal.
     assert verdicts(analyse(plan, CATALOG), "Am1") == [NEVER, ALWAYS]
 
 
 @pytest.mark.rule("C7")
 def test_a_value_that_was_just_read_is_not_stale():
-    stale = reading(ConditionType.STALE, "B", max_age=5)
-    analysis = analysed(task("Am1", stale, "C"), "B", "C")
+    stale = on_reading(ConditionType.STALE, "B", max_age=5)
+    analysis = analyse_tasks(task("Am1", stale, "C"), "B", "C")
     assert verdicts(analysis, "Am1")[0] is not POSSIBLE
-    later = analysed("Am1", task("A", stale, "C"), "B", "C")
+    later = analyse_tasks("Am1", task("A", stale, "C"), "B", "C")
     assert verdicts(later, "A") == [POSSIBLE, POSSIBLE]
 
 
 @pytest.mark.rule("W2", "C8")
 def test_a_value_that_is_waited_for_may_come_at_any_time():
-    stand = wait("W", "B", conditions=way("x", "2 > 5").conditions)
-    plan = mission(task("Am1", way("B", "2 < 3"), "W"), stand, task("B", way("C", "2 < 3")), "C")
+    stand = wait("W", "B", conditions=transition("x", "2 > 5").conditions)
+    plan = mission(
+        task("Am1", transition("B", "2 < 3"), "W"), stand, task("B", transition("C", "2 < 3")), "C"
+    )
     analysis = analyse(plan, CATALOG)
     assert verdicts(analysis, "Am1") == [POSSIBLE, POSSIBLE]
     assert verdicts(analysis, "B") == [POSSIBLE]
 
 
 @pytest.mark.rule("C8")
-def test_a_value_that_no_task_measures_may_be_told_at_any_time():
-    plan = mission("A", task("B", way("C", "2 > 5"), way("C", "2 > 12"), "End"), "C", "End")
+def test_a_value_that_no_task_measures_may_be_reported_at_any_time():
+    plan = mission(
+        "A", task("B", transition("C", "2 > 5"), transition("C", "2 > 12"), "End"), "C", "End"
+    )
     analysis = analyse(plan, CATALOG)
     assert verdicts(analysis, "B") == [POSSIBLE, NEVER, POSSIBLE]
     assert "C" in analysis.reachable
     assert analysis.diagnostics == ()
-    rounds = Group(name="G", start="A", end="B", until=way("x", "2 > 5").conditions)
-    group = analysed("A", "B", "C", groups=(rounds,)).groups[0]
+    rounds = Group(name="G", start="A", end="B", until=transition("x", "2 > 5").conditions)
+    group = analyse_tasks("A", "B", "C", groups=(rounds,)).groups[0]
     assert (group.repeats, group.ends) == (POSSIBLE, POSSIBLE)
 
 
 @pytest.mark.rule("I3")
 def test_a_value_may_come_late_while_a_wait_is_already_over():
-    """The action that is cancelled may still succeed after the WAIT has looked at the value."""
-    join = wait("J", way("Low", "1 < 3"), "High", duration=0)
+    """The cancelled action may still succeed after the WAIT has evaluated its conditions."""
+    join = wait("J", transition("Low", "1 < 3"), "High", duration=0)
     late = task("Bm1", "End", window=TimeWindow(latest=5, missed_target="J"))
-    plan = mission("Am1", late, join, task("Low", way("High", "1 > 6")), "High", "End")
+    plan = mission("Am1", late, join, task("Low", transition("High", "1 > 6")), "High", "End")
     assert verdicts(analyse(plan, CATALOG), "Low") == [POSSIBLE]
 
 
 @pytest.mark.rule("G8")
 def test_after_rounds_until_a_value_the_value_is_known():
-    rounds = Group(name="G", start="Am1", end="B", until=way("x", "1 > 5").conditions)
+    rounds = Group(name="G", start="Am1", end="B", until=transition("x", "1 > 5").conditions)
     leave = task("B", "C")
-    plan = mission("Am1", leave, task("C", way("D", "1 < 5")), "D", groups=(rounds,))
+    plan = mission("Am1", leave, task("C", transition("D", "1 < 5")), "D", groups=(rounds,))
     assert verdicts(analyse(plan, CATALOG), "C") == [NEVER]
     counted = rounds.model_copy(update={"max_repeat_count": 3})
     assert verdicts(analyse(plan.model_copy(update={"groups": (counted,)}), CATALOG), "C") == [

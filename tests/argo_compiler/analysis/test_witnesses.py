@@ -1,4 +1,4 @@
-"""What is called impossible has a witness, and the checker of witnesses takes no wrong one."""
+"""Claims that something is impossible have a witness, and the checker accepts no wrong one."""
 
 import json
 from dataclasses import asdict, replace
@@ -12,7 +12,7 @@ from argo_compiler.analysis.verification import Verifier
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.il import Action, ConditionType, Group, Mission, OnFailure, Task
-from tests.argo_compiler.analysis.building import CATALOG, mission, task, way
+from tests.argo_compiler.analysis.building import CATALOG, mission, task, transition
 from tests.argo_compiler.analysis.worlds import conditions
 from tests.argo_compiler.hfsm.random_missions import missions
 from tests.conftest import examples
@@ -33,7 +33,7 @@ def test_all_claims_about_missions_of_the_whole_language_are_proved(plan):
     json.dumps(asdict(analysis.witnesses))
 
 
-# A brute-force explorer of missions in which nothing hangs on time.
+# A brute-force explorer of missions in which nothing depends on time.
 
 
 @st.composite
@@ -81,7 +81,7 @@ def holds(condition, readings):
 
 
 class Explorer:
-    """All that may happen, step by step, with all values of a few checkpoints."""
+    """Everything that can happen in a mission, found by trying all values of two checkpoints."""
 
     def __init__(self, plan, failures):
         self.plan = plan
@@ -100,47 +100,47 @@ class Explorer:
             pending += self.after(*here)
 
     def after(self, name, known):
-        one = self.plan.tasks[self.position[name]]
+        current = self.plan.tasks[self.position[name]]
         self.tasks.add(self.position[name])
-        for reading in self.outcomes(one):
+        for reading in self.outcomes(current):
             readings = dict(known)
-            if one.object_id is not None:
-                readings[one.object_id] = reading
+            if current.object_id is not None:
+                readings[current.object_id] = reading
             frozen = tuple(sorted(readings.items(), key=str))
             lost = reading in ("failed", "lost")
-            if lost and one.on_failure is OnFailure.BRANCH:
-                yield one.failure_target, frozen
-            elif lost and one.on_failure is OnFailure.ABORT:
+            if lost and current.on_failure is OnFailure.BRANCH:
+                yield current.failure_target, frozen
+            elif lost and current.on_failure is OnFailure.ABORT:
                 self.ended = True
             else:
-                yield from ((target, frozen) for target in self.targets(one, readings))
+                yield from ((target, frozen) for target in self.targets(current, readings))
 
-    def outcomes(self, one):
-        if one.action is Action.MEASURE:
+    def outcomes(self, current):
+        if current.action is Action.MEASURE:
             yield from VALUES
         else:
             yield "done"
         if self.failures:
             yield "failed"
 
-    def targets(self, one, readings):
-        at = self.position[one.name]
-        for k, transition in enumerate(one.transitions):
-            if transition.conditions and all(holds(c, readings) for c in transition.conditions):
+    def targets(self, current, readings):
+        at = self.position[current.name]
+        for k, candidate in enumerate(current.transitions):
+            if candidate.conditions and all(holds(c, readings) for c in candidate.conditions):
                 self.transitions.add((at, k))
-                return [transition.target]
+                return [candidate.target]
         found = []
-        for group in self.ending.get(one.name, []):
+        for group in self.ending.get(current.name, []):
             if group.max_repeat_count != 1:
                 found.append(group.start)
             if not group.max_repeat_count:
                 return found
-        last = next((k for k, t in enumerate(one.transitions) if not t.conditions), None)
+        last = next((k for k, t in enumerate(current.transitions) if not t.conditions), None)
         if last is None:
             self.ended = True
             return found
         self.transitions.add((at, last))
-        return [*found, one.transitions[last].target]
+        return [*found, current.transitions[last].target]
 
 
 @settings(max_examples=examples(20), suppress_health_check=SLOW)
@@ -181,7 +181,7 @@ def test_a_witness_that_leaves_out_what_happens_is_not_taken(plan, data):
 
 
 def bit_of(scale, reading):
-    """The bit of a reading, worked out anew: values by counting the bounds below them."""
+    """Return the bit of a reading, computed independently by counting the bounds below a value."""
     n = len(scale.bounds)
     if not isinstance(reading, float):
         return 1 << (2 * n + (1 if reading is None else 3))
@@ -191,7 +191,7 @@ def bit_of(scale, reading):
 
 @st.composite
 def corruptions(draw, witness):
-    """A witness that says less than the one given: a place, some readings or the end is missing."""
+    """Draw the witness with something removed: a task, a group, readings, a scale or the end."""
     column = draw(st.sampled_from([*PLACES[:2], "tasks", "ended", "scales"]))
     if column == "ended":
         return replace(witness, ended=False)
@@ -210,8 +210,8 @@ def corruptions(draw, witness):
 
 
 PLAN = mission(
-    task("Am1", way("C", "1 > 12"), "B"),
-    task("B", way("D", "1 < 5"), way("E", "1 >= 5"), "C"),
+    task("Am1", transition("C", "1 > 12"), "B"),
+    task("B", transition("D", "1 < 5"), transition("E", "1 >= 5"), "C"),
     task("C", "D"),
     task("D"),
     task("E", "D"),
@@ -238,8 +238,8 @@ def test_what_is_claimed_with_a_catalogue_is_not_proved_without_it():
 
 
 @pytest.mark.rule("C8")
-def test_a_claim_that_a_value_told_by_others_disproves_is_not_proved():
-    plan = mission("A", task("B", way("D", "1 > 5"), "C"), task("C"), task("D"))
+def test_a_claim_that_a_value_reported_by_others_disproves_is_not_proved():
+    plan = mission("A", task("B", transition("D", "1 > 5"), "C"), task("C"), task("D"))
     analysis = analyse(plan, CATALOG)
     assert unproved(plan, CATALOG, analysis) == ()
     for witness in (analysis.witnesses.nominal, analysis.witnesses.all):
@@ -249,13 +249,13 @@ def test_a_claim_that_a_value_told_by_others_disproves_is_not_proved():
         assert Verifier(plan, CATALOG).check_invariant(replace(witness, tasks=tasks)) is None
 
 
-def kept(plan):
+def kept_loops(plan):
     return [d for d in analyse(plan, CATALOG).diagnostics if d.code == "analysis.kept-loop"]
 
 
 def test_a_loop_that_a_reading_keeps_is_found_with_the_readings():
-    plan = mission(task("Am1", "B"), task("B", way("B", "1 > 5"), "C"), task("C"))
-    (found,) = kept(plan)
+    plan = mission(task("Am1", "B"), task("B", transition("B", "1 > 5"), "C"), task("C"))
+    (found,) = kept_loops(plan)
     assert found.subject == "tasks['B']"
     assert "task 'B' follows itself for ever" in found.message
     assert "checkpoint 1 (valve R1) shows 5 to 10 (without 5)" in found.message
@@ -263,41 +263,43 @@ def test_a_loop_that_a_reading_keeps_is_found_with_the_readings():
 
 def test_a_loop_of_several_tasks_that_may_lack_a_value_is_found():
     plan = mission(
-        task("Am2", way("Fm1", "2 > 5"), "B"),
+        task("Am2", transition("Fm1", "2 > 5"), "B"),
         task("Fm1", "B"),
-        task("B", way("E", "1 > 5"), "D"),
+        task("B", transition("E", "1 > 5"), "D"),
         task("D", "B"),
         task("E"),
     )
-    (found,) = kept(plan)
+    (found,) = kept_loops(plan)
     assert "tasks 'B' and 'D' follow each other for ever" in found.message
-    assert "shows 0 to 5 or has no value when 'B' is come to" in found.message
+    assert "shows 0 to 5 or has no value when 'B' is reached" in found.message
 
 
 @pytest.mark.parametrize(
     "plan",
     [
         # measured again
-        mission(task("Am1", "B"), task("B", way("Am1", "1 > 5"), "C"), task("C")),
+        mission(task("Am1", "B"), task("B", transition("Am1", "1 > 5"), "C"), task("C")),
         # a value grows too old
-        mission(task("Am1", "B"), task("B", way("B", "1 > 5", max_age=60), "C"), task("C")),
+        mission(task("Am1", "B"), task("B", transition("B", "1 > 5", max_age=60), "C"), task("C")),
         # time ends it
         mission(
             task("Am1", "B"),
-            task("B", way("B", "1 > 5"), "C"),
+            task("B", transition("B", "1 > 5"), "C"),
             task("C"),
             groups=[Group(name="g", start="B", end="B", max_repeat_duration=60)],
         ),
         # no value keeps it
-        mission(task("Am1", "B"), task("B", way("B", "1 > 12"), "C"), task("C")),
+        mission(task("Am1", "B"), task("B", transition("B", "1 > 12"), "C"), task("C")),
     ],
 )
 def test_a_loop_that_may_end_is_not_called_endless(plan):
-    assert kept(plan) == []
+    assert kept_loops(plan) == []
 
 
-def test_a_corrupted_loop_is_not_taken():
-    plan = mission(task("Am1", "B"), task("B", way("D", "1 > 5"), "C"), task("D", "B"), task("C"))
+def test_a_corrupted_loop_is_rejected():
+    plan = mission(
+        task("Am1", "B"), task("B", transition("D", "1 > 5"), "C"), task("D", "B"), task("C")
+    )
     witnesses = analyse(plan, CATALOG).witnesses
     (trap,) = witnesses.traps
     verifier = Verifier(plan, CATALOG)

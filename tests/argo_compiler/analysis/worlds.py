@@ -1,4 +1,4 @@
-"""Small random missions with bounded values, travel times made up for them, and runs of both."""
+"""Small random missions with bounded values, random travel times, and runs of them."""
 
 from dataclasses import dataclass
 from random import Random
@@ -42,12 +42,12 @@ from tests.mission_writing import checkpoint
 
 STEPS = 80
 SHELTER = Pose(x=-1, y=0, z=0)
-HORIZON = 60  # s in which things happen from outside
+HORIZON = 60  # half seconds in which external events occur
 
 
 @st.composite
 def conditions(draw, objects=OBJECTS):
-    """Comparisons."""
+    """Draw comparisons of a value."""
     low = draw(st.integers(-1, 6))
     return Condition(
         type=draw(st.sampled_from([t for t in ConditionType if t.compares])),
@@ -61,7 +61,7 @@ def conditions(draw, objects=OBJECTS):
 
 @st.composite
 def conditions_of_all_kinds(draw, objects=OBJECTS):
-    """Of three in ten it is not the value that is looked at."""
+    """Draw conditions of all kinds; about three in ten do not compare the value."""
     kind = draw(st.sampled_from([None] * 7 + [t for t in ConditionType if not t.compares]))
     if kind is None:
         return draw(conditions(objects))
@@ -75,7 +75,7 @@ def conditions_of_all_kinds(draw, objects=OBJECTS):
 
 @st.composite
 def tasks_named(draw, name, names, index, object_id):
-    # Conditions on what was just measured are what plans are made of.
+    # Most missions compare the value that was just measured.
     objects = OBJECTS if object_id is None else (object_id, object_id, *OBJECTS)
     policy = draw(st.sampled_from([OnFailure.CONTINUE, OnFailure.CONTINUE, *OnFailure]))
     fields = {
@@ -101,7 +101,7 @@ def tasks_named(draw, name, names, index, object_id):
 
 @st.composite
 def reactions(draw):
-    """Often one to TIME_UP, sometimes others."""
+    """Draw reactions, often one to TIME_UP, sometimes others."""
     events = [EventKind.TIME_UP] if draw(st.booleans()) else []
     others = (EventKind.GAS_LEAK, EventKind.LOW_BATTERY)
     events += draw(st.sampled_from([(), (), others[:1], others]))
@@ -168,7 +168,10 @@ def ranges(draw):
 
 
 class MadeUpTravel:
-    """Travel times and energies between places, drawn once. Places are objects and poses."""
+    """Random travel times and energies, always the same for two poses of the robot.
+
+    A pose is the object that the robot measures there, or the coordinate of a waypoint.
+    """
 
     def __init__(self, seed, clean_up=0.0, blocked=(), standing_power=0.0):
         self.seed = seed
@@ -193,30 +196,30 @@ class MadeUpTravel:
 
 @dataclass
 class Run:
-    """What happened in a run."""
+    """State and outcome of a run."""
 
     executor: Executor
     now: float = 0.0
     energy: float = 0.0
     finished: bool = False
     nominal: bool = True
-    """whether no action failed, be it by its time limit"""
+    """whether no action failed, by its time limit or otherwise"""
     astray: bool = False
-    """whether actions that were cancelled in a row left the robot between any places"""
+    """whether several cancelled actions in a row left the robot between arbitrary poses"""
     in_time: bool = True
-    """whether no reaction began"""
+    """whether no reaction started"""
 
 
 @dataclass(frozen=True)
-class _At:
-    """The robot stands at a standing."""
+class _AtPose:
+    """Position of a robot that stands at a pose."""
 
-    standing: object
+    pose: object
 
 
 @dataclass(frozen=True)
-class _Near:
-    """It was on its way from another place to a task."""
+class _Interrupted:
+    """Position of a robot that was interrupted on its way from another position to a task."""
 
     before: object
     task: Task
@@ -224,8 +227,8 @@ class _Near:
 
 
 @dataclass
-class _Way:
-    """An action under way, and what its cancellation leaves to be done."""
+class _Action:
+    """Action that the robot is executing, with the energy it needs and the pose after it."""
 
     task: Task
     started: float
@@ -235,7 +238,10 @@ class _Way:
 
 
 class _World:
-    """A robot at the travel's times. Values lie in the catalogue's ranges, bounds included."""
+    """Simulation of a robot with the times of a travel.
+
+    Values lie in the catalogue's ranges, bounds included.
+    """
 
     def __init__(self, mission, hfsm, catalog, travel, seed, mode):
         self.travel = travel
@@ -244,16 +250,19 @@ class _World:
         self.pauses = {"wild": 0.05, "eventful": 0.1}.get(mode, 0.0)
         self.rng = Random(seed)
         self.checkpoints = {str(c.id): c for c in catalog.checkpoints}
-        self.done = Run(Executor(hfsm))
-        self.place = _At(travel.start(mission))
-        self.way = None
+        self.result = Run(Executor(hfsm))
+        self.position = _AtPose(travel.start(mission))
+        self.action = None
         self.stop_at = None
-        self.outside = []
-        """what may also occur or be told at any moment: events, and objects by their names"""
-        self.coming = self._from_outside(mission, hfsm)
+        self.external = []
+        """events that may occur, and objects whose values may be reported, at any moment"""
+        self.upcoming = self._external_events(mission, hfsm)
 
-    def _from_outside(self, mission, hfsm):
-        """What occurs and is told, and when. Nobody reacts to it unless things may go wrong."""
+    def _external_events(self, mission, hfsm):
+        """Return the external events and readings with their times, the latest first.
+
+        In the modes `nominal` and `eventful`, no event starts a reaction.
+        """
         waits = [t.wait for t in mission.tasks if t.wait is not None]
         awaited = {w.event for w in waits if w.event is not None}
         reacting = {r.event for r in mission.reactions} - {EventKind.TIME_UP}
@@ -261,145 +270,147 @@ class _World:
             awaited -= reacting
         else:
             awaited |= reacting | {r.until for r in mission.reactions if r.until is not None}
-        told = reported_by_others(Flow.from_machine(hfsm, mission)) & self.checkpoints.keys()
+        reported = reported_by_others(Flow.from_machine(hfsm, mission)) & self.checkpoints.keys()
         if self.mode == "eventful":
-            self.outside = [*sorted(awaited), *sorted(told)]
-        rng, coming = self.rng, []
+            self.external = [*sorted(awaited), *sorted(reported)]
+        rng, upcoming = self.rng, []
         for event in sorted(awaited):
-            coming += [
+            upcoming += [
                 (rng.randint(0, HORIZON) / 2, Occurred(event)) for _ in range(rng.randint(0, 4))
             ]
-        for o in sorted(told):
+        for o in sorted(reported):
             for _ in range(rng.randint(0, 5)):
                 value, abnormal = self._value(o)
-                coming.append((rng.randint(0, HORIZON) / 2, ReadingGiven(o, value, abnormal)))
-        return sorted(coming, key=lambda c: c[0], reverse=True)
+                upcoming.append((rng.randint(0, HORIZON) / 2, ReadingGiven(o, value, abnormal)))
+        return sorted(upcoming, key=lambda c: c[0], reverse=True)
 
     def run(self, steps):
-        done, executor = self.done, self.done.executor
-        self._note(executor.start(0.0))
+        result, executor = self.result, self.result.executor
+        self._execute(executor.start(0.0))
         while not executor.finished and len(executor.trace) < steps:
             if executor.reaction is not None:
-                done.in_time = False
+                result.in_time = False
             times = [executor.next_deadline]
             ends = None
-            if self.way is not None:
-                ends = self.way.ends if self.stop_at is None else self.stop_at
-            times += [ends, self.coming[-1][0] if self.coming else None]
+            if self.action is not None:
+                ends = self.action.ends if self.stop_at is None else self.stop_at
+            times += [ends, self.upcoming[-1][0] if self.upcoming else None]
             known = [t for t in times if t is not None]
-            if executor.paused and self.way is None:
+            if executor.paused and self.action is None:
                 if self.mode == "eventful":
-                    done.now += self.rng.choice([0, 1, 3, 7])
-                self._note(executor.handle(Resume(), done.now))
+                    result.now += self.rng.choice([0, 1, 3, 7])
+                self._execute(executor.handle(Resume(), result.now))
                 continue
             if not known:
                 break
-            self._pass(max(done.now, min(known)))
-            if self.outside and self.rng.random() < 0.3:
-                self._note(executor.handle(self._anything(), done.now))
+            self._advance(max(result.now, min(known)))
+            if self.external and self.rng.random() < 0.3:
+                self._execute(executor.handle(self._external_event(), result.now))
             elif self.pauses and self.stop_at is None and self.rng.random() < self.pauses:
-                self._note(executor.handle(Pause(), done.now))
-            elif self.coming and self.coming[-1][0] <= done.now:
-                self._note(executor.handle(self.coming.pop()[1], done.now))
-            elif ends is not None and ends <= done.now:
-                self._end()
+                self._execute(executor.handle(Pause(), result.now))
+            elif self.upcoming and self.upcoming[-1][0] <= result.now:
+                self._execute(executor.handle(self.upcoming.pop()[1], result.now))
+            elif ends is not None and ends <= result.now:
+                self._end_action()
             else:
-                self._note(executor.handle(Tick(), done.now))
-        done.finished = executor.finished
-        done.nominal = done.nominal and not any(e.failure for e in executor.trace)
-        return done
+                self._execute(executor.handle(Tick(), result.now))
+        result.finished = executor.finished
+        result.nominal = result.nominal and not any(e.failure for e in executor.trace)
+        return result
 
-    def _anything(self):
-        """Something from outside that may happen at any moment."""
-        what = self.rng.choice(self.outside)
+    def _external_event(self):
+        """Return a random external event or reading."""
+        what = self.rng.choice(self.external)
         if isinstance(what, EventKind):
             return Occurred(what)
         return ReadingGiven(what, *self._value(what))
 
-    def _pass(self, now):
-        """Time passes; the robot may draw power while nothing is under way."""
-        if self.way is None:
+    def _advance(self, now):
+        """Let time pass; without an action, the robot may draw the power of standing."""
+        if self.action is None:
             share = self.rng.choice([0, 1])
-            waited = now - self.done.now
-            self.done.energy += share * waited * self.travel.standing_power / 3600
-        self.done.now = now
+            waited = now - self.result.now
+            self.result.energy += share * waited * self.travel.standing_power / 3600
+        self.result.now = now
 
-    def _note(self, commands):
+    def _execute(self, commands):
         for command in commands:
             if isinstance(command, CancelAction):
-                self.stop_at = self.done.now + self.rng.choice([0, 1]) * self.travel.clean_up
+                self.stop_at = self.result.now + self.rng.choice([0, 1]) * self.travel.clean_up
             else:
                 assert isinstance(command, StartAction)
-                self._begin(command)
+                self._start_action(command)
 
-    def _begin(self, command):
-        task, now, rng = command.task, self.done.now, self.rng
+    def _start_action(self, command):
+        task, now, rng = command.task, self.result.now, self.rng
         leg = self.travel.leg("start", task, task.velocity)
         work, arrival = leg.work, leg.arrival
-        time, energy = self._longest(self.place, task, task.velocity)
-        if isinstance(self.place, _Near):
-            # An action that is begun anew takes its whole time again.
+        time, energy = self._longest(self.position, task, task.velocity)
+        if isinstance(self.position, _Interrupted):
+            # An action that is started again may take its full time again.
             time = max(work, rng.choice([0, 0.5, 1]) * max(time, work))
             energy *= rng.choice([0, 0.5, 1])
         if task.time_limit is not None and time > task.time_limit:
-            self.done.nominal = False
+            self.result.nominal = False
         if self.mode == "wild":
             time = rng.choice([time, 0, 2 * time + 1])
             work = min(work, time)
-        there = now + time - work
-        begins = there if command.not_before is None else max(there, command.not_before)
-        waiting = rng.choice([0, 1]) * (begins - there) * self.travel.standing_power / 3600
-        self.way = _Way(task, now, begins + work, energy + waiting, arrival)
+        arrived = now + time - work
+        begins = arrived if command.not_before is None else max(arrived, command.not_before)
+        waiting = rng.choice([0, 1]) * (begins - arrived) * self.travel.standing_power / 3600
+        self.action = _Action(task, now, begins + work, energy + waiting, arrival)
 
-    def _longest(self, place, task, velocity):
-        if isinstance(place, _At):
-            leg = self.travel.leg(place.standing, task, velocity)
+    def _longest(self, position, task, velocity):
+        if isinstance(position, _AtPose):
+            leg = self.travel.leg(position.pose, task, velocity)
             return leg.duration, leg.energy
-        time, energy = self._longest(place.before, place.task, velocity)
-        if task.name != place.task.name:
-            leg = self.travel.leg(place.arrival, task, velocity)
+        time, energy = self._longest(position.before, position.task, velocity)
+        if task.name != position.task.name:
+            leg = self.travel.leg(position.arrival, task, velocity)
             time, energy = time + leg.duration, energy + leg.energy
         return time, energy
 
-    def _on_the_way(self, way):
-        before = self.place
-        if isinstance(before, _Near):
+    def _interrupted_position(self, action):
+        before = self.position
+        if isinstance(before, _Interrupted):
             if self.mode == "failing":
-                # What is left after several failures is assumed, see `docs/analysis.md`.
-                before = _At(before.arrival)
+                # The position after several failures is an assumption, see `docs/analysis.md`.
+                before = _AtPose(before.arrival)
             else:
-                self.done.astray = True
-        return _Near(before, way.task, way.arrival)
+                self.result.astray = True
+        return _Interrupted(before, action.task, action.arrival)
 
-    def _end(self):
-        done, rng, way = self.done, self.rng, self.way
-        task, now = way.task, done.now
+    def _end_action(self):
+        result, rng, action = self.result, self.rng, self.action
+        task, now = action.task, result.now
         value, abnormal = None, False
         if task.action is Action.MEASURE:
             value, abnormal = self._value(task.object_id)
             if self.fails and rng.random() < 0.2:
                 value, abnormal = None, False
-        self.way = None
+        self.action = None
         if self.stop_at is not None:
             self.stop_at = None
-            share = 1.0 if way.ends <= now else rng.choice([0, 0.5, 1])
-            done.energy += share * way.energy
-            late = rng.random() < 0.3 and now > way.started
-            self.place = _At(way.arrival) if late else self._on_the_way(way)
+            share = 1.0 if action.ends <= now else rng.choice([0, 0.5, 1])
+            result.energy += share * action.energy
+            late = rng.random() < 0.3 and now > action.started
+            self.position = _AtPose(action.arrival) if late else self._interrupted_position(action)
             event = (
                 ActionSucceeded(task.name, value, abnormal) if late else ActionStopped(task.name)
             )
         else:
-            done.energy += way.energy
+            result.energy += action.energy
             failed = self.fails and rng.random() < 0.25
-            self.place = self._on_the_way(way) if failed else _At(way.arrival)
+            self.position = (
+                self._interrupted_position(action) if failed else _AtPose(action.arrival)
+            )
             event = ActionSucceeded(task.name, value, abnormal)
             if failed:
                 event = ActionFailed(task.name, "failed", unreadable=rng.random() < 0.5)
-        self._note(done.executor.handle(event, now))
+        self._execute(result.executor.handle(event, now))
 
     def _value(self, object_id):
-        """Bounds, whole numbers and what lies between them, and whether the robot finds it odd."""
+        """Return a random value, often a bound or a whole number, and whether it is abnormal."""
         checkpoint, rng = self.checkpoints[object_id], self.rng
         low, high = checkpoint.range.low, checkpoint.range.high
         between = rng.randint(int(low), int(high))
@@ -408,10 +419,11 @@ class _World:
 
 
 def run(mission: Mission, hfsm: Hfsm, catalog, travel, seed, mode="nominal", steps=STEPS) -> Run:
-    """One run at the travel's times.
+    """Simulate one run with the times of the travel.
 
-    `mode` *eventful*: no action fails, but a person pauses, and what others tell and what is waited
-    for comes at any moment. *failing*: actions fail, measurements have no value, events occur.
-    *wild*: besides, times are any, and a person pauses.
+    The `mode` is one of: *nominal*: no action fails, and only awaited events occur. *eventful*: no
+    action fails, but a person pauses, and awaited events and reported values come at any moment.
+    *failing*: actions fail, measurements have no value, events occur. *wild*: as *failing*, but
+    actions take arbitrary times, and a person pauses.
     """
     return _World(mission, hfsm, catalog, travel, seed, mode).run(steps)

@@ -24,10 +24,10 @@ import numpy as np
 
 from argo_env.evaluation.case import EvaluationCase
 from argo_env.evaluation.estimates.pairs import SuccessPairs, power
-from argo_env.evaluation.evaluating import Evaluating, WorkOrder, carry_out
 from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.pool.backends import BACKENDS, make_backend
 from argo_env.evaluation.row import RunOutcome, RunRow
+from argo_env.evaluation.runner import EvaluationRunner, WorkOrder, execute_run
 from argo_env.planning.opening import open_site
 from argo_env.run.spec import RunSpec
 from argo_planner.use_cases.importing import Upload, import_mission
@@ -48,7 +48,7 @@ def watched(order: WorkOrder) -> RunRow:
     """A run whose row says how long it took (s), and how much memory its worker has taken (MB) by
     its end."""
     begun = time.perf_counter()
-    row = carry_out(order)
+    row = execute_run(order)
     taken = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     world = {"seconds": time.perf_counter() - begun, "memory": taken}
     return row.model_copy(update={"world": world})
@@ -82,14 +82,14 @@ def measured(name: str, drive: str, runs: int, workers: int) -> Measured:
     memory: list[float] = []
     backend = make_backend(name, workers)
     try:  # they open the site
-        list(Evaluating(plan_of(drive, range(10_000, 10_008)), backend).rows_as_they_come())
+        list(EvaluationRunner(plan_of(drive, range(10_000, 10_008)), backend).rows_as_completed())
         for run in plan_of(drive, range(20_000, 20_002)).runs():
-            carry_out(WorkOrder("", plan.cases[0], run.spec, {}))
+            execute_run(WorkOrder("", plan.cases[0], run.spec, {}))
         for part in parts(runs):
             partial = plan.model_copy(update={"seeds": tuple(part)})
             begun = time.perf_counter()
-            evaluating = Evaluating(partial, backend, call=watched)
-            rows = list(evaluating.rows_as_they_come())
+            evaluating = EvaluationRunner(partial, backend, call=watched)
+            rows = list(evaluating.rows_as_completed())
             took += time.perf_counter() - begun
             assert [row.outcome for row in rows] == [RunOutcome.SUCCESS] * len(part)
             running += sum(row.world["seconds"] for row in rows)
@@ -142,7 +142,7 @@ def show_power(comparisons: int) -> None:
     same = 0
     for _ in range(comparisons):
         done = rng.random(300) < 0.9
-        same += SuccessPairs.of(done, done).p_value <= 0.05
+        same += SuccessPairs.from_successes(done, done).p_value <= 0.05
     print(f"a plan beside itself: a difference in {same} of {comparisons} comparisons")
 
 

@@ -88,7 +88,7 @@ _SHARED = {
     "tests/argo_env/drives/tracked/test_body.py": "the tracked drive's world",
     "tests/argo_env/drives/tracked/test_drive.py": "the tracked drive's world",
     "tests/argo_env/evaluation/pool/test_pool.py": _CLUSTERS,
-    "tests/argo_env/evaluation/test_evaluating.py": _CLUSTERS,
+    "tests/argo_env/evaluation/test_runner.py": _CLUSTERS,
 }
 """Names of what takes long to make and is shared by files (fixtures, computations), by file."""
 

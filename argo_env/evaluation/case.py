@@ -53,9 +53,9 @@ class PlanName:
     sensor: str
 
     def __str__(self) -> str:
-        return self.beside(())
+        return self.label(())
 
-    def beside(self, others: Sequence["PlanName"]) -> str:
+    def label(self, others: Sequence["PlanName"]) -> str:
         """Return a readable name: the mission, and each other part that differs in `others`."""
         parts = [self.mission]
         for name in ("policy", "site", "robot", "drive", "sensor"):

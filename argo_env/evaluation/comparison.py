@@ -29,7 +29,7 @@ class PlanComparison:
     """pairs of runs, one of each plan, that were both carried out"""
     lost: int
     """number of pairs with a run that could not be carried out"""
-    alone: tuple[int, int] = (0, 0)
+    unpaired: tuple[int, int] = (0, 0)
     """number of each plan's runs that have no partner in the other plan; they do not count"""
     any_time: bool = False
     """whether the number of pairs may depend on the outcomes of the runs"""
@@ -59,7 +59,7 @@ class PlanComparison:
         estimate = difference(*shares)
         if not self.pairs:
             return estimate
-        if self.one_each and not self.any_time:
+        if self.has_one_pair_per_world and not self.any_time:
             low, high = self.successes.interval()
         else:
             sequence = ConfidenceSequence()
@@ -77,10 +77,10 @@ class PlanComparison:
         """
         if self.any_time:
             return math.nan
-        return self.successes.p_value if self.one_each else self.success.p_value
+        return self.successes.p_value if self.has_one_pair_per_world else self.success.p_value
 
     @property
-    def one_each(self) -> bool:
+    def has_one_pair_per_world(self) -> bool:
         """True if each world has one pair; only then the pairs are independent of each other."""
         return len({a.seed for a, _ in self.pairs}) == len(self.pairs)
 
@@ -115,7 +115,7 @@ class PlanComparison:
         is_significant = excludes_zero if self.any_time else self.p_value <= 0.05
         if is_significant:
             return f"{'A' if self.success.value > 0 else 'B'} succeeds more often."
-        if self.duration.found:
+        if self.duration.is_significant:
             faster = "A" if self.duration.value < 0 else "B"
             return f"No difference in success is shown; {faster} is faster where both succeed."
         return "No difference is shown."
@@ -134,8 +134,8 @@ def compare_plans(
     """
     a_name = first_plan or _only_plan(first)
     b_name = second_plan or _only_plan(second)
-    a = {(row.seed, row.faults): row for row in first.of(a_name)}
-    b = {(row.seed, row.faults): row for row in second.of(b_name)}
+    a = {(row.seed, row.faults): row for row in first.rows_for(a_name)}
+    b = {(row.seed, row.faults): row for row in second.rows_for(b_name)}
     common = [key for key in a if key in b]
     if not common:
         raise Conflict(
@@ -147,9 +147,9 @@ def compare_plans(
             "variation"
         )
     pairs = [(a[key], b[key]) for key in common]
-    complete = [pair for pair in pairs if pair[0].carried_out and pair[1].carried_out]
+    complete = [pair for pair in pairs if pair[0].is_completed and pair[1].is_completed]
     names = (a_name, b_name)
-    labels = [str(name.beside(names)) for name in names]
+    labels = [str(name.label(names)) for name in names]
     if labels[0] == labels[1]:
         labels = [f"{first.plan.name}: {labels[0]}", f"{second.plan.name}: {labels[1]}"]
     unpaired = len(a) - len(common), len(b) - len(common)
@@ -164,15 +164,15 @@ def compare_plans(
     )
 
 
-def named_plan(results: EvaluationResults, name: str) -> PlanName:
+def find_plan(results: EvaluationResults, name: str) -> PlanName:
     """Return the plan with this name in the tables of an evaluation, or with this mission's name.
 
     Raises NotFound if there is no such plan, Conflict if there are several.
     """
     plans = results.plan.plans
-    matches = [plan for plan in plans if plan.beside(plans) == name]
+    matches = [plan for plan in plans if plan.label(plans) == name]
     matches = matches or [plan for plan in plans if plan.mission == name]
-    known = "; ".join(plan.beside(plans) for plan in plans)
+    known = "; ".join(plan.label(plans) for plan in plans)
     if not matches:
         raise NotFound(f"{results.plan.name} has no plan `{name}`; there are: {known}")
     if len(matches) > 1:
@@ -182,7 +182,7 @@ def named_plan(results: EvaluationResults, name: str) -> PlanName:
 
 def _only_plan(results: EvaluationResults) -> PlanName:
     if len(results.plan.plans) != 1:
-        names = "; ".join(plan.beside(results.plan.plans) for plan in results.plan.plans)
+        names = "; ".join(plan.label(results.plan.plans) for plan in results.plan.plans)
         raise Conflict(
             f"{results.plan.name} has several plans, say which is meant: {names}",
             remedies=(Remedy.CHOOSE_PLAN,),
@@ -198,4 +198,4 @@ def _world_means(value: Callable[[RunRow], float], pairs: _Pairs) -> NDArray[np.
 def _successes(pairs: _Pairs) -> SuccessPairs:
     a = np.array([pair[0].success for pair in pairs], dtype=bool)
     b = np.array([pair[1].success for pair in pairs], dtype=bool)
-    return SuccessPairs.of(a, b)
+    return SuccessPairs.from_successes(a, b)

@@ -15,7 +15,7 @@ from argo_env.sensing.onboard import LOW
 from argo_env.site import Site
 
 
-def may_be_of(anomaly: Anomaly, fault: AnyFault, record: RunRecord, site: Site) -> bool:
+def may_be_caused_by(anomaly: Anomaly, fault: AnyFault, record: RunRecord, site: Site) -> bool:
     """Return True if this fault of the run may be the cause of the anomaly that the robot found.
 
     The anomaly must match the fault's kind, its time, and its location as far as the anomaly has
@@ -29,12 +29,12 @@ def may_be_of(anomaly: Anomaly, fault: AnyFault, record: RunRecord, site: Site) 
     ):
         return False
     if isinstance(fault, AbnormalValue):
-        reading = reading_of(anomaly, record)
+        reading = find_reading(anomaly, record)
         return reading is not None and reading.checkpoint == fault.checkpoint
     return fault.can_explain(anomaly.place, anomaly.noticed_from, site)
 
 
-def reading_of(anomaly: Anomaly, record: RunRecord) -> Reading | None:
+def find_reading(anomaly: Anomaly, record: RunRecord) -> Reading | None:
     """Return the reading in which an abnormal value was found; None for any other anomaly."""
     if not anomaly.is_reading:
         return None
@@ -67,7 +67,7 @@ def detections(record: RunRecord, site: Site) -> tuple[FaultDetection, ...]:
         delay = None
         for number, anomaly in enumerate(record.anomalies):
             is_free = (fault.kind, number) not in assigned
-            if is_free and may_be_of(anomaly, fault, record, site):
+            if is_free and may_be_caused_by(anomaly, fault, record, site):
                 assigned.add((fault.kind, number))
                 delay = round(anomaly.t - fault.start_time, 3)
                 break
@@ -90,7 +90,7 @@ class _GroundTruth:
 
     def was_abnormal(self, finding: Finding) -> bool:
         """Return True if the checkpoint truly showed a value outside its nominal range."""
-        reading = reading_of(finding, self.record)
+        reading = find_reading(finding, self.record)
         if reading is None:
             return False
         checkpoint = self.site.checkpoint(reading.checkpoint)
@@ -119,7 +119,7 @@ class _GroundTruth:
 
     def is_caused_by(self, finding: Finding, fault: AnyFault) -> bool:
         """Return True if the fault may be the cause of the finding."""
-        if may_be_of(finding, fault, self.record, self.site):
+        if may_be_caused_by(finding, fault, self.record, self.site):
             return True
         # A faulty camera may misread any value.
         may_misread = finding.is_reading and fault.kind == "sensor_dysfunction"

@@ -7,13 +7,13 @@ from pathlib import Path
 from argo_compiler.base.errors import Invalid
 from argo_compiler.il import Mission
 from argo_env.evaluation.case import NO_FAULTS, EvaluationCase
-from argo_env.evaluation.evaluating import Evaluating, EvaluationProgress
-from argo_env.evaluation.folder import digest_of, open_rows
+from argo_env.evaluation.folder import digest_contents, open_rows
 from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.evaluation.pool.backends import PROCESSES, make_backend
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.results import EvaluationResults
+from argo_env.evaluation.runner import EvaluationProgress, EvaluationRunner
 from argo_env.evaluation.store import RowStore
 from argo_env.evaluation.worlds import NO_VARIATION, Variation
 from argo_env.faults.kinds import AnyFault
@@ -91,7 +91,7 @@ class Evaluation:
         backend: str | WorkerBackend = PROCESSES,
         address: str | None = None,
         replace: bool = False,
-        heard: Callable[[EvaluationProgress], None] = lambda _: None,
+        on_progress: Callable[[EvaluationProgress], None] = lambda _: None,
     ) -> EvaluationResults:
         """Execute the runs and return the results.
 
@@ -102,7 +102,7 @@ class Evaluation:
             address: Address of an existing cluster, if the back end has one.
             replace: Whether to replace another evaluation in the folder. Only those of its rows
                 that belong to this evaluation are kept.
-            heard: Function that is called with the progress after each run.
+            on_progress: Function that is called with the progress after each run.
 
         Raises:
             ArgoError: If the back end has no such workers, or the folder can't be used, for example
@@ -111,13 +111,13 @@ class Evaluation:
         with ExitStack() as stack:
             store: RowStore | None = None
             if folder is not None:
-                digest = digest_of(self.plan.model_dump_json().encode())
+                digest = digest_contents(self.plan.model_dump_json().encode())
                 rows = open_rows(Path(folder), self.plan, digest, replace=replace)
                 store = stack.enter_context(rows)
             if isinstance(backend, str):
                 backend = make_backend(backend, workers, address)
                 stack.callback(backend.close)
-            evaluating = Evaluating(self.plan, backend, store)
-            for _ in evaluating.rows_as_they_come():
-                heard(evaluating.progress)
-            return evaluating.results
+            runner = EvaluationRunner(self.plan, backend, store)
+            for _ in runner.rows_as_completed():
+                on_progress(runner.progress)
+            return runner.results

@@ -13,7 +13,7 @@ from argo_compiler.base.model import Model
 from argo_compiler.files.atomic_write import write_atomically
 from argo_compiler.files.loading import read_bytes
 from argo_env.evaluation.plan import EvaluationPlan
-from argo_env.evaluation.rates import is_enough
+from argo_env.evaluation.rates import should_stop
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
 from argo_env.evaluation.store import RowStore, read_rows
@@ -66,9 +66,9 @@ def open_rows(
             plans = (plan,) if helper is None else (plan, helper)
             seeds = set(plan.seeds)
             store.keep_only(
-                lambda row: any(p.has(row, seeds if p is plan else {row.seed}) for p in plans)
+                lambda row: any(p.contains(row, seeds if p is plan else {row.seed}) for p in plans)
             )
-        keep_plan(folder, plan, digest)
+        write_plan(folder, plan, digest)
     except BaseException:
         store.close()
         raise
@@ -78,16 +78,16 @@ def open_rows(
 def _continues(folder: Path, plan: EvaluationPlan) -> bool:
     """Return True if the plan continues the evaluation in the folder, or the folder has none."""
     try:
-        stored = kept_plan(folder)
+        stored = read_plan(folder)
     except Invalid:
         return False  # of another version of Argo
     return stored is None or (
         set(stored.seeds) <= set(plan.seeds)
-        and stored.changed(seeds=plan.seeds, stopping=plan.stopping) == plan
+        and stored.with_changes(seeds=plan.seeds, stopping=plan.stopping) == plan
     )
 
 
-def keep_plan(folder: Path, plan: EvaluationPlan, digest: str) -> None:
+def write_plan(folder: Path, plan: EvaluationPlan, digest: str) -> None:
     """Write the plan of an evaluation into its folder.
 
     Raises Unavailable if the file can't be written.
@@ -106,7 +106,7 @@ def write_file(path: Path, text: str) -> Path:
     return path
 
 
-def kept_plan(folder: Path, digest: str | None = None) -> EvaluationPlan | None:
+def read_plan(folder: Path, digest: str | None = None) -> EvaluationPlan | None:
     """Return the plan stored in the folder, or None if there is none.
 
     With a `digest`, a plan that was made from anything else also gives None, as does a plan of
@@ -131,24 +131,24 @@ def read_results(folder: Path) -> EvaluationResults:
     An evaluation that has not ended gives the worlds before the first world with a missing run.
     Raises NotFound if the folder has no evaluation.
     """
-    plan = kept_plan(folder)
+    plan = read_plan(folder)
     if plan is None:
         raise NotFound(f"{folder}: has no evaluation")
-    rows = in_order(plan, read_rows(folder))
-    if plan.strata or len(rows) == len(plan.seeds) * len(plan.cases) or is_enough(plan, rows):
+    rows = sort_rows(plan, read_rows(folder))
+    if plan.strata or len(rows) == len(plan.seeds) * len(plan.cases) or should_stop(plan, rows):
         return EvaluationResults(plan, rows)
-    return EvaluationResults.so_far(plan, rows)
+    return EvaluationResults.from_partial_rows(plan, rows)
 
 
-def in_order(plan: EvaluationPlan, rows: tuple[RunRow, ...]) -> tuple[RunRow, ...]:
+def sort_rows(plan: EvaluationPlan, rows: tuple[RunRow, ...]) -> tuple[RunRow, ...]:
     """Return the rows that belong to the plan, in the order of its seeds and, within, its cases."""
     seeds = {seed: k for k, seed in enumerate(plan.seeds)}
     by_key = {row.key: row for row in rows}
-    own_rows = [row for row in by_key.values() if plan.has(row, seeds)]
-    return tuple(sorted(own_rows, key=lambda row: (seeds[row.seed], plan.case_of(row))))
+    own_rows = [row for row in by_key.values() if plan.contains(row, seeds)]
+    return tuple(sorted(own_rows, key=lambda row: (seeds[row.seed], plan.case_index(row))))
 
 
-def write_failing(folder: Path, results: EvaluationResults) -> dict[str, Path]:
+def write_failing_specs(folder: Path, results: EvaluationResults) -> dict[str, Path]:
     """Write a spec file for each unsuccessful run, and return the paths by the rows' keys.
 
     Each file repeats one run alone. All other spec files are removed.
@@ -157,7 +157,7 @@ def write_failing(folder: Path, results: EvaluationResults) -> dict[str, Path]:
     for row in results.rows:
         if row.success or len(paths) == _MAX_FAILING:
             continue
-        case = results.plan.case_of(row)
+        case = results.plan.case_index(row)
         assert case is not None
         run = results.plan.run(case, row.seed)
         path = folder / FAILING / f"{row.key}.json"
@@ -176,7 +176,7 @@ def _remove_others(folder: Path, names: Collection[str]) -> None:
             os.unlink(folder / name)
 
 
-def digest_of(*contents: bytes) -> str:
+def digest_contents(*contents: bytes) -> str:
     """Return a hash of all contents that a plan is made from."""
     digest = hashlib.sha256()
     for content in contents:

@@ -51,7 +51,7 @@ class EvaluationPlan(Model):
     """objects that were added to the site's description, in words; if there are any, no run can be
     repeated from its spec alone"""
 
-    def changed(self, **fields: Any) -> "EvaluationPlan":
+    def with_changes(self, **fields: Any) -> "EvaluationPlan":
         """Return a new plan with other values of `fields`.
 
         Use it instead of `model_copy`, which would copy the cached names that belong to the old
@@ -67,7 +67,7 @@ class EvaluationPlan(Model):
 
     def run(self, case: int, seed: int) -> "PlannedRun":
         """Return the run of the case with this index in the world of the seed."""
-        return PlannedRun(case, seed, self.variation.applied(self.cases[case].spec, seed))
+        return PlannedRun(case, seed, self.variation.apply(self.cases[case].spec, seed))
 
     def runs(self, seeds: Sequence[int] | None = None) -> Iterator["PlannedRun"]:
         """Yield the runs of these seeds (None: all seeds), seed by seed.
@@ -82,7 +82,7 @@ class EvaluationPlan(Model):
     def key(self, run: "PlannedRun") -> str:
         """Return the run's key: a hash of all that it depends on.
 
-        Names of its case and Argo's version are part of the hash.
+        The names of its case and Argo's version are part of the hash.
         """
         case = self.cases[run.case]
         parts = (__version__, case.digest, case.mission, case.policy, case.faults)
@@ -94,22 +94,22 @@ class EvaluationPlan(Model):
         """Indices of the cases, by plan and faults."""
         return {(case.plan, case.faults): k for k, case in enumerate(self.cases)}
 
-    def case_of(self, row: "RunRow") -> int | None:
+    def case_index(self, row: "RunRow") -> int | None:
         """Return the index of the row's case; None if the row belongs to no case of this plan."""
         return self._case_indices.get((row.plan, row.faults))
 
-    def has(self, row: "RunRow", seeds: Container[int]) -> bool:
+    def contains(self, row: "RunRow", seeds: Container[int]) -> bool:
         """Return True if the row belongs to a run of this plan with one of these seeds."""
-        case = self.case_of(row)
+        case = self.case_index(row)
         if case is None or row.seed not in seeds:
             return False
         return self.key(self.run(case, row.seed)) == row.key
 
-    def faults_in(self, case: str, seed: int) -> str:
+    def faults_for(self, case: str, seed: int) -> str:
         """Return the name of the faults drawn for the seed's world, or of the case's faults."""
-        return self.drawn_in(seed) or case
+        return self.drawn_faults(seed) or case
 
-    def drawn_in(self, seed: int) -> str:
+    def drawn_faults(self, seed: int) -> str:
         """Return the name of the faults drawn for the seed's world.
 
         It is empty for a plan that never draws faults. A plan that draws faults, but none for this
@@ -117,7 +117,7 @@ class EvaluationPlan(Model):
         """
         if self.variation.faults is None:
             return ""
-        return self.variation.drawn_faults(seed) or NOTHING
+        return self.variation.faults_for(seed) or NOTHING
 
     def check(self) -> None:
         """Raise ArgoError for an invalid plan.

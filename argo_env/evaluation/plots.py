@@ -178,7 +178,7 @@ def _lines(results: EvaluationResults) -> tuple[list[str], list[_Line]]:
     groups = [results.by_faults(plan) for plan in plans]
     rates = [results.rate(plan) for plan in plans]
     if all(len(plan_groups) < 2 for plan_groups in groups):
-        return [plan.beside(plans) for plan in plans], [
+        return [plan.label(plans) for plan in plans], [
             _Line(row, 0.0, row, rate, _percent(rate)) for row, rate in enumerate(rates)
         ]
     names = [
@@ -206,7 +206,7 @@ def _legend_of_plans(ax: "Axes", plans: tuple[PlanName, ...]) -> None:
     for number in range(len(plans)):
         ink, marker = plan_style(number)
         handles.append(Line2D([], [], color=ink, marker=marker, lw=1.8, ms=5))
-    names = [fit_label(plan.beside(plans), 2.3) for plan in plans]
+    names = [fit_label(plan.label(plans), 2.3) for plan in plans]
     _legend(ax, handles, names)
 
 
@@ -227,10 +227,10 @@ def outcomes_by_faults(
     """
     from matplotlib.patches import Rectangle
 
-    rows = results.rows if plan is None else results.of(plan)
+    rows = results.rows if plan is None else results.rows_for(plan)
     counts: dict[str, Counter[RunOutcome]] = {}
     for row in rows:
-        counts.setdefault(results.faults_of(row), Counter())[row.outcome] += 1
+        counts.setdefault(results.faults_for(row), Counter())[row.outcome] += 1
     always = (RunOutcome.SUCCESS, RunOutcome.FAILURE)
     shown = [o for o in RunOutcome if o in always or any(row[o] for row in counts.values())]
     ax = prepare_axes(ax, 0.5 + 0.26 * max(len(counts), 1))
@@ -283,7 +283,7 @@ def durations(results: EvaluationResults, ax: "Axes | None" = None) -> "Axes":
         ink, _ = plan_style(number)
         if curve.times:
             ax.step(
-                [low, *curve.times, high], [0.0, *curve.shares, curve.last], where="post",
+                [low, *curve.times, high], [0.0, *curve.shares, curve.final_share], where="post",
                 color=ink, lw=1.8, ls=_STYLES[number % len(_STYLES)],
             )  # fmt: skip
         for limit in curve.limits:
@@ -329,11 +329,11 @@ def _legend_of_curves(ax: "Axes", curves: list[DurationCurve], high: float) -> N
     for number, curve in enumerate(curves):
         ink, _ = plan_style(number)
         handles.append(Line2D([], [], color=ink, lw=1.8, ls=_STYLES[number % len(_STYLES)]))
-        name = fit_label(curve.plan.beside(plans), 1.4) + ": " if len(curves) > 1 else ""
+        name = fit_label(curve.plan.label(plans), 1.4) + ": " if len(curves) > 1 else ""
         limits = ", ".join(
             f"limit {clock(limit)}" + (" →" if limit > high else "") for limit in curve.limits
         )
-        labels.append(f"{name}{100 * curve.last:.1f} % succeed, {limits or 'no limit'}")
+        labels.append(f"{name}{100 * curve.final_share:.1f} % succeed, {limits or 'no limit'}")
     _legend(ax, handles, labels)
 
 

@@ -54,11 +54,11 @@ def success(row: RunRow) -> bool:
     return row.success
 
 
-def rate_of(
+def estimate_plan_rate(
     evaluation: EvaluationPlan,
     plan: PlanName,
     rows: Sequence[RunRow],
-    holds: Callable[[RunRow], bool | None] = success,
+    quantity: Callable[[RunRow], bool | None] = success,
     any_time: bool = False,
 ) -> PlanRate:
     """Compute the rate of a plan over all its cases.
@@ -68,21 +68,21 @@ def rate_of(
         plan: Plan to rate.
         rows: Rows of the evaluation. Runs that could not be carried out don't count; their number
             is returned.
-        holds: Property to count; a run for which it returns None does not count.
+        quantity: Property to count; a run for which it returns None does not count.
         any_time: Whether the interval must be valid whatever ended the evaluation, for example a
             person who saw the outcomes.
     """
     plan_rows = [row for row in rows if row.plan == plan]
-    ran = [row for row in plan_rows if row.carried_out]
+    ran = [row for row in plan_rows if row.is_completed]
     lost = len(plan_rows) - len(ran)
     cases = [case for case in evaluation.cases if case.plan == plan]
     if len(cases) == 1:
-        rate, method = rate_of_runs(evaluation, _outcomes(ran, holds), any_time)
+        rate, method = estimate_run_rate(evaluation, _outcomes(ran, quantity), any_time)
         return PlanRate(rate.value, rate.low, rate.high, rate.runs, lost, method)
     weights = {case.faults: case.weight for case in cases}
     if evaluation.strata:
         by_case = {name: [row for row in ran if row.faults == name] for name in weights}
-        outcomes = {name: _outcomes(rows, holds) for name, rows in by_case.items()}
+        outcomes = {name: _outcomes(rows, quantity) for name, rows in by_case.items()}
         # A case that was run, but of which no run counts, is not part of the rate.
         counting = [name for name in weights if outcomes[name] or not by_case[name]]
         if not counting:
@@ -92,26 +92,26 @@ def rate_of(
             Stratum(weights[name] / total, sum(outcomes[name]), len(outcomes[name]))
             for name in counting
         ]
-        estimate, runs = stratified_rate(strata), len(_outcomes(ran, holds))
+        estimate, runs = stratified_rate(strata), len(_outcomes(ran, quantity))
         return PlanRate(
             estimate.value, estimate.low, estimate.high, runs, lost, IntervalMethod.STRATA
         )
-    means = means_of(ran, weights, holds)
+    means = world_shares(ran, weights, quantity)
     sequence = ConfidenceSequence()
     sequence.add(means.values())
     low, high = sequence.interval
     value = sum(means.values()) / len(means) if means else math.nan
     # A world with a lost run does not count at all.
-    count = len(_outcomes([row for row in ran if row.seed in means], holds))
+    count = len(_outcomes([row for row in ran if row.seed in means], quantity))
     return PlanRate(value, low, high, count, lost, IntervalMethod.SEQUENCE)
 
 
-def _outcomes(rows: Sequence[RunRow], holds: Callable[[RunRow], bool | None]) -> list[bool]:
+def _outcomes(rows: Sequence[RunRow], quantity: Callable[[RunRow], bool | None]) -> list[bool]:
     """Return the property's value for each run that counts."""
-    return [value for row in rows if (value := holds(row)) is not None]
+    return [value for row in rows if (value := quantity(row)) is not None]
 
 
-def rate_of_runs(
+def estimate_run_rate(
     evaluation: EvaluationPlan, outcomes: Sequence[bool], any_time: bool = False
 ) -> tuple[Rate, IntervalMethod]:
     """Compute the rate of independent runs, one in each world, with an interval valid at its end.
@@ -128,11 +128,11 @@ def rate_of_runs(
     return Rate(count, runs, *sequence.interval), IntervalMethod.SEQUENCE
 
 
-def means_of(
-    rows: Sequence[RunRow], weights: dict[str, float], holds: Callable[[RunRow], bool | None]
+def world_shares(
+    rows: Sequence[RunRow], weights: dict[str, float], quantity: Callable[[RunRow], bool | None]
 ) -> dict[int, float]:
     """Return, by seed, the weighted share of a plan's runs that have the property."""
-    return weighted_world_means(((row.seed, row.faults, holds(row)) for row in rows), weights)
+    return weighted_world_means(((row.seed, row.faults, quantity(row)) for row in rows), weights)
 
 
 def quick_rate(outcomes: Counter[RunOutcome]) -> PlanRate:
@@ -189,7 +189,7 @@ def _decisions(
         weights = {case.faults: case.weight for case in evaluation.cases if case.plan == plan}
         for requirement in required:
             sequence = ConfidenceSequence(level=1.0 - 0.05 / len(required))
-            sequence.add(means_of(plan_rows, weights, requirement.holds).values())
+            sequence.add(world_shares(plan_rows, weights, requirement.value_in).values())
             above = sequence.runs > 0 and sequence.is_above(requirement.share)
             below = sequence.runs > 0 and sequence.is_below(requirement.share)
             verdict = Decision.OPEN
@@ -198,14 +198,14 @@ def _decisions(
             yield plan, requirement, sequence, verdict
 
 
-def is_enough(plan: EvaluationPlan, rows: Sequence[RunRow]) -> bool:
+def should_stop(plan: EvaluationPlan, rows: Sequence[RunRow]) -> bool:
     """Return True if the evaluation's rule to stop is fulfilled; False if it has no rule."""
     stopping = plan.stopping
     # `judge_requirements` would also search for intervals and take far longer.
     if stopping.require and any(verdict is Decision.OPEN for *_, verdict in _decisions(plan, rows)):
         return False
     if stopping.width is not None:
-        rates = [rate_of(plan, name, rows) for name in plan.plans]
+        rates = [estimate_plan_rate(plan, name, rows) for name in plan.plans]
         if any(rate.high - rate.low > stopping.width for rate in rates):
             return False
     return bool(stopping.require) or stopping.width is not None

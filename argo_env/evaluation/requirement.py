@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from argo_compiler.base.errors import Invalid
 from argo_compiler.base.model import Model
-from argo_env.evaluation.statistics import QUANTITIES
+from argo_env.evaluation.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from argo_env.evaluation.row import RunRow
@@ -34,12 +34,12 @@ class RateRequirement(Model):
     def __str__(self) -> str:
         return f"{self.quantity} {'>=' if self.at_least else '<='} {self.share:g}"
 
-    def holds(self, row: "RunRow") -> bool | None:
+    def value_in(self, row: "RunRow") -> bool | None:
         """Return the quantity's value in the run, or None if the run does not count.
 
         A run that could not be carried out gets the value that counts against the requirement.
         """
-        if not row.carried_out:
+        if not row.is_completed:
             return not self.at_least
         return QUANTITIES[self.quantity](row)
 

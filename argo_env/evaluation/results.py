@@ -13,16 +13,16 @@ from typing import TYPE_CHECKING
 from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.estimates.rates import Rate
 from argo_env.evaluation.plan import EvaluationPlan
+from argo_env.evaluation.quantities import QUANTITIES
 from argo_env.evaluation.rates import (
     IntervalMethod,
     PlanRate,
     RequirementVerdict,
+    estimate_plan_rate,
+    estimate_run_rate,
     judge_requirements,
-    rate_of,
-    rate_of_runs,
 )
 from argo_env.evaluation.row import RunOutcome, RunRow
-from argo_env.evaluation.statistics import QUANTITIES
 from argo_env.site.shapes import Vector
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ class GroupRate:
     rate: Rate
     outcomes: Counter[RunOutcome]
     method: IntervalMethod
-    one_each: bool = True
+    one_run_per_world: bool = True
     """whether the group has one run in each world; only then the interval is valid"""
 
 
@@ -55,7 +55,7 @@ class EvaluationResults:
     it"""
 
     @staticmethod
-    def so_far(plan: EvaluationPlan, rows: Iterable[RunRow]) -> "EvaluationResults":
+    def from_partial_rows(plan: EvaluationPlan, rows: Iterable[RunRow]) -> "EvaluationResults":
         """Return the results of an evaluation that was cut short, from its rows so far.
 
         They have the worlds before the first world with a missing run. Later worlds are left out,
@@ -69,7 +69,7 @@ class EvaluationResults:
             world = by_world[seed]
             if len(world) < len(plan.cases):
                 break
-            complete += sorted(world, key=lambda row: plan.case_of(row) or 0)
+            complete += sorted(world, key=lambda row: plan.case_index(row) or 0)
         return EvaluationResults(plan, tuple(complete), cut_short=True)
 
     @cached_property
@@ -78,7 +78,7 @@ class EvaluationResults:
         return Counter(row.outcome for row in self.rows)
 
     @property
-    def missing(self) -> int:
+    def lost(self) -> int:
         """Number of runs that could not be carried out."""
         return self.outcomes[RunOutcome.ERROR] + self.outcomes[RunOutcome.DIED]
 
@@ -87,13 +87,13 @@ class EvaluationResults:
         """Rows of all runs without success: failed, or not carried out."""
         return tuple(row for row in self.rows if not row.success)
 
-    def of(self, plan: PlanName) -> tuple[RunRow, ...]:
+    def rows_for(self, plan: PlanName) -> tuple[RunRow, ...]:
         """Return the rows of one evaluated plan."""
         return tuple(row for row in self.rows if row.plan == plan)
 
     def rate(self, plan: PlanName, quantity: str = "success") -> PlanRate:
         """Compute the rate of a quantity in a plan's runs, over all their faults."""
-        return rate_of(self.plan, plan, self.rows, QUANTITIES[quantity], self.cut_short)
+        return estimate_plan_rate(self.plan, plan, self.rows, QUANTITIES[quantity], self.cut_short)
 
     @cached_property
     def verdicts(self) -> tuple[RequirementVerdict, ...]:
@@ -102,16 +102,16 @@ class EvaluationResults:
 
     def by_faults(self, plan: PlanName) -> tuple[GroupRate, ...]:
         """Compute a plan's success rates by set of faults."""
-        plan_rows = self.of(plan)
-        names = dict.fromkeys(self.faults_of(row) for row in plan_rows)
+        plan_rows = self.rows_for(plan)
+        names = dict.fromkeys(self.faults_for(row) for row in plan_rows)
         return tuple(
-            self._group(plan, name, [row for row in plan_rows if self.faults_of(row) == name])
+            self._group(plan, name, [row for row in plan_rows if self.faults_for(row) == name])
             for name in names
         )
 
-    def faults_of(self, row: RunRow) -> str:
+    def faults_for(self, row: RunRow) -> str:
         """Return the name of a run's faults: those drawn for its world, or those of its case."""
-        return self.plan.faults_in(row.faults, row.seed)
+        return self.plan.faults_for(row.faults, row.seed)
 
     @cached_property
     def delays(self) -> dict[str, list[float | None]]:
@@ -127,7 +127,7 @@ class EvaluationResults:
 
         There are at most `blocks` blocks, and each but the last has at least 10 seeds.
         """
-        plan_rows = self.of(plan)
+        plan_rows = self.rows_for(plan)
         seeds = sorted({row.seed for row in plan_rows})
         size = max(_MIN_BLOCK, -(-len(seeds) // blocks))
         groups = []
@@ -139,10 +139,12 @@ class EvaluationResults:
         return tuple(groups)
 
     def _group(self, plan: PlanName, name: str, rows: Sequence[RunRow]) -> GroupRate:
-        ran = [row.success for row in rows if row.carried_out]
-        rate, method = rate_of_runs(self.plan, ran, self.cut_short)
-        one_each = len({row.seed for row in rows}) == len(rows)
-        return GroupRate(plan, name, rate, Counter(row.outcome for row in rows), method, one_each)
+        ran = [row.success for row in rows if row.is_completed]
+        rate, method = estimate_run_rate(self.plan, ran, self.cut_short)
+        one_run_per_world = len({row.seed for row in rows}) == len(rows)
+        return GroupRate(
+            plan, name, rate, Counter(row.outcome for row in rows), method, one_run_per_world
+        )
 
     @cached_property
     def frame(self) -> "pandas.DataFrame":
@@ -167,9 +169,9 @@ class EvaluationResults:
         lines = []
         for plan in self.plan.plans:
             rate = self.rate(plan)
-            failures = sum(row.outcome is RunOutcome.FAILURE for row in self.of(plan))
+            failures = sum(row.outcome is RunOutcome.FAILURE for row in self.rows_for(plan))
             cells = (
-                html.escape(plan.beside(self.plan.plans)),
+                html.escape(plan.label(self.plan.plans)),
                 str(rate.runs),
                 f"{rate.value:.1%}",
                 f"{rate.low:.1%} to {rate.high:.1%}",
@@ -196,11 +198,11 @@ class DurationCurve:
     """longest durations in s that the mission allows: one, or none"""
 
     @property
-    def last(self) -> float:
+    def final_share(self) -> float:
         """Share of the runs that succeeded at any time, 0 to 1."""
         return self.shares[-1] if self.shares else 0.0
 
-    def by(self, share: float) -> float | None:
+    def time_at(self, share: float) -> float | None:
         """Return the time in s by which this share (0 to 1) has succeeded; None if it never has."""
         k = bisect_left(self.shares, share - 1e-9)
         return self.times[k] if k < len(self.times) else None
@@ -208,7 +210,7 @@ class DurationCurve:
 
 def duration_curve(results: EvaluationResults, plan: PlanName) -> DurationCurve:
     """Compute the duration curve of a plan; each case counts by its weight, not its runs."""
-    ran = [row for row in results.of(plan) if row.carried_out]
+    ran = [row for row in results.rows_for(plan) if row.is_completed]
     weights = {case.faults: case.weight for case in results.plan.cases if case.plan == plan}
     runs_by_faults = {name: sum(row.faults == name for row in ran) for name in weights}
     total = sum(weight for name, weight in weights.items() if runs_by_faults[name])

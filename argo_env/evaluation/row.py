@@ -93,19 +93,21 @@ class RunRow(Model):
         return self.outcome is RunOutcome.SUCCESS
 
     @property
-    def carried_out(self) -> bool:
+    def is_completed(self) -> bool:
         """True if the simulation reached its end, with success or failure of the mission."""
         return self.outcome in (RunOutcome.SUCCESS, RunOutcome.FAILURE)
 
 
-def row_of(key: str, case: EvaluationCase, spec: RunSpec, record: RunRecord, site: Site) -> RunRow:
+def make_row(
+    key: str, case: EvaluationCase, spec: RunSpec, record: RunRecord, site: Site
+) -> RunRow:
     """Return the row of a run that was carried out on the site."""
     result = record.result
     counted = {task.name for task in record.mission.tasks if task.action in _COUNTED_ACTIONS}
     done = {run.task for run in record.tasks if run.outcome == "done"}
     last = record.path[-1] if record.path else None
     failed = tuple(dict.fromkeys(r.task for r in record.tasks if r.outcome == "failed"))
-    row = row_without_end(key, case, spec, RunOutcome.FAILURE, result.verdict)
+    row = make_empty_row(key, case, spec, RunOutcome.FAILURE, result.verdict)
     return row.model_copy(
         update={
             "outcome": RunOutcome.SUCCESS if result.success else RunOutcome.FAILURE,
@@ -131,7 +133,7 @@ def row_of(key: str, case: EvaluationCase, spec: RunSpec, record: RunRecord, sit
     )
 
 
-def row_without_end(
+def make_empty_row(
     key: str, case: EvaluationCase, spec: RunSpec, outcome: RunOutcome, reason: str
 ) -> RunRow:
     """Return a row without measured values, for a run that has none, or as a base for them."""

@@ -92,9 +92,9 @@ class RunScore(Model):
         return self.reliability + self.robustness + self.safety
 
 
-def score_of(row: RunRow, rules: ScoringRules) -> RunScore:
+def score_run(row: RunRow, rules: ScoringRules) -> RunScore:
     """Compute the score of a run, which is 0 for a run that could not be carried out."""
-    if not row.carried_out:
+    if not row.is_completed:
         return RunScore(reliability=0.0, robustness=0.0, safety=0.0)
     # A successful mission with branches doesn't do all of its tasks.
     done = 1.0 if row.success or not row.tasks else row.done / row.tasks
@@ -120,7 +120,7 @@ def mean_score(rows: Sequence[RunRow], rules: ScoringRules) -> Estimate:
     The interval is that of the bootstrap over worlds, as the runs of one world depend on each
     other. All values are NaN if no run was carried out.
     """
-    means = world_means((row.seed, score_of(row, rules).total) for row in rows if row.carried_out)
+    means = world_means((row.seed, score_run(row, rules).total) for row in rows if row.is_completed)
     if not len(means):
         return Estimate(math.nan, math.nan, math.nan)
     mean = difference(means, np.zeros(len(means)))

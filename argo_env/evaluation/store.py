@@ -17,7 +17,7 @@ from pydantic import ValidationError
 
 from argo_compiler.base.errors import Conflict, NotFound, Unavailable
 from argo_env.closing import Closing
-from argo_env.evaluation.parts import (
+from argo_env.evaluation.parquet_files import (
     PARTS,
     can_write_parts,
     has_parts,
@@ -102,13 +102,13 @@ class RowStore(Closing):
         self._synced = self._clock()
 
     @property
-    def loose(self) -> int:
+    def uncompacted(self) -> int:
         """Number of rows that are in the log only."""
         return len(self._rows) - self._moved
 
     def compact(self) -> None:
         """Move the rows of the log to a Parquet file; without pyarrow they stay in the log."""
-        if not self.loose or not can_write_parts():
+        if not self.uncompacted or not can_write_parts():
             return
         self.sync()
         write_part(self.folder, list(self._rows.values())[self._moved :])

@@ -113,7 +113,7 @@ class Variation(_Ranges):
             except NotFound as error:
                 raise Invalid(str(error)) from error
 
-    def applied(self, spec: RunSpec, seed: int) -> RunSpec:
+    def apply(self, spec: RunSpec, seed: int) -> RunSpec:
         """Return the spec of the run in the world of a seed, with all values drawn for it."""
         update: dict[str, Any] = {"seed": seed}
         conditions = self._conditions(seed)
@@ -131,12 +131,12 @@ class Variation(_Ranges):
             update["faults"] = (*spec.faults, *drawn.faults)
         return spec.model_copy(update=update)
 
-    def drawn_faults(self, seed: int) -> str | None:
+    def faults_for(self, seed: int) -> str | None:
         """Return the name of the faults drawn for the world of a seed; None if none are drawn."""
         drawn = self.faults.draw(seed) if self.faults is not None else None
         return None if drawn is None else drawn.name
 
-    def drawn(self, seed: int) -> dict[str, float]:
+    def values_for(self, seed: int) -> dict[str, float]:
         """Return the values drawn for the world of a seed, by name, without noise and steps."""
         values = {n: v for n, v in self._conditions(seed).items() if n != "values"}
         for id, ranges in self.values.items():

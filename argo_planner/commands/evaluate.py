@@ -11,24 +11,28 @@ from rich.console import Console
 from rich.markup import escape
 
 from argo_compiler.base.errors import Invalid
-from argo_env.evaluation.controlled import ControlledMean, run_controlled, with_drive
-from argo_env.evaluation.evaluating import Evaluating
+from argo_env.evaluation.control_variates import (
+    ControlledMean,
+    run_with_control_variate,
+    with_drive,
+)
 from argo_env.evaluation.folder import (
     COMPARISON,
     FAILING,
     PLAN,
     REPORT,
-    digest_of,
-    kept_plan,
+    digest_contents,
     open_rows,
+    read_plan,
     read_results,
-    write_failing,
+    write_failing_specs,
 )
 from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.evaluation.pool.backends import BACKENDS, PROCESSES
 from argo_env.evaluation.rates import Decision
 from argo_env.evaluation.results import EvaluationResults
+from argo_env.evaluation.runner import EvaluationRunner
 from argo_env.evaluation.score import read_scoring
 from argo_env.evaluation.store import RowStore
 from argo_env.files.folders import check_folder
@@ -167,14 +171,14 @@ def evaluate(
     own = os.path.exists(where / PLAN)
     check_outputs(sources or [], folders=[(where, [REPORT] if report else [])], force=own or force)
     check_folder(where / FAILING)
-    digest = digest_of(*files_of(file, folder), content)
-    plan = kept_plan(where, digest) or plan_evaluation(file, folder, read_upload)
+    digest = digest_contents(*files_of(file, folder), content)
+    plan = read_plan(where, digest) or plan_evaluation(file, folder, read_upload)
     helper = None if file.control is None else with_drive(plan, file.control)
     with open_rows(where, plan, digest, replace=force, helper=helper) as store:
         results, means = _carried_out(
             plan, file.control, store, make_workers(plan, backend, workers, address), limit
         )
-    failing = write_failing(where, results)
+    failing = write_failing_specs(where, results)
     show_results(results, failing, console, rules)
     show_means(means, file.control, console)
     if report:
@@ -182,7 +186,7 @@ def evaluate(
 
         path = write_evaluation_report(where, results)
         console.print(f"Report: {escape(str(path))}", soft_wrap=True)
-    if not any(row.carried_out for row in results.rows):
+    if not any(row.is_completed for row in results.rows):
         print("argo: no run could be carried out: nothing is known of the plans", file=sys.stderr)
         raise typer.Exit(1)
     if any(verdict.verdict is not Decision.MET for verdict in results.verdicts):
@@ -197,8 +201,8 @@ def _carried_out(
     limit: float | None,
 ) -> tuple[EvaluationResults, tuple[ControlledMean, ...]]:
     def made(part: EvaluationPlan) -> EvaluationResults:
-        evaluating = Evaluating(part, workers, store, limit=limit)
-        for _ in evaluating.rows_as_they_come():
+        evaluating = EvaluationRunner(part, workers, store, limit=limit)
+        for _ in evaluating.rows_as_completed():
             display.show(evaluating.progress)
         return evaluating.results
 
@@ -206,7 +210,7 @@ def _carried_out(
         with EvaluationDisplay() as display:
             if control is None:
                 return made(plan), ()
-            return run_controlled(plan, control, made, store.folder)
+            return run_with_control_variate(plan, control, made, store.folder)
     except Interrupted as interrupted:
         print(
             f"argo: interrupted; {len(store.rows)} runs are kept in {store.folder}: the same "
@@ -227,7 +231,7 @@ def _compare(
     force: bool,
     console: Console,
 ) -> None:
-    from argo_env.evaluation.comparison import compare_plans, named_plan
+    from argo_env.evaluation.comparison import compare_plans, find_plan
 
     where = out or first
     if len(plans) > 2:
@@ -237,7 +241,7 @@ def _compare(
     a, b = read_results(first), read_results(second)
     names = [None, None] if not plans else [plans[0], plans[-1]]
     chosen = [
-        None if name is None else named_plan(results, name)
+        None if name is None else find_plan(results, name)
         for results, name in zip((a, b), names, strict=True)
     ]
     compared = compare_plans(a, b, *chosen)

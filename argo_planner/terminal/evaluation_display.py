@@ -9,9 +9,9 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from argo_env.closing import Closing
-from argo_env.evaluation.evaluating import EvaluationProgress
 from argo_env.evaluation.rates import quick_rate
 from argo_env.evaluation.row import RunOutcome
+from argo_env.evaluation.runner import EvaluationProgress
 from argo_env.formatting import clock
 from argo_planner.terminal.verbosity import is_quiet
 
@@ -47,10 +47,10 @@ class EvaluationDisplay(Closing):
         text = said(progress)
         if terminal:
             self._progress.update(
-                self._bar, total=progress.most, completed=progress.done, said=text
+                self._bar, total=progress.max_runs, completed=progress.completed_runs, said=text
             )
         elif not first:
-            self._console.print(f"{progress.done} of {progress.most} runs, {text}")
+            self._console.print(f"{progress.completed_runs} of {progress.max_runs} runs, {text}")
 
     def __enter__(self) -> Self:
         self._progress.start()

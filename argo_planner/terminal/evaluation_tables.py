@@ -12,7 +12,7 @@ from rich.table import Table
 
 from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.comparison import PlanComparison
-from argo_env.evaluation.controlled import ControlledMean
+from argo_env.evaluation.control_variates import ControlledMean
 from argo_env.evaluation.estimates.pairs import Difference
 from argo_env.evaluation.rates import Decision, IntervalMethod
 from argo_env.evaluation.report.texts import why_sequence
@@ -37,11 +37,11 @@ def show_results(
     for plan in results.plan.plans:
         if results.plan.strata:
             continue  # its runs don't count alike
-        score = mean_score(results.of(plan), scoring)
+        score = mean_score(results.rows_for(plan), scoring)
         if math.isnan(score.value):
             continue
         several = len(results.plan.plans) > 1
-        name = f"{plan.beside(results.plan.plans)}: score" if several else "Score"
+        name = f"{plan.label(results.plan.plans)}: score" if several else "Score"
         # Equal scores say nothing of how far others are from them.
         varies = score.low < score.high
         between = f" ({score.low:.1f} to {score.high:.1f})" if varies else ""
@@ -62,9 +62,7 @@ def show_results(
         console.print(f"{worlds} of {planned} worlds were enough: what it stops for is reached.")
     for verdict in results.verdicts:
         style = _STYLES[verdict.verdict]
-        of = (
-            f" for {verdict.plan.beside(results.plan.plans)}" if len(results.plan.plans) > 1 else ""
-        )
+        of = f" for {verdict.plan.label(results.plan.plans)}" if len(results.plan.plans) > 1 else ""
         console.print(
             f"[{style}]{verdict.requirement}{escape(of)}: {verdict.verdict}[/] "
             f"(between {_percent(verdict.low)} and {_percent(verdict.high)}, "
@@ -88,13 +86,13 @@ def show_means(means: Sequence[ControlledMean], drive: str | None, console: Cons
             soft_wrap=True,
         )
         shown = _percent if mean.quantity == "success" else _seconds
-        if mean.helped is None:
+        if mean.controlled is None:
             if control.pays:
                 console.print("  too few successes or failures for an interval with its help")
             continue
         for estimate, by in (
-            (mean.alone, f"{mean.expensive} worlds alone"),
-            (mean.helped, f"these and {mean.cheap} cheap ones"),
+            (mean.uncontrolled, f"{mean.expensive} worlds alone"),
+            (mean.controlled, f"these and {mean.cheap} cheap ones"),
         ):
             between = f"{shown(estimate.low)} to {shown(estimate.high)}"
             console.print(f"  by {by}: {shown(estimate.value)} ({between})", soft_wrap=True)
@@ -106,7 +104,7 @@ def _seconds(s: float) -> str:
 
 def _titled(what: str, plan: PlanName, results: EvaluationResults) -> str:
     several = len(results.plan.plans) > 1
-    return f"{plan.beside(results.plan.plans)}: {what}" if several else what.capitalize()
+    return f"{plan.label(results.plan.plans)}: {what}" if several else what.capitalize()
 
 
 def _plans(results: EvaluationResults) -> Table:
@@ -115,12 +113,12 @@ def _plans(results: EvaluationResults) -> Table:
     for name in ("runs", "success", "95 % interval", "failures", "errors", "died", "median time"):
         table.add_column(name, justify="right")
     for plan in results.plan.plans:
-        rows, rate = results.of(plan), results.rate(plan)
+        rows, rate = results.rows_for(plan), results.rate(plan)
         took = [row.duration for row in rows if row.duration is not None]
         counts = {o: sum(row.outcome is o for row in rows) for o in RunOutcome}
         star = "" if rate.method is IntervalMethod.EXACT else " *"
         table.add_row(
-            escape(plan.beside(results.plan.plans)),
+            escape(plan.label(results.plan.plans)),
             str(len(rows)),
             _percent(rate.value),
             f"{_percent(rate.low)} to {_percent(rate.high)}{star}",
@@ -136,7 +134,7 @@ def _plans(results: EvaluationResults) -> Table:
         notes += ["* " + " ".join(why_sequence(results, several))]
     elif IntervalMethod.STRATA in methods:
         notes.append("* put together by the probabilities of faults")
-    if results.missing:
+    if results.lost:
         worlds = ", nor are their worlds in that of the plan" if several else ""
         notes.append(
             f"errors and runs that died say nothing of the plan: they are in no rate{worlds}"
@@ -156,7 +154,7 @@ def _groups(title: str, what: str, groups: tuple[GroupRate, ...]) -> Table:
             escape(group.name),
             str(group.rate.runs + lost),
             _percent(group.rate.value),
-            f"{_percent(group.rate.low)} to {_percent(group.rate.high)}" if group.one_each else "",
+            f"{_percent(group.rate.low)} to {_percent(group.rate.high)}" if group.one_run_per_world else "",
             str(group.outcomes[RunOutcome.FAILURE] or ""),
             str(lost or ""),
         )
@@ -169,9 +167,9 @@ def _failing(results: EvaluationResults, files: Mapping[str, Path]) -> Iterator[
         return
     yield f"{len(rows)} of {len(results.rows)} runs are no success; each is made again alone by:"
     for row in rows[:_NAMED]:
-        said = "" if row.carried_out else f"{row.outcome}: "
-        plan = f"{row.plan.beside(results.plan.plans)}, " if len(results.plan.plans) > 1 else ""
-        yield f"  {plan}seed {row.seed}, {results.faults_of(row)}: {said}{row.reason}"
+        said = "" if row.is_completed else f"{row.outcome}: "
+        plan = f"{row.plan.label(results.plan.plans)}, " if len(results.plan.plans) > 1 else ""
+        yield f"  {plan}seed {row.seed}, {results.faults_for(row)}: {said}{row.reason}"
         if row.key in files:
             yield f"    argo run {shlex.quote(str(files[row.key]))} --report out/{row.key[:8]}"
     if len(rows) > _NAMED and files:
@@ -210,7 +208,7 @@ def show_comparison(compared: PlanComparison, console: Console) -> None:
                     soft_wrap=True,
                 )
     console.print(f"[bold]{escape(compared.conclusion)}[/]", soft_wrap=True)
-    if compared.one_each and not compared.any_time:
+    if compared.has_one_pair_per_world and not compared.any_time:
         console.print(
             f"So many pairs show a difference of 5 % with a probability of "
             f"{100 * compared.power(0.05):.0f} %, one of 2 % with "
@@ -219,8 +217,8 @@ def show_comparison(compared: PlanComparison, console: Console) -> None:
         )
     if compared.lost:
         console.print(f"{compared.lost} pairs could not be carried out, and do not count.")
-    if any(compared.alone):
-        a, b = compared.alone
+    if any(compared.unpaired):
+        a, b = compared.unpaired
         console.print(
             f"{a} runs of A and {b} of B have no partner in the same world with the same faults, "
             "and do not count.",

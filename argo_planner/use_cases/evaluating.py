@@ -112,7 +112,7 @@ def make_workers(
         workers = usable_processors()
     if workers is not None:
         workers = min(workers, runs)
-    context = context_with("argo_env.evaluation.evaluating")
+    context = context_with("argo_env.evaluation.runner")
     return make_backend(backend, workers, address, context)
 
 

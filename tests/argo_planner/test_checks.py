@@ -7,8 +7,8 @@ from types import CodeType
 import pytest
 
 from argo_env.envs.inspection import InspectEnv
-from argo_env.evaluation.evaluating import WorkOrder, carry_out
 from argo_env.evaluation.evaluation import Evaluation
+from argo_env.evaluation.runner import WorkOrder, execute_run
 from argo_env.planning.opening import open_site
 from argo_env.run.journal import Header, Journal, create_journal, open_journal
 from argo_env.run.run_commands import check_scheduled_events
@@ -90,7 +90,7 @@ def test_a_run_of_an_evaluation():
     site = open_site("yard.yaml")
     plan = Evaluation(PLAN, site, seeds=range(2)).plan
     order = WorkOrder("k", plan.cases[0], plan.run(0, 1).spec, {})
-    assert counted(lambda: carry_out(order, site)) == ONCE
+    assert counted(lambda: execute_run(order, site)) == ONCE
 
 
 @pytest.mark.usefixtures("folder")

@@ -1,4 +1,4 @@
 """Statistical estimates from the outcomes of runs, with confidence intervals and tests.
 
-The counted quantities are listed in `../statistics.py`.
+The counted quantities are listed in `../quantities.py`.
 """

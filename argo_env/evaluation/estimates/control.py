@@ -29,7 +29,7 @@ class ControlVariate:
     """cost of a cheap run, as a share of the cost of an expensive run"""
 
     @classmethod
-    def measured(
+    def from_pairs(
         cls, expensive: NDArray[np.float64], cheap: NDArray[np.float64], cost: float
     ) -> "ControlVariate":
         """Measure it from pairs of runs, one pair in each world; arrays of shape (n,) each.

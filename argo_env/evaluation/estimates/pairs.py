@@ -27,7 +27,7 @@ class SuccessPairs:
     neither: int
 
     @classmethod
-    def of(cls, first: NDArray[np.bool_], second: NDArray[np.bool_]) -> "SuccessPairs":
+    def from_successes(cls, first: NDArray[np.bool_], second: NDArray[np.bool_]) -> "SuccessPairs":
         """Count the pairs from the successes of two plans, world by world; shape (n,) each."""
         _require_pairs(first, second)
         return cls(
@@ -122,7 +122,7 @@ class Difference:
     p_value: float
 
     @property
-    def found(self) -> bool:
+    def is_significant(self) -> bool:
         """True if the difference is significant at the level of 95 %."""
         return self.p_value <= 1.0 - LEVEL
 

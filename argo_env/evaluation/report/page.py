@@ -89,7 +89,7 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
         plans=sections,
         verdicts=[(verdict, names[verdict.plan]) for verdict in results.verdicts],
         outcomes=results.outcomes,
-        lost=results.missing,
+        lost=results.lost,
         forest=picture(f"Success rates with intervals: {rates}", lambda: forest_of_rates(results))
         if results.rows
         else None,
@@ -116,10 +116,10 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
         failing=failing_runs(results, folder)[:_MAX_RUNS],
         shown=_SHOWN_RUNS,
         more=max(0, len(results.failing) - _MAX_RUNS),
-        faults_of=results.faults_of,
+        faults_for=results.faults_for,
         added=results.plan.added,
         blocks=[(name, groups) for name, groups in blocks if len(groups) > 1],
-        one_each=all(group.one_each for _, groups in blocks for group in groups),
+        one_run_per_world=all(group.one_run_per_world for _, groups in blocks for group in groups),
         made=how_it_was_made(results),
         variation=_in_yaml(results.plan.variation),
     )

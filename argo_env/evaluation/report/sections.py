@@ -16,7 +16,8 @@ from argo_compiler.base.version import __version__
 from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.folder import FAILING
 from argo_env.evaluation.plots import failure_places
-from argo_env.evaluation.rates import PlanRate, means_of, success
+from argo_env.evaluation.quantities import QUANTITIES
+from argo_env.evaluation.rates import PlanRate, success, world_shares
 from argo_env.evaluation.report.picture import picture
 from argo_env.evaluation.report.texts import counted, meaning, ranges
 from argo_env.evaluation.results import (
@@ -26,7 +27,6 @@ from argo_env.evaluation.results import (
     cluster_failures,
 )
 from argo_env.evaluation.row import RunOutcome, RunRow
-from argo_env.evaluation.statistics import QUANTITIES
 from argo_env.planning.opening import open_site
 from argo_env.robot.spec import load_robot
 from argo_env.site import Site
@@ -51,12 +51,12 @@ def plan_sections(results: EvaluationResults) -> list[PlanSection]:
     plans = results.plan.plans
     return [
         PlanSection(
-            plan.beside(plans),
+            plan.label(plans),
             results.rate(plan),
             _count_worlds(results, plan),
             meaning(results, plan),
             results.by_faults(plan),
-            Counter(row.outcome for row in results.of(plan)),
+            Counter(row.outcome for row in results.rows_for(plan)),
         )
         for plan in plans
     ]
@@ -69,7 +69,7 @@ def other_rates(results: EvaluationResults) -> list[tuple[str, str, PlanRate]]:
     limit.
     """
     plans = results.plan.plans
-    ran = [row for row in results.rows if row.carried_out]
+    ran = [row for row in results.rows if row.is_completed]
     left_out = {"success"}
     if not results.delays:
         left_out.add("detected")
@@ -78,7 +78,7 @@ def other_rates(results: EvaluationResults) -> list[tuple[str, str, PlanRate]]:
     if not ran:
         return []
     return [
-        (_DESCRIPTIONS.get(name, name), plan.beside(plans), results.rate(plan, name))
+        (_DESCRIPTIONS.get(name, name), plan.label(plans), results.rate(plan, name))
         for name in QUANTITIES
         if name not in left_out
         for plan in plans
@@ -97,11 +97,11 @@ _DESCRIPTIONS = {
 
 def _count_worlds(results: EvaluationResults, plan: PlanName) -> int:
     """Return the number of worlds with runs of the plan that count."""
-    ran = [row for row in results.of(plan) if row.carried_out]
+    ran = [row for row in results.rows_for(plan) if row.is_completed]
     weights = {case.faults: case.weight for case in results.plan.cases if case.plan == plan}
     if results.plan.strata or len(weights) == 1:
         return len({row.seed for row in ran})
-    return len(means_of(ran, weights, success))
+    return len(world_shares(ran, weights, success))
 
 
 _SECONDS = re.compile(r"\b\d+(?:\.\d+)?(?= s\b)")
@@ -132,7 +132,7 @@ def failing_runs(results: EvaluationResults, folder: Path) -> list[tuple[RunRow,
     """
     plans = results.plan.plans
     return [
-        (row, row.plan.beside(plans), shlex.quote(str(folder / FAILING / f"{row.key}.json")))
+        (row, row.plan.label(plans), shlex.quote(str(folder / FAILING / f"{row.key}.json")))
         for row in results.failing
     ]
 
@@ -145,9 +145,9 @@ def reasons(results: EvaluationResults) -> list[tuple[tuple[str, str], int, list
     plans = results.plan.plans
     groups: dict[tuple[str, str], list[tuple[str, str]]] = {}
     for row in results.failing:
-        reason = row.reason if row.carried_out else f"{row.outcome.value}: {row.reason}"
-        key = row.plan.beside(plans), _SECONDS.sub("", reason)
-        groups.setdefault(key, []).append((reason, results.faults_of(row)))
+        reason = row.reason if row.is_completed else f"{row.outcome.value}: {row.reason}"
+        key = row.plan.label(plans), _SECONDS.sub("", reason)
+        groups.setdefault(key, []).append((reason, results.faults_for(row)))
     ordered = sorted(groups.items(), key=lambda group: -len(group[1]))
     return [
         (

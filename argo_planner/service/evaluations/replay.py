@@ -5,7 +5,7 @@ from pathlib import Path
 
 from argo_compiler.base.errors import NotFound
 from argo_compiler.base.model import Model
-from argo_env.evaluation.folder import kept_plan
+from argo_env.evaluation.folder import read_plan
 from argo_env.evaluation.store import read_rows
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
@@ -51,7 +51,7 @@ def replay_run(order: ReplayOrder, folder: Path, tell: Tell) -> ReplayedRun:  # 
 
     Raises NotFound if it has no such run, ArgoError as the run does.
     """
-    plan = kept_plan(folder)
+    plan = read_plan(folder)
     row = next((row for row in read_rows(folder) if row.key == order.key), None)
     if plan is None or row is None:
         raise NotFound(f"the evaluation has no run {order.key[:40]!r}")

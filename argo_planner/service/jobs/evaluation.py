@@ -14,14 +14,14 @@ from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Model
 from argo_compiler.il import Mission
 from argo_env.evaluation.case import NO_FAULTS
-from argo_env.evaluation.evaluating import Evaluating, WorkOrder, carry_out
 from argo_env.evaluation.evaluation import Evaluation
-from argo_env.evaluation.folder import digest_of, keep_plan, kept_plan, write_failing
+from argo_env.evaluation.folder import digest_contents, read_plan, write_failing_specs, write_plan
 from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.pool.backends import make_backend
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
+from argo_env.evaluation.runner import EvaluationRunner, WorkOrder, execute_run
 from argo_env.evaluation.store import RowStore, read_rows
 from argo_env.evaluation.worlds import NO_VARIATION, Variation
 from argo_env.faults.kinds import AnyFault
@@ -122,7 +122,7 @@ class EvaluationOrder(Model):
             for case in evaluation.plan.cases
         )
         added = ", ".join(obstacle.name or obstacle.id for obstacle in self.obstacles)
-        return evaluation.plan.changed(cases=cases, added=f"obstacles: {added}")
+        return evaluation.plan.with_changes(cases=cases, added=f"obstacles: {added}")
 
 
 def evaluate_mission(order: EvaluationOrder, folder: Path, tell: Tell) -> EvaluationStanding:
@@ -138,19 +138,19 @@ def evaluate_mission(order: EvaluationOrder, folder: Path, tell: Tell) -> Evalua
     # say so.
     os.environ["PYTHONWARNINGS"] = "ignore:resource_tracker:UserWarning"
     plan = order.plan(order.opened())
-    keep_plan(folder, plan, digest_of(order.model_dump_json().encode()))
+    write_plan(folder, plan, digest_contents(order.model_dump_json().encode()))
     standing = RunCount(plan)
     call = partial(_carried_out, order.site, order.obstacles)
     # Forked from a process that has loaded less than the one of the service.
     workers = make_backend(context=context_with(__name__))
     with RowStore(folder) as store:
         try:
-            evaluating = Evaluating(plan, workers, store, limit=_LONGEST_RUN, call=call)
+            evaluating = EvaluationRunner(plan, workers, store, limit=_LONGEST_RUN, call=call)
             told, before = -_PERIOD, len(store.rows)
-            for row in evaluating.rows_as_they_come():
+            for row in evaluating.rows_as_completed():
                 standing.add(row)
                 # What was known before is counted before anything is told.
-                known = evaluating.progress.done >= before
+                known = evaluating.progress.completed_runs >= before
                 if known and time.monotonic() - told >= _PERIOD:
                     tell(standing.under_way(evaluating.progress))
                     told = time.monotonic()
@@ -160,7 +160,7 @@ def evaluate_mission(order: EvaluationOrder, folder: Path, tell: Tell) -> Evalua
     final = standing.ended(results)
     tell(final)
     if not order.obstacles:
-        write_failing(folder, results)
+        write_failing_specs(folder, results)
     write_evaluation_report(folder, results)
     return final
 
@@ -168,16 +168,16 @@ def evaluate_mission(order: EvaluationOrder, folder: Path, tell: Tell) -> Evalua
 def cut_short(folder: Path) -> tuple[EvaluationStanding, EvaluationResults] | None:
     """How the evaluation in a folder stands that was ended before its time, and what came of it; of
     one of which there are no rows, None. Raises ArgoError where they can't be read."""
-    plan = kept_plan(folder)
+    plan = read_plan(folder)
     try:
         rows = read_rows(folder)
     except NotFound:
         rows = ()
     if plan is None or not rows:
         return None
-    count, results = RunCount(plan), EvaluationResults.so_far(plan, rows)
+    count, results = RunCount(plan), EvaluationResults.from_partial_rows(plan, rows)
     places = {seed: k for k, seed in enumerate(plan.seeds)}
-    for row in sorted(rows, key=lambda row: (places[row.seed], plan.case_of(row) or 0)):
+    for row in sorted(rows, key=lambda row: (places[row.seed], plan.case_index(row) or 0)):
         count.add(row)
     return count.ended(results), results
 
@@ -195,7 +195,7 @@ def report_so_far(folder: Path, tell: Tell) -> None:  # noqa: ARG001
 
 def _carried_out(site: str, obstacles: tuple[Obstacle, ...], order: WorkOrder) -> RunRow:
     """One run, in a worker."""
-    return carry_out(order, _opened(site, obstacles))
+    return execute_run(order, _opened(site, obstacles))
 
 
 def _opened(site: str, obstacles: tuple[Obstacle, ...]) -> OpenedSite:

@@ -4,11 +4,11 @@ from collections import Counter
 from statistics import median
 
 from argo_compiler.base.model import Model
-from argo_env.evaluation.evaluating import EvaluationProgress
 from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.rates import Decision, IntervalMethod, PlanRate, quick_rate
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome, RunRow
+from argo_env.evaluation.runner import EvaluationProgress
 
 MOST_FAILING = 100
 """runs that are told one by one; all are among the rows"""
@@ -122,7 +122,7 @@ class RunCount:
     def add(self, row: RunRow) -> None:
         """One more run has ended."""
         self._outcomes[row.outcome] += 1
-        faults = self._evaluation.faults_in(row.faults, row.seed)
+        faults = self._evaluation.faults_for(row.faults, row.seed)
         self._by_faults.setdefault(faults, Counter())[row.outcome] += 1
         if row.success and row.duration is not None:
             self._durations.append(row.duration)
@@ -147,7 +147,7 @@ class RunCount:
 
     def under_way(self, progress: EvaluationProgress) -> EvaluationStanding:
         """How it stands while more runs come."""
-        return self._told(progress.most, progress.remaining, None)
+        return self._told(progress.max_runs, progress.remaining, None)
 
     def ended(self, results: EvaluationResults) -> EvaluationStanding:
         """How it stands at its end, with these results, or where it was cut short."""

@@ -11,7 +11,7 @@ from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.evaluation.pool.backends import make_backend
 from argo_env.evaluation.results import EvaluationResults
-from argo_env.evaluation.row import RunOutcome, row_without_end
+from argo_env.evaluation.row import RunOutcome, make_empty_row
 from argo_env.planning.opening import open_site
 from argo_env.run.spec import RunSpec
 from tests.yard import from_place
@@ -45,7 +45,7 @@ def came_to(plan, change) -> EvaluationResults:
     """Results of the plan in which `change` gives, by the run, what else is in its row."""
     rows = []
     for run in plan.runs():
-        row = row_without_end("", plan.cases[run.case], run.spec, RunOutcome.SUCCESS, "")
+        row = make_empty_row("", plan.cases[run.case], run.spec, RunOutcome.SUCCESS, "")
         rows.append(row.model_copy(update={"seed": run.seed, **change(run)}))
     return EvaluationResults(plan, tuple(rows))
 

@@ -40,7 +40,7 @@ def test_runs_without_a_partner_are_counted(mission):
         results_of(mission, range(8), ("none", "a")), results_of(mission, range(4, 15))
     )
     assert found.successes.pairs == 4
-    assert found.alone == (12, 7)
+    assert found.unpaired == (12, 7)
 
 
 @pytest.mark.parametrize(("failing", "shown"), [(range(6), False), (range(30), True)])

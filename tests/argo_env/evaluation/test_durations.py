@@ -26,7 +26,8 @@ def test_what_fails_never_ends(mission):
     assert curve.times == (10.0, 20.0, 30.0)
     assert curve.shares == pytest.approx((0.25, 0.5, 0.75))
     assert curve.limits == (25.0,)
-    assert (curve.by(0.1), curve.by(0.5), curve.by(0.75), curve.by(0.9)) == (10.0, 20.0, 30.0, None)
+    times = [curve.time_at(share) for share in (0.1, 0.5, 0.75, 0.9)]
+    assert times == [10.0, 20.0, 30.0, None]
 
 
 def test_cases_count_by_weight(mission):
@@ -34,13 +35,13 @@ def test_cases_count_by_weight(mission):
     results = results_of(mission, rows, {"none": 0.9, "rare": 0.1, "not yet run": 1.0})
     curve = duration_curve(results, results.plan.plans[0])
     assert curve.shares[1] == pytest.approx(0.9)
-    assert curve.last == pytest.approx(1.0)
+    assert curve.final_share == pytest.approx(1.0)
 
 
 def test_of_nothing_there_is_no_curve(mission):
     results = results_of(mission, ())
     curve = duration_curve(results, results.plan.plans[0])
-    assert (curve.times, curve.last, curve.by(0.5)) == ((), 0.0, None)
+    assert (curve.times, curve.final_share, curve.time_at(0.5)) == ((), 0.0, None)
 
 
 def test_places_half_a_metre_apart_are_one():

@@ -4,7 +4,7 @@ import pytest
 
 from argo_env.evaluation.case import EvaluationCase
 from argo_env.evaluation.detection import detections, false_alarms
-from argo_env.evaluation.evaluating import WorkOrder, carry_out
+from argo_env.evaluation.runner import WorkOrder, execute_run
 from argo_env.faults.loading import decode_faults
 from argo_env.files import resources
 from argo_env.planning.opening import open_site
@@ -21,7 +21,7 @@ FAULTS = resources.scenarios() / "umad" / "faults"
 def row_in(mission, **fields):
     """The row of a run by travel times in such a world."""
     spec = RunSpec(mission=mission, **{"drive": "route", **fields})
-    return carry_out(WorkOrder("key", EvaluationCase(mission="short", spec=spec), spec, {}))
+    return execute_run(WorkOrder("key", EvaluationCase(mission="short", spec=spec), spec, {}))
 
 
 def nominal(checkpoint: int):

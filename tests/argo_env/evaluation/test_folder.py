@@ -3,16 +3,16 @@
 import pytest
 
 from argo_compiler.base.errors import Conflict
-from argo_env.evaluation.controlled import with_drive
-from argo_env.evaluation.evaluating import WorkOrder
-from argo_env.evaluation.folder import digest_of, kept_plan, open_rows, read_results
+from argo_env.evaluation.control_variates import with_drive
+from argo_env.evaluation.folder import digest_contents, open_rows, read_plan, read_results
 from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.rates import IntervalMethod
+from argo_env.evaluation.runner import WorkOrder
 from argo_env.evaluation.store import read_rows
 from tests.argo_env.evaluation import work
 from tests.argo_env.evaluation.conftest import plan_of
 
-DIGEST = digest_of(b"")
+DIGEST = digest_contents(b"")
 
 
 @pytest.fixture(scope="module")
@@ -49,13 +49,13 @@ def keys(folder):
 )
 def test_an_evaluation_goes_on(tmp_path, plan, change):
     filled(tmp_path, plan)
-    with open_rows(tmp_path, plan.changed(**change), DIGEST) as store:
+    with open_rows(tmp_path, plan.with_changes(**change), DIGEST) as store:
         assert len(store.rows) == 12
-    assert kept_plan(tmp_path) == plan.changed(**change)
+    assert read_plan(tmp_path) == plan.with_changes(**change)
 
 
 def test_one_that_is_not_at_its_end_is_told_by_the_worlds_before_the_first_gap(tmp_path, plan):
-    filled(tmp_path, plan.changed(seeds=(0, 1, 2, 3, 5, 6)))
+    filled(tmp_path, plan.with_changes(seeds=(0, 1, 2, 3, 5, 6)))
     open_rows(tmp_path, plan, DIGEST).close()
     results = read_results(tmp_path)
     assert results.cut_short
@@ -70,22 +70,22 @@ def test_one_that_is_not_at_its_end_is_told_by_the_worlds_before_the_first_gap(t
 @pytest.mark.parametrize("seeds", [range(5), range(5, 30)])
 def test_another_one_is_refused_and_changes_nothing(tmp_path, plan, seeds):
     filled(tmp_path, plan)
-    other = plan.changed(seeds=tuple(seeds))
+    other = plan.with_changes(seeds=tuple(seeds))
     with pytest.raises(Conflict, match="has another evaluation"):
         open_rows(tmp_path, other, DIGEST)
-    assert kept_plan(tmp_path) == plan
+    assert read_plan(tmp_path) == plan
     assert len(keys(tmp_path)) == 12
     # Nobody holds the folder after that.
     open_rows(tmp_path, plan, DIGEST).close()
 
 
 def test_replaced_it_keeps_what_fits_in_parts_and_log(tmp_path, plan):
-    later = rows_of(plan.changed(seeds=(100, 101)))
+    later = rows_of(plan.with_changes(seeds=(100, 101)))
     filled(tmp_path, plan, *later)
-    other = plan.changed(seeds=(3, 4, 5, 100))
+    other = plan.with_changes(seeds=(3, 4, 5, 100))
     with open_rows(tmp_path, other, DIGEST, replace=True) as store:
         assert {row.seed for row in store.rows.values()} == {3, 4, 5, 100}
-        store.add(rows_of(other.changed(seeds=(200,)))[0])
+        store.add(rows_of(other.with_changes(seeds=(200,)))[0])
         store.compact()
     assert len(keys(tmp_path)) == 5
     assert [row.seed for row in read_results(tmp_path).rows] == [3, 4, 5, 100]
@@ -94,7 +94,7 @@ def test_replaced_it_keeps_what_fits_in_parts_and_log(tmp_path, plan):
 def test_cheap_runs_stay_with_the_plan_that_they_help(tmp_path, plan):
     cheap = with_drive(plan, "route")
     filled(tmp_path, plan, *rows_of(cheap, (0, 1, 5_000)))
-    other = plan.changed(seeds=tuple(range(20, 40)))
+    other = plan.with_changes(seeds=tuple(range(20, 40)))
     with open_rows(tmp_path, other, DIGEST, replace=True, helper=cheap) as store:
         assert sorted((row.seed, row.drive) for row in store.rows.values()) == [
             (0, "route"), (1, "route"), (5_000, "route"),
@@ -107,5 +107,5 @@ def test_a_plan_that_this_version_does_not_know_is_another_one(tmp_path, plan):
     with pytest.raises(Conflict, match="has another evaluation"):
         open_rows(tmp_path, plan, DIGEST)
     open_rows(tmp_path, plan, DIGEST, replace=True).close()
-    assert kept_plan(tmp_path) == plan
+    assert read_plan(tmp_path) == plan
     assert len(keys(tmp_path)) == 12

@@ -99,23 +99,23 @@ def test_one_more_draw_changes_nothing_of_the_others(mission):
     )
     longer = spec.model_copy(update={"mission": mission.model_copy(update={"max_duration": 99.0})})
     for seed in range(20):
-        a, b = few.applied(spec, seed).conditions, more.applied(longer, seed).conditions
+        a, b = few.apply(spec, seed).conditions, more.apply(longer, seed).conditions
         assert a.charge == b.charge
         assert a.values[3].drift == b.values[3].drift
-    assert len({few.applied(spec, seed).conditions.charge for seed in range(20)}) == 20
+    assert len({few.apply(spec, seed).conditions.charge for seed in range(20)}) == 20
 
 
 def test_draws_stay_in_their_ranges_and_fill_them(mission):
     spec = RunSpec(mission=mission, drive="route")
     between = varied(turned=(-10.0, 10.0), values={2: {"start": (1.0, 2.0), "steps": [
         {"at": (10, 20), "change": 0.5}]}})  # fmt: skip
-    drawn = [between.applied(spec, seed) for seed in range(200)]
+    drawn = [between.apply(spec, seed) for seed in range(200)]
     turned = [one.conditions.turned for one in drawn]
     assert -10 <= min(turned) < -9 < 9 < max(turned) <= 10
     assert all(1 <= one.values[2] <= 2 for one in drawn)
     steps = [one.conditions.values[2].steps[0] for one in drawn]
     assert all(10 <= step.at <= 20 and step.change == 0.5 for step in steps)
-    assert between.drawn(3)["turned"] == drawn[3].conditions.turned
+    assert between.values_for(3)["turned"] == drawn[3].conditions.turned
 
 
 @pytest.mark.parametrize(
@@ -140,7 +140,7 @@ def test_faults_come_as_often_as_they_are_probable(mission):
     drawn_from = FaultDistribution.model_validate({"chances": chances})
     variation = Variation(faults=drawn_from)
     spec = RunSpec(mission=mission)
-    kinds = [tuple(f.kind for f in variation.applied(spec, s).faults) for s in range(3_000)]
+    kinds = [tuple(f.kind for f in variation.apply(spec, s).faults) for s in range(3_000)]
     assert kinds.count(("brick",)) / 3_000 == pytest.approx(0.2, abs=0.025)
     assert kinds.count(("low_battery",)) / 3_000 == pytest.approx(0.1, abs=0.02)
     assert drawn_from.fault_free_probability == pytest.approx(0.7)

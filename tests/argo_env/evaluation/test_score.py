@@ -5,7 +5,7 @@ import pytest
 from argo_compiler.diagnostics import DiagnosticError
 from argo_env.evaluation.detection import FaultDetection
 from argo_env.evaluation.row import RunOutcome
-from argo_env.evaluation.score import mean_score, read_scoring, score_of
+from argo_env.evaluation.score import mean_score, read_scoring, score_run
 from tests.argo_env.evaluation.test_store import row
 
 RULES = read_scoring()
@@ -13,7 +13,7 @@ RULES = read_scoring()
 
 def score(**changes):
     fields = {"tasks": 4, "done": 4, "docked": True, **changes}
-    return score_of(row(1).model_copy(update=fields), RULES)
+    return score_run(row(1).model_copy(update=fields), RULES)
 
 
 def test_a_run_of_which_there_is_nothing_to_say_has_all_points():

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from argo_compiler.base.errors import Conflict, NotFound, Unavailable
 from argo_env.evaluation import parts, store
 from argo_env.evaluation.detection import FaultDetection
-from argo_env.evaluation.parts import write_part
+from argo_env.evaluation.parquet_files import write_part
 from argo_env.evaluation.row import RunOutcome, RunRow
 from argo_env.evaluation.store import LOG, RowStore, read_log, read_rows
 
@@ -53,13 +53,13 @@ def test_rows_come_back_as_they_were(tmp_path):
             rows.add(one)
         assert read_rows(tmp_path) == (row(1), FULL)
         rows.compact()
-        assert rows.loose == 0
+        assert rows.uncompacted == 0
         rows.add(row(2))
     assert (tmp_path / "parts" / "part-00001.parquet").exists()
     assert read_rows(tmp_path) == (row(1), FULL, row(2))
     with RowStore(tmp_path) as rows:
         assert list(rows.rows.values()) == [row(1), FULL, row(2)]
-        assert rows.loose == 1
+        assert rows.uncompacted == 1
         rows.compact()
     assert read_rows(tmp_path) == (row(1), FULL, row(2))
 

@@ -3,8 +3,8 @@
 import os
 import signal
 
-from argo_env.evaluation.evaluating import WorkOrder, carry_out
-from argo_env.evaluation.row import RunOutcome, RunRow, row_without_end
+from argo_env.evaluation.row import RunOutcome, RunRow, make_empty_row
+from argo_env.evaluation.runner import WorkOrder, execute_run
 
 
 def invented(order: WorkOrder) -> RunRow:
@@ -13,7 +13,7 @@ def invented(order: WorkOrder) -> RunRow:
     if order.spec.seed == 500:
         os.kill(os.getpid(), signal.SIGKILL)
     outcome = RunOutcome.FAILURE if order.spec.seed % 7 == 3 else RunOutcome.SUCCESS
-    row = row_without_end(order.key, order.case, order.spec, outcome, "invented")
+    row = make_empty_row(order.key, order.case, order.spec, outcome, "invented")
     return row.model_copy(update={"duration": 100.0 + order.spec.seed})
 
 
@@ -21,7 +21,7 @@ def poisoned(order: WorkOrder) -> RunRow:
     """A real run, but for that of world 3."""
     if order.spec.seed == 3:
         os._exit(7)
-    return carry_out(order)
+    return execute_run(order)
 
 
 def broken(order: WorkOrder) -> RunRow:

@@ -26,10 +26,10 @@ def test_a_plan_beside_itself_never_differs():
     rng = np.random.default_rng(8)
     for k in range(COMPARISONS):
         done = rng.random(50) < rng.random()
-        assert SuccessPairs.of(done, done).p_value == 1.0
+        assert SuccessPairs.from_successes(done, done).p_value == 1.0
         if k % 10 == 0:  # the same again, and slower
             taken = rng.normal(600, 60, 50)
-            assert not difference(taken, taken, seed=k).found
+            assert not difference(taken, taken, seed=k).is_significant
 
 
 def test_a_difference_that_is_none_is_rarely_found():
@@ -37,7 +37,7 @@ def test_a_difference_that_is_none_is_rarely_found():
     found = 0
     for _ in range(COMPARISONS):
         a, b = rng.random((2, 120)) < 0.85
-        found += SuccessPairs.of(a, b).p_value <= 0.05
+        found += SuccessPairs.from_successes(a, b).p_value <= 0.05
     assert found / COMPARISONS <= 0.055
 
 
@@ -81,7 +81,7 @@ def test_pairing_finds_what_is_small_beside_what_worlds_differ_by():
     rng = np.random.default_rng(12)
     worlds = rng.normal(600, 100, 80)
     found = difference(worlds + 5, worlds)
-    assert found.found
+    assert found.is_significant
     assert found.value == pytest.approx(5)
 
 
@@ -112,14 +112,14 @@ def test_cheap_runs_make_an_estimate_surer_and_keep_its_coverage():
 def test_whether_it_pays_is_measured():
     rng = np.random.default_rng(14)
     expensive, cheap, _ = drawn(rng, 200, 0)
-    known = ControlVariate.measured(expensive, cheap, cost=0.01)
+    known = ControlVariate.from_pairs(expensive, cheap, cost=0.01)
     assert known.correlation > 0.95
     assert known.pays
-    assert not ControlVariate.measured(expensive, cheap, cost=1.0).pays
-    assert not ControlVariate.measured(rng.normal(0, 1, 200), cheap, cost=0.01).pays
-    assert not ControlVariate.measured(np.ones(20), cheap[:20], cost=0.01).pays
+    assert not ControlVariate.from_pairs(expensive, cheap, cost=1.0).pays
+    assert not ControlVariate.from_pairs(rng.normal(0, 1, 200), cheap, cost=0.01).pays
+    assert not ControlVariate.from_pairs(np.ones(20), cheap[:20], cost=0.01).pays
     with pytest.raises(Invalid, match="at least 10"):
-        ControlVariate.measured(expensive[:5], cheap[:5], 0.1)
+        ControlVariate.from_pairs(expensive[:5], cheap[:5], 0.1)
 
 
 def test_the_gain_is_that_of_all_ways_to_spend():

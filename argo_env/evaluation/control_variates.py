@@ -63,9 +63,9 @@ class ControlledMean:
     """`success`, or `duration` (s) of all runs, whatever their outcomes"""
     control: ControlVariate
     """correlation and cost, measured in the pilot"""
-    alone: Estimate
+    uncontrolled: Estimate
     """estimate from the expensive runs alone"""
-    helped: Estimate | None
+    controlled: Estimate | None
     """estimate with the cheap runs; None if these don't pay, or if there are too few failures or
     successes for an interval of this kind"""
     expensive: int
@@ -74,7 +74,7 @@ class ControlledMean:
     """number of worlds with cheap runs only"""
 
 
-def run_controlled(
+def run_with_control_variate(
     plan: EvaluationPlan,
     drive: str,
     make: MakeRuns,
@@ -134,7 +134,7 @@ def with_drive(plan: EvaluationPlan, drive: str) -> EvaluationPlan:
         spec = case.spec.model_copy(update={"drive": drive, "sensor": sensor})
         check_spec(spec, open_site(spec.site, load_robot(spec.robot)).site)
         cases.append(case.model_copy(update={"spec": spec}))
-    return plan.changed(cases=tuple(cases), stopping=Stopping())
+    return plan.with_changes(cases=tuple(cases), stopping=Stopping())
 
 
 def _with_seeds(plan: EvaluationPlan, seeds: Sequence[int]) -> EvaluationPlan:
@@ -157,7 +157,7 @@ def _measure(
 ) -> ControlVariate:
     a, b = _by_world(expensive, name), _by_world(cheap, name)
     both = [seed for seed in a if seed in b]
-    return ControlVariate.measured(
+    return ControlVariate.from_pairs(
         np.array([a[seed] for seed in both]), np.array([b[seed] for seed in both]), cost
     )
 
@@ -188,7 +188,7 @@ def _mean(
 def _by_world(results: EvaluationResults, quantity: str) -> dict[int, float]:
     """Return, by seed, the weighted mean over the cases, for worlds in which all cases have run."""
     weights = {case.faults: case.weight for case in results.plan.cases}
-    ran = (row for row in results.rows if row.carried_out)
+    ran = (row for row in results.rows if row.is_completed)
     values = ((row.seed, row.faults, _QUANTITIES[quantity](row)) for row in ran)
     return weighted_world_means(values, weights)
 

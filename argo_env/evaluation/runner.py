@@ -15,9 +15,9 @@ from argo_env.evaluation.estimates.rates import Stratum, allocation
 from argo_env.evaluation.plan import EvaluationPlan, PlannedRun
 from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.evaluation.pool.pool import CompletedCall, Pool
-from argo_env.evaluation.rates import is_enough
+from argo_env.evaluation.rates import should_stop
 from argo_env.evaluation.results import EvaluationResults
-from argo_env.evaluation.row import RunOutcome, RunRow, row_of, row_without_end
+from argo_env.evaluation.row import RunOutcome, RunRow, make_empty_row, make_row
 from argo_env.evaluation.store import RowStore
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.robot.spec import load_robot
@@ -45,7 +45,7 @@ class WorkOrder:
     None: no limit"""
 
 
-def carry_out(order: WorkOrder, site: OpenedSite | None = None) -> RunRow:
+def execute_run(order: WorkOrder, site: OpenedSite | None = None) -> RunRow:
     """Execute the run and return its row.
 
     The site is the one that the spec names, unless one is given. An error of the simulator is an
@@ -64,14 +64,14 @@ def _row(order: WorkOrder, site: OpenedSite | None) -> RunRow:
     try:
         opened = site or open_site(order.spec.site, load_robot(order.spec.robot))
         record = simulate(order.spec, opened)
-        return row_of(order.key, order.case, order.spec, record, opened.site)
+        return make_row(order.key, order.case, order.spec, record, opened.site)
     except ArgoError as error:
-        return row_without_end(order.key, order.case, order.spec, RunOutcome.ERROR, str(error))
+        return make_empty_row(order.key, order.case, order.spec, RunOutcome.ERROR, str(error))
     except Exception as error:  # the row reports it, with its location in the code
         frame = traceback.extract_tb(error.__traceback__)[-1]
         place = f"{os.path.basename(frame.filename)}, line {frame.lineno}"
         reason = f"{type(error).__name__}: {error} ({place})"
-        return row_without_end(order.key, order.case, order.spec, RunOutcome.ERROR, reason)
+        return make_empty_row(order.key, order.case, order.spec, RunOutcome.ERROR, reason)
     finally:
         if watchdog is not None:
             watchdog.cancel()
@@ -88,23 +88,23 @@ class EvaluationProgress:
 
     outcomes: Mapping[PlanName, Counter[RunOutcome]]
     """number of ended runs by outcome, for each plan"""
-    most: int
+    max_runs: int
     """largest number of runs that the evaluation can have"""
-    known: int
+    stored_runs: int
     """number of ended runs whose rows were in the store before"""
     seconds: float
     """s since the start of the execution"""
 
     @property
-    def done(self) -> int:
+    def completed_runs(self) -> int:
         """Number of runs that have ended."""
         return sum(counts.total() for counts in self.outcomes.values())
 
     @property
     def remaining(self) -> float | None:
         """Longest remaining time in s at the present rate; None before the first run has ended."""
-        executed = self.done - self.known
-        return (self.most - self.done) * self.seconds / executed if executed else None
+        executed = self.completed_runs - self.stored_runs
+        return (self.max_runs - self.completed_runs) * self.seconds / executed if executed else None
 
     @property
     def all_outcomes(self) -> Counter[RunOutcome]:
@@ -112,7 +112,7 @@ class EvaluationProgress:
         return sum(self.outcomes.values(), start=Counter())
 
 
-class Evaluating:
+class EvaluationRunner:
     """Executor of an evaluation's runs that are not in the store yet.
 
     It holds the rows of all ended runs of the evaluation, and adds new ones to the store.
@@ -125,7 +125,7 @@ class Evaluating:
         store: RowStore | None = None,
         *,
         limit: float | None = None,
-        call: Callable[[WorkOrder], RunRow] = carry_out,
+        call: Callable[[WorkOrder], RunRow] = execute_run,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """Prepare the execution of the evaluation plan.
@@ -162,7 +162,7 @@ class Evaluating:
         rows = sorted(self._rows, key=lambda row: self._positions[row.key])
         return EvaluationResults(self._plan, tuple(rows))
 
-    def rows_as_they_come(self) -> Iterator[RunRow]:
+    def rows_as_completed(self) -> Iterator[RunRow]:
         """Execute all runs and yield their rows as they end; in each batch, stored rows come first.
 
         Moves the rows of the store to a Parquet file at the end.
@@ -188,7 +188,7 @@ class Evaluating:
             row = self._row_for(finished)
             if self._store is not None:
                 self._store.add(row)
-                if self._store.loose >= _COMPACT_AT:
+                if self._store.uncompacted >= _COMPACT_AT:
                     self._store.compact()
             yield self._count(row)
 
@@ -215,8 +215,8 @@ class Evaluating:
                     key,
                     self._plan.cases[run.case],
                     run.spec,
-                    self._plan.variation.drawn(run.seed),
-                    self._plan.drawn_in(run.seed),
+                    self._plan.variation.values_for(run.seed),
+                    self._plan.drawn_faults(run.seed),
                     self._limit,
                 ),
             )
@@ -232,11 +232,11 @@ class Evaluating:
             # It couldn't be sent to a worker or back; each run gets a row, whatever went wrong.
             outcome, reason = RunOutcome.ERROR, f"{type(finished.error).__name__}: {finished.error}"
         _log.warning("run %s, seed %d: %s", key, run.seed, reason)
-        row = row_without_end(key, self._plan.cases[run.case], run.spec, outcome, reason)
+        row = make_empty_row(key, self._plan.cases[run.case], run.spec, outcome, reason)
         return row.model_copy(
             update={
-                "world": self._plan.variation.drawn(run.seed),
-                "drawn": self._plan.drawn_in(run.seed),
+                "world": self._plan.variation.values_for(run.seed),
+                "drawn": self._plan.drawn_faults(run.seed),
             }
         )
 
@@ -255,7 +255,7 @@ def batches(plan: EvaluationPlan, rows: Sequence[RunRow]) -> Iterator[Iterator[P
         yield plan.runs()
         return
     for first in range(0, len(plan.seeds), stopping.every):
-        if first and is_enough(plan, rows):
+        if first and should_stop(plan, rows):
             return
         yield plan.runs(plan.seeds[first : first + stopping.every])
 
@@ -276,7 +276,7 @@ def _by_strata(plan: EvaluationPlan, rows: Sequence[RunRow]) -> Iterator[Iterato
                 runs.append(plan.run(case, next(seeds)))
                 remaining -= 1
         yield iter(runs)
-        if plan.stopping.width is not None and is_enough(plan, rows):
+        if plan.stopping.width is not None and should_stop(plan, rows):
             return
         counts = allocation(_strata(plan, rows), min(remaining, plan.stopping.every * cases))
 
@@ -285,7 +285,7 @@ def _strata(plan: EvaluationPlan, rows: Sequence[RunRow]) -> list[Stratum]:
     total_weight = sum(case.weight for case in plan.cases)
     strata = []
     for case in plan.cases:
-        ran = [row for row in rows if row.faults == case.faults and row.carried_out]
+        ran = [row for row in rows if row.faults == case.faults and row.is_completed]
         successes = sum(row.success for row in ran)
         strata.append(Stratum(case.weight / total_weight, successes, len(ran)))
     return strata

@@ -7,10 +7,10 @@ import pytest
 
 from argo_compiler.base.errors import ArgoError
 from argo_env.evaluation.case import EvaluationCase
-from argo_env.evaluation.controlled import PILOT, run_controlled, with_drive
+from argo_env.evaluation.control_variates import PILOT, run_with_control_variate, with_drive
 from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.results import EvaluationResults
-from argo_env.evaluation.row import RunOutcome, RunRow, row_without_end
+from argo_env.evaluation.row import RunOutcome, RunRow, make_empty_row
 from argo_env.run.spec import RunSpec
 from tests.argo_env.evaluation.conftest import plan_of
 
@@ -26,7 +26,7 @@ def invented(seed: int, drive: str, together: bool) -> RunRow:
         site="umad", robot="tracker", drive=drive, sensor="ideal", seed=seed
     )
     case = EvaluationCase.model_construct(mission="m", policy="p", faults="none", spec=spec)
-    row = row_without_end(f"{drive} {seed}", case, spec, RunOutcome.SUCCESS, "invented")
+    row = make_empty_row(f"{drive} {seed}", case, spec, RunOutcome.SUCCESS, "invented")
     failed = RunOutcome.FAILURE if duration > 1.08 * MEAN else RunOutcome.SUCCESS
     return row.model_copy(update={"duration": duration, "outcome": failed})
 
@@ -60,27 +60,27 @@ def expensive(mission) -> EvaluationPlan:
 
 def test_cheap_runs_that_tell_much_make_the_interval_narrow(expensive, tmp_path):
     made = Made()
-    results, means = run_controlled(expensive, "route", made, tmp_path, lambda: made.time)
+    results, means = run_with_control_variate(expensive, "route", made, tmp_path, lambda: made.time)
     success, duration = means
     assert len(results.rows) == 200
     assert duration.control.correlation > 0.95
     assert duration.control.cost == pytest.approx(0.01)
-    assert duration.helped.high - duration.helped.low < 0.5 * (
-        duration.alone.high - duration.alone.low
+    assert duration.controlled.high - duration.controlled.low < 0.5 * (
+        duration.uncontrolled.high - duration.uncontrolled.low
     )
-    assert duration.helped.low <= MEAN <= duration.helped.high
+    assert duration.controlled.low <= MEAN <= duration.controlled.high
     assert (duration.expensive, made.count("kinematic")) == (200, 200)
     assert made.count("route") == 200 + duration.cheap
     # By the formula for how many there should be, which the tests of the statistics derive.
     most = max(mean.control.cheap_runs for mean in means if mean.control.pays)
     assert duration.cheap == math.ceil((most - 1) * 200)
-    assert success.helped is None or success.helped.low <= 0.82 <= success.helped.high
+    assert success.controlled is None or success.controlled.low <= 0.82 <= success.controlled.high
 
 
 def test_cheap_runs_that_tell_nothing_are_made_in_the_first_worlds_only(expensive, tmp_path):
     made = Made(together=False)
-    _, means = run_controlled(expensive, "route", made, tmp_path, lambda: made.time)
-    assert all(mean.helped is None for mean in means)
+    _, means = run_with_control_variate(expensive, "route", made, tmp_path, lambda: made.time)
+    assert all(mean.controlled is None for mean in means)
     assert not any(mean.control.pays for mean in means)
     assert made.count("route") == PILOT
 
@@ -88,9 +88,9 @@ def test_cheap_runs_that_tell_nothing_are_made_in_the_first_worlds_only(expensiv
 @pytest.mark.long
 def test_what_was_measured_outlives_an_interruption(expensive, tmp_path):
     made = Made()
-    _, first = run_controlled(expensive, "route", made, tmp_path, lambda: made.time)
+    _, first = run_with_control_variate(expensive, "route", made, tmp_path, lambda: made.time)
     known = set(made.known)
-    _, again = run_controlled(expensive, "route", made, tmp_path, lambda: made.time)
+    _, again = run_with_control_variate(expensive, "route", made, tmp_path, lambda: made.time)
     assert again == first
     assert made.known == known
 
@@ -103,11 +103,11 @@ def test_of_few_failures_no_interval_is_told(expensive, tmp_path):
         return EvaluationResults(plan, tuple(rows))
 
     made = Made()
-    _, (success, duration) = run_controlled(
+    _, (success, duration) = run_with_control_variate(
         expensive, "route", never_late, tmp_path, lambda: made.time
     )
-    assert success.helped is None
-    assert duration.helped is not None
+    assert success.controlled is None
+    assert duration.controlled is not None
 
 
 def test_the_cheap_plan_has_the_name_of_its_own_drive(expensive):

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from argo_env.evaluation.case import EvaluationCase
-from argo_env.evaluation.evaluating import Evaluating, WorkOrder, batches, carry_out
 from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.pool.backends import make_backend
 from argo_env.evaluation.rates import Decision, IntervalMethod
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.results import EvaluationResults
-from argo_env.evaluation.row import RunOutcome, row_without_end
+from argo_env.evaluation.row import RunOutcome, make_empty_row
+from argo_env.evaluation.runner import EvaluationRunner, WorkOrder, batches, execute_run
 from argo_env.evaluation.store import RowStore, read_rows
 from argo_env.evaluation.worlds import Variation
 from argo_env.faults.loading import decode_faults
@@ -27,7 +27,7 @@ EMERGENCY = decode_faults(b"faults: [{kind: emergency_stop, at: 10}]", "test").f
 def processes():
     """Return processes that are forked from one that has loaded all, as `argo evaluate` has them;
     those of `backend` load it themselves."""
-    context = context_with("argo_env.evaluation.evaluating")
+    context = context_with("argo_env.evaluation.runner")
     made = make_backend("processes", 2, context=context)
     yield made
     made.close()
@@ -45,9 +45,12 @@ def faulty(mission) -> EvaluationPlan:
 def alone(faulty):
     """The rows as this process makes them, one after the other."""
     return tuple(
-        carry_out(
+        execute_run(
             WorkOrder(
-                faulty.key(run), faulty.cases[run.case], run.spec, faulty.variation.drawn(run.seed)
+                faulty.key(run),
+                faulty.cases[run.case],
+                run.spec,
+                faulty.variation.values_for(run.seed),
             )
         )
         for run in faulty.runs()
@@ -55,9 +58,9 @@ def alone(faulty):
 
 
 def evaluated(plan, backend, store=None, **options):
-    evaluating = Evaluating(plan, backend, store, **options)
-    came = list(evaluating.rows_as_they_come())
-    assert evaluating.progress.done == len(came)
+    evaluating = EvaluationRunner(plan, backend, store, **options)
+    came = list(evaluating.rows_as_completed())
+    assert evaluating.progress.completed_runs == len(came)
     return evaluating.results
 
 
@@ -95,7 +98,7 @@ def test_what_goes_wrong_in_the_simulator_is_another_outcome(processes, plan):
     assert results.rows[3].reason == "RuntimeError: no run for 3"
     nowhere = plan.cases[0].spec.model_copy(update={"site": "nowhere"})
     case = plan.cases[0].model_copy(update={"spec": nowhere})
-    row = carry_out(WorkOrder("k", case, nowhere, {}))
+    row = execute_run(WorkOrder("k", case, nowhere, {}))
     assert row.outcome is RunOutcome.ERROR
     assert "nowhere" in row.reason
 
@@ -113,14 +116,14 @@ def test_a_run_that_takes_too_long_ends(processes, mission):
 def test_only_what_is_missing_is_made(processes, plan, tmp_path):
     with RowStore(tmp_path) as store:
         first = evaluated(plan.model_copy(update={"seeds": (0, 2, 4)}), processes, store)
-        evaluating = Evaluating(plan, processes, store)
-        list(evaluating.rows_as_they_come())
+        evaluating = EvaluationRunner(plan, processes, store)
+        list(evaluating.rows_as_completed())
         assert evaluating.progress.known == 3
         assert evaluating.results.rows[2] == first.rows[1]
     assert len(read_rows(tmp_path)) == 10
     with RowStore(tmp_path) as store:
-        evaluating = Evaluating(plan, processes, store)
-        list(evaluating.rows_as_they_come())
+        evaluating = EvaluationRunner(plan, processes, store)
+        list(evaluating.rows_as_completed())
         assert evaluating.progress.known == 10
 
 
@@ -194,7 +197,7 @@ def test_a_limit_that_is_missed_is_a_failure(processes):
 def simulated(plan, rng, share):
     """The results of an evaluation of runs of which such a share succeeds."""
     (case,) = plan.cases
-    bare = row_without_end("", case, case.spec, RunOutcome.SUCCESS, "")
+    bare = make_empty_row("", case, case.spec, RunOutcome.SUCCESS, "")
     rows = []
     for batch in batches(plan, rows):
         for run in batch:

@@ -3,8 +3,8 @@
 To add a quantity, list it here and add its texts: for reports in `report/sections.py`, for the page
 in `argo_planner/page/src/texts/evaluate.ts`, and for the terminal, whose tables have columns of
 their own, in `argo_planner/terminal/evaluation_tables.py`. `estimates/` has the intervals. Numbers,
-such as the duration of a run, are fields of `row.py`; `control_variates.py` has the numbers that cheap
-runs help to estimate.
+such as the duration of a run, are fields of `row.py`; `control_variates.py` has the numbers that
+cheap runs help to estimate.
 """
 
 from collections.abc import Callable

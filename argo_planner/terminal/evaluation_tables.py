@@ -154,7 +154,9 @@ def _groups(title: str, what: str, groups: tuple[GroupRate, ...]) -> Table:
             escape(group.name),
             str(group.rate.runs + lost),
             _percent(group.rate.value),
-            f"{_percent(group.rate.low)} to {_percent(group.rate.high)}" if group.one_run_per_world else "",
+            f"{_percent(group.rate.low)} to {_percent(group.rate.high)}"
+            if group.one_run_per_world
+            else "",
             str(group.outcomes[RunOutcome.FAILURE] or ""),
             str(lost or ""),
         )

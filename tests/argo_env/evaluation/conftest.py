@@ -1,4 +1,4 @@
-"""What the tests of evaluations share: a short mission, and plans of it."""
+"""Shared fixtures and helpers of the tests of evaluations: a short mission, and plans with it."""
 
 from collections.abc import Iterator
 from importlib.util import find_spec
@@ -18,7 +18,7 @@ from tests.yard import from_place
 
 
 def short_mission(limit: float | None = None) -> Mission:
-    """One gauge of UMAD, from its first dock."""
+    """Return a mission that measures one gauge of UMAD, from its first dock."""
     start = open_site("umad").site.docks[1]
     gauge = Task(name="GAUGE", action=Action.MEASURE, object_id="1")
     return from_place(start, gauge, max_duration=limit)
@@ -27,22 +27,28 @@ def short_mission(limit: float | None = None) -> Mission:
 def plan_of(
     mission, seeds, faults=("none",), drive="route", name="m", given=(), **options
 ) -> EvaluationPlan:
-    """Return a plan of the mission in these worlds, with a case for each name of faults, or each
-    name and its weight. All but `none` have the faults that are given."""
+    """Return a plan that evaluates the mission in these worlds.
+
+    It has a case for each name in `faults`, which may map names to weights. The case `none` has no
+    faults, all others have the faults `given`.
+    """
     spec = RunSpec(mission=mission, drive=drive)
     faulty = spec.model_copy(update={"faults": given})
     weights = faults if isinstance(faults, dict) else dict.fromkeys(faults, 1.0)
     cases = tuple(
         EvaluationCase(
-            mission=name, faults=one, spec=spec if one == "none" else faulty, weight=weight
+            mission=name,
+            faults=faults_name,
+            spec=spec if faults_name == "none" else faulty,
+            weight=weight,
         )
-        for one, weight in weights.items()
+        for faults_name, weight in weights.items()
     )
     return EvaluationPlan(cases=cases, seeds=tuple(seeds), **options)
 
 
-def came_to(plan, change) -> EvaluationResults:
-    """Results of the plan in which `change` gives, by the run, what else is in its row."""
+def results_with(plan, change) -> EvaluationResults:
+    """Return results of the plan; `change` gives, for each run, the fields to set in its row."""
     rows = []
     for run in plan.runs():
         row = make_empty_row("", plan.cases[run.case], run.spec, RunOutcome.SUCCESS, "")
@@ -57,7 +63,7 @@ def mission() -> Mission:
 
 @pytest.fixture(scope="session")
 def plan(mission) -> EvaluationPlan:
-    """The short mission in ten worlds, by travel times."""
+    """Return a plan with the short mission in ten worlds, by travel times."""
     return plan_of(mission, range(10), name="short")
 
 
@@ -78,8 +84,10 @@ NEEDED = [
 
 @pytest.fixture(scope="session", params=NEEDED)
 def backend(request: pytest.FixtureRequest) -> Iterator[WorkerBackend]:
-    """Each back end once, with two workers: pytest puts the tests of one together, as a cluster
-    takes seconds to start."""
-    made = make_backend(request.param, 2)
-    yield made
-    made.close()
+    """Yield each back end, with two workers.
+
+    pytest runs the tests of one back end together, as a cluster takes seconds to start.
+    """
+    backend = make_backend(request.param, 2)
+    yield backend
+    backend.close()

@@ -1,4 +1,4 @@
-"""Comparisons of evaluations: what is paired, and between what the difference lies."""
+"""Tests of comparisons of plans: pairs of runs, and intervals of differences."""
 
 import pytest
 
@@ -7,40 +7,40 @@ from argo_env.evaluation.plan import Stopping
 from argo_env.evaluation.report.page import comparison_page
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.row import RunOutcome
-from tests.argo_env.evaluation.conftest import came_to, plan_of
+from tests.argo_env.evaluation.conftest import plan_of, results_with
 
 
 def results_of(mission, seeds, faults=("none",), failing=(), stopping=None):
-    """Results in which the runs of some worlds fail."""
+    """Return results in which the runs of the worlds in `failing` fail."""
     plan = plan_of(mission, seeds, faults, stopping=stopping or Stopping())
     outcomes = {False: RunOutcome.SUCCESS, True: RunOutcome.FAILURE}
-    return came_to(plan, lambda r: {"outcome": outcomes[r.seed in failing], "duration": 100.0})
+    return results_with(plan, lambda r: {"outcome": outcomes[r.seed in failing], "duration": 100.0})
 
 
 @pytest.mark.parametrize("faults", [("none",), ("a", "b")])
-def test_where_no_pair_differs_there_may_still_be_a_difference(mission, faults):
-    one = results_of(mission, range(10), faults)
-    success = compare_plans(one, one).success
+def test_the_interval_is_wide_if_no_pair_differs(mission, faults):
+    results = results_of(mission, range(10), faults)
+    success = compare_plans(results, results).success
     assert success.value == 0.0
     assert success.low == -success.high < -0.2
 
 
 @pytest.mark.parametrize("faults", [("none",), ("a", "b")])
 def test_one_pair_that_differs_shows_nothing(mission, faults):
-    found = compare_plans(
+    compared = compare_plans(
         results_of(mission, range(20), faults), results_of(mission, range(20), faults, failing={3})
     )
-    assert found.success.value == pytest.approx(0.05)
-    assert found.success.low < 0.0 < 0.2 < found.success.high < 1.0
-    assert found.p_value == pytest.approx(1.0, abs=0.01)
+    assert compared.success.value == pytest.approx(0.05)
+    assert compared.success.low < 0.0 < 0.2 < compared.success.high < 1.0
+    assert compared.p_value == pytest.approx(1.0, abs=0.01)
 
 
 def test_runs_without_a_partner_are_counted(mission):
-    found = compare_plans(
+    compared = compare_plans(
         results_of(mission, range(8), ("none", "a")), results_of(mission, range(4, 15))
     )
-    assert found.successes.pairs == 4
-    assert found.unpaired == (12, 7)
+    assert compared.successes.pairs == 4
+    assert compared.unpaired == (12, 7)
 
 
 @pytest.mark.parametrize(("failing", "shown"), [(range(6), False), (range(30), True)])
@@ -48,16 +48,17 @@ def test_runs_without_a_partner_are_counted(mission):
     "stopping", [Stopping(require=(parse_requirement("success >= 0.9"),)), Stopping(width=0.1)]
 )
 def test_where_outcomes_ended_an_evaluation_the_interval_decides(mission, failing, shown, stopping):
-    """By a test that is made for a number of pairs that was said before both are a difference."""
+    """A test for a fixed number of pairs would find a difference in both cases."""
     one = results_of(mission, range(60), stopping=stopping)
     other = results_of(mission, range(60), failing=failing)
-    found, fixed = compare_plans(one, other), compare_plans(results_of(mission, range(60)), other)
-    assert found.success.high > fixed.success.high
-    assert (found.success.low > 0.0) is shown
+    fixed_first = results_of(mission, range(60))
+    open_end, fixed = compare_plans(one, other), compare_plans(fixed_first, other)
+    assert open_end.success.high > fixed.success.high
+    assert (open_end.success.low > 0.0) is shown
     assert fixed.conclusion == "A succeeds more often."
-    assert (found.conclusion == fixed.conclusion) is shown
-    assert "the interval of the difference allows for that" in comparison_page(found)
-    assert "nan" not in comparison_page(found).lower()
-    power = "What this number of pairs can show"  # by a test that does not decide here
+    assert (open_end.conclusion == fixed.conclusion) is shown
+    assert "the interval of the difference allows for that" in comparison_page(open_end)
+    assert "nan" not in comparison_page(open_end).lower()
+    power = "What this number of pairs can show"  # by a test, which does not decide here
     assert power in comparison_page(fixed)
-    assert power not in comparison_page(found)
+    assert power not in comparison_page(open_end)

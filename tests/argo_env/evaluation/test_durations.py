@@ -1,4 +1,4 @@
-"""By when which share of a plan's runs had succeeded, and where the others failed."""
+"""Tests of duration curves, and of clusters of failed runs."""
 
 import pytest
 
@@ -18,9 +18,9 @@ def results_of(mission, rows, faults=("none",)) -> EvaluationResults:
     return EvaluationResults(plan_of(mission, range(9), faults), tuple(rows))
 
 
-def test_what_fails_never_ends(mission):
+def test_failed_runs_never_succeed(mission):
     rows = [row(0, 30.0), row(1, 10.0), row(2), row(3, 20.0, limit=25.0)]
-    rows.append(row(4, outcome=RunOutcome.DIED))  # tells nothing of the plan
+    rows.append(row(4, outcome=RunOutcome.DIED))  # says nothing about the plan
     results = results_of(mission, rows)
     curve = duration_curve(results, results.plan.plans[0])
     assert curve.times == (10.0, 20.0, 30.0)
@@ -38,22 +38,22 @@ def test_cases_count_by_weight(mission):
     assert curve.final_share == pytest.approx(1.0)
 
 
-def test_of_nothing_there_is_no_curve(mission):
+def test_the_curve_without_runs_is_empty(mission):
     results = results_of(mission, ())
     curve = duration_curve(results, results.plan.plans[0])
     assert (curve.times, curve.final_share, curve.time_at(0.5)) == ((), 0.0, None)
 
 
-def test_places_half_a_metre_apart_are_one():
+def test_failures_within_half_a_metre_are_one_cluster():
     rows = [
         row(0, floor=1, place=(1.0, 1.0, 0.0), task="A"),
         row(1, floor=1, place=(5.0, 1.0, 0.0)),
         row(2, floor=1, place=(1.3, 1.3, 0.0), task="B"),
         row(3, floor=2, place=(1.0, 1.0, 2.5), task="A"),
         row(4, 10.0),
-        row(5, task="C"),  # nobody knows where
+        row(5, task="C"),  # at an unknown location
     ]
-    found = cluster_failures(rows)
-    assert [(place.floor, place.runs) for place in found] == [(1, 2), (1, 1), (2, 1)]
-    assert found[0].tasks == {"A": 1, "B": 1}
-    assert found[1].tasks == {"no task": 1}
+    clusters = cluster_failures(rows)
+    assert [(cluster.floor, cluster.runs) for cluster in clusters] == [(1, 2), (1, 1), (2, 1)]
+    assert clusters[0].tasks == {"A": 1, "B": 1}
+    assert clusters[1].tasks == {"no task": 1}

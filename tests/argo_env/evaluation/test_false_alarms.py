@@ -1,4 +1,4 @@
-"""What counts as found, and what as a false alarm: beside what was so in each world."""
+"""Tests of detections and false alarms, compared with the true state of each world."""
 
 import pytest
 
@@ -19,7 +19,7 @@ FAULTS = resources.scenarios() / "umad" / "faults"
 
 
 def row_in(mission, **fields):
-    """The row of a run by travel times in such a world."""
+    """Return the row of a run by travel times in a world with these fields of the spec."""
     spec = RunSpec(mission=mission, **{"drive": "route", **fields})
     return execute_run(WorkOrder("key", EvaluationCase(mission="short", spec=spec), spec, {}))
 
@@ -41,7 +41,7 @@ def nominal(checkpoint: int):
     ],
     ids=["value", "charge", "nearly low", "slow", "noisy camera", "drift", "flicker"],
 )
-def test_what_the_robot_rightly_finds_of_its_world_is_no_false_alarm(mission, world):
+def test_a_true_finding_without_a_fault_is_no_false_alarm(mission, world):
     row = row_in(mission, **world)
     assert row.findings > 0
     assert row.false_alarms == 0
@@ -62,7 +62,7 @@ def test_a_value_that_only_noise_makes_abnormal_is_a_false_alarm(mission):
     assert all(row.false_alarms == row.abnormal for row in rows)
 
 
-def test_a_fault_elsewhere_is_not_found_by_what_looks_the_same():
+def test_a_finding_does_not_count_for_a_fault_elsewhere():
     site = open_site("umad")
     path = FAULTS / "ground.txt"
     mission = import_mission(Upload(path.name, path.read_bytes()), site, 1, 1).mission
@@ -72,18 +72,20 @@ def test_a_fault_elsewhere_is_not_found_by_what_looks_the_same():
     )
     spec = RunSpec(mission=mission, seed=3, faults=(brick, stairs))
     record = simulate(spec, site)
-    found = {one.fault: one.delay is not None for one in detections(record, site.site)}
+    found = {
+        detection.fault: detection.delay is not None for detection in detections(record, site.site)
+    }
     assert found == {"brick": True, "blocked_stairs": False}
     assert false_alarms(record, spec, site.site) == 0
-    # Without the brick among what went wrong, what was found on the walkway was not so.
+    # Without the brick among the faults, the finding on the walkway is false.
     other = record.model_copy(update={"faults": tuple(record.faults[1:])})
     assert false_alarms(other, spec, site.site) == 1
 
 
 @pytest.mark.long
-def test_findings_and_causes_as_another_reading_of_the_documentation_has_them():
-    """Beside the causes that the measurements of faults know, in random runs with two faults."""
-    seen = 0
+def test_detections_and_false_alarms_agree_with_an_independent_implementation():
+    """In random runs with two faults, they agree with the causes that `fault_causes` computes."""
+    findings = 0
     for number in seeds(100):
         spec = draw(number, "route").spec
         opened = open_site(spec.site)
@@ -93,19 +95,21 @@ def test_findings_and_causes_as_another_reading_of_the_documentation_has_them():
             for finding in record.findings
             if not finding.is_reported
         ]
-        assert false_alarms(record, spec, opened.site) == sum(not own for own in causes), number
-        seen += len(causes)
-        for one in detections(record, opened.site):
-            moments = [
+        no_cause = sum(not faults for faults in causes)
+        assert false_alarms(record, spec, opened.site) == no_cause, number
+        findings += len(causes)
+        for detection in detections(record, opened.site):
+            times = [
                 finding.t
-                for finding, own in zip(record.findings, causes, strict=True)
-                if one.fault in {fault.kind for fault in own}
-                # What a noisy camera takes a value for does not tell that it is noisy.
-                and not (finding.is_reading and one.fault == "sensor_dysfunction")
+                for finding, faults in zip(record.findings, causes, strict=True)
+                if detection.fault in {fault.kind for fault in faults}
+                # A value that a noisy camera misreads does not show that the camera is noisy.
+                and not (finding.is_reading and detection.fault == "sensor_dysfunction")
             ]
-            if one.delay is not None:
-                assert any(abs(one.began + one.delay - t) < 1e-6 for t in moments), number
+            if detection.delay is not None:
+                found_at = detection.began + detection.delay
+                assert any(abs(found_at - t) < 1e-6 for t in times), number
             else:
-                same = [f for f in record.faults if f.kind == one.fault]
-                assert len(moments) < len(same), number
-    assert seen > 5
+                same = [f for f in record.faults if f.kind == detection.fault]
+                assert len(times) < len(same), number
+    assert findings > 5

@@ -1,4 +1,4 @@
-"""The folder of an evaluation: which plan it may take, and which rows stay."""
+"""Tests of an evaluation's folder: the plans that it accepts, and the rows that it keeps."""
 
 import pytest
 
@@ -21,15 +21,15 @@ def plan(mission) -> EvaluationPlan:
 
 
 def rows_of(plan, seeds=None):
-    """Rows of runs that nobody has made."""
+    """Return invented rows of the plan's runs."""
     return [
         work.invented(WorkOrder(plan.key(run), plan.cases[run.case], run.spec, {}))
         for run in plan.runs(seeds)
     ]
 
 
-def filled(folder, plan, *more):
-    """The folder with all rows of the plan, in a Parquet file, and more in the log."""
+def fill(folder, plan, *more):
+    """Fill the folder with all rows of the plan in a Parquet file, and `more` rows in the log."""
     with open_rows(folder, plan, DIGEST) as store:
         for row in rows_of(plan):
             store.add(row)
@@ -47,41 +47,41 @@ def keys(folder):
     [{}, {"seeds": tuple(range(20))}, {"stopping": Stopping(width=0.1)}],
     ids=["the same", "more seeds", "another end"],
 )
-def test_an_evaluation_goes_on(tmp_path, plan, change):
-    filled(tmp_path, plan)
+def test_an_evaluation_is_continued(tmp_path, plan, change):
+    fill(tmp_path, plan)
     with open_rows(tmp_path, plan.with_changes(**change), DIGEST) as store:
         assert len(store.rows) == 12
     assert read_plan(tmp_path) == plan.with_changes(**change)
 
 
-def test_one_that_is_not_at_its_end_is_told_by_the_worlds_before_the_first_gap(tmp_path, plan):
-    filled(tmp_path, plan.with_changes(seeds=(0, 1, 2, 3, 5, 6)))
+def test_incomplete_results_have_the_worlds_before_the_first_gap(tmp_path, plan):
+    fill(tmp_path, plan.with_changes(seeds=(0, 1, 2, 3, 5, 6)))
     open_rows(tmp_path, plan, DIGEST).close()
     results = read_results(tmp_path)
     assert results.cut_short
     assert [row.seed for row in results.rows] == [0, 1, 2, 3]
     assert results.rate(plan.plans[0]).method is IntervalMethod.SEQUENCE
-    filled(tmp_path, plan)
+    fill(tmp_path, plan)
     results = read_results(tmp_path)
     assert not results.cut_short
     assert results.rate(plan.plans[0]).method is IntervalMethod.EXACT
 
 
 @pytest.mark.parametrize("seeds", [range(5), range(5, 30)])
-def test_another_one_is_refused_and_changes_nothing(tmp_path, plan, seeds):
-    filled(tmp_path, plan)
+def test_another_evaluation_is_refused_and_changes_nothing(tmp_path, plan, seeds):
+    fill(tmp_path, plan)
     other = plan.with_changes(seeds=tuple(seeds))
     with pytest.raises(Conflict, match="has another evaluation"):
         open_rows(tmp_path, other, DIGEST)
     assert read_plan(tmp_path) == plan
     assert len(keys(tmp_path)) == 12
-    # Nobody holds the folder after that.
+    # The refused evaluation must release the folder's lock.
     open_rows(tmp_path, plan, DIGEST).close()
 
 
-def test_replaced_it_keeps_what_fits_in_parts_and_log(tmp_path, plan):
+def test_a_replaced_evaluation_keeps_the_rows_that_fit(tmp_path, plan):
     later = rows_of(plan.with_changes(seeds=(100, 101)))
-    filled(tmp_path, plan, *later)
+    fill(tmp_path, plan, *later)
     other = plan.with_changes(seeds=(3, 4, 5, 100))
     with open_rows(tmp_path, other, DIGEST, replace=True) as store:
         assert {row.seed for row in store.rows.values()} == {3, 4, 5, 100}
@@ -93,7 +93,7 @@ def test_replaced_it_keeps_what_fits_in_parts_and_log(tmp_path, plan):
 
 def test_cheap_runs_stay_with_the_plan_that_they_help(tmp_path, plan):
     cheap = with_drive(plan, "route")
-    filled(tmp_path, plan, *rows_of(cheap, (0, 1, 5_000)))
+    fill(tmp_path, plan, *rows_of(cheap, (0, 1, 5_000)))
     other = plan.with_changes(seeds=tuple(range(20, 40)))
     with open_rows(tmp_path, other, DIGEST, replace=True, helper=cheap) as store:
         assert sorted((row.seed, row.drive) for row in store.rows.values()) == [
@@ -101,8 +101,8 @@ def test_cheap_runs_stay_with_the_plan_that_they_help(tmp_path, plan):
         ]  # fmt: skip
 
 
-def test_a_plan_that_this_version_does_not_know_is_another_one(tmp_path, plan):
-    filled(tmp_path, plan)
+def test_a_plan_of_another_version_is_another_evaluation(tmp_path, plan):
+    fill(tmp_path, plan)
     (tmp_path / "evaluation.json").write_text('{"version": 0}')
     with pytest.raises(Conflict, match="has another evaluation"):
         open_rows(tmp_path, plan, DIGEST)

@@ -1,4 +1,4 @@
-"""Plans of evaluations: keys, seeds, requirements, and worlds that are the same for all."""
+"""Tests of evaluation plans: keys, seeds, requirements, and worlds shared by all cases."""
 
 import pytest
 
@@ -18,7 +18,7 @@ def key_of(plan, **changes):
     return changed.key(changed.run(0, 5))
 
 
-def test_a_key_is_that_of_all_that_a_run_depends_on(plan, monkeypatch):
+def test_a_key_depends_on_all_that_a_run_depends_on(plan, monkeypatch):
     keys = {
         key_of(plan),
         key_of(plan, drive="kinematic"),
@@ -41,8 +41,8 @@ def test_a_key_is_the_same_in_another_process(plan, tmp_path):
         "plan = EvaluationPlan.model_validate_json(open(sys.argv[1]).read())\n"
         "print(plan.key(plan.run(0, 5)))"
     )
-    said = run_python("-c", program, tmp_path / "plan.json")
-    assert said.stdout.strip() == plan.key(plan.run(0, 5))
+    process = run_python("-c", program, tmp_path / "plan.json")
+    assert process.stdout.strip() == plan.key(plan.run(0, 5))
 
 
 @pytest.mark.parametrize(
@@ -56,7 +56,7 @@ def test_seeds_as_people_write_them(text, seeds):
     "text",
     ["9223372036854775808", "", "a", "3..1", "1,1", "0..2,2", "-1", "0...3", "0..99999999"],
 )
-def test_seeds_that_are_none(text):
+def test_other_texts_are_no_seeds(text):
     with pytest.raises(Invalid, match="seeds"):
         parse_seeds(text)
 
@@ -71,12 +71,12 @@ def test_requirements_as_people_write_them():
     "text", ["success > 0.9", "luck >= 0.5", "success >= 1", "success >= 100 %", "success >= 0",
              "success >= 1.2.3", ""]
 )  # fmt: skip
-def test_requirements_that_are_none(text):
+def test_other_texts_are_no_requirements(text):
     with pytest.raises(Invalid, match="requirement"):
         parse_requirement(text)
 
 
-def test_what_is_there_twice_is_refused(plan):
+def test_equal_cases_and_equal_seeds_are_refused(plan):
     twice = plan.model_copy(update={"cases": plan.cases * 2})
     with pytest.raises(Conflict, match="there twice"):
         twice.check()
@@ -89,7 +89,7 @@ def varied(**ranges):
 
 
 def test_one_more_draw_changes_nothing_of_the_others(mission):
-    """Common random numbers: what else varies, and what the plan is, changes no other draw."""
+    """A further varied value or another mission changes no other draw (common random numbers)."""
     spec = RunSpec(mission=mission, drive="route")
     few = varied(charge=(0.5, 1.0), values={3: {"drift": (-1.0, 1.0)}})
     more = varied(
@@ -109,17 +109,17 @@ def test_draws_stay_in_their_ranges_and_fill_them(mission):
     spec = RunSpec(mission=mission, drive="route")
     between = varied(turned=(-10.0, 10.0), values={2: {"start": (1.0, 2.0), "steps": [
         {"at": (10, 20), "change": 0.5}]}})  # fmt: skip
-    drawn = [between.apply(spec, seed) for seed in range(200)]
-    turned = [one.conditions.turned for one in drawn]
+    specs = [between.apply(spec, seed) for seed in range(200)]
+    turned = [drawn.conditions.turned for drawn in specs]
     assert -10 <= min(turned) < -9 < 9 < max(turned) <= 10
-    assert all(1 <= one.values[2] <= 2 for one in drawn)
-    steps = [one.conditions.values[2].steps[0] for one in drawn]
+    assert all(1 <= drawn.values[2] <= 2 for drawn in specs)
+    steps = [drawn.conditions.values[2].steps[0] for drawn in specs]
     assert all(10 <= step.at <= 20 and step.change == 0.5 for step in steps)
-    assert between.values_for(3)["turned"] == drawn[3].conditions.turned
+    assert between.values_for(3)["turned"] == specs[3].conditions.turned
 
 
 @pytest.mark.parametrize(
-    ("ranges", "said"),
+    ("ranges", "message"),
     [
         ({"speed": (0.9, 0.8)}, "give the smaller value first"),
         ({"speed": (0.9, 1.5)}, "less than or equal to 1"),
@@ -127,8 +127,8 @@ def test_draws_stay_in_their_ranges_and_fill_them(mission):
         ({"colour": 3}, "Extra inputs"),
     ],
 )
-def test_ranges_that_no_run_can_have(ranges, said):
-    with pytest.raises(ValueError, match=said):
+def test_impossible_ranges_are_refused(ranges, message):
+    with pytest.raises(ValueError, match=message):
         varied(**ranges)
 
 
@@ -137,13 +137,13 @@ def test_faults_come_as_often_as_they_are_probable(mission):
         {"name": "brick", "probability": 0.2, "faults": [{"kind": "brick"}]},
         {"name": "weak", "probability": 0.1, "faults": [{"kind": "low_battery"}]},
     ]
-    drawn_from = FaultDistribution.model_validate({"chances": chances})
-    variation = Variation(faults=drawn_from)
+    distribution = FaultDistribution.model_validate({"chances": chances})
+    variation = Variation(faults=distribution)
     spec = RunSpec(mission=mission)
     kinds = [tuple(f.kind for f in variation.apply(spec, s).faults) for s in range(3_000)]
     assert kinds.count(("brick",)) / 3_000 == pytest.approx(0.2, abs=0.025)
     assert kinds.count(("low_battery",)) / 3_000 == pytest.approx(0.1, abs=0.02)
-    assert drawn_from.fault_free_probability == pytest.approx(0.7)
+    assert distribution.fault_free_probability == pytest.approx(0.7)
     with pytest.raises(ValueError, match=r"add up to 1\.1"):
         FaultDistribution.model_validate(
             {"chances": [{**chances[0], "probability": 1.0}, chances[1]]}

@@ -31,16 +31,16 @@ HOSTILE = "<script>alert('$x$')</script>"
 
 
 def results_of(mission, name="mission", faults=("none", "brick"), fail=(3, 7), died=(), **plan):
-    """Twenty worlds with some failures in them, at one place."""
+    """Return results in twenty worlds with some failures, all at one location."""
     rows = []
     for seed in range(20):
-        for number, one in enumerate(faults):
+        for number, faults_name in enumerate(faults):
             outcome = RunOutcome.FAILURE if seed in fail and number else RunOutcome.SUCCESS
             if seed in died:
                 outcome = RunOutcome.DIED
             rows.append(
                 row(
-                    seed, key=f"{seed:012x}{number:012x}", mission=name, faults=one,
+                    seed, key=f"{seed:012x}{number:012x}", mission=name, faults=faults_name,
                     outcome=outcome, reason=f"because of {name}", limit=400.0,
                     duration=None if outcome is RunOutcome.DIED else 300.0 + 2.0 * seed,
                     detections=(
@@ -54,7 +54,7 @@ def results_of(mission, name="mission", faults=("none", "brick"), fail=(3, 7), d
 
 
 def joined(first, second):
-    """Both as one evaluation."""
+    """Return the results of both as one evaluation."""
     cases = (*first.plan.cases, *second.plan.cases)
     plan = first.plan.model_copy(update={"cases": cases})
     return EvaluationResults(plan, (*first.rows, *second.rows))
@@ -72,7 +72,7 @@ def results(mission) -> EvaluationResults:
 def test_the_page_has_the_numbers(results, tmp_path):
     page = evaluation_page(results, tmp_path)
     assert "2 of 40 runs are no success" in page
-    assert "95.0 %" in page  # of both, and 90 of those with a brick
+    assert "95.0 %" in page  # over both cases; 90 % with a brick
     assert "90.0 %" in page
     assert f"argo run {tmp_path}/failing/{results.failing[0].key}.json" in page
     assert re.search(r"<td>brick</td><td class=\"n\">20</td><td class=\"n\">19</td>", page)
@@ -160,7 +160,7 @@ def test_any_name_can_be_drawn(mission, tmp_path, name):
         ElementTree.fromstring(svg)
 
 
-def test_pictures_say_what_they_show_and_touch_nothing_beside(mission, tmp_path):
+def test_pictures_have_descriptions_and_do_not_affect_the_page(mission, tmp_path):
     results = joined(results_of(mission), results_of(mission, "other", fail=range(9)))
     page = evaluation_page(results, tmp_path)
     names = re.findall(r' id="([^"]+)"', page)
@@ -171,18 +171,18 @@ def test_pictures_say_what_they_show_and_touch_nothing_beside(mission, tmp_path)
         assert "<style" not in svg
         used = set(re.findall(r"(?:#|\(#)([\w-]+)[\")]", svg))
         assert used <= set(re.findall(r'id="([^"]+)"', svg))
-        # Colours are the page's, which are others in the dark.
+        # All colours are variables of the page, which has other values in dark mode.
         assert not re.search(r"#[0-9a-f]{6}\b", svg)
     style = page[page.index("<style>") : page.index("</style>")]
     assert {f"--{name}" for name in PALETTE} <= set(re.findall(r"--[\w-]+(?=:)", style))
 
 
-def test_pyplot_knows_nothing_of_the_pictures(results, tmp_path):
+def test_pyplot_does_not_manage_the_pictures(results, tmp_path):
     from matplotlib import pyplot
 
-    before = pyplot.get_fignums()
+    numbers = pyplot.get_fignums()
     evaluation_page(results, tmp_path)
-    assert pyplot.get_fignums() == before
+    assert pyplot.get_fignums() == numbers
 
 
 def test_all_plans_are_on_the_page(mission, tmp_path):
@@ -194,12 +194,12 @@ def test_all_plans_are_on_the_page(mission, tmp_path):
         assert re.search(rf"<h3>{plan}</h3>\s*<p><span class=\"rate\">{rate}</span>", page)
         assert re.search(rf"<td[^>]*>{plan}</td>", page)
     assert "40 runs in 20 worlds" in page
-    assert "8 more" in page  # of the failing ones, behind those that are open
+    assert "8 more" in page  # unsuccessful runs, in the closed section
 
 
 def test_times_faults_and_places_have_their_numbers(results, tmp_path):
     page = evaluation_page(results, tmp_path)
-    # Of 40 runs, two a world and 2 s more each: the 4th, the 20th, the 36th and the last success.
+    # Each world has two runs and takes 2 s more: the 4th, 20th, 36th and last success of 40 runs.
     times = re.findall(r'<td class="n">(\d\d:\d\d)</td>', page)
     assert times == ["05:02", "05:20", "05:36", "05:38", "06:40"]
     assert ">5.0 %<" in page
@@ -224,9 +224,9 @@ def test_without_limits_and_faults_there_is_less(mission, tmp_path):
 
 def test_reasons_that_differ_in_time_only_are_one(mission):
     results = results_of(mission, fail=(3, 7, 9))
-    said = iter(("it took 349.5 s of 300 s", "it took 1001 s of 300 s", "failed: MEASURE 4"))
+    texts = iter(("it took 349.5 s of 300 s", "it took 1001 s of 300 s", "failed: MEASURE 4"))
     rows = tuple(
-        row if row.success else row.model_copy(update={"reason": next(said)})
+        row if row.success else row.model_copy(update={"reason": next(texts)})
         for row in results.rows
     )
     assert reasons(EvaluationResults(results.plan, rows)) == [
@@ -235,7 +235,7 @@ def test_reasons_that_differ_in_time_only_are_one(mission):
     ]
 
 
-def test_a_site_that_is_gone_takes_its_pictures_only(mission, tmp_path):
+def test_a_site_that_was_removed_only_loses_its_pictures(mission, tmp_path):
     results = results_of(mission)
     rows = tuple(row.model_copy(update={"site": "/gone/site.yaml"}) for row in results.rows)
     spec = results.plan.cases[0].spec.model_copy(update={"site": "/gone/site.yaml"})
@@ -253,7 +253,7 @@ def test_a_folder_with_a_space_has_commands_that_work(results, tmp_path):
     assert shlex.split(command)[2] == str(tmp_path / "two words" / "failing" / f"{key}.json")
 
 
-def test_a_comparison_says_how_sure_it_is(mission, tmp_path):
+def test_the_page_of_a_comparison_has_the_tests_and_intervals(mission, tmp_path):
     compared = compare_plans(
         results_of(mission, "calm", fail=()), results_of(mission, "hasty", fail=range(8))
     )
@@ -270,8 +270,8 @@ def test_a_comparison_says_how_sure_it_is(mission, tmp_path):
 
 
 def test_a_comparison_of_failures_has_a_page(mission):
-    nothing = results_of(mission, HOSTILE, ("none", HOSTILE), fail=range(20))
-    page = comparison_page(compare_plans(nothing, results_of(mission, "b", ("none", HOSTILE))))
+    failures = results_of(mission, HOSTILE, ("none", HOSTILE), fail=range(20))
+    page = comparison_page(compare_plans(failures, results_of(mission, "b", ("none", HOSTILE))))
     assert "<script>" not in page
     lost = results_of(mission, died=range(20))
     page = comparison_page(compare_plans(lost, lost))

@@ -1,4 +1,4 @@
-"""What is required of faults: that they are found, of the runs that had any."""
+"""Tests of requirements on detections, for which only runs with faults count."""
 
 import math
 
@@ -13,7 +13,7 @@ from argo_env.evaluation.report.sections import other_rates
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.faults.loading import decode_faults
 from tests.argo_env.evaluation import conftest
-from tests.argo_env.evaluation.conftest import came_to
+from tests.argo_env.evaluation.conftest import results_with
 
 ALARM = decode_faults(b"faults: [{kind: platform_alarm, at: 5}]", "test").faults
 FOUND = FaultDetection(fault="platform_alarm", began=5.0, delay=3.0)
@@ -22,18 +22,18 @@ WORLDS = 40
 
 
 def plan_of(mission, faults, **options):
-    """A plan with a case of each of the faults: `none`, or others."""
+    """Return a plan with a case for each name of faults: `none` or others."""
     return conftest.plan_of(mission, range(WORLDS), faults, "kinematic", given=ALARM, **options)
 
 
 def results_of(plan, found_in):
-    """Results in which faults are found in these of the worlds."""
+    """Return results in which the faults are found in the worlds of `found_in` only."""
 
-    def told(run):
-        nothing = plan.cases[run.case].faults == "none"
-        return {"detections": () if nothing else (FOUND if run.seed in found_in else MISSED,)}
+    def detections_of(run):
+        faultless = plan.cases[run.case].faults == "none"
+        return {"detections": () if faultless else (FOUND if run.seed in found_in else MISSED,)}
 
-    return came_to(plan, told)
+    return results_with(plan, detections_of)
 
 
 @pytest.mark.parametrize("faults", [["alarm"], ["none", "alarm"], ["none", "alarm", "again"]])
@@ -45,14 +45,14 @@ def results_of(plan, found_in):
         (range(0, WORLDS, 2), 0.5, Decision.OPEN),
     ],
 )
-def test_runs_in_which_nothing_was_wrong_do_not_count(mission, faults, found_in, rate, verdict):
+def test_runs_without_faults_do_not_count(mission, faults, found_in, rate, verdict):
     stopping = Stopping(require=(parse_requirement("detected >= 0.5"),))
     plan = plan_of(mission, faults, stopping=stopping)
     results = results_of(plan, found_in)
-    told = results.rate(plan.plans[0], "detected")
-    assert told.value == rate
-    assert told.runs == WORLDS * sum(name != "none" for name in faults)
-    assert told.low <= rate <= told.high
+    detected = results.rate(plan.plans[0], "detected")
+    assert detected.value == rate
+    assert detected.runs == WORLDS * sum(name != "none" for name in faults)
+    assert detected.low <= rate <= detected.high
     (judged,) = results.verdicts
     assert judged.verdict is verdict
     assert judged.worlds == WORLDS
@@ -60,29 +60,29 @@ def test_runs_in_which_nothing_was_wrong_do_not_count(mission, faults, found_in,
 
 
 @pytest.mark.parametrize("strata", [False, True])
-def test_where_nothing_was_wrong_nothing_is_told_of_it(mission, strata):
+def test_without_faults_there_is_no_rate_of_detections(mission, strata):
     plan = plan_of(mission, ["none"], strata=strata)
     results = results_of(plan, range(WORLDS))
     rate = results.rate(plan.plans[0], "detected")
     assert math.isnan(rate.value)
     assert rate.runs == 0
-    assert not any("was wrong" in name for name, _, _ in other_rates(results))
+    assert not any("faults were found" in name for name, _, _ in other_rates(results))
 
 
-def test_of_strata_those_without_faults_have_no_weight(mission):
+def test_strata_without_faults_have_no_weight(mission):
     plan = plan_of(mission, ["none", "alarm"], strata=True)
     results = results_of(plan, range(WORLDS // 4))
     assert results.rate(plan.plans[0], "detected").value == 0.25
     assert results.rate(plan.plans[0]).value == 1.0
 
 
-def test_that_faults_are_found_is_not_required_where_there_are_none(mission):
+def test_a_requirement_on_detections_needs_faults(mission):
     stopping = Stopping(require=(parse_requirement("detected >= 0.5"),))
     with pytest.raises(Invalid, match="there are none"):
         plan_of(mission, ["none"], stopping=stopping).check()
     plan_of(mission, ["none", "alarm"], stopping=stopping).check()
 
 
-def test_one_requirement_alone_needs_no_list():
-    said = decode_evaluation(b"missions: [m.txt]\nrequire: success >= 98 %\n", "file")
-    assert said.require == ("success >= 98 %",)
+def test_a_single_requirement_needs_no_list():
+    file = decode_evaluation(b"missions: [m.txt]\nrequire: success >= 98 %\n", "file")
+    assert file.require == ("success >= 98 %",)

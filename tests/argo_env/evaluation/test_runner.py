@@ -1,4 +1,4 @@
-"""Evaluations from the plan to the rows, on each back end; intervals hold however they ended."""
+"""Tests of the execution of evaluations on each back end, and of its intervals at any end."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ from argo_env.faults.loading import decode_faults
 from argo_env.run.spec import RunSpec
 from argo_env.worker_processes import context_with
 from tests.argo_env.evaluation import work
-from tests.argo_env.evaluation.conftest import came_to, plan_of, short_mission
+from tests.argo_env.evaluation.conftest import plan_of, results_with, short_mission
 from tests.conftest import examples
 
 EMERGENCY = decode_faults(b"faults: [{kind: emergency_stop, at: 10}]", "test").faults
@@ -25,25 +25,27 @@ EMERGENCY = decode_faults(b"faults: [{kind: emergency_stop, at: 10}]", "test").f
 
 @pytest.fixture(scope="module")
 def processes():
-    """Return processes that are forked from one that has loaded all, as `argo evaluate` has them;
-    those of `backend` load it themselves."""
+    """Yield worker processes forked from one that has imported all modules, as in `argo evaluate`.
+
+    The workers of the fixture `backend` import the modules themselves.
+    """
     context = context_with("argo_env.evaluation.runner")
-    made = make_backend("processes", 2, context=context)
-    yield made
-    made.close()
+    backend = make_backend("processes", 2, context=context)
+    yield backend
+    backend.close()
 
 
 @pytest.fixture(scope="module")
 def faulty(mission) -> EvaluationPlan:
-    """With and without an emergency stop that nobody releases, in worlds that vary."""
+    """Return a plan with and without an emergency stop that nobody releases, in varied worlds."""
     varied = Variation(speed=(0.8, 1.0), charge=(0.5, 1.0))
     names = ("none", "stop")
     return plan_of(mission, range(6), names, name="short", given=EMERGENCY, variation=varied)
 
 
 @pytest.fixture(scope="module")
-def alone(faulty):
-    """The rows as this process makes them, one after the other."""
+def expected_rows(faulty):
+    """Return the rows of `faulty` that this process makes, one after the other."""
     return tuple(
         execute_run(
             WorkOrder(
@@ -58,15 +60,15 @@ def alone(faulty):
 
 
 def evaluated(plan, backend, store=None, **options):
-    evaluating = EvaluationRunner(plan, backend, store, **options)
-    came = list(evaluating.rows_as_completed())
-    assert evaluating.progress.completed_runs == len(came)
-    return evaluating.results
+    runner = EvaluationRunner(plan, backend, store, **options)
+    rows = list(runner.rows_as_completed())
+    assert runner.progress.completed_runs == len(rows)
+    return runner.results
 
 
-def test_rows_are_equal_on_every_back_end(backend, faulty, alone):
+def test_rows_are_equal_on_every_back_end(backend, faulty, expected_rows):
     results = evaluated(faulty, backend)
-    assert results.rows == alone
+    assert results.rows == expected_rows
     assert results.outcomes == {RunOutcome.SUCCESS: 6, RunOutcome.FAILURE: 6}
     assert {row.faults for row in results.failing} == {"stop"}
     assert all(row.place is not None and row.world["speed"] < 1 for row in results.failing)
@@ -92,7 +94,7 @@ def test_a_real_run_that_dies_does_not_end_the_others(processes, plan):
     assert results.failing[0].reason == "the worker process ended with code 7"
 
 
-def test_what_goes_wrong_in_the_simulator_is_another_outcome(processes, plan):
+def test_an_error_of_the_simulator_is_an_outcome(processes, plan):
     results = evaluated(plan, processes, call=work.broken)
     assert results.outcomes == {RunOutcome.ERROR: 10}
     assert results.rows[3].reason == "RuntimeError: no run for 3"
@@ -105,7 +107,7 @@ def test_what_goes_wrong_in_the_simulator_is_another_outcome(processes, plan):
 
 @pytest.mark.long
 def test_a_run_that_takes_too_long_ends(processes, mission):
-    # Of so many steps that it takes far longer than it may.
+    # The tracked drive with a camera takes far longer than the limit.
     slow = RunSpec(mission=mission, drive="tracked", sensor="camera")
     plan = EvaluationPlan(cases=(EvaluationCase(mission="slow", spec=slow),), seeds=(1,))
     results = evaluated(plan, processes, limit=0.05)
@@ -113,18 +115,18 @@ def test_a_run_that_takes_too_long_ends(processes, mission):
     assert results.rows[0].reason == "the run took longer than its time limit"
 
 
-def test_only_what_is_missing_is_made(processes, plan, tmp_path):
+def test_only_missing_runs_are_executed(processes, plan, tmp_path):
     with RowStore(tmp_path) as store:
         first = evaluated(plan.model_copy(update={"seeds": (0, 2, 4)}), processes, store)
-        evaluating = EvaluationRunner(plan, processes, store)
-        list(evaluating.rows_as_completed())
-        assert evaluating.progress.known == 3
-        assert evaluating.results.rows[2] == first.rows[1]
+        runner = EvaluationRunner(plan, processes, store)
+        list(runner.rows_as_completed())
+        assert runner.progress.stored_runs == 3
+        assert runner.results.rows[2] == first.rows[1]
     assert len(read_rows(tmp_path)) == 10
     with RowStore(tmp_path) as store:
-        evaluating = EvaluationRunner(plan, processes, store)
-        list(evaluating.rows_as_completed())
-        assert evaluating.progress.known == 10
+        runner = EvaluationRunner(plan, processes, store)
+        list(runner.rows_as_completed())
+        assert runner.progress.stored_runs == 10
 
 
 @pytest.mark.parametrize(
@@ -132,17 +134,17 @@ def test_only_what_is_missing_is_made(processes, plan, tmp_path):
     [("success >= 0.7", Decision.MET), ("success >= 0.97", Decision.MISSED)],
 )
 def test_it_stops_when_a_requirement_is_decided(processes, plan, required, verdict):
-    """Six of seven worlds succeed."""
+    """The invented runs succeed in six of seven worlds."""
     stopping = Stopping(require=(parse_requirement(required),), every=50)
     many = plan.model_copy(update={"seeds": tuple(range(501, 3_000)), "stopping": stopping})
     results = evaluated(many, processes, call=work.invented)
-    assert [one.verdict for one in results.verdicts] == [verdict]
+    assert [judged.verdict for judged in results.verdicts] == [verdict]
     assert len(results.rows) < 1_000
     assert len(results.rows) % 50 == 0
 
 
 @pytest.mark.long
-def test_what_is_stopped_for_does_not_depend_on_how_many_work(plan):
+def test_the_end_does_not_depend_on_the_number_of_workers(plan):
     stopping = Stopping(width=0.1, every=20)
     many = plan.model_copy(update={"seeds": tuple(range(501, 3_000)), "stopping": stopping})
     rows = []
@@ -156,7 +158,7 @@ def test_what_is_stopped_for_does_not_depend_on_how_many_work(plan):
     assert 150 < len(rows[0]) < 400
 
 
-def test_strata_get_runs_where_they_tell_most(processes, mission):
+def test_strata_use_each_seed_once(processes, mission):
     weights = {"nothing": 0.95, "rare": 0.05}
     stopping = Stopping(every=20)
     strata = plan_of(mission, range(501, 801), weights, strata=True, stopping=stopping)
@@ -168,20 +170,20 @@ def test_strata_get_runs_where_they_tell_most(processes, mission):
     assert rate.low < 6 / 7 < rate.high
 
 
-def test_runs_of_one_world_are_no_independent_runs(processes, mission, plan):
-    """The interval of several faults in the same worlds is that over worlds."""
+def test_runs_of_one_world_are_not_independent(processes, mission, plan):
+    """With several sets of faults in the same worlds, the interval is one over worlds."""
     several = plan_of(mission, range(100), "abc")
     single = plan.model_copy(update={"seeds": tuple(range(100))})
     rate = evaluated(several, processes, call=work.invented).rate(several.plans[0])
-    alone = evaluated(single, processes, call=work.invented).rate(single.plans[0])
+    single_rate = evaluated(single, processes, call=work.invented).rate(single.plans[0])
     assert rate.method is IntervalMethod.SEQUENCE
     assert rate.runs == 300
-    assert rate.high - rate.low > alone.high - alone.low
+    assert rate.high - rate.low > single_rate.high - single_rate.low
 
 
-def test_the_frame_has_a_line_for_each_row(processes, faulty, alone):
+def test_the_frame_has_a_line_for_each_row(processes, faulty, expected_rows):
     frame = evaluated(faulty, processes).frame
-    assert len(frame) == len(alone)
+    assert len(frame) == len(expected_rows)
     assert list(frame["outcome"][:2]) == ["success", "failure"]
     assert frame["world.speed"].between(0.8, 1.0).all()
 
@@ -195,41 +197,41 @@ def test_a_limit_that_is_missed_is_a_failure(processes):
 
 
 def simulated(plan, rng, share):
-    """The results of an evaluation of runs of which such a share succeeds."""
+    """Return the results of an evaluation with random outcomes; `share` of the runs succeed."""
     (case,) = plan.cases
-    bare = make_empty_row("", case, case.spec, RunOutcome.SUCCESS, "")
+    empty = make_empty_row("", case, case.spec, RunOutcome.SUCCESS, "")
     rows = []
     for batch in batches(plan, rows):
         for run in batch:
-            came = RunOutcome.SUCCESS if rng.random() < share else RunOutcome.FAILURE
-            rows.append(bare.model_copy(update={"seed": run.seed, "outcome": came}))
+            outcome = RunOutcome.SUCCESS if rng.random() < share else RunOutcome.FAILURE
+            rows.append(empty.model_copy(update={"seed": run.seed, "outcome": outcome}))
     return EvaluationResults(plan, tuple(rows))
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("share", "asked"), [(0.85, 0.8), (0.9, 0.95)])
-def test_the_interval_covers_where_a_requirement_decides_when_to_stop(mission, share, asked):
-    """An exact interval covers the rate in 93 of 100 of the first ones only."""
-    stopping = Stopping(require=(parse_requirement(f"success >= {asked}"),))
+@pytest.mark.parametrize(("share", "required"), [(0.85, 0.8), (0.9, 0.95)])
+def test_the_interval_covers_if_a_requirement_decides_when_to_stop(mission, share, required):
+    """With the first parameters, an exact interval would cover the rate in 93 of 100 cases only."""
+    stopping = Stopping(require=(parse_requirement(f"success >= {required}"),))
     plan = plan_of(mission, range(400), stopping=stopping)
     evaluations = examples(400)
     rng = np.random.default_rng(9)
-    held = groups = early = 0
+    covered = covered_groups = early = 0
     for _ in range(evaluations):
         results = simulated(plan, rng, share)
         rate = results.rate(plan.plans[0])
         (group,) = results.by_faults(plan.plans[0])
         assert rate.method is group.method is IntervalMethod.SEQUENCE
-        held += rate.low <= share <= rate.high
-        groups += group.rate.low <= share <= group.rate.high
+        covered += rate.low <= share <= rate.high
+        covered_groups += group.rate.low <= share <= group.rate.high
         early += rate.runs < 400
     assert early > 0.1 * evaluations
-    assert held == groups >= 0.945 * evaluations
+    assert covered == covered_groups >= 0.945 * evaluations
 
 
-def test_the_world_of_a_run_that_was_lost_is_left_out_and_not_counted(mission):
+def test_the_world_of_a_lost_run_does_not_count(mission):
     plan = plan_of(mission, range(10), "ab")
     lost = {"outcome": RunOutcome.ERROR}
-    results = came_to(plan, lambda run: lost if (run.seed, run.case) == (3, 1) else {})
+    results = results_with(plan, lambda run: lost if (run.seed, run.case) == (3, 1) else {})
     rate = results.rate(plan.plans[0])
     assert (rate.runs, rate.lost) == (18, 1)

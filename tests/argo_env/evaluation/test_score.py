@@ -1,4 +1,4 @@
-"""Scores, from rows that were made by hand."""
+"""Tests of scores with rows made by hand."""
 
 import pytest
 
@@ -16,7 +16,7 @@ def score(**changes):
     return score_run(row(1).model_copy(update=fields), RULES)
 
 
-def test_a_run_of_which_there_is_nothing_to_say_has_all_points():
+def test_a_run_without_faults_or_failures_has_all_points():
     assert score().total == RULES.most == 100
 
 
@@ -31,23 +31,23 @@ def test_a_run_of_which_there_is_nothing_to_say_has_all_points():
         ({"false_alarms": 3}, 94),
         ({"detections": (FaultDetection(fault="brick", began=1.0, delay=None),)}, 82),
         ({"detections": (FaultDetection(fault="brick", began=1.0, delay=4.0),)}, 100),
-        ({"done": 2}, 100),  # of a mission with branches not all is to be done
+        ({"done": 2}, 100),  # a successful mission with branches does not do all tasks
         ({"outcome": RunOutcome.ERROR}, 0),
         ({"outcome": RunOutcome.DIED}, 0),
     ],
 )
-def test_points_are_lost_for(changes, total):
+def test_points_are_lost(changes, total):
     assert score(**changes).total == pytest.approx(total)
 
 
 def test_the_mean_has_an_interval_over_worlds():
     rows = [row(seed, contacts=seed % 2, docked=True) for seed in range(40)]
-    found = mean_score(rows, RULES)
-    assert found.value == pytest.approx(92.5)
-    assert 89 < found.low < 92.5 < found.high < 96
+    mean = mean_score(rows, RULES)
+    assert mean.value == pytest.approx(92.5)
+    assert 89 < mean.low < 92.5 < mean.high < 96
 
 
-def test_a_file_of_ones_own_is_read_and_what_is_wrong_in_it_is_said(tmp_path):
+def test_a_users_file_is_read_and_its_errors_are_reported(tmp_path):
     own = tmp_path / "own.yaml"
     text = (
         "reliability: {weight: 10, tasks_done: 1, success: 0}\n"

@@ -1,4 +1,4 @@
-"""What workers carry out in tests of evaluations: runs that kill them, or cost nothing."""
+"""Functions that workers call in tests of evaluations: runs that kill them, or are invented."""
 
 import os
 import signal
@@ -8,8 +8,7 @@ from argo_env.evaluation.runner import WorkOrder, execute_run
 
 
 def invented(order: WorkOrder) -> RunRow:
-    """A row that costs nothing: every seventh world is a failure. That of world 500 kills its
-    worker."""
+    """Return an invented row, a failure in every seventh world; kill the worker in world 500."""
     if order.spec.seed == 500:
         os.kill(os.getpid(), signal.SIGKILL)
     outcome = RunOutcome.FAILURE if order.spec.seed % 7 == 3 else RunOutcome.SUCCESS
@@ -18,7 +17,7 @@ def invented(order: WorkOrder) -> RunRow:
 
 
 def poisoned(order: WorkOrder) -> RunRow:
-    """A real run, but for that of world 3."""
+    """Execute the run; in world 3 end the worker with exit code 7 instead."""
     if order.spec.seed == 3:
         os._exit(7)
     return execute_run(order)

@@ -1,4 +1,4 @@
-"""Comparisons of two plans in the same worlds."""
+"""Tests of paired comparisons and control variates, by exact sums and by simulation."""
 
 from math import comb
 
@@ -22,17 +22,17 @@ def test_mcnemars_test_is_the_sum_over_all_tosses(first_only, second_only, both,
     assert pairs.p_value == pytest.approx(exact)
 
 
-def test_a_plan_beside_itself_never_differs():
+def test_a_plan_never_differs_from_itself():
     rng = np.random.default_rng(8)
     for k in range(COMPARISONS):
         done = rng.random(50) < rng.random()
         assert SuccessPairs.from_successes(done, done).p_value == 1.0
-        if k % 10 == 0:  # the same again, and slower
+        if k % 10 == 0:  # this check is slower
             taken = rng.normal(600, 60, 50)
             assert not difference(taken, taken, seed=k).is_significant
 
 
-def test_a_difference_that_is_none_is_rarely_found():
+def test_a_difference_is_rarely_found_if_there_is_none():
     rng = np.random.default_rng(9)
     found = 0
     for _ in range(COMPARISONS):
@@ -55,66 +55,66 @@ def test_the_power_is_what_simulated_comparisons_find(first_only, second_only):
 @pytest.mark.parametrize("up", [0.0, 0.02, 0.1, 0.4])
 @pytest.mark.parametrize("down", [0.0, 0.05, 0.3])
 def test_the_interval_of_a_difference_in_success_covers_it(n, up, down):
-    """Over all that can come of n pairs."""
-    held = 0.0
+    """The coverage is the sum over all possible outcomes of n pairs."""
+    coverage = 0.0
     for a in range(n + 1):
         for b in range(n + 1 - a):
             low, high = SuccessPairs(n - a - b, a, b, 0).interval()
             if low <= up - down <= high:
-                ways = comb(n, a) * comb(n - a, b)
-                held += ways * up**a * down**b * (1.0 - up - down) ** (n - a - b)
-    assert held >= 0.95 - 1e-9
+                orders = comb(n, a) * comb(n - a, b)
+                coverage += orders * up**a * down**b * (1.0 - up - down) ** (n - a - b)
+    assert coverage >= 0.95 - 1e-9
 
 
 def test_the_interval_of_a_difference_covers():
     rng = np.random.default_rng(11)
-    held = 0
+    covered = 0
     for k in range(200):
         worlds = rng.normal(600, 100, 60)
         a, b = worlds + rng.normal(12, 15, 60), worlds + rng.normal(0, 15, 60)
-        found = difference(a, b, seed=k)
-        held += found.low <= 12 <= found.high
-    assert held / 200 >= 0.9  # by percentiles it is a little too narrow
+        estimate = difference(a, b, seed=k)
+        covered += estimate.low <= 12 <= estimate.high
+    assert covered / 200 >= 0.9  # the percentile interval is a little too narrow
 
 
-def test_pairing_finds_what_is_small_beside_what_worlds_differ_by():
+def test_pairing_finds_a_difference_smaller_than_that_between_worlds():
     rng = np.random.default_rng(12)
     worlds = rng.normal(600, 100, 80)
-    found = difference(worlds + 5, worlds)
-    assert found.is_significant
-    assert found.value == pytest.approx(5)
+    estimate = difference(worlds + 5, worlds)
+    assert estimate.is_significant
+    assert estimate.value == pytest.approx(5)
 
 
-def test_there_is_one_run_of_each_a_world():
+def test_pairs_need_equal_numbers_of_runs():
     with pytest.raises(Invalid, match="make no pairs"):
         difference(np.zeros(3), np.zeros(4))
 
 
-def drawn(rng, n, m):
-    """Times of an expensive and a cheap drive in n worlds, and of the cheap one in m more."""
+def draw_times(rng, n, m):
+    """Return times of two drives in n worlds, and of the cheap one in m more: (n,), (n,), (m,)."""
     cheap = rng.normal(600, 50, n + m)
     return cheap[:n] * 1.1 + rng.normal(0, 10, n), cheap[:n], cheap[n:]
 
 
-def test_cheap_runs_make_an_estimate_surer_and_keep_its_coverage():
+def test_cheap_runs_narrow_the_interval_and_keep_its_coverage():
     rng = np.random.default_rng(13)
-    held, widths, alone = 0, [], []
+    covered, widths, widths_without = 0, [], []
     for _ in range(COMPARISONS):
-        expensive, cheap, more = drawn(rng, 20, 400)
-        found = controlled_mean(expensive, cheap, more)
-        held += found.low <= 660 <= found.high
-        widths.append(found.high - found.low)
-        alone.append(2 * 2.093 * np.std(expensive, ddof=1) / np.sqrt(20))
-    assert held / COMPARISONS >= 0.945
-    assert np.mean(widths) < 0.4 * np.mean(alone)
+        expensive, cheap, more = draw_times(rng, 20, 400)
+        estimate = controlled_mean(expensive, cheap, more)
+        covered += estimate.low <= 660 <= estimate.high
+        widths.append(estimate.high - estimate.low)
+        widths_without.append(2 * 2.093 * np.std(expensive, ddof=1) / np.sqrt(20))
+    assert covered / COMPARISONS >= 0.945
+    assert np.mean(widths) < 0.4 * np.mean(widths_without)
 
 
-def test_whether_it_pays_is_measured():
+def test_cheap_runs_pay_if_they_are_correlated_and_cheap():
     rng = np.random.default_rng(14)
-    expensive, cheap, _ = drawn(rng, 200, 0)
-    known = ControlVariate.from_pairs(expensive, cheap, cost=0.01)
-    assert known.correlation > 0.95
-    assert known.pays
+    expensive, cheap, _ = draw_times(rng, 200, 0)
+    control = ControlVariate.from_pairs(expensive, cheap, cost=0.01)
+    assert control.correlation > 0.95
+    assert control.pays
     assert not ControlVariate.from_pairs(expensive, cheap, cost=1.0).pays
     assert not ControlVariate.from_pairs(rng.normal(0, 1, 200), cheap, cost=0.01).pays
     assert not ControlVariate.from_pairs(np.ones(20), cheap[:20], cost=0.01).pays
@@ -122,12 +122,12 @@ def test_whether_it_pays_is_measured():
         ControlVariate.from_pairs(expensive[:5], cheap[:5], 0.1)
 
 
-def test_the_gain_is_that_of_all_ways_to_spend():
-    """Beside a search over how many cheap runs there are for each expensive one."""
-    known = ControlVariate(0.9, 0.05)
+def test_the_gain_is_the_best_for_all_numbers_of_cheap_runs():
+    """The gain agrees with a search over the number of cheap runs for each expensive run."""
+    control = ControlVariate(0.9, 0.05)
 
     def cost(k):
-        return (1 + known.cost * k) * (1 - known.correlation**2 * (1 - 1 / k))
+        return (1 + control.cost * k) * (1 - control.correlation**2 * (1 - 1 / k))
 
-    least = min(cost(k) for k in np.linspace(1, 100, 10_000))
-    assert known.gain == pytest.approx(1 / least, rel=1e-3)
+    lowest = min(cost(k) for k in np.linspace(1, 100, 10_000))
+    assert control.gain == pytest.approx(1 / lowest, rel=1e-3)

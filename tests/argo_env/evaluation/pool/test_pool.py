@@ -1,4 +1,4 @@
-"""The pool on each of its back ends, all of them for real on this machine."""
+"""Tests of the pool on each of its back ends, all of them running on this machine."""
 
 import errno
 import os
@@ -22,59 +22,59 @@ from tests.argo_env.evaluation.pool import work
 from tests.processes import run_python
 
 
-def carried_out(backend, call, arguments):
-    """What came of the call with each argument, by its number."""
-    pool = Pool(backend, call)
+def execute(backend, function, arguments):
+    """Return the completed calls of the function with each argument, by the argument's index."""
+    pool = Pool(backend, function)
     for ticket, argument in enumerate(arguments):
         pool.submit(ticket, argument)
-    found = {}
-    for finished in pool.as_completed():
-        assert finished.ticket not in found, "one call has ended twice"
-        found[finished.ticket] = finished
-    return found
+    calls = {}
+    for call in pool.as_completed():
+        assert call.ticket not in calls, "one call has completed twice"
+        calls[call.ticket] = call
+    return calls
 
 
-def test_all_that_is_submitted_comes_back_once(backend):
-    found = carried_out(backend, work.square, range(100))
-    assert {ticket: one.value for ticket, one in found.items()} == {k: k * k for k in range(100)}
+def test_all_submitted_calls_complete_once(backend):
+    calls = execute(backend, work.square, range(100))
+    assert {ticket: call.value for ticket, call in calls.items()} == {k: k * k for k in range(100)}
 
 
-def test_what_a_call_raises_is_told_and_the_others_go_on(backend):
-    found = carried_out(backend, work.fail_on_seven, range(40))
-    assert sorted(found) == list(range(40))
-    failed = {ticket: str(one.error) for ticket, one in found.items() if one.error}
+def test_a_call_that_raises_does_not_affect_the_others(backend):
+    calls = execute(backend, work.fail_on_seven, range(40))
+    assert sorted(calls) == list(range(40))
+    failed = {ticket: str(call.error) for ticket, call in calls.items() if call.error}
     assert failed == {k: f"no {k}" for k in (7, 17, 27, 37)}
 
 
-def test_what_can_not_be_sent_back_is_told_and_the_others_are_there(backend):
-    found = carried_out(backend, work.not_sendable, range(200))
-    assert sorted(found) == list(range(200))
-    by_pickle = {ticket for ticket, one in found.items() if one.error}
-    # Ray and Dask send back what others can't.
+def test_a_result_that_can_not_be_pickled_does_not_affect_the_others(backend):
+    calls = execute(backend, work.not_sendable, range(200))
+    assert sorted(calls) == list(range(200))
+    by_pickle = {ticket for ticket, call in calls.items() if call.error}
+    # Ray and Dask can send functions back.
     assert by_pickle in ({k for k in range(200) if k % 10 == 7}, set())
-    assert all(one.value == k for k, one in found.items() if k % 10 != 7)
+    assert all(call.value == k for k, call in calls.items() if k % 10 != 7)
 
 
 @pytest.mark.long
-def test_of_a_thousand_calls_one_that_kills_its_worker_is_named(backend):
-    found = carried_out(backend, work.die_on_500, range(1_000))
-    assert sorted(found) == list(range(1_000))
-    died = {ticket: one.died for ticket, one in found.items() if one.died}
+def test_a_call_that_kills_its_worker_is_found_among_a_thousand(backend):
+    calls = execute(backend, work.die_on_500, range(1_000))
+    assert sorted(calls) == list(range(1_000))
+    died = {ticket: call.died for ticket, call in calls.items() if call.died}
     assert list(died) == [500]
     assert "worker process" in died[500]
-    assert all(one.value == ticket for ticket, one in found.items() if ticket != 500)
+    assert all(call.value == ticket for ticket, call in calls.items() if ticket != 500)
 
 
-def test_a_call_that_was_lost_with_its_worker_is_made_again(backend, tmp_path):
-    found = carried_out(backend, work.die_once, [(str(tmp_path), k) for k in range(20)])
-    assert {ticket: one.value for ticket, one in found.items()} == {k: k for k in range(20)}
+def test_a_call_that_was_lost_with_its_worker_is_repeated(backend, tmp_path):
+    calls = execute(backend, work.die_once, [(str(tmp_path), k) for k in range(20)])
+    assert {ticket: call.value for ticket, call in calls.items()} == {k: k for k in range(20)}
 
 
 @pytest.mark.long
-def test_workers_that_die_say_nothing_on_the_terminal(backend, capfd):
-    found = carried_out(backend, work.die_on_500, range(495, 505))
-    assert found[5].died
-    time.sleep(1.0)  # for what would be told late
+def test_dying_workers_print_nothing_on_the_terminal(backend, capfd):
+    calls = execute(backend, work.die_on_500, range(495, 505))
+    assert calls[5].died
+    time.sleep(1.0)  # for late output
     assert capfd.readouterr().out == ""
 
 
@@ -82,10 +82,10 @@ def test_more_may_be_submitted_meanwhile(backend):
     pool = Pool(backend, work.square)
     pool.submit(0, 0)
     values = []
-    for finished in pool.as_completed():
-        values.append(finished.value)
-        if finished.ticket < 30:
-            pool.submit(finished.ticket + 1, finished.ticket + 1)
+    for call in pool.as_completed():
+        values.append(call.value)
+        if call.ticket < 30:
+            pool.submit(call.ticket + 1, call.ticket + 1)
     assert values == [k * k for k in range(31)]
 
 
@@ -94,7 +94,7 @@ def test_all_workers_work(backend):
     deadline = time.monotonic() + 120
     # A worker that another test has killed may still be starting.
     while len(workers) < 2 and time.monotonic() < deadline:
-        workers |= {one.value for one in carried_out(backend, work.who, range(60)).values()}
+        workers |= {call.value for call in execute(backend, work.worker_id, range(60)).values()}
     assert len(workers) == 2
 
 
@@ -102,18 +102,18 @@ def test_there_is_a_test_for_each_back_end():
     assert set(PACKAGES) == set(BACKENDS)
 
 
-def test_workers_that_can_not_begin_are_said_to():
+def test_workers_that_can_not_start_raise_an_error():
     class Refused(get_context("spawn").Process):
         def start(self):
             raise ChildProcessError(errno.ECHILD, "too little memory")
 
     backend = make_backend(workers=1, context=SimpleNamespace(Process=Refused))
     with pytest.raises(Unavailable, match="no worker process can start: too little memory"):
-        carried_out(backend, work.square, [1])
+        execute(backend, work.square, [1])
     backend.close()
 
 
-def test_what_can_be_no_back_end_is_said():
+def test_an_impossible_back_end_is_refused():
     with pytest.raises(Invalid, match="no back end `spark`; there are: processes, ray, dask"):
         make_backend("spark")
     with pytest.raises(Invalid, match="0 workers"):
@@ -123,7 +123,7 @@ def test_what_can_be_no_back_end_is_said():
 
 
 @pytest.mark.parametrize("name", ["ray", "dask"])
-def test_what_is_not_installed_says_how_to_install_it(name, monkeypatch):
+def test_a_back_end_that_is_not_installed_names_the_command_to_install_it(name, monkeypatch):
     monkeypatch.setattr(f"{make_backend.__module__}.find_spec", lambda _: None)
     with pytest.raises(ArgoError, match=r"pip install .*\[cluster\]"):
         make_backend(name)
@@ -131,7 +131,7 @@ def test_what_is_not_installed_says_how_to_install_it(name, monkeypatch):
 
 @pytest.mark.long
 @pytest.mark.skipif(find_spec("distributed") is None, reason="needs `distributed`")
-def test_a_cluster_that_is_there_is_used_by_its_address(tmp_path):
+def test_an_existing_dask_cluster_is_used_by_its_address(tmp_path):
     from distributed import LocalCluster
 
     with LocalCluster(
@@ -143,8 +143,8 @@ def test_a_cluster_that_is_there_is_used_by_its_address(tmp_path):
         backend = make_backend("dask", address=cluster.scheduler_address)
         try:
             assert backend.workers == 2
-            found = carried_out(backend, work.square, range(10))
-            assert [found[k].value for k in range(10)] == [k * k for k in range(10)]
+            calls = execute(backend, work.square, range(10))
+            assert [calls[k].value for k in range(10)] == [k * k for k in range(10)]
         finally:
             backend.close()
 
@@ -154,32 +154,32 @@ import sys
 from argo_env.evaluation.pool.backends import make_backend
 from tests.argo_env.evaluation.conftest import PACKAGES
 from tests.argo_env.evaluation.pool import work
-from tests.argo_env.evaluation.pool.test_pool import carried_out
+from tests.argo_env.evaluation.pool.test_pool import execute
 
 backend = make_backend("ray", address=f"127.0.0.1:{sys.argv[1]}")
-found = carried_out(backend, work.square, range(10))
-print(backend.workers, *(found[k].value for k in range(10)))
+calls = execute(backend, work.square, range(10))
+print(backend.workers, *(calls[k].value for k in range(10)))
 backend.close()
 """
 
 
 @pytest.mark.long
 @pytest.mark.skipif(find_spec("ray") is None, reason="needs `ray`")
-def test_a_ray_cluster_that_is_there_is_used_by_its_address(monkeypatch):
+def test_an_existing_ray_cluster_is_used_by_its_address(monkeypatch):
     monkeypatch.setenv("RAY_AUTH_MODE", "disabled")
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = str(free.getsockname()[1])
     command = (sys.executable, "-m", "ray.scripts.scripts", "start", "--head", "--block")
     options = ("--port", port, "--num-cpus", "2", "--include-dashboard=false")
-    # In a session of its own, whose processes alone end with it: `ray stop` would end every other
-    # Ray of this machine as well, and whoever uses it.
+    # A separate session ends with its own processes only; `ray stop` would also end all other Ray
+    # clusters of this machine.
     head = subprocess.Popen((*command, *options, "--disable-usage-stats"), start_new_session=True)
     try:
         while not listens(int(port)):
-            assert head.poll() is None, "the cluster has not begun"
+            assert head.poll() is None, "the cluster has not started"
             time.sleep(0.1)
-        # In a process of its own, as a process has one Ray cluster at a time.
+        # A separate process is needed, as a process can use one Ray cluster at a time.
         used = run_python("-c", BY_ADDRESS, port)
         assert used.stdout.split() == ["2", *(str(k * k) for k in range(10))]
     finally:
@@ -190,12 +190,12 @@ def test_a_ray_cluster_that_is_there_is_used_by_its_address(monkeypatch):
 
 
 def listens(port: int) -> bool:
-    with socket.socket() as one:
-        return one.connect_ex(("127.0.0.1", port)) == 0
+    with socket.socket() as client:
+        return client.connect_ex(("127.0.0.1", port)) == 0
 
 
 @pytest.mark.parametrize("name", ["ray", "dask"])
-def test_a_cluster_that_is_not_there_is_said(name):
+def test_a_missing_cluster_is_reported(name):
     pytest.importorskip(PACKAGES[name], reason=f"needs `{PACKAGES[name]}`")
     with pytest.raises(ArgoError, match=r"cluster at 127\.0\.0\.1:9: Connection refused"):
         make_backend(name, address="127.0.0.1:9")
@@ -206,7 +206,7 @@ def test_a_cluster_that_is_not_there_is_said(name):
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["ray", "dask"])
-def test_what_is_no_cluster_is_not_waited_for(name, monkeypatch):
+def test_a_server_that_is_no_cluster_is_not_waited_for(name, monkeypatch):
     module = pytest.importorskip(f"argo_env.evaluation.pool.{name}_backend")
     monkeypatch.setattr(module, "_CONNECT_TIMEOUT" if name == "ray" else "_SCHEDULER_TIMEOUT", 2.0)
     with socket.create_server(("127.0.0.1", 0)) as silent:

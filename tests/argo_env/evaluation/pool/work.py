@@ -1,4 +1,4 @@
-"""What the pool is given to do in its tests: functions that workers can import."""
+"""Functions that workers call in tests of the pool; workers can import them."""
 
 import os
 import signal
@@ -17,14 +17,14 @@ def fail_on_seven(number: int) -> int:
 
 
 def die_on_500(number: int) -> int:
-    """Kills its worker each time."""
+    """Kill the worker at each attempt of number 500; return any other number."""
     if number == 500:
         os.kill(os.getpid(), signal.SIGKILL)
     return number
 
 
 def die_once(marked: tuple[str, int]) -> int:
-    """Kills its worker the first time that it gets one of the first three numbers."""
+    """Kill the worker at the first attempt of numbers 0 to 2, which files in the folder record."""
     folder, number = marked
     if number < 3:
         mark = Path(folder) / str(number)
@@ -35,10 +35,10 @@ def die_once(marked: tuple[str, int]) -> int:
 
 
 def not_sendable(number: int) -> object:
-    """Something that can't be sent back, for every tenth number."""
+    """Return a function, which can't be pickled, for every tenth number; else the number."""
     return (lambda: number) if number % 10 == 7 else number
 
 
-def who(number: int) -> int:  # noqa: ARG001
+def worker_id(number: int) -> int:  # noqa: ARG001
     time.sleep(0.02)
     return os.getpid()

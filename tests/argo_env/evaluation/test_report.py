@@ -1,4 +1,4 @@
-"""The pages and pictures of evaluations, from rows that were made by hand."""
+"""Tests of the pages and pictures of evaluations, with rows made by hand."""
 
 import html
 import re

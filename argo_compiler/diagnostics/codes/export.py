@@ -31,7 +31,7 @@ EXPORT = {
         "Export with the site that has the checkpoint.",
     ),
     "export.isar-reaction": error(
-        "isar's missions have no reactions.", "Remove it; isar's own state machine reacts."
+        "Missions of isar have no reactions.", "Remove it; isar's own state machine reacts."
     ),
     "export.isar-task": error(
         "A task has a property that isar's tasks do not have.",

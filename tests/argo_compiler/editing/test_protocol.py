@@ -47,9 +47,7 @@ def with_own_names(mission: Mission) -> Mission:
             update={
                 "name": new_names[t.name],
                 "transitions": tuple(map(way, t.transitions)),
-                "group": max(
-                    (n for a, b, n in ranges if a <= i <= b), key=len, unconditional_target=""
-                ),
+                "group": max((n for a, b, n in ranges if a <= i <= b), key=len, default=""),
             }
         )
         for i, t in enumerate(mission.tasks)

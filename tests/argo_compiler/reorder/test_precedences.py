@@ -354,7 +354,7 @@ def test_a_time_limit_rules_out_no_way_as_a_further_attempt_goes_on_from_there()
 
 
 @pytest.mark.parametrize(
-    ("tasks", "groups", "said"),
+    ("tasks", "groups", "message"),
     [
         ((measure(1), wait("W", event=EventKind.ALL_CLEAR, limit=None)), (), "how long 'W' waits"),
         (

@@ -241,7 +241,7 @@ class _Told(Observer):
         self.clear()
 
     def clear(self) -> None:
-        self.news: list[Reading | Anomaly] = []
+        self.sensed: list[Reading | Anomaly] = []
         self.reading: Reading | None = None
         self.failure: str | None = None
         self.mishaps: list[Mishap] = []
@@ -253,7 +253,7 @@ class _Told(Observer):
         return (*self._over, *self._open)
 
     def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
-        self.news += entry.sensed
+        self.sensed += entry.sensed
         self.reading = entry.reading or self.reading
         self.mishaps += entry.mishaps
         self._over += entry.contacts

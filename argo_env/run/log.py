@@ -64,7 +64,7 @@ EXTERNAL_KINDS = frozenset(_EVENTS) - {"succeeded", "failed", "stopped", "tick"}
 
 
 class LoggedEvent(Model):
-    """Event as data; fields that its kind does not have are None."""
+    """Event as data; the fields that its kind does not have are left out."""
 
     kind: Literal[
         "succeeded", "failed", "stopped", "tick", "occurred", "reading_given", "pause", "resume",
@@ -121,11 +121,7 @@ def require_event_time(t: float) -> None:
 
 
 class Entry(Model):
-    """Entry of a run's log: one moment, with the robot's pose then and the events since the last.
-
-    The fields of an event or an ended task say what happened; most of them are empty in most
-    entries.
-    """
+    """Entry of a run's log: one moment, with the robot's pose and what has happened."""
 
     t: float
     """s"""

@@ -180,7 +180,7 @@ class TestRefusals:
         [
             (None, Invalid, "None is no task"),
             (Task(name="W", action=Action.START), Invalid, "does nothing"),
-            (Task(name="W", action=Action.WAYPOINT), Invalid, "says not where"),
+            (Task(name="W", action=Action.WAYPOINT), Invalid, "does not state where"),
             (Task(name="M", action=Action.MEASURE, object_id="9"), NotFound, "no checkpoint 9"),
             (THERE.model_copy(update={"name": "A"}), Invalid, "another task 'A'"),
         ],

@@ -355,7 +355,7 @@ class TestSteering:
         assert "nothing more occurs" in simulation.run().result.verdict
 
     def test_tasks_are_not_given_to_a_mission(self, simulation):
-        with pytest.raises(Conflict, match="are those of its mission"):
+        with pytest.raises(Conflict, match="the mission of this run is fixed"):
             simulation.append_task(waypoint("B", 2.0, 2.0))
 
 
@@ -496,7 +496,7 @@ class TestSpec:
             ({"speed": 3}, "spec.json: speed: "),
             ({"mission": None}, "spec.json: mission: "),
             ({"events": [[3.0, {"kind": "succeeded", "task": "A"}]]}, "spec.json: events: "),
-            ({"events": [[-3.0, {"kind": "pause"}]]}, "before the run"),
+            ({"events": [[-3.0, {"kind": "pause"}]]}, "no event can occur at -3 s"),
             ({"events": [[3.0, {"kind": "occurred", "event": "time_up"}]]}, "occurs by itself"),
             ({"events": [[3.0, {"kind": "pause", "value": 3}]]}, "no event of kind pause has"),
             ({"faults": [{"kind": "flood"}]}, r"spec.json: faults\[0\]: "),

@@ -12,7 +12,7 @@ from argo_compiler.analysis.results import Bound, Bounds, Stretch
 from argo_compiler.analysis.rounds import GroupExit
 from argo_compiler.analysis.step_costs import StepCosts
 
-_MOST_CUTS = 200_000  # pairs of a task and a time-out that may interrupt it
+_MOST_CUTS = 200_000  # pairs of a task and a time-out that may cancel it
 _MOST_STRETCHES = 200  # parts of a path that are returned, from its start and from its end each
 
 
@@ -34,7 +34,7 @@ class MissionBounds:
 
 
 def has_too_many_cuts(flow: Flow) -> bool:
-    """Return True if groups nest too deeply to handle each task that a time-out may interrupt."""
+    """Return True if groups nest too deeply to handle each task that a time-out may cancel."""
     pairs = 0
     hard: list[int] = []
     for group in flow.groups:

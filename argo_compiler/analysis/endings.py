@@ -27,7 +27,7 @@ def diagnose_endings(
         return
     traps = study.traps
     yield from _endless_loops(study, traps)
-    yield from _held_loops(study, loops)
+    yield from _non_terminating_loops(study, loops)
     yield from _unbounded_loops(study, {leaf for trap in traps for leaf in trap})
     yield from _ends_elsewhere(study)
 
@@ -65,7 +65,9 @@ def _endless_loops(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator
         )
 
 
-def _held_loops(study: Study, loops: Iterable[NonTerminatingLoop]) -> Iterator[Diagnostic]:
+def _non_terminating_loops(
+    study: Study, loops: Iterable[NonTerminatingLoop]
+) -> Iterator[Diagnostic]:
     but = "nothing but a reaction" if study.ended_by_reaction else "nothing but a failure"
     for loop in loops:
         leaves = tuple(sorted(filter(study.flow.is_leaf, loop.nodes)))

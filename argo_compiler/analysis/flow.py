@@ -34,7 +34,7 @@ class GroupFlow:
     duration: float
     """time limit in s; 0 if unlimited"""
     hard: bool
-    """whether the time limit also interrupts the round that is under way"""
+    """whether the time limit also ends the round that is under way"""
     every: float = 0.0
     """s from the start of one round to the start of the next; 0 if it follows at once"""
     until: tuple[Condition, ...] = ()

@@ -11,7 +11,7 @@ _TOLERANCE = 1e-9  # share of a round, as sums of floats are not exact
 _MOST_COUNTED = 1e12  # rounds; a greater number counts as infinite
 
 ExitKey = tuple[Source, int]
-"""exit of a group: the source of the step out of it, and the next node"""
+"""exit of a group: what ended last (the source of the step out of it), and the next node"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class GroupRound:
     """Cost of one round of a group."""
 
     ends: Mapping[Source, Cost]
-    """cost until the end of the round, for each source of the last step"""
+    """cost until the end of the round, by what ended last: the source of the next step"""
     exits: Mapping[ExitKey, Cost]
     """cost of each exit that leaves the group within the round"""
     energy: float
@@ -149,7 +149,7 @@ class _Combination:
         elif math.isinf(self.limit) or period is None or period.time.least == 0:
             most = math.inf if period is not None else 2
         else:
-            # A round may start at the very moment of a hard stop, which interrupts it at once.
+            # A round may start at the very moment of a hard stop, which ends it at once.
             count_periods = _periods_started if self.group.hard else _periods_to_fill
             most = 1 + count_periods(self.limit - end.time.least, period.time.least, 1)
         return min(fewest, self.count), min(most, self.count)

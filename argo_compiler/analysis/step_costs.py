@@ -164,7 +164,7 @@ class StepCosts:
         return self._action_costs.get(leaf, FREE)
 
     def successor_times(self) -> dict[object, list[tuple[object, float]]]:
-        """Return what can follow each leaf and each interruption, with the least time in s."""
+        """Return what can follow each leaf and each time-out, with the least time in s."""
         following: dict[object, list[tuple[object, float]]] = {}
         for (source, target), cost in self._steps.items():
             if isinstance(source, str) or (not isinstance(source, int) and source[0] == "repeat"):
@@ -192,7 +192,7 @@ class StepCosts:
         yield from self._successors_when_cut(leaf)
 
     def _successors_when_cut(self, leaf: int) -> Iterator[tuple[Source, int]]:
-        """Yield the source and leaf of each step that can follow if time interrupts a leaf."""
+        """Yield the source and leaf of each step that follows a time-out or missed window."""
         flow = self.flow
         group = flow.leaves[leaf].parent
         while group >= 0 and flow.timed[group]:

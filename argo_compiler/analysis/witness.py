@@ -70,7 +70,7 @@ class Trap:
     cuts: tuple[str, ...] = ()
     """names of the groups that a time-out leaves in the loop"""
     kept: KeptReading | None = None
-    """readings with which the loop is entered; None if it does not end with any possible reading"""
+    """readings with which the loop is entered; None if it goes on with any possible reading"""
 
 
 @dataclass(frozen=True, slots=True)

@@ -166,7 +166,7 @@ class _TaskRanges:
         self.position = draft.positions()
 
     def relation(self, g: DraftGroup, new: DraftGroup) -> str:
-        """Return how `g` lies to `new`: "inside", "around", "apart" or "same" (the same tasks).
+        """Return how `g` relates to `new`: "inside", "around", "apart" or "same" (the same tasks).
 
         Raises EditConflict if they overlap in part.
         """

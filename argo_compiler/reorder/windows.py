@@ -36,7 +36,7 @@ def require_computable_times(visits: Visits) -> None:
         elif leaf != visits.chain.end:
             why = "it is not done in all cases, or right after another task"
         elif window.earliest:
-            why = "it ends the mission, and would have to wait at the place"
+            why = "it ends the mission, and would have to wait at its pose"
         else:
             continue
         raise Invalid(f"the time window of '{name}' can't be kept by an order: {why}")

@@ -47,5 +47,5 @@ def as_markdown() -> str:
     for name, code in CODES.items():
         row = f"| `{name}` | {code.severity} | {code.meaning} | {code.remedy} |"
         parts.setdefault(name.partition(".")[0], []).append(row)
-    head = "| code | | meaning | way out |\n|---|---|---|---|"
+    head = "| code | | meaning | remedy |\n|---|---|---|---|"
     return "\n\n".join("\n".join((f"### `{part}`\n", head, *rows)) for part, rows in parts.items())

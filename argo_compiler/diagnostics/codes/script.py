@@ -172,7 +172,7 @@ SCRIPT = {
         "Leave the floor out, or name another one.",
     ),
     "script.empty-range": error(
-        "A range of checkpoints has its numbers the wrong way round.",
+        "A range of checkpoints has its numbers in the wrong order.",
         "Write the lower number first.",
     ),
     "script.empty-step": error(
@@ -200,7 +200,7 @@ SCRIPT = {
     ),
     "script.healed": warning(
         "A word that text recognition had split was joined again.",
-        "Check that it is read as it is meant.",
+        "Check that it was read correctly.",
     ),
     "script.height": error(
         "The height of a position is missing, or contradicts its floor.",
@@ -342,7 +342,7 @@ SCRIPT = {
         "Write `repeat step 2 again` to do them once more at that line.",
     ),
     "script.respelled": warning(
-        "A misspelt word was read as a known one.", "Check that it is read as it is meant."
+        "A misspelt word was read as a known one.", "Check that it was read correctly."
     ),
     "script.rounds": error("A patrol has no rounds.", "Give it at least one round."),
     "script.route": error(

@@ -175,14 +175,14 @@ def test_what_is_no_file_is_always_written_to() -> None:
 @pytest.mark.parametrize(
     ("command", "says"),
     [
-        ("import s.txt -o none/new.json", "no folder none"),
-        ("compile m.json -o new.json --mermaid none/new.mmd", "no folder none"),
+        ("import s.txt -o none/new.json", "folder none does not exist"),
+        ("compile m.json -o new.json --mermaid none/new.mmd", "folder none does not exist"),
         ("format m.json -o taken", "is a folder"),
         ("export m.json --to dot -o taken", "is a folder"),
         ("run m.json --report holding", "is a folder"),
-        ("route m.json -o none/new.json", "no folder none"),
-        ("run m.json --record none/run.mcap", "no folder none"),
-        ("replay run.mcap --render none/film.gif", "no folder none"),
+        ("route m.json -o none/new.json", "folder none does not exist"),
+        ("run m.json --record none/run.mcap", "folder none does not exist"),
+        ("replay run.mcap --render none/film.gif", "folder none does not exist"),
     ],
 )
 def test_a_place_that_can_not_be_written_to_is_said_before_any_work(

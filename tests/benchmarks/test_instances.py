@@ -288,7 +288,7 @@ def test_files_that_are_none(tmp_path):
     for path, said in [
         (tmp_path, "is a directory"),
         (tmp_path / "none", "no such file"),
-        (tmp_path / "x.bin", "is no text"),
+        (tmp_path / "x.bin", "is a binary file"),
         (Path("\0"), "can't be read"),
     ]:
         with pytest.raises(ArgoError, match=said):

@@ -217,10 +217,10 @@ NAMED = {
 
 SAID = {
     # documents, pictures and other people's files as scripts
-    "run mission.docx": "mission.docx: is no text",
+    "run mission.docx": "mission.docx: is a binary file",
     "check mission.pdf": "mission.pdf: error: is a document (PDF), not plain text",
-    "run photo.png": "photo.png: is no text",
-    "import photo.jpg -o n.json": "photo.jpg: is no text",
+    "run photo.png": "photo.png: is a binary file",
+    "import photo.jpg -o n.json": "photo.jpg: is a binary file",
     "run notes.rtf": "notes.rtf: error: is a document (RTF), not plain text",
     "check latin1.txt": "latin1.txt: error: is not UTF-8 (byte 3, line 1)",
     "run letter.txt": "letter.txt:2:16: error: `gauge 1` can be read as",

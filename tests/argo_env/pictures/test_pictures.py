@@ -64,7 +64,7 @@ def test_a_film_is_an_mp4_or_a_gif(tmp_path, name):
 
 
 def test_a_film_needs_a_folder_and_a_name_of_its_own(tmp_path):
-    with pytest.raises(ArgoError, match="no folder"):
+    with pytest.raises(ArgoError, match=r"folder .* does not exist"):
         check_film(tmp_path / "none" / "film.gif")
     (tmp_path / "folder.gif").mkdir()
     with pytest.raises(ArgoError, match="is a folder"):

@@ -83,7 +83,7 @@ def test_a_bag_may_lie_on_this_machine(site, tmp_path):
         (Upload("a.bag", b"#ROSBAG V2.0\n"), "invalid", "ros.broken-bag"),
         (Upload("a.mcap", b"no"), "invalid", "ros.not-a-bag"),
         (Upload("folder", {}), "invalid", "choose the script, mission or bag in it"),
-        (Upload("folder", {"../metadata.yaml": b""}), "invalid", "no name of a file"),
+        (Upload("folder", {"../metadata.yaml": b""}), "invalid", "not a valid file name"),
         (Upload("a.json", b'{"tasks": [{"name": "A", "action": "MEASURE", "object_id": "9"}]}'),
          "invalid", "il.unknown-object"),
     ],

@@ -15,7 +15,7 @@ from argo_compiler.base.listing import quoted
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.hfsm.conditions import words
+from argo_compiler.hfsm.conditions import condition_text
 from argo_compiler.il import (
     Action,
     Afterwards,
@@ -281,8 +281,8 @@ def _stale_conditions(
                 yield study.diagnostic(
                     "always-stale",
                     f"a condition of task '{study.name(leaf)}' never holds if nothing fails: "
-                    f"{words(condition)}, but it takes at least {time_words(youngest)} from the "
-                    "measurement to this task",
+                    f"{condition_text(condition)}, but it takes at least {time_words(youngest)} "
+                    "from the measurement to this task",
                     f"measure checkpoint {o} again before this task, or allow a greater age",
                     leaf,
                     study.conditional_indices(leaf)[k],

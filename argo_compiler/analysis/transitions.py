@@ -7,7 +7,7 @@ from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.value_regions import Scale
 from argo_compiler.base.graphs import first_ways, way_to
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.hfsm.conditions import all_words, words
+from argo_compiler.hfsm.conditions import condition_text, conditions_text
 from argo_compiler.il import Action, Condition
 
 _MOST_SEARCHES = 10  # objects for which a path that does not measure them is searched
@@ -62,7 +62,10 @@ def _why_not(study: Study, condition: Condition, taken: int, before: int) -> str
         return None
     name = study.object_name(condition.object_id)
     if condition.type.compares and not scale.possible & satisfying:
-        return f"{name} shows {scale.words(scale.possible)}, so {words(condition)} never holds"
+        return (
+            f"{name} shows {scale.words(scale.possible)}, so {condition_text(condition)} never "
+            "holds"
+        )
     _, at_first = _possible_readings(study, condition, before)
     if condition.type.compares and not at_first & (scale.missing - 1):
         possible = study.with_failures.fields.scales[condition.object_id].possible
@@ -74,9 +77,11 @@ def _why_not(study: Study, condition: Condition, taken: int, before: int) -> str
     if at_first & satisfying:
         return "its conditions exclude each other"
     if not condition.type.compares:
-        return f"the reading of {name} is never such that {words(condition)} here"
+        return f"the reading of {name} is never such that {condition_text(condition)} here"
     values = scale.words(at_first & (scale.missing - 1))
-    return f"the value of {name} can only be {values} here, so {words(condition)} never holds"
+    return (
+        f"the value of {name} can only be {values} here, so {condition_text(condition)} never holds"
+    )
 
 
 def _possible_readings(study: Study, condition: Condition, state: int) -> tuple[Scale, int]:
@@ -145,7 +150,7 @@ def _is_always_taken(study: Study, leaf: int, k: int) -> bool:
 
 def _always_taken(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
     task = study.task(leaf)
-    held = all_words(task.transitions[index].conditions)
+    held = conditions_text(task.transitions[index].conditions)
     after = len(task.transitions) > 1
     return study.diagnostic(
         "transition-always",

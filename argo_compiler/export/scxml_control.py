@@ -22,9 +22,9 @@ from argo_compiler.export.scxml_data import (
 )
 from argo_compiler.export.xml import Attributes, XmlWriter
 from argo_compiler.hfsm import Hfsm, Outcome
-from argo_compiler.hfsm.interrupts import ROWS, Effect, Given, InterruptRow, Stage, Trigger
+from argo_compiler.hfsm.interrupt_state import evaluate_static_guard, reaction_outcome
+from argo_compiler.hfsm.interrupts import ROWS, Effect, InterruptGuard, InterruptRow, Stage, Trigger
 from argo_compiler.hfsm.model import DONE, ReactionState, RepeatRule
-from argo_compiler.hfsm.standing import fixed, there
 from argo_compiler.il import EventKind, Reaction, Response
 
 OUTCOMES = tuple(Outcome)
@@ -183,7 +183,7 @@ class ControlRegion:
             with self._state(f"{id}_arrive"):
                 self._enter([("mode", 2)])
                 self._row_transitions(Stage.ARRIVED, reaction)
-            if fixed(Given.HOLDS, None, reaction, None):
+            if evaluate_static_guard(InterruptGuard.HOLDS, None, reaction, None):
                 self._hold_state(f"{id}_hold", reaction)
             with self._state(f"{id}_over"):
                 self._row_transitions(Stage.LETTING_GO, reaction)
@@ -223,7 +223,7 @@ class ControlRegion:
         own = None if kind is None else self.reactions.get(kind)
         for row in ROWS.get((stage, trigger), ()):
             static = [g for g in (*row.when, *row.unless) if g not in _DYNAMIC]
-            values = {g: fixed(g, own, active, kind) for g in static}
+            values = {g: evaluate_static_guard(g, own, active, kind) for g in static}
             if not all(values.get(g, True) for g in row.when):
                 continue
             if any(values.get(g, False) for g in row.unless):
@@ -250,7 +250,7 @@ class ControlRegion:
         own: Reaction | None,
         kind: EventKind | None = None,
     ) -> None:
-        if Given.HIGHER_WAITS in row.when:
+        if InterruptGuard.HIGHER_WAITS in row.when:
             assert active is not None
             for higher in self.reactions.values():
                 if higher.rank > active.rank:
@@ -338,7 +338,7 @@ class ControlRegion:
                 self._assign([("outcome", "ends")])
             case Effect.END_THERE:
                 assert active is not None
-                self._assign([("outcome", outcome_code(there(active)))])
+                self._assign([("outcome", outcome_code(reaction_outcome(active)))])
             case Effect.END_ABORTED | Effect.END_CANCELLED | Effect.END_FAILED:
                 self._assign([("outcome", outcome_code(_END_OUTCOMES[effect]))])
             case Effect.SET_ASIDE | Effect.ACTIVATE:
@@ -375,12 +375,12 @@ class ControlRegion:
 
 
 _DYNAMIC = {
-    Given.PAUSED: ("paused == 1", "paused == 0"),
-    Given.NEW: ("since_{own} == 0", "since_{own} != 0"),
-    Given.OVER: ("over_{active} == 1", "over_{active} == 0"),
+    InterruptGuard.PAUSED: ("paused == 1", "paused == 0"),
+    InterruptGuard.NEW: ("since_{own} == 0", "since_{own} != 0"),
+    InterruptGuard.OVER: ("over_{active} == 1", "over_{active} == 0"),
     # `_write_row` writes a row with one of these once for each reaction that may wait.
-    Given.SOME_WAITS: ("", ""),
-    Given.HIGHER_WAITS: ("", ""),
+    InterruptGuard.SOME_WAITS: ("", ""),
+    InterruptGuard.HIGHER_WAITS: ("", ""),
 }
 """Guards for conditions that are known only during the run: first for true, then for false."""
 

@@ -1,4 +1,4 @@
-"""The executable form of a mission: a hierarchical state machine, and what drives it."""
+"""Hierarchical state machine of a mission, and the executor that runs it."""
 
 from typing import TYPE_CHECKING
 

@@ -1,4 +1,4 @@
-"""Readings and conditions: when conditions hold, and how people read them."""
+"""Readings of checkpoints, the evaluation of conditions on them, and conditions as text."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -10,28 +10,31 @@ from argo_compiler.il import Condition, ConditionType, WaitRule
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """A value measured at a checkpoint, in the checkpoint's unit, and when (s)."""
+    """Value measured at a checkpoint, in the checkpoint's unit, and its time (s)."""
 
     value: float
     time: float
 
 
 class CheckpointReading(NamedTuple):
-    """What came of the last measurement at a checkpoint (C3), and when (s)."""
+    """Result of the last measurement at a checkpoint (C3), and its time (s)."""
 
     kind: ReadingKind
     time: float
     value: float | None = None
-    """of the kind VALUE, in the checkpoint's unit"""
+    """in the checkpoint's unit; only for the kind VALUE"""
     abnormal: bool = False
 
 
-Test = Callable[[CheckpointReading, float], bool]
-"""Whether a condition holds for the reading of its checkpoint at a time (s)."""
+ReadingTest = Callable[[CheckpointReading, float], bool]
+"""Predicate on the reading of a condition's checkpoint and the present time (s)."""
 
 
-def reading_test(condition: Condition) -> Test:
-    """The test that a condition makes of a reading; without a reading it does not hold (C4, C7)."""
+def reading_test(condition: Condition) -> ReadingTest:
+    """Return the predicate that tells whether a reading satisfies the condition.
+
+    A checkpoint without a reading satisfies no condition; the caller checks that (C4, C7).
+    """
     max_age = condition.max_age
     match condition.type:
         case ConditionType.UNREADABLE:
@@ -46,9 +49,9 @@ def reading_test(condition: Condition) -> Test:
             return lambda reading, now: (
                 reading.abnormal and (max_age is None or not now - reading.time > max_age)
             )
-    compare, limit = comparison(condition), condition.param1
+    compare, limit = value_test(condition), condition.param1
     if max_age is None:
-        # What most conditions are has no second call.
+        # Most conditions are of these two forms: they get a predicate without a second call.
         if limit is not None and not condition.inclusive:
             if condition.type is ConditionType.LESS:
                 return lambda reading, _: (value := reading.value) is not None and value < limit
@@ -60,8 +63,8 @@ def reading_test(condition: Condition) -> Test:
     )
 
 
-def comparison(condition: Condition) -> Callable[[float], bool]:
-    """The test that a LESS, GREATER or WITHIN makes of a value, its age apart."""
+def value_test(condition: Condition) -> Callable[[float], bool]:
+    """Return the predicate of a LESS, GREATER or WITHIN on a value, without its `max_age`."""
     low, high = condition.param1, condition.param2
     if low is None:
         return lambda _: False
@@ -76,22 +79,24 @@ def comparison(condition: Condition) -> Callable[[float], bool]:
     return lambda value: low < value < high
 
 
-def holds(condition: Condition, readings: Mapping[str, CheckpointReading], now: float) -> bool:
-    """Whether a condition holds for the readings (by object_id) at time `now`.
+def is_satisfied(
+    condition: Condition, readings: Mapping[str, CheckpointReading], now: float
+) -> bool:
+    """Return True if the readings (by object_id) satisfy the condition at time `now`.
 
-    A checkpoint that has none makes it false, and a value that is older than `max_age` does. One
+    It is False if the checkpoint has no reading, or if the value is older than `max_age`. A value
     that is exactly `max_age` old still counts.
     """
     reading = readings.get(condition.object_id)
     return reading is not None and reading_test(condition)(reading, now)
 
 
-def words(condition: Condition) -> str:
-    """The condition as text, such as `2 < #4 < 5.5, at most 60 s old`."""
+def condition_text(condition: Condition) -> str:
+    """Return the condition as text, such as `2 < #4 < 5.5, at most 60 s old`."""
     name = f"#{condition.object_id}"
     equal = "=" if condition.inclusive else ""
     if not condition.type.compares:
-        return _words_of_state(condition, name)
+        return _state_text(condition, name)
     if condition.type is ConditionType.LESS:
         text = f"{name} <{equal} {condition.param1:g}"
     elif condition.type is ConditionType.GREATER:
@@ -103,19 +108,19 @@ def words(condition: Condition) -> str:
     return text
 
 
-def all_words(conditions: Iterable[Condition]) -> str:
-    """Conditions that are to hold together, as text."""
-    return " and ".join(map(words, conditions))
+def conditions_text(conditions: Iterable[Condition]) -> str:
+    """Return conditions that must all be satisfied, as text."""
+    return " and ".join(map(condition_text, conditions))
 
 
-def awaited(rule: WaitRule) -> str:
-    """What ends a WAIT, such as `gas leak or #4 < 2`; empty where only its time does."""
+def wait_text(rule: WaitRule) -> str:
+    """Return what ends a WAIT, such as `gas leak or #4 < 2`; empty if only its duration ends it."""
     ends = [] if rule.event is None else [rule.event.replace("_", " ")]
-    ends += [all_words(rule.conditions)] if rule.conditions else []
+    ends += [conditions_text(rule.conditions)] if rule.conditions else []
     return " or ".join(ends)
 
 
-def _words_of_state(condition: Condition, name: str) -> str:
+def _state_text(condition: Condition, name: str) -> str:
     match condition.type:
         case ConditionType.UNREADABLE:
             return f"{name} unreadable"

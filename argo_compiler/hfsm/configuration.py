@@ -1,4 +1,4 @@
-"""Where a mission stands: its task, its groups with their rounds and clocks, and its readings."""
+"""State of a mission under way: its task, its groups with rounds and clocks, and its readings."""
 
 import math
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ _NEVER = math.inf
 
 @dataclass(slots=True, eq=False)
 class Frame:
-    """A group that is active: the round it is in, from 1, and its clock (s) when it was entered."""
+    """Active group: its current round, from 1, and the group's clock (s) when it was entered."""
 
     group: GroupNode
     round: int
@@ -20,113 +20,128 @@ class Frame:
 
 
 class Configuration:
-    """The one place of a mission. It changes with each step.
+    """Active states of a mission and their clocks. Each step changes them in place.
 
-    Visits and readings go by the executor's clock. That of the groups stands while the mission is
-    interrupted, and what was done by hand advances it, except for groups that count interruptions.
+    Visits and readings use the executor's clock. The clock of a group stops while the mission is
+    interrupted, and advances by the duration of tasks done by hand; groups that count interruptions
+    ignore both.
     """
 
     __slots__ = (
         "_has_hard_groups",
-        "began",
+        "awaited_round",
         "by_hand_s",
-        "due",
+        "due_group",
         "frames",
+        "group_due",
         "interrupted_at",
         "interrupted_s",
-        "numbers",
-        "own_due",
+        "last_number",
         "readings",
-        "round_of",
-        "timed_out",
+        "started_at",
         "visit",
+        "visit_due",
     )
 
     def __init__(self, tables: Tables) -> None:
         self._has_hard_groups = tables.has_hard_groups
-        self.began = 0.0
-        """s, when the mission was started"""
-        self.numbers = 0
-        """how many visits and turns there have been; a drive of a reaction is a turn"""
+        self.started_at = 0.0
+        """time (s) at which the mission was started"""
+        self.last_number = 0
+        """how many numbers have been assigned: each visit, each turn of an action and each drive of
+        a reaction gets the next one"""
         self.visit = TaskVisit(None, 0, 0, 0.0)
         self.frames: list[Frame] = []
-        """the active groups, outermost first"""
-        self.round_of: Frame | None = None
-        """the one whose round begins with this visit and has not begun yet"""
+        """active groups, outermost first"""
+        self.awaited_round: Frame | None = None
+        """the group whose next round starts with the present visit but is not due yet; None if none
+        is awaited"""
         self.readings: dict[str, CheckpointReading] = {}
-        """by checkpoint"""
+        """by object_id of the checkpoint"""
         self.by_hand_s = 0.0
-        """s that were done by hand"""
+        """total duration (s) of tasks done by hand"""
         self.interrupted_s = 0.0
-        """s of interruptions that are over"""
+        """total duration (s) of the interruptions that have ended"""
         self.interrupted_at: float | None = None
-        """since when the mission has been interrupted (s)"""
-        self.due = math.inf
-        """when the time of a group with a hard stop is up next (s); never while interrupted"""
-        self.timed_out: GroupNode | None = None
-        """that group; of several at the same time the outermost, as leaving it leaves them all"""
-        self.own_due = math.inf
-        """when the present visit's own times bring something about (s); never while interrupted"""
+        """time (s) at which the present interruption began; None if the mission is not
+        interrupted"""
+        self.group_due = math.inf
+        """next time (s) at which a group with a hard stop times out; infinite while interrupted"""
+        self.due_group: GroupNode | None = None
+        """the group that times out at `group_due`; of several at the same time the outermost one,
+        as leaving it leaves the others"""
+        self.visit_due = math.inf
+        """next time (s) at which the present visit's own times (round, wait, window, time limit)
+        take effect; infinite while interrupted"""
 
     @property
     def leaf(self) -> LeafNode | None:
-        """The task that the mission stands at."""
+        """The active task; None before the start and at the end of the mission."""
         return self.visit.leaf
 
     def new_number(self) -> int:
-        self.numbers += 1
-        return self.numbers
+        self.last_number += 1
+        return self.last_number
 
-    def clock(self, now: float, group: GroupNode) -> float:
-        """The clock that a group goes by (s)."""
-        return self._at(now, group) + self._ahead(group)
+    def clock_at(self, now: float, group: GroupNode) -> float:
+        """Return the reading of a group's clock (s) at time `now`."""
+        return self._clock_time(now, group) + self._clock_offset(group)
 
-    def take(self, ways: tuple[CompiledTransition, ...], now: float) -> CompiledTransition:
-        """Goes the first way that can be taken, and returns it."""
-        if self.round_of is not None:
-            self.begin_round(now)
+    def take_transition(
+        self, transitions: tuple[CompiledTransition, ...], now: float
+    ) -> CompiledTransition:
+        """Take the first transition that is possible, and return it.
+
+        If a transition completes a group's round, the group's own transitions are tried next.
+        """
+        if self.awaited_round is not None:
+            self.start_round(now)
         while True:
-            for way in ways:
-                if way.free or self._possible(way, now):
+            for transition in transitions:
+                if transition.always_possible or self._is_possible(transition, now):
                     break
-            if way.completes is None:
+            if transition.completes is None:
                 break
-            ways = way.completes.ways
-        repeated = way.repeats
+            transitions = transition.completes.transitions
+        repeated = transition.repeats
         if repeated is not None:
             self.frames[repeated.depth].round += 1
-        self._enter(way.target, way.keep, way.domain, now)
+        self._enter(transition.target, transition.kept_groups, transition.domain, now)
         if repeated is not None and repeated.every:
             self._await_round(self.frames[repeated.depth], now)
-        return way
+        return transition
 
-    def enter(self, leaf: LeafNode | None, now: float) -> None:
-        """Begins the mission."""
+    def enter_initial(self, leaf: LeafNode | None, now: float) -> None:
+        """Enter the mission's first task, or its end if `leaf` is None."""
         self._enter(leaf, 0, None, now)
 
     def interrupt(self, now: float) -> None:
         if self.interrupted_at is None:
             self.interrupted_at = now
-            # An action is started anew afterwards, even if the driver hears of it when it is over.
+            # A new turn: the action is cancelled and started again, even if the interruption is
+            # over before the driver calls the executor again.
             self.visit.turn = self.new_number()
-            self.due = self.own_due = self.visit.action_due = math.inf
+            self.group_due = self.visit_due = self.visit.action_due = math.inf
 
-    def go_on(self, now: float) -> None:
-        """The groups' clocks run again; what is due by now is due now."""
+    def resume(self, now: float) -> None:
+        """End the interruption, if there is one: the clocks of the groups run again.
+
+        Time-outs whose time has passed meanwhile are due at `now`.
+        """
         if self.interrupted_at is not None:
             self.interrupted_s += now - self.interrupted_at
             self.interrupted_at = None
-        self.look(now)
-        self._find_due(now)
+        self.check_wait(now)
+        self._update_group_due(now)
 
     def advance_clocks(self, seconds: float, now: float) -> None:
-        """Adds the time that a task done by hand took."""
+        """Advance the clocks of groups by the duration of a task done by hand."""
         if seconds:
             self.by_hand_s += seconds
-            self._find_due(now)
+            self._update_group_due(now)
 
-    def read(self, object_id: str, reading: CheckpointReading | None, now: float) -> None:
-        """Takes note of a reading, or that there is none any more."""
+    def set_reading(self, object_id: str, reading: CheckpointReading | None, now: float) -> None:
+        """Set a checkpoint's reading, or remove it if `reading` is None."""
         if reading is None:
             self.readings.pop(object_id, None)
         else:
@@ -134,17 +149,17 @@ class Configuration:
         self.reading_changed(now)
 
     def reading_changed(self, now: float) -> None:
-        """A WAIT that the mission stands at looks at it."""
+        """Let the active task, if it is a WAIT, check its conditions at `now`."""
         if self.visit.leaf is not None and self.visit.leaf.wait is not None:
-            self.look(now)
+            self.check_wait(now)
 
-    def look(self, now: float) -> None:
-        """The conditions of a WAIT are looked at now, or as soon as the mission goes on."""
-        self.visit.look_at = now
-        self.find_own_due()
+    def check_wait(self, now: float) -> None:
+        """Schedule a check of the WAIT's conditions, now or at the end of the interruption."""
+        self.visit.check_at = now
+        self.update_visit_due()
 
-    def hold(self, guards: tuple[Guard, ...], now: float) -> bool:
-        """Whether all of the conditions hold."""
+    def are_satisfied(self, guards: tuple[Guard, ...], now: float) -> bool:
+        """Return True if the readings satisfy all of the conditions."""
         readings = self.readings
         for object_id, test in guards:
             reading = readings.get(object_id)
@@ -152,119 +167,125 @@ class Configuration:
                 return False
         return True
 
-    def begin_round(self, now: float) -> None:
-        """The round that was waited for begins, and with it this visit."""
-        frame = self.round_of
+    def start_round(self, now: float) -> None:
+        """Start the awaited round, and with it the present visit."""
+        frame = self.awaited_round
         assert frame is not None
-        self.round_of = None
-        self.visit.since = self.visit.look_at = now
+        self.awaited_round = None
+        self.visit.since = self.visit.check_at = now
         for inner in self.frames[frame.group.depth + 1 :]:
-            inner.entered = self.clock(now, inner.group)
-        self._find_due(now)
-        self.find_own_due()
+            inner.entered = self.clock_at(now, inner.group)
+        self._update_group_due(now)
+        self.update_visit_due()
 
     @property
-    def round_at(self) -> float:
-        """When the round that is waited for is due (s), if no clock stands."""
-        frame = self.round_of
-        return math.inf if frame is None else self._round_at(frame)
+    def round_due(self) -> float:
+        """Time (s) at which the awaited round is due if no clock stops; infinite if none is."""
+        frame = self.awaited_round
+        return math.inf if frame is None else self._round_due(frame)
 
-    def find_own_due(self) -> None:
-        """What the present visit waits for may have changed."""
+    def update_visit_due(self) -> None:
+        """Compute `visit_due` anew, after a change of the visit's times."""
         visit, leaf = self.visit, self.visit.leaf
-        self.own_due = math.inf
+        self.visit_due = math.inf
         if leaf is None or self.interrupted_at is not None:
             return
-        if self.round_of is not None:
-            self.own_due = self.round_at  # no window is missed before it
-        elif leaf.timed or visit.action_due < math.inf:
-            self.own_due = visit.due(self.began)
+        if self.awaited_round is not None:
+            self.visit_due = self.round_due  # a window is not missed before the round starts
+        elif leaf.is_timed or visit.action_due < math.inf:
+            self.visit_due = visit.next_due(self.started_at)
 
-    def leave(self) -> None:
-        """The mission has ended, whatever it was doing."""
+    def clear(self) -> None:
+        """Leave all states, as the mission has ended."""
         number = self.new_number()
         self.visit = TaskVisit(None, number, number, 0.0)
         self.frames.clear()
-        self.round_of = None
-        self.due = self.own_due = math.inf
+        self.awaited_round = None
+        self.group_due = self.visit_due = math.inf
 
-    def _possible(self, way: CompiledTransition, now: float) -> bool:
-        group = way.repeats
+    def _is_possible(self, transition: CompiledTransition, now: float) -> bool:
+        group = transition.repeats
         if group is not None:
             frame = self.frames[group.depth]
             if group.count and frame.round >= group.count:
                 return False
             if group.duration and (
-                self._at(now, group) >= self._time_up(frame)
+                self._clock_time(now, group) >= self._duration_end(frame)
                 or frame.round * group.every >= group.duration
             ):
                 return False
-            return not group.until or not self.hold(group.until, now)
-        return not way.guards or self.hold(way.guards, now)
+            return not group.until or not self.are_satisfied(group.until, now)
+        return not transition.guards or self.are_satisfied(transition.guards, now)
 
     def _enter(
-        self, leaf: LeafNode | None, keep: int, domain: GroupNode | None, now: float
+        self, leaf: LeafNode | None, kept_groups: int, domain: GroupNode | None, now: float
     ) -> None:
-        """Leaves all below `domain`, which is the last of `keep` groups, and enters the leaf."""
-        self.numbers = number = self.numbers + 1
-        visit = self.visit  # used again, which takes less time than a new one
+        """Leave all groups but the first `kept_groups`, and enter the leaf.
+
+        `domain` is the last of the kept groups.
+        """
+        self.last_number = number = self.last_number + 1
+        visit = self.visit  # reused, which is faster than a new object
         visit.leaf = leaf
         visit.number = visit.turn = number
-        visit.since = visit.look_at = now
+        visit.since = visit.check_at = now
         visit.attempt = 0
         visit.occurred = False
         visit.action_due = _NEVER
         frames = self.frames
-        changed = len(frames) > keep
+        changed = len(frames) > kept_groups
         if changed:
-            del frames[keep:]
+            del frames[kept_groups:]
         if leaf is not None and leaf.parent is not domain:
             changed = True
             group = leaf.parent
             entered = []
             while group is not None and group is not domain:
-                entered.append(Frame(group, 1, self.clock(now, group)))
+                entered.append(Frame(group, 1, self.clock_at(now, group)))
                 group = group.parent
             frames.extend(reversed(entered))
         if changed and self._has_hard_groups:
-            self._find_due(now)
-        self.own_due = _NEVER
-        if leaf is not None and leaf.timed:
-            self.find_own_due()
+            self._update_group_due(now)
+        self.visit_due = _NEVER
+        if leaf is not None and leaf.is_timed:
+            self.update_visit_due()
 
     def _await_round(self, frame: Frame, now: float) -> None:
-        if self._round_at(frame) > self._at(now, frame.group):
-            self.round_of = frame
-            self._find_due(now)
-            self.find_own_due()
+        if self._round_due(frame) > self._clock_time(now, frame.group):
+            self.awaited_round = frame
+            self._update_group_due(now)
+            self.update_visit_due()
 
-    def _round_at(self, frame: Frame) -> float:
+    def _round_due(self, frame: Frame) -> float:
         group = frame.group
-        return frame.entered + (frame.round - 1) * group.every - self._ahead(group)
+        return frame.entered + (frame.round - 1) * group.every - self._clock_offset(group)
 
-    def _find_due(self, now: float) -> None:
-        self.due = math.inf
+    def _update_group_due(self, now: float) -> None:
+        self.group_due = math.inf
         if self.interrupted_at is not None:
             return
-        begun = self.frames
-        if self.round_of is not None:
-            begun = begun[: self.round_of.group.depth + 1]
-        for frame in begun:
-            if frame.group.hard:
-                at = max(self._time_up(frame), now)
-                if at < self.due:
-                    self.due, self.timed_out = at, frame.group
+        started = self.frames
+        if self.awaited_round is not None:
+            started = started[: self.awaited_round.group.depth + 1]
+        for frame in started:
+            if frame.group.has_hard_stop:
+                at = max(self._duration_end(frame), now)
+                if at < self.group_due:
+                    self.group_due, self.due_group = at, frame.group
 
-    def _at(self, now: float, group: GroupNode) -> float:
-        """The time at which a group's clock has been read: the past one while it stands."""
+    def _clock_time(self, now: float, group: GroupNode) -> float:
+        """Return the time at which a group's clock is read.
+
+        This is the start of the interruption if the clock has stopped.
+        """
         if self.interrupted_at is None or group.counts_interruptions:
             return now
         return self.interrupted_at
 
-    def _ahead(self, group: GroupNode) -> float:
-        """How far a group's clock is ahead of time (s), or behind it."""
+    def _clock_offset(self, group: GroupNode) -> float:
+        """Return how far a group's clock is ahead of the executor's clock (s); may be negative."""
         return 0.0 if group.counts_interruptions else self.by_hand_s - self.interrupted_s
 
-    def _time_up(self, frame: Frame) -> float:
-        """When the duration of a group is over (s), if its clock stood no more."""
-        return frame.entered + frame.group.duration - self._ahead(frame.group)
+    def _duration_end(self, frame: Frame) -> float:
+        """Return the time (s) at which the group's duration ends if its clock stops no more."""
+        return frame.entered + frame.group.duration - self._clock_offset(frame.group)

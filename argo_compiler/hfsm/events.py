@@ -1,4 +1,4 @@
-"""What goes into an executor and what comes out: events and commands."""
+"""Inputs and outputs of an executor: events and commands."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -9,10 +9,10 @@ from argo_compiler.il import EventKind, Task
 
 @dataclass(frozen=True, slots=True, init=False)
 class ActionSucceeded:
-    """The running action has ended well. `value`: what a MEASURE read, if it is a number.
+    """Success of the running action. `value`: the value that a MEASURE read, None if it read none.
 
-    The `id` is that of the command which started the action. An end without one is taken for that
-    of the action that runs, so a driver that may deliver an end twice gives it.
+    `id` is that of the command which started the action. Without an id the event counts for the
+    action that runs, so a driver that may deliver an event twice must give the id.
     """
 
     task: str
@@ -24,7 +24,7 @@ class ActionSucceeded:
     def __init__(
         self, task: str, value: float | None = None, abnormal: bool = False, id: int | None = None
     ) -> None:
-        # Most events are of this kind; a frozen dataclass' own takes twice as long.
+        # Most events are of this class; the __init__ of a frozen dataclass takes twice as long.
         _set_task(self, task)
         _set_value(self, value)
         _set_abnormal(self, abnormal)
@@ -38,18 +38,21 @@ _set_task, _set_value, _set_abnormal, _set_id = (
 
 @dataclass(frozen=True, slots=True)
 class ActionFailed:
-    """The running action has ended without its result: not reached, not measured."""
+    """Failure of the running action: it has ended without its result.
+
+    The robot did not reach the target, or did not get a measurement.
+    """
 
     task: str
     reason: str
     unreadable: bool = False
-    """MEASURE: whether the robot looked at the checkpoint, and could not read a value"""
+    """MEASURE only: whether the robot looked at the checkpoint, but could not read a value"""
     id: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class ActionStopped:
-    """An action that was to be cancelled has ended, its clean-up done."""
+    """End of an action after its cancellation, with its clean-up done."""
 
     task: str
     id: int | None = None
@@ -57,7 +60,7 @@ class ActionStopped:
 
 @dataclass(frozen=True, slots=True)
 class ReadingGiven:
-    """Somebody else tells the value of a checkpoint, read now: an instrument, or a person."""
+    """Value of a checkpoint from another source, an instrument or a person, read now."""
 
     object_id: str
     value: float
@@ -66,45 +69,47 @@ class ReadingGiven:
 
 @dataclass(frozen=True, slots=True)
 class Tick:
-    """Nothing but the passing of time."""
+    """Passing of time, without any other event."""
 
 
 @dataclass(frozen=True, slots=True)
 class Occurred:
-    """Something has happened that the mission may react to."""
+    """Event that the mission may react to."""
 
     event: EventKind
     detail: str = ""
-    """for people: where, how much"""
+    """details for people: where, how much"""
 
 
 @dataclass(frozen=True, slots=True)
 class Pause:
-    """A person pauses the mission."""
+    """Command of a person: pause the mission."""
 
 
 @dataclass(frozen=True, slots=True)
 class Resume:
-    """A person lets the mission go on, or ends a hold."""
+    """Command of a person: resume the mission, or end a hold."""
 
 
 @dataclass(frozen=True, slots=True)
 class TakeOver:
-    """A person takes the robot over: the mission pauses under supervision."""
+    """Command of a person: take over the robot. The mission pauses under supervision."""
 
 
 @dataclass(frozen=True, slots=True)
 class GiveBack:
-    """A person gives the robot back, and the mission goes on as it would from a progress that was
-    handed over with this."""
+    """Command of a person: give the robot back. The mission resumes.
+
+    It continues as if it were restored from a progress to which `hand_over` added `by_hand`.
+    """
 
     by_hand: tuple[ByHand, ...] = ()
-    """what they did or skipped, in this order"""
+    """tasks that the person did or skipped, in this order"""
 
 
 @dataclass(frozen=True, slots=True)
 class Cancel:
-    """A person ends the mission."""
+    """Command of a person: end the mission."""
 
 
 ActionEnded = ActionSucceeded | ActionFailed | ActionStopped
@@ -112,23 +117,28 @@ Event = ActionEnded | Tick | Occurred | ReadingGiven | Pause | Resume | TakeOver
 
 
 class StartAction(NamedTuple):
-    """Carry out the task's action and report its end by an event."""
+    """Command to execute the task's action and to report its end by an event."""
 
     task: Task
     id: int = 0
-    """of this action, from 1; none is given twice in a run. The end of the action has it as well"""
+    """id of this action, from 1, unique within a run; the event of the action's end has the same
+    id"""
     not_before: float | None = None
-    """s on the executor's clock before which the robot does not begin at the place (W4)"""
+    """time (s, executor's clock) before which the robot must not begin the work at the target
+    (W4)"""
 
 
 @dataclass(frozen=True, slots=True)
 class CancelAction:
-    """Stop the action of the task, clean up, and report its end: it is awaited."""
+    """Command to stop the task's action, clean up and report its end.
+
+    The executor waits for that end.
+    """
 
     task: str
     reason: str
     id: int = 0
-    """of the action"""
+    """id of the action to cancel"""
 
 
 Command = StartAction | CancelAction

@@ -1,4 +1,4 @@
-"""Handing a mission over to a person and back: what they did, and a plan that they edited."""
+"""Handover of a mission to a person and back: tasks done by hand, and an edited mission plan."""
 
 from collections.abc import Iterator, Sequence
 from typing import TypeVar
@@ -14,65 +14,66 @@ AnyModel = TypeVar("AnyModel", bound=Model)
 
 
 def hand_over(progress: Progress, by_hand: Sequence[ByHand], away: float = 0.0) -> Progress:
-    """The progress, `away` seconds later, with what a person did or skipped meanwhile, in the order
-    in which they did it.
+    """Return the progress `away` seconds later, with the tasks done or skipped by a person.
 
-    Then the robot is given back, and what was done ages from there on: what is restored from this
-    later is told of the time since then only.
+    `by_hand` is in the order in which they were done. The robot is then given back, and from that
+    time on these tasks age: `away` of a later `Executor.restore` is the time since then only.
     """
-    aged = later(progress, away)
-    given = (one.model_copy(update={"age": one.age or 0.0}) for one in by_hand)
-    return aged.model_copy(update={"by_hand": (*aged.by_hand, *given)})
+    aged = add_time_away(progress, away)
+    dated = (task.model_copy(update={"age": task.age or 0.0}) for task in by_hand)
+    return aged.model_copy(update={"by_hand": (*aged.by_hand, *dated)})
 
 
-def later(progress: Progress, away: float) -> Progress:
-    """The progress after time away (s), in which nothing happened (rule H2)."""
+def add_time_away(progress: Progress, away: float) -> Progress:
+    """Return the progress after `away` seconds in which nothing happened (rule H2)."""
     if not away >= 0:
-        raise ValueError(f"{away} is no time in seconds")
+        raise ValueError(f"{away} is not a time in seconds")
     return progress.model_copy(
         update={
             "since": progress.since + away,
             "elapsed": progress.elapsed + away,
             "groups": tuple(
-                _plus(group, "elapsed", away) if group.counts_interruptions else group
+                _add_seconds(group, "elapsed", away) if group.counts_interruptions else group
                 for group in progress.groups
             ),
-            "readings": tuple(_plus(reading, "age", away) for reading in progress.readings),
-            "reaction": progress.reaction and _plus(progress.reaction, "held", away),
-            "by_hand": tuple(_plus(done, "age", away) for done in progress.by_hand),
+            "readings": tuple(_add_seconds(reading, "age", away) for reading in progress.readings),
+            "reaction": progress.reaction and _add_seconds(progress.reaction, "held", away),
+            "by_hand": tuple(_add_seconds(done, "age", away) for done in progress.by_hand),
         }
     )
 
 
-def _plus(model: AnyModel, field: str, seconds: float) -> AnyModel:
+def _add_seconds(model: AnyModel, field: str, seconds: float) -> AnyModel:
     return model.model_copy(update={field: (getattr(model, field) or 0.0) + seconds})
 
 
-def match(progress: Progress, mission: Mission) -> tuple[Progress | None, tuple[Diagnostic, ...]]:
-    """The progress as that of a mission that was edited since, by the names of tasks and groups.
+def match_to_mission(
+    progress: Progress, mission: Mission
+) -> tuple[Progress | None, tuple[Diagnostic, ...]]:
+    """Return the progress for a mission that was edited since, by names of tasks and groups.
 
-    The mission is one that `check` finds no error in. None where it can't go on without a decision:
-    then a diagnostic is an error.
+    `check` must find no errors in the mission. The progress is None if the mission can't continue
+    without a decision; then a diagnostic is an error.
     """
     if progress.outcome is not None:
         return progress, ()
-    errors = tuple(_active(progress, mission))
+    errors = tuple(_check_active(progress, mission))
     if errors:
         return None, errors
-    groups, of_groups = _groups(progress, mission)
-    done, of_done = _by_hand(progress, mission)
+    groups, group_diagnostics = _match_groups(progress, mission)
+    by_hand, by_hand_diagnostics = _match_by_hand(progress, mission)
     planned = {g.name for g in mission.groups if g.every} & {g.group for g in groups}
     update = {
         "groups": groups,
         "round_of": progress.round_of if progress.round_of in planned else None,
-        "by_hand": done,
+        "by_hand": by_hand,
     }
     matched = progress.model_copy(update=update)
-    matched, of_reactions = _reactions(matched, mission)
-    return matched, (*of_groups, *of_done, *of_reactions)
+    matched, reaction_diagnostics = _match_reactions(matched, mission)
+    return matched, (*group_diagnostics, *by_hand_diagnostics, *reaction_diagnostics)
 
 
-def _active(progress: Progress, mission: Mission) -> Iterator[Diagnostic]:
+def _check_active(progress: Progress, mission: Mission) -> Iterator[Diagnostic]:
     name = progress.active
     if name is None:
         return
@@ -80,8 +81,8 @@ def _active(progress: Progress, mission: Mission) -> Iterator[Diagnostic]:
         if all(task.on_failure is not OnFailure.RETURN for task in mission.tasks):
             yield diagnostic_of(
                 "handover.no-return",
-                "the robot is on its way back to the dock after a failure, but no task of the plan "
-                "returns when it has failed",
+                "the robot is driving back to the dock after a failure, but no task of the mission "
+                "plan has `on_failure` return any more",
                 "give a task `on_failure` return, or cancel the mission",
             )
         return
@@ -89,16 +90,16 @@ def _active(progress: Progress, mission: Mission) -> Iterator[Diagnostic]:
     if task is None or task.action is Action.START:
         yield diagnostic_of(
             "handover.task-gone",
-            f"the mission stands at task '{name}', which the plan does not have any more",
-            "put a task of that name back, or set `active` in the progress to the task that the "
-            "mission is to go on with",
+            f"the mission is at task '{name}', which the mission plan does not have any more",
+            "add a task of that name again, or set `active` in the progress to the task at which "
+            "the mission is to continue",
         )
 
 
-def _groups(
+def _match_groups(
     progress: Progress, mission: Mission
 ) -> tuple[tuple[GroupProgress, ...], list[Diagnostic]]:
-    """The groups around the active task, those that were active with their rounds and clocks."""
+    """Return the groups around the active task. Known ones keep their rounds and clocks."""
     position = next((i for i, t in enumerate(mission.tasks) if t.name == progress.active), None)
     around = [
         r.group.name for r in group_ranges(mission) if position is not None and r.contains(position)
@@ -107,9 +108,9 @@ def _groups(
     diagnostics = [
         diagnostic_of(
             "handover.new-group",
-            f"group '{name}' is new around task '{progress.active}': it begins in round 1, with "
+            f"group '{name}' is new around task '{progress.active}': it starts in round 1, with "
             "its clock at 0",
-            "set its round in the progress if it is to be another one",
+            "set its round in the progress if it has to start in another one",
         )
         for name in around
         if name not in known
@@ -119,7 +120,7 @@ def _groups(
             "handover.group-gone",
             f"group '{name}' is not around task '{progress.active}' any more: its round "
             f"{p.round} and its clock are dropped",
-            "keep the group if its rounds are to be completed",
+            "keep the group if its rounds have to be completed",
         )
         for name, p in known.items()
         if name not in around
@@ -128,7 +129,9 @@ def _groups(
     return tuple(groups), diagnostics
 
 
-def _by_hand(progress: Progress, mission: Mission) -> tuple[tuple[ByHand, ...], list[Diagnostic]]:
+def _match_by_hand(
+    progress: Progress, mission: Mission
+) -> tuple[tuple[ByHand, ...], list[Diagnostic]]:
     actions = {t.name: t.action for t in mission.tasks if t.action is not Action.START}
     kept, diagnostics = [], []
     for done in progress.by_hand:
@@ -136,8 +139,8 @@ def _by_hand(progress: Progress, mission: Mission) -> tuple[tuple[ByHand, ...], 
             diagnostics.append(
                 diagnostic_of(
                     "handover.by-hand-gone",
-                    f"task '{done.task}' was done by hand, but the plan does not have it",
-                    "put it back into the plan if it is to count",
+                    f"task '{done.task}' was done by hand, but the mission plan does not have it",
+                    "add it to the mission plan again if it has to count",
                 )
             )
             continue
@@ -153,29 +156,32 @@ def _by_hand(progress: Progress, mission: Mission) -> tuple[tuple[ByHand, ...], 
     return tuple(kept), diagnostics
 
 
-def _reactions(progress: Progress, mission: Mission) -> tuple[Progress, tuple[Diagnostic, ...]]:
-    answered = {r.event for r in mission.reactions if r.response is not Response.REPORT}
-    begun = answered - {r.event for r in mission.reactions if r.response is Response.ABORT}
+def _match_reactions(
+    progress: Progress, mission: Mission
+) -> tuple[Progress, tuple[Diagnostic, ...]]:
+    handled = {r.event for r in mission.reactions if r.response is not Response.REPORT}
+    interrupting = handled - {r.event for r in mission.reactions if r.response is Response.ABORT}
     diagnostics = [
         diagnostic_of(
             "handover.reaction-gone",
-            f"the plan does not react to {w.event} any more, which waited for its turn",
-            "put the reaction back into the plan if it is to be carried out",
+            f"the mission plan does not react to {w.event} any more; that reaction was waiting to "
+            "start",
+            "add the reaction to the mission plan again if it has to be executed",
         )
         for w in progress.waiting
-        if w.event not in answered
+        if w.event not in handled
     ]
     update: dict[str, object] = {
-        "waiting": tuple(w for w in progress.waiting if w.event in answered)
+        "waiting": tuple(w for w in progress.waiting if w.event in handled)
     }
     active = progress.reaction
-    if active is not None and active.event not in begun:
+    if active is not None and active.event not in interrupting:
         diagnostics.append(
             diagnostic_of(
                 "handover.reaction-gone",
-                f"the mission was interrupted by {active.event}, for which the plan has no such "
-                "reaction any more: it is paused",
-                "resume it when it is safe to go on",
+                f"{active.event} interrupted the mission, but the mission plan has no such "
+                "reaction any more: the mission is paused",
+                "resume it when it is safe to continue",
             )
         )
         update |= {"reaction": None, "paused": True}

@@ -1,11 +1,12 @@
-"""The one table of what interrupts a mission: events, persons, the drives and holds of reactions.
+"""Table of all interruptions of a mission: by events, persons, and drives and holds of reactions.
 
-It is data: the executor looks its rows up (`argo_compiler.hfsm.standing`), and the state chart of
-`argo export` is written from the same rows. Rules are those of `docs/language.md`.
+It is data: the executor looks up its rows (`argo_compiler.hfsm.interrupt_state`), and the state
+chart of `argo export` is written from the same rows. The rules are those of `docs/language.md`.
 
-Rows of a state and a trigger are tried in order, and the first whose `when` all hold and of whose
-`unless` none does is taken. After each row, those of `Trigger.ALWAYS` are tried until none can be
-taken. Guards look at what was so before the row, effects are carried out in order.
+The rows of a stage and a trigger are tried in order. The first row is taken all of whose `when`
+guards are true and none of whose `unless` guards is. After each row, the rows of `Trigger.ALWAYS`
+are tried until none can be taken. Guards are evaluated on the state before the row; effects are
+executed in order.
 """
 
 from collections.abc import Iterable
@@ -14,35 +15,35 @@ from enum import StrEnum
 
 
 class Stage(StrEnum):
-    """Who has the robot, and how far that has come."""
+    """Who controls the robot, and in which phase."""
 
     GOING = "going"
     """the mission goes on"""
     CHOOSING = "choosing"
-    """for no time: whose turn is it?"""
+    """takes no time: selects the reaction or the mission that continues"""
     STOPPED = "stopped"
     """paused, with no reaction active"""
     BEGINNING = "beginning"
-    """for no time: the active reaction has the robot"""
+    """takes no time: the active reaction gets the robot"""
     DRIVING = "driving"
-    """the active reaction drives, or is paused on the way"""
+    """the active reaction drives, or is paused during its drive"""
     ARRIVED = "arrived"
-    """for no time: the active reaction is where it wants to be"""
+    """takes no time: the active reaction has no drive, or its drive has ended"""
     HOLDING = "holding"
-    """the active reaction stands still and waits"""
+    """the active reaction holds: the robot stands still and waits"""
     LETTING_GO = "letting_go"
-    """for no time: nothing is waited for any more"""
+    """takes no time: the hold of the active reaction is over"""
     ENDING = "ending"
     """the mission has an outcome; an action may still have to end"""
 
 
 class Trigger(StrEnum):
-    """What may happen."""
+    """What may happen to a mission."""
 
     ALWAYS = "always"
-    """nothing: looked at after each row"""
+    """nothing: tried after each row"""
     EVENT = "event"
-    """something that the mission may react to occurs"""
+    """an event occurs that the mission may react to"""
     PAUSE = "pause"
     """a person pauses, or takes over"""
     RESUME = "resume"
@@ -52,63 +53,65 @@ class Trigger(StrEnum):
     DRIVEN = "driven"
     """the drive of the active reaction has succeeded"""
     STUCK = "stuck"
-    """that drive has failed"""
+    """the drive of the active reaction has failed"""
     LIMIT = "limit"
     """the hold's limit is over"""
     DONE = "done"
-    """the mission's last task has ended; looked at until it has an effect"""
+    """the mission's last task has ended; tried again until it has an effect"""
     ENDED = "ended"
-    """the plan itself has ended otherwise: docked or aborted after a failure"""
+    """the mission itself has ended in another way: docked or aborted after a failure"""
 
 
-class Given(StrEnum):
-    """What a row may ask for. `own` is the reaction to the event that occurs."""
+class InterruptGuard(StrEnum):
+    """Guard of a row. `own` is the reaction to the event that occurs."""
 
     PAUSED = "paused"
-    """a person has to resume"""
+    """the mission waits for a person to resume it"""
     ABORTS = "aborts"
     """own is ABORT"""
     REACTS = "reacts"
     """own interrupts the mission"""
     NEW = "new"
-    """own is neither active nor waits"""
+    """own is neither active nor waiting"""
     HIGHER = "higher"
     """own ranks above the active reaction"""
     AWAITED = "awaited"
-    """the event is what the active reaction holds for"""
+    """the event is the `until` of the active reaction"""
     SOME_WAITS = "some_waits"
-    """a reaction waits; the turn is that of the highest rank, of equal ones the earliest's"""
+    """a reaction is waiting; the one of the highest rank is next, among equal ranks the earliest
+    one"""
     HIGHER_WAITS = "higher_waits"
-    """a reaction waits that ranks above the active one"""
+    """a reaction is waiting that ranks above the active one"""
     DRIVES = "drives"
     """the active reaction has a drive"""
     HOLDS = "holds"
-    """it holds: it has an `until`, or is a PAUSE"""
+    """the active reaction holds: it has an `until`, or is a PAUSE"""
     OVER = "over"
-    """what it holds for has occurred"""
+    """the `until` of the active reaction has occurred"""
     FAILS_HARD = "fails_hard"
-    """its `afterwards` is END, so that the mission fails with its drive"""
+    """`afterwards` of the active reaction is END: the mission fails if its drive fails"""
     THEN_RESUME = "then_resume"
-    """it lets the mission go on afterwards"""
+    """the mission resumes after the active reaction"""
     THEN_WAIT = "then_wait"
-    """it waits for a person afterwards"""
+    """the mission waits for a person after the active reaction"""
     LIMIT_RESUME = "limit_resume"
-    """its `on_limit` is RESUME"""
+    """`on_limit` of the active reaction is RESUME"""
     LIMIT_WAIT = "limit_wait"
-    """its `on_limit` is WAIT"""
+    """`on_limit` of the active reaction is WAIT"""
 
 
 class Effect(StrEnum):
-    """What a row does."""
+    """Effect of a row."""
 
     MARK = "mark"
-    """the reactions that would hold for the event need not, those to it have to again"""
+    """reactions whose `until` is the event are marked: their hold is over; the mark of the reaction
+    to the event itself is removed"""
     ENQUEUE = "enqueue"
-    """own waits, as the last of all"""
+    """own is added to the waiting reactions, as the last one"""
     SET_ASIDE = "set_aside"
-    """the active reaction waits, and will begin anew"""
+    """the active reaction becomes a waiting one, and starts again from its beginning later"""
     ACTIVATE = "activate"
-    """the reaction whose turn it is becomes the active one"""
+    """the waiting reaction that is next becomes the active one"""
     DROP = "drop"
     """the active reaction is over"""
     PAUSE = "pause"
@@ -117,23 +120,23 @@ class Effect(StrEnum):
     END_CANCELLED = "end_cancelled"
     END_FAILED = "end_failed"
     END_THERE = "end_there"
-    """as the active reaction's place says: returned, sheltered or, after a PAUSE, aborted"""
+    """outcome by the active reaction's target: returned, sheltered or, after a PAUSE, aborted"""
     END_OF_PLAN = "end_of_plan"
-    """as the plan says"""
+    """outcome of the mission itself"""
 
 
 @dataclass(frozen=True, slots=True)
 class InterruptRow:
-    """What happens in any of `stages` at a trigger."""
+    """Row of the table: its effects and target in any of `stages` at a trigger."""
 
     rule: str
-    """what it is for"""
+    """ids of the rules in `docs/language.md` that it implements"""
     stages: tuple[Stage, ...]
     trigger: Trigger
     target: Stage | None = None
-    """None: it stays where it is"""
-    when: tuple[Given, ...] = ()
-    unless: tuple[Given, ...] = ()
+    """None if the stage does not change"""
+    when: tuple[InterruptGuard, ...] = ()
+    unless: tuple[InterruptGuard, ...] = ()
     effects: tuple[Effect, ...] = ()
 
 
@@ -141,66 +144,75 @@ _REACTING = (Stage.DRIVING, Stage.HOLDING)
 _LIVE = (Stage.GOING, Stage.STOPPED, *_REACTING)
 _STABLE = (*_LIVE, Stage.ENDING)
 
-_NEW = (Given.REACTS, Given.NEW)
+_NEW = (InterruptGuard.REACTS, InterruptGuard.NEW)
 
 
 def _rows() -> Iterable[InterruptRow]:
-    row, on, to, g, do = InterruptRow, Trigger, Stage, Given, Effect
+    row, on, to, g, do = InterruptRow, Trigger, Stage, InterruptGuard, Effect
 
-    # Persons and ABORT come before all else.
+    # Persons and ABORT come first.
     yield row("I2", _LIVE, on.CANCEL, to.ENDING, effects=(do.END_CANCELLED,))
     yield row("R6 R7 R9", _LIVE, on.EVENT, to.ENDING, (g.ABORTS,), effects=(do.END_ABORTED,))
     yield row("T8", _LIVE, on.ENDED, to.ENDING, effects=(do.END_OF_PLAN,))
     yield row("M3", (to.GOING,), on.DONE, to.ENDING, effects=(do.END_OF_PLAN,))
 
     # Events.
-    waits = (do.MARK, do.ENQUEUE)
+    queues = (do.MARK, do.ENQUEUE)
     yield row("R2", (to.GOING,), on.EVENT, to.CHOOSING, (g.REACTS,), effects=(do.ENQUEUE,))
-    yield row("R9", (to.STOPPED,), on.EVENT, None, _NEW, effects=waits)
+    yield row("R9", (to.STOPPED,), on.EVENT, None, _NEW, effects=queues)
     higher = (*_NEW, g.HIGHER)
-    yield row("R9", _REACTING, on.EVENT, None, (*higher, g.PAUSED), effects=waits)
-    interrupts = (do.SET_ASIDE, *waits)
-    yield row("R7", _REACTING, on.EVENT, to.CHOOSING, higher, effects=interrupts)
+    yield row("R9", _REACTING, on.EVENT, None, (*higher, g.PAUSED), effects=queues)
+    preempts = (do.SET_ASIDE, *queues)
+    yield row("R7", _REACTING, on.EVENT, to.CHOOSING, higher, effects=preempts)
     yield row("R10", _REACTING, on.EVENT, None, (*_NEW, g.AWAITED), effects=(do.MARK,))
-    yield row("R7", _REACTING, on.EVENT, None, _NEW, effects=waits)
+    yield row("R7", _REACTING, on.EVENT, None, _NEW, effects=queues)
     yield row("R3 R7", (to.STOPPED, *_REACTING), on.EVENT, effects=(do.MARK,))
 
-    # Whose turn it is.
+    # Selection of the next reaction.
     yield row(
         "R7", (to.CHOOSING,), on.ALWAYS, to.BEGINNING, (g.SOME_WAITS,), effects=(do.ACTIVATE,)
     )
     yield row("R5", (to.CHOOSING,), on.ALWAYS, to.GOING)
 
-    # A reaction from its beginning to its end.
+    # A reaction from its start to its end.
     yield row("R2", (to.BEGINNING,), on.ALWAYS, to.DRIVING, (g.DRIVES,))
     yield row("R3", (to.BEGINNING,), on.ALWAYS, to.ARRIVED)
     yield row("R3", (to.DRIVING,), on.DRIVEN, to.ARRIVED)
     yield row("R8", (to.DRIVING,), on.STUCK, to.ENDING, (g.FAILS_HARD,), effects=(do.END_FAILED,))
-    lets_a_person = (do.DROP, do.PAUSE)
-    yield row("R8", (to.DRIVING,), on.STUCK, to.STOPPED, effects=lets_a_person)
+    wait_for_person = (do.DROP, do.PAUSE)
+    yield row("R8", (to.DRIVING,), on.STUCK, to.STOPPED, effects=wait_for_person)
     yield row("R3", (to.ARRIVED,), on.ALWAYS, to.HOLDING, (g.HOLDS,), (g.OVER,))
     yield row("R3", (to.ARRIVED,), on.ALWAYS, to.LETTING_GO)
     yield row("R3", (to.HOLDING,), on.ALWAYS, to.LETTING_GO, (g.OVER,), (g.PAUSED,))
-    limit, running = on.LIMIT, (g.PAUSED,)
-    yield row("R3", (to.HOLDING,), limit, to.LETTING_GO, (g.LIMIT_RESUME,), running)
-    yield row("R3", (to.HOLDING,), limit, to.STOPPED, (g.LIMIT_WAIT,), running, lets_a_person)
-    yield row("R3", (to.HOLDING,), limit, to.ENDING, (), running, (do.END_THERE,))
-    over = (to.LETTING_GO,)
-    yield row("R4 I1", over, on.ALWAYS, to.STOPPED, (g.THEN_RESUME, g.PAUSED), effects=(do.DROP,))
-    yield row("R4", over, on.ALWAYS, to.CHOOSING, (g.THEN_RESUME,), effects=(do.DROP,))
-    yield row("R4", over, on.ALWAYS, to.STOPPED, (g.THEN_WAIT,), effects=lets_a_person)
-    yield row("R4", over, on.ALWAYS, to.ENDING, effects=(do.END_THERE,))
+    limit, paused = on.LIMIT, (g.PAUSED,)
+    yield row("R3", (to.HOLDING,), limit, to.LETTING_GO, (g.LIMIT_RESUME,), paused)
+    yield row("R3", (to.HOLDING,), limit, to.STOPPED, (g.LIMIT_WAIT,), paused, wait_for_person)
+    yield row("R3", (to.HOLDING,), limit, to.ENDING, (), paused, (do.END_THERE,))
+    letting_go = (to.LETTING_GO,)
+    yield row(
+        "R4 I1", letting_go, on.ALWAYS, to.STOPPED, (g.THEN_RESUME, g.PAUSED), effects=(do.DROP,)
+    )
+    yield row("R4", letting_go, on.ALWAYS, to.CHOOSING, (g.THEN_RESUME,), effects=(do.DROP,))
+    yield row("R4", letting_go, on.ALWAYS, to.STOPPED, (g.THEN_WAIT,), effects=wait_for_person)
+    yield row("R4", letting_go, on.ALWAYS, to.ENDING, effects=(do.END_THERE,))
 
-    # Persons who pause and resume.
+    # Pause and resume by persons.
     yield row("I1", (to.GOING,), on.PAUSE, to.STOPPED, effects=(do.PAUSE,))
     yield row("I1", _REACTING, on.PAUSE, None, (), (g.PAUSED,), (do.PAUSE,))
     yield row("I1 R9", (to.STOPPED,), on.RESUME, to.CHOOSING, effects=(do.UNPAUSE,))
-    aside = (do.UNPAUSE, do.SET_ASIDE)
-    yield row("R9", _REACTING, on.RESUME, to.CHOOSING, (g.PAUSED, g.HIGHER_WAITS), effects=aside)
+    unpause_and_requeue = (do.UNPAUSE, do.SET_ASIDE)
+    yield row(
+        "R9",
+        _REACTING,
+        on.RESUME,
+        to.CHOOSING,
+        (g.PAUSED, g.HIGHER_WAITS),
+        effects=unpause_and_requeue,
+    )
     yield row("I1", _REACTING, on.RESUME, None, (g.PAUSED,), effects=(do.UNPAUSE,))
     yield row("R3", (to.HOLDING,), on.RESUME, to.LETTING_GO)
 
-    # What changes nothing.
+    # Triggers without an effect.
     yield row("R1", (to.GOING, to.ENDING), on.EVENT)
     yield row("I1", (to.STOPPED, *_REACTING, to.ENDING), on.PAUSE)
     yield row("I1", (to.GOING, to.DRIVING, to.ENDING), on.RESUME)
@@ -220,4 +232,4 @@ ROWS: dict[tuple[Stage, Trigger], tuple[InterruptRow, ...]] = {
     for trigger in Trigger
     if (rows := tuple(r for r in TABLE if r.trigger is trigger and stage in r.stages))
 }
-"""The table by stage and trigger, in the order in which rows are tried."""
+"""rows of the table by stage and trigger, in the order in which they are tried"""

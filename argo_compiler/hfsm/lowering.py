@@ -1,9 +1,9 @@
 """Lowering: from the tasks, groups and reactions of a mission to the states of a machine.
 
-What a mission means is written in `docs/language.md`. What does not depend on time and values is
-decided here: START is passed over (M1, M2), the unconditional transition comes last (T3), rounds
-end from the innermost group outward (G5 to G7), and each transition knows which groups it leaves
-(G2 to G4).
+`docs/language.md` defines the meaning of a mission. All that does not depend on time and values is
+decided here: START is skipped (M1, M2), the unconditional transition comes last (T3), rounds end
+from the innermost group outward (G5 to G7), and each transition knows which groups it leaves (G2 to
+G4).
 """
 
 from typing import TYPE_CHECKING
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, Severity
-from argo_compiler.hfsm.group_timeout import timeout_of
+from argo_compiler.hfsm.group_timeout import timeout_transition
 from argo_compiler.hfsm.model import (
     DONE,
     MISSION,
@@ -47,9 +47,9 @@ if TYPE_CHECKING:
 def lower(
     mission: Mission, progress: "Progress | None" = None, source_name: str = "mission"
 ) -> Hfsm:
-    """The machine of a mission, in time linear in the number of tasks.
+    """Return the state machine of a mission, in time linear in the number of tasks.
 
-    With `progress`, that of the remaining mission: only what can still be reached from there.
+    With `progress`, it is that of the remaining mission: only what can still be reached from there.
 
     Raises:
         DiagnosticError: `check` finds errors in the mission.
@@ -62,7 +62,7 @@ def lower(
         machine = _Lowering(mission).machine()
         if progress is None:
             return machine
-        from argo_compiler.hfsm.remaining import remaining  # a check needs none of it
+        from argo_compiler.hfsm.remaining import remaining  # imported late: rarely needed
 
         return remaining(machine, progress)
 
@@ -76,7 +76,7 @@ _FAILURES = {
 
 
 class _Lowering:
-    """The tables over one mission that its states are made from."""
+    """Lowering of one mission: look-up tables over it, from which its states are made."""
 
     def __init__(self, mission: Mission) -> None:
         self.mission = mission
@@ -100,7 +100,7 @@ class _Lowering:
             for i, task in enumerate(self.mission.tasks)
             if task.action is not Action.START
         )
-        # Its parts are validated, and its references are made here: a second look takes long.
+        # The parts are validated and the references are made here; validating them again is slow.
         return Hfsm.model_construct(
             composites=(root, *groups),
             leaves=(*leaves, *self._return_leaf()),
@@ -117,7 +117,7 @@ class _Lowering:
         return DONE if target is None else task_id(target)
 
     def _children(self) -> dict[int | None, list[str]]:
-        """The direct children of the mission (None) and of each group, in the mission's order."""
+        """Return the direct children of the mission (None) and of each group, in mission order."""
         children: dict[int | None, list[str]] = {None: []}
         opened = 0
         for i, task in enumerate(self.mission.tasks):
@@ -156,7 +156,7 @@ class _Lowering:
                 until=r.group.until,
             ),
             transitions=(repeat, onward),
-            timeout=timeout_of(r.group),
+            timeout=timeout_transition(r.group),
             source=r.group.source,
         )
 
@@ -187,7 +187,7 @@ class _Lowering:
         )
 
     def _failure(self, inside: int | None, task: Task) -> StateTransition | None:
-        """What follows when the task has failed for good; None: what follows any other end."""
+        """Return the transition after a final failure; None if it is that of any other end."""
         if task.on_failure is not OnFailure.BRANCH or task.failure_target is None:
             return _FAILURES.get(task.on_failure)
         return StateTransition(
@@ -197,7 +197,7 @@ class _Lowering:
         )
 
     def _missed(self, inside: int | None, task: Task) -> StateTransition | None:
-        """What follows when the task's hard window is over; None: what follows a failure."""
+        """Return the transition after a missed hard window; None if it is that of a failure."""
         window = task.window
         if window is None or not window.hard or window.missed_target is None:
             return None
@@ -208,7 +208,7 @@ class _Lowering:
         )
 
     def _return_leaf(self) -> tuple[Leaf, ...]:
-        """The drive back to the dock, if some task asks for it when it has failed."""
+        """Return the leaf that drives back to the dock, if a task has `on_failure` RETURN."""
         if all(task.on_failure is not OnFailure.RETURN for task in self.mission.tasks):
             return ()
         return (
@@ -221,7 +221,7 @@ class _Lowering:
         )
 
     def _default(self, inside: int | None, task: Task) -> StateTransition:
-        """The unconditional transition of a task, taken by a state that lies in `inside`."""
+        """Return the unconditional transition of a task, for a state that lies in `inside`."""
         target = default_target(task)
         if target is None:
             return _END

@@ -1,24 +1,24 @@
-"""The hierarchical state machine (HFSM) of a mission, as data.
+"""Hierarchical state machine (HFSM) of a mission, as data.
 
-Leaf states are tasks, composite states the mission and its groups; beside the mission stand its
-reactions, which interrupt it. The tables are flat and refer to
-each other by id, so that any depth of nesting can be written and read. Nothing has to be known of
-the IL to run or export a machine:
+Leaf states are tasks; composite states are the mission and its groups. The mission's reactions,
+which interrupt it, lie beside it. The tables are flat and refer to each other by id, so that any
+depth of nesting can be written and read. Running or exporting a machine needs no knowledge of the
+IL:
 
 - When the action of a leaf has ended, the leaf's transitions are tried in order, and the first one
-  that can be taken is. The last one always can.
+  that is possible is taken. The last one always is.
 - A transition with `target` leaves all states below its `domain` and enters the states from there
-  to the target anew. A composite that is entered begins its first round, and its clock.
+  to the target anew. A composite that is entered starts its first round and its clock.
 - A transition with `completes` neither leaves nor enters a state: the round of that composite has
   ended, and the composite's own transitions are tried in order.
-- REPEAT begins the next round of its composite; it can be taken while the composite's `repeat`
+- REPEAT starts the next round of its composite; it can be taken while the composite's `repeat`
   wants another round.
-- The time-out of a composite is taken when its clock reaches the duration: the action that runs is
-  cancelled, and the composite's round has ended. As its time is up, it wants no other.
-- An action that failed is tried again `task.retries` times. Then the leaf's `failure` is taken, or
-  without one the leaf's transitions as after any other end.
-- A leaf whose task has a hard window takes `missed` when that is over, or without one what follows
-  a failure.
+- The time-out of a composite is taken when its clock reaches the duration: the running action is
+  cancelled, and the composite's round has ended. As its time is up, it wants no other round.
+- An action that failed is tried again `task.retries` times. Then the leaf's `failure` is taken, or,
+  if it has none, one of the leaf's transitions, as after any other end.
+- A leaf whose task has a hard window takes `missed` when the window is over, or, if it has none,
+  does the same as after a failure.
 - A leaf whose task is a WAIT has no action: it ends by time, an event or conditions (`task.wait`).
 - A reaction is entered when its event occurs. It suspends the mission, which keeps its states.
 """
@@ -34,7 +34,7 @@ from argo_compiler.diagnostics import Span
 from argo_compiler.il import Condition, Reaction, Stop, Task
 
 MISSION = "mission"
-"""id of the composite that all other states lie in"""
+"""id of the composite in which all other states lie"""
 
 DONE: Literal["done"] = "done"
 """id of the final state"""
@@ -44,39 +44,39 @@ RETURN = "return"
 
 
 def reaction_id(event: str) -> str:
-    """The id of the state of a reaction."""
+    """Return the id of the state of the reaction to an event."""
     return f"reaction:{event}"
 
 
 def task_id(name: str) -> str:
-    """The id of the leaf of a task. Tasks and groups may have the same name; ids differ."""
+    """Return the id of a task's leaf. Tasks and groups may have the same name; their ids differ."""
     return f"task:{name}"
 
 
 def group_id(name: str) -> str:
-    """The id of the composite of a group."""
+    """Return the id of a group's composite."""
     return f"group:{name}"
 
 
 class TransitionKind(StrEnum):
-    """Why a transition is taken."""
+    """Kind of a transition: the reason for which it is taken."""
 
     CONDITIONAL = "conditional"
-    """all its conditions hold"""
+    """all its conditions are satisfied"""
     REPEAT = "repeat"
     """the composite wants another round"""
     DEFAULT = "default"
-    """nothing before it could be taken"""
+    """no transition before it could be taken"""
     TIMEOUT = "timeout"
     """the composite's time is up"""
     FAILURE = "failure"
-    """the action has failed for good, and the task says what follows then"""
+    """the action has failed for good, and the task defines a transition for that"""
     MISSED = "missed"
     """the task's hard window is over"""
 
 
 class StateTransition(Model):
-    """One way on. Exactly one of `target` and `completes` is given."""
+    """Transition of a state. Exactly one of `target` and `completes` is given."""
 
     kind: TransitionKind
     target: str | None = None
@@ -84,34 +84,37 @@ class StateTransition(Model):
     domain: str | None = None
     """with `target`: the composite that stays active while everything below it is left"""
     completes: str | None = None
-    """the composite whose round has ended, and which decides how to go on"""
+    """the composite whose round has ended, and whose transitions are tried next"""
     conditions: tuple[Condition, ...] = ()
-    """CONDITIONAL only: all of them have to hold"""
+    """CONDITIONAL only: all of them must be satisfied"""
 
 
 class RepeatRule(Model):
-    """When a group wants another round: while neither limit is reached."""
+    """Rule for further rounds of a group: it wants another one until a limit is reached.
+
+    The limits are `count`, `duration` and `until`.
+    """
 
     count: int = Field(ge=0)
-    """rounds in all; 0: no limit"""
+    """total number of rounds; 0: no limit"""
     duration: float = Field(ge=0)
     """s since the group was entered; 0: no limit"""
     stop: Stop
-    """what happens when the duration is over in the middle of a round"""
+    """behaviour when the duration is over in the middle of a round"""
     count_interruptions: bool = False
-    """whether the duration goes on while the mission is interrupted"""
+    """whether the group's clock runs while the mission is interrupted"""
     every: float = Field(default=0.0, ge=0)
-    """s from the beginning of one round to that of the next; 0: at once"""
+    """s from the start of one round to that of the next; 0: the next round starts at once"""
     until: tuple[Condition, ...] = ()
-    """no other round is wanted once all of these hold; none: not looked at"""
+    """no other round is wanted once all of these are satisfied; empty: no such limit"""
 
 
 class Composite(Model):
-    """The mission or a group."""
+    """State that contains others: the mission or a group."""
 
     id: str
     name: str
-    """of the group; of the mission, its designation"""
+    """name of the group, or designation of the mission"""
     parent: str | None
     """the composite around it; None for the mission"""
     children: tuple[str, ...]
@@ -119,7 +122,7 @@ class Composite(Model):
     initial: str
     """the leaf that a round begins with; it may lie in a composite further down"""
     repeat: RepeatRule | None = None
-    """None for the mission, which is gone through once"""
+    """None for the mission, which has a single round"""
     transitions: tuple[StateTransition, ...] = ()
     """for the end of a round, in the order in which they are tried"""
     timeout: StateTransition | None = None
@@ -128,7 +131,7 @@ class Composite(Model):
 
 
 class Leaf(Model):
-    """The state in which the action of a task runs."""
+    """State in which the action of a task runs."""
 
     id: str
     parent: str
@@ -146,7 +149,7 @@ class Leaf(Model):
 
 
 class ReactionState(Model):
-    """The state that an event leads to. It lies beside the mission, not in it."""
+    """State that an event leads to. It lies beside the mission, not in it."""
 
     id: str
     reaction: Reaction
@@ -155,20 +158,20 @@ class ReactionState(Model):
 
 
 class Hfsm(Model):
-    """A machine. The composite `mission` begins in its `initial` state and ends in `final`."""
+    """State machine. The composite `mission` begins in its `initial` state and ends in `final`."""
 
     version: Literal[3] = 3
-    """of this format"""
+    """version of this format"""
     composites: tuple[Composite, ...]
-    """the mission first, each one before those that lie in it"""
+    """the mission first; each one before those that lie in it"""
     leaves: tuple[Leaf, ...]
     """in the mission's order"""
     reactions: tuple[ReactionState, ...] = ()
-    """by rank, the greatest first; one for each event"""
+    """by rank, the highest first; one for each event"""
     max_duration: float | None = None
     """s since the mission's start, interruptions included, after which TIME_UP occurs"""
     supervised: bool = False
-    """whether it is paused as soon as it is started, and begins when a person lets it (M9)"""
+    """whether it is paused at its start, until a person resumes it (M9)"""
     final: Literal["done"] = DONE
 
     @property
@@ -176,7 +179,7 @@ class Hfsm(Model):
         return self.composites[0]
 
     def transitions(self) -> Iterator[StateTransition]:
-        """All transitions, by source."""
+        """Yield all transitions, ordered by their source state."""
         for leaf in self.leaves:
             yield from leaf.transitions
             if leaf.failure:
@@ -189,17 +192,17 @@ class Hfsm(Model):
                 yield composite.timeout
 
     @model_validator(mode="after")
-    def _makes_sense(self) -> "Hfsm":
+    def _check_structure(self) -> "Hfsm":
         _validate(self)
         return self
 
 
 def _validate(hfsm: Hfsm) -> None:
-    """Check what an executor and exporters rely on, in linear time.
+    """Check the properties that the executor and exporters rely on, in linear time.
 
     Raises:
-        ValueError: a state is missing, doubled or out of place, or a transition can't be taken
-            where it stands.
+        ValueError: a state is missing, duplicated or in a wrong place, or a state has a transition
+            that can't be taken from it.
     """
     composites = _composites(hfsm)
     nesting = _Nesting(hfsm.composites)
@@ -219,7 +222,7 @@ def _validate(hfsm: Hfsm) -> None:
     def check(id: str, parent: str, transitions: Sequence[StateTransition], completes: str) -> None:
         for t in transitions:
             if (t.target is None) == (t.completes is None):
-                raise ValueError(f"a transition of '{id}' has not one of target and completes")
+                raise ValueError(f"a transition of '{id}' needs either target or completes")
             if t.completes is not None:
                 if t.completes != completes:
                     raise ValueError(f"'{id}' can't complete '{t.completes}'")
@@ -257,9 +260,9 @@ def _composites(hfsm: Hfsm) -> set[str]:
     known: set[str] = set()
     for composite in hfsm.composites:
         if (composite.parent is None) != (not known):
-            raise ValueError(f"the mission alone has no parent, unlike '{composite.id}'")
+            raise ValueError(f"only the mission has no parent; '{composite.id}' breaks this rule")
         if composite.parent is not None and composite.parent not in known:
-            raise ValueError(f"composite '{composite.id}' stands before its parent")
+            raise ValueError(f"composite '{composite.id}' comes before its parent")
         known.add(composite.id)
     if not hfsm.composites or hfsm.composites[0].id != "mission":
         raise ValueError("there is no composite 'mission'")
@@ -267,7 +270,7 @@ def _composites(hfsm: Hfsm) -> set[str]:
 
 
 class _Nesting:
-    """Which composite lies in which: an interval for each, inside of its parent's."""
+    """Nesting of the composites: each has an interval that lies within that of its parent."""
 
     def __init__(self, composites: Sequence[Composite]) -> None:
         children: dict[str | None, list[str]] = {c.id: [] for c in composites}

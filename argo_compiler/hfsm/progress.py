@@ -1,4 +1,4 @@
-"""How far a mission has come, as data that can be written to a file and gone on from."""
+"""Progress of a mission, as data that can be written to a file and restored."""
 
 from enum import StrEnum
 
@@ -10,82 +10,82 @@ from argo_compiler.il import EventKind
 
 
 class GroupProgress(Model):
-    """An active group: the round it is in, from 1, and the time on its clock (s)."""
+    """Active group: its current round, from 1, and the time on its clock (s)."""
 
     group: str
     round: int = Field(ge=1)
     elapsed: float = Field(ge=0)
     counts_interruptions: bool = False
-    """whether time away is added to its clock"""
+    """whether its clock runs during interruptions and time away"""
 
 
 class ReadingProgress(Model):
-    """The reading of a checkpoint and its age (s)."""
+    """Reading of a checkpoint, with its age (s)."""
 
     object_id: str
     kind: ReadingKind = ReadingKind.VALUE
     value: float | None = None
-    """of the kind VALUE"""
+    """only for the kind VALUE"""
     abnormal: bool = False
     age: float = Field(ge=0)
 
 
 class TaskTally(Model):
-    """How often visits of a task have ended."""
+    """Numbers of ended visits of a task."""
 
     task: str
     done: int = Field(default=0, ge=0)
-    """by the robot"""
+    """visits that the robot completed"""
     failed: int = Field(default=0, ge=0)
-    """for good"""
+    """visits that failed for good"""
     by_hand: int = Field(default=0, ge=0)
-    """done or skipped by a person"""
+    """visits that a person did or skipped"""
 
 
 class ByHand(Model):
-    """What a person did in place of the machine's next visit of a task."""
+    """Task that a person did or skipped, in place of the machine's next visit of it."""
 
     task: str
     value: float | None = None
-    """what was read, for MEASURE"""
+    """the value that was read, for MEASURE"""
     abnormal: bool = False
     """whether the value lies outside the checkpoint's nominal range"""
     duration: float = Field(default=0.0, ge=0)
     """s that it took, for the clocks of groups"""
     skipped: bool = False
-    """left out, rather than done"""
+    """whether it was skipped, rather than done"""
     age: float | None = Field(default=None, ge=0)
-    """s ago that it was done; None: when the robot is given back"""
+    """s since it was done; None: it is done when the robot is given back"""
 
 
 class Phase(StrEnum):
-    """How far a reaction has come."""
+    """Phase of a reaction: its drive or its hold."""
 
     DRIVING = "driving"
     HOLDING = "holding"
 
 
 class Waiting(Model):
-    """A reaction whose turn has not come yet, or which was interrupted and begins anew."""
+    """Reaction that waits: it has not started, or was interrupted and starts again."""
 
     event: EventKind
     over: bool = False
-    """whether the event that it would hold for has occurred already"""
+    """whether the event `until`, for which it would hold, has already occurred"""
 
 
 class Reacting(Waiting):
-    """The reaction under way."""
+    """The active reaction."""
 
     phase: Phase
     held: float = Field(default=0.0, ge=0)
-    """HOLDING: s that it has held"""
+    """HOLDING: s since the hold began"""
 
 
 class Progress(Model):
-    """Where a mission stands. All times are relative, so that it can go on at any later time."""
+    """Progress of a mission. All times are relative, so that it can continue at any later time."""
 
     active: str | None
-    """the task it stands at; None: nothing is left to do"""
+    """the active task; None if nothing remains to be done"""
     attempt: int = Field(default=0, ge=0)
     """how often the action has failed in this visit of the task"""
     since: float = Field(default=0.0, ge=0)
@@ -93,27 +93,29 @@ class Progress(Model):
     occurred: bool = False
     """whether the event that this visit waits for has occurred"""
     round_of: str | None = None
-    """the group whose round begins with this visit and is not due yet, or was not when the mission
-    was interrupted; None: no round has to be waited for"""
+    """the group whose next round starts with this visit and is not due yet, or was not due when the
+    mission was interrupted; None if no round is awaited"""
     groups: tuple[GroupProgress, ...] = ()
-    """those that the active task lies in, outermost first"""
+    """the groups around the active task, outermost first"""
     readings: tuple[ReadingProgress, ...] = ()
     tallies: tuple[TaskTally, ...] = ()
-    """of all tasks of which a visit has ended; a cancelled action has not ended one"""
+    """of all tasks of which a visit has ended; a cancelled action ends no visit"""
     failed: bool = False
-    """whether a failure counts as one of the mission (M3)"""
+    """whether the mission can only end *completed with failures* (M3): a task that is not optional
+    failed"""
     actions: int = Field(default=0, ge=0)
-    """how many have been started, so that none of those that follow has the id of one of them"""
+    """number of actions started so far, so that the ids of later ones differ"""
     elapsed: float = Field(default=0.0, ge=0)
     """s since the mission's start, interruptions included"""
     time_up: bool = False
     """whether TIME_UP has occurred"""
     paused: bool = False
-    """whether a person has to let it go on"""
+    """whether the mission waits for a person to resume it"""
     reaction: Reacting | None = None
     waiting: tuple[Waiting, ...] = ()
     """in the order in which the events occurred"""
     outcome: Outcome | None = None
-    """None: it has not ended"""
+    """None if the mission has not ended"""
     by_hand: tuple[ByHand, ...] = ()
-    """what a person did and the machine has not come to yet; of one task in order"""
+    """tasks done by hand whose visit the machine has not reached yet; those of the same task in
+    order"""

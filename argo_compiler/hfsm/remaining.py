@@ -1,25 +1,25 @@
-"""The part of a machine that can still be reached from where a mission stands."""
+"""Remaining machine: the part that can still be reached from a mission's progress."""
 
 import heapq
 from itertools import count
 
 from argo_compiler.hfsm.model import DONE, Composite, Hfsm, Leaf
 from argo_compiler.hfsm.progress import GroupProgress, Progress
-from argo_compiler.hfsm.restoring import leaf_of
-from argo_compiler.hfsm.tables import CompiledTransition, GroupNode, LeafNode, tables
+from argo_compiler.hfsm.restoring import leaf_for
+from argo_compiler.hfsm.tables import CompiledTransition, GroupNode, LeafNode, build_tables
 
 
 def remaining(hfsm: Hfsm, progress: Progress) -> Hfsm:
-    """The machine without the states that can't be reached any more (rule H5).
+    """Return the machine without the states that can't be reached any more (rule H5).
 
-    Which conditions will hold is not known, so all are taken to be possible.
+    Which conditions will be satisfied is unknown, so all of them are assumed to be possible.
 
     Raises:
-        ArgoError: the machine does not have the task that the mission stands at.
+        ArgoError: the machine does not have the active task of the progress.
     """
     reach = _Reach(hfsm, progress)
     leaves = tuple(leaf for leaf in hfsm.leaves if leaf.id in reach.leaves)
-    # Children come after their parents, so a group is known to be kept before the one around it.
+    # Parents come before their children, so in reverse order each child is decided first.
     kept = {leaf.parent for leaf in leaves} | {hfsm.mission.id}
     for composite in reversed(hfsm.composites):
         if composite.id in kept and composite.parent is not None:
@@ -28,21 +28,22 @@ def remaining(hfsm: Hfsm, progress: Progress) -> Hfsm:
     composites = []
     for composite in hfsm.composites:
         if composite.id in kept:
-            begins = composite.initial in reach.leaves
-            initial = composite.initial if begins else first.get(composite.id, DONE)
-            composites.append(_pruned(composite, initial, kept, reach))
-    here = DONE if reach.start is None else reach.start.id
-    mission = composites[0].model_copy(update={"initial": here})
+            reachable = composite.initial in reach.leaves
+            initial = composite.initial if reachable else first.get(composite.id, DONE)
+            composites.append(_prune(composite, initial, kept, reach))
+    active = DONE if reach.start is None else reach.start.id
+    mission = composites[0].model_copy(update={"initial": active})
     return hfsm.model_copy(update={"composites": (mission, *composites[1:]), "leaves": leaves})
 
 
-def _pruned(composite: Composite, initial: str, kept: set[str], reach: "_Reach") -> Composite:
+def _prune(composite: Composite, initial: str, kept: set[str], reach: "_Reach") -> Composite:
     children = tuple(
         child
         for child in composite.children
         if child in kept or child in reach.leaves or child == DONE
     )
-    # The end of a round that is never reached leads nowhere, as the default of an endless group.
+    # Transitions that can't be taken are removed: those of a round whose end is never reached, and
+    # those whose target is never reached, such as the default one of an endless group.
     ends = composite.id in reach.completed
     transitions = tuple(
         t
@@ -54,7 +55,7 @@ def _pruned(composite: Composite, initial: str, kept: set[str], reach: "_Reach")
 
 
 def _first_leaves(hfsm: Hfsm, leaves: tuple[Leaf, ...]) -> dict[str, str]:
-    """The first leaf in each composite."""
+    """Return the first leaf in each composite."""
     parents = {composite.id: composite.parent for composite in hfsm.composites}
     first: dict[str, str] = {}
     for leaf in leaves:
@@ -66,26 +67,28 @@ def _first_leaves(hfsm: Hfsm, leaves: tuple[Leaf, ...]) -> dict[str, str]:
 
 
 class _Reach:
-    """What can be reached: grows as it is searched.
+    """Search for the states that can be reached. It fills `leaves` and `completed`.
 
-    A visit of a group under way may not be repeated any more, but one that is entered anew may. So
-    a leaf is looked at along with how many of the groups under way, from the outermost, have not
-    been left. The fewer, the more can be reached; the search takes those with the fewest first.
+    A group that is already active may be in its last round, and then is not repeated; a group that
+    is entered again has all its rounds. So the search state is a leaf together with `under_way`:
+    how many of the groups that are active at first, from the outermost, have not been left. The
+    smaller the number, the more states can be reached; the search expands the smallest numbers
+    first.
     """
 
     def __init__(self, hfsm: Hfsm, progress: Progress) -> None:
-        known = tables(hfsm)
+        known = build_tables(hfsm)
         self.start: LeafNode | None = None
         self.leaves: set[str] = set()
         self.completed: set[str] = set()
         self._fewest: dict[str, int] = {}
-        self._looked_at: set[tuple[str, int, bool]] = set()
+        self._searched: set[tuple[str, int, bool]] = set()
         self._order = count()
         self._pending: list[tuple[int, int, LeafNode]] = []
         if progress.outcome is not None or progress.active is None:
             return
-        self.start = leaf_of(known, progress.active)
-        self._last_round = _in_last_round(self.start, progress.groups)
+        self.start = leaf_for(known, progress.active)
+        self._last_round = _last_round_flags(self.start, progress.groups)
         self._add(self.start, len(self._last_round))
         while self._pending:
             under_way, _, leaf = heapq.heappop(self._pending)
@@ -93,7 +96,7 @@ class _Reach:
                 self._follow(leaf, under_way)
 
     def _add(self, leaf: LeafNode | None, under_way: int) -> None:
-        # Only groups in their last round make a difference.
+        # Only groups in their last round restrict what can be reached.
         while under_way and not self._last_round[under_way - 1]:
             under_way -= 1
         if leaf is None or under_way >= self._fewest.get(leaf.id, len(self._last_round) + 1):
@@ -103,61 +106,63 @@ class _Reach:
         heapq.heappush(self._pending, (under_way, next(self._order), leaf))
 
     def _follow(self, leaf: LeafNode, under_way: int) -> None:
-        self._take(leaf.ways, under_way)
+        self._follow_transitions(leaf.transitions, under_way)
         missable = leaf.latest is not None
         if missable and leaf.missed is not None:
-            self._take((leaf.missed,), under_way)
+            self._follow_transitions((leaf.missed,), under_way)
         if leaf.failure is not None and (leaf.may_fail or (missable and leaf.missed is None)):
-            self._take((leaf.failure,), under_way)
+            self._follow_transitions((leaf.failure,), under_way)
         for group in leaf.groups:
-            if (group.id, under_way, True) in self._looked_at:
+            if (group.id, under_way, True) in self._searched:
                 break
             if group.timeout is not None:
                 self._complete(group, under_way, time_up=True)
-            self._looked_at.add((group.id, under_way, True))
+            self._searched.add((group.id, under_way, True))
 
-    def _take(self, ways: tuple[CompiledTransition, ...], under_way: int) -> None:
-        for way in ways:
-            if way.completes is not None:
-                self._complete(way.completes, under_way, time_up=False)
+    def _follow_transitions(
+        self, transitions: tuple[CompiledTransition, ...], under_way: int
+    ) -> None:
+        for transition in transitions:
+            if transition.completes is not None:
+                self._complete(transition.completes, under_way, time_up=False)
             else:
-                self._add(way.target, min(under_way, way.keep))
+                self._add(transition.target, min(under_way, transition.kept_groups))
 
     def _complete(self, group: GroupNode, under_way: int, time_up: bool) -> None:
-        """The round of a group, and perhaps of groups around it, comes to its end."""
+        """Follow the end of a group's round, and of rounds of groups around it that end with it."""
         following: GroupNode | None = group
         while following is not None:
             group, following = following, None
-            if (group.id, under_way, False) in self._looked_at and not time_up:
+            if (group.id, under_way, False) in self._searched and not time_up:
                 return
             self.completed.add(group.id)
             if not time_up:
-                self._looked_at.add((group.id, under_way, False))
-            for way in group.ways:
-                if way.repeats is None:
-                    following = way.completes
+                self._searched.add((group.id, under_way, False))
+            for transition in group.transitions:
+                if transition.repeats is None:
+                    following = transition.completes
                     if following is None:
-                        self._add(way.target, min(under_way, way.keep))
+                        self._add(transition.target, min(under_way, transition.kept_groups))
                 elif not time_up:
                     last = group.depth < under_way and self._last_round[group.depth]
                     if group.count != 1 and not last:
-                        self._add(way.target, min(under_way, way.keep))
+                        self._add(transition.target, min(under_way, transition.kept_groups))
                     if not group.count and not group.duration and not group.until:
                         break
             time_up = False
 
 
-def _in_last_round(leaf: LeafNode, progress: tuple[GroupProgress, ...]) -> list[bool]:
-    """For each group around the leaf, outermost first, whether it is not repeated in this visit."""
+def _last_round_flags(leaf: LeafNode, progress: tuple[GroupProgress, ...]) -> list[bool]:
+    """Return, for each group around the leaf, outermost first, whether its last round is active."""
     known = {p.group: p for p in progress}
-    found = []
+    last = []
     for group in leaf.groups:
         p = known.get(group.name)
-        found.append(
+        last.append(
             p is not None
             and bool(
                 (group.count and p.round >= group.count)
                 or (group.duration and max(p.elapsed, p.round * group.every) >= group.duration)
             )
         )
-    return found[::-1]
+    return last[::-1]

@@ -1,10 +1,11 @@
-"""From where a machine stands to progress, and back."""
+"""Conversion of an executor's state to progress, and back."""
 
 from collections.abc import Mapping
 
 from argo_compiler.base.errors import Conflict
 from argo_compiler.hfsm.conditions import CheckpointReading
 from argo_compiler.hfsm.configuration import Configuration, Frame
+from argo_compiler.hfsm.interrupt_state import InterruptState, Pending
 from argo_compiler.hfsm.interrupts import Stage
 from argo_compiler.hfsm.model import RETURN, task_id
 from argo_compiler.hfsm.progress import (
@@ -16,7 +17,6 @@ from argo_compiler.hfsm.progress import (
     TaskTally,
     Waiting,
 )
-from argo_compiler.hfsm.standing import InterruptState, Pending
 from argo_compiler.hfsm.tables import GroupNode, LeafNode, Tables
 from argo_compiler.hfsm.visits import TaskVisit
 from argo_compiler.il import EventKind, Reaction, Response
@@ -25,17 +25,19 @@ from argo_compiler.il.reserved import RETURN_TASK
 _OTHER = "use the mission that it was saved from, or match it to this one first"
 
 
-def place_of(tables: Tables, progress: Progress, now: float, away: float) -> Configuration:
-    """Where a machine stands that goes on from `progress` at `now`, after `away` seconds.
+def restore_configuration(
+    tables: Tables, progress: Progress, now: float, away: float
+) -> Configuration:
+    """Return the configuration that continues from `progress` at `now`, after `away` seconds.
 
     Raises:
-        ArgoError: the progress is not one of this machine.
+        ArgoError: the progress does not belong to this machine.
     """
-    place = Configuration(tables)
-    place.began = now - progress.elapsed - away
-    leaf = None if progress.active is None else leaf_of(tables, progress.active)
-    number = place.new_number()
-    place.visit = TaskVisit(
+    configuration = Configuration(tables)
+    configuration.started_at = now - progress.elapsed - away
+    leaf = None if progress.active is None else leaf_for(tables, progress.active)
+    number = configuration.new_number()
+    configuration.visit = TaskVisit(
         leaf,
         number,
         number,
@@ -45,29 +47,32 @@ def place_of(tables: Tables, progress: Progress, now: float, away: float) -> Con
         progress.occurred,
     )
     if progress.paused or progress.reaction:
-        place.interrupted_at = now
-    place.readings = {
+        configuration.interrupted_at = now
+    configuration.readings = {
         r.object_id: CheckpointReading(r.kind, now - r.age - away, r.value, r.abnormal)
         for r in progress.readings
     }
     if leaf is None:
-        return place
+        return configuration
     for group, known in zip(_groups(leaf, progress), progress.groups, strict=True):
         elapsed = known.elapsed + (away if group.counts_interruptions else 0.0)
-        place.frames.append(Frame(group, known.round, now - elapsed))
+        configuration.frames.append(Frame(group, known.round, now - elapsed))
     if progress.round_of is not None:
-        waited = (f for f in place.frames if f.group.name == progress.round_of and f.group.every)
-        place.round_of = next(waited, None)
-        if place.round_of is None:
+        awaited = (
+            f for f in configuration.frames if f.group.name == progress.round_of and f.group.every
+        )
+        configuration.awaited_round = next(awaited, None)
+        if configuration.awaited_round is None:
             raise Conflict(
-                f"the progress waits for a round of group '{progress.round_of}', of which task "
-                f"'{leaf.name}' is not in a planned round; {_OTHER}"
+                f"the progress waits for a round of group '{progress.round_of}', but task "
+                f"'{leaf.name}' is not in a group of that name whose rounds start at planned "
+                f"times; {_OTHER}"
             )
-    return place
+    return configuration
 
 
-def standing_of(tables: Tables, progress: Progress) -> InterruptState:
-    """Who has the robot: the reactions that are active and wait, and whether it is paused.
+def restore_interrupt_state(tables: Tables, progress: Progress) -> InterruptState:
+    """Return who controls the robot: active and waiting reactions, and whether it is paused.
 
     Raises:
         ArgoError: the machine does not have the reactions.
@@ -88,23 +93,31 @@ def standing_of(tables: Tables, progress: Progress) -> InterruptState:
     return InterruptState(stage, progress.paused, None if active is None else active.event, pending)
 
 
-def group_progress(place: Configuration, now: float) -> tuple[GroupProgress, ...]:
-    """The active groups, outermost first. The clocks of those that a round is awaited for have not
-    begun."""
-    begun = len(place.frames) if place.round_of is None else place.round_of.group.depth + 1
+def group_progress(configuration: Configuration, now: float) -> tuple[GroupProgress, ...]:
+    """Return the active groups, outermost first.
+
+    The clocks of groups that lie within the group whose round is awaited have not started.
+    """
+    started = (
+        len(configuration.frames)
+        if configuration.awaited_round is None
+        else configuration.awaited_round.group.depth + 1
+    )
     return tuple(
         GroupProgress(
             group=frame.group.name,
             round=frame.round,
-            elapsed=max(0.0, place.clock(now, frame.group) - frame.entered) if i < begun else 0.0,
+            elapsed=max(0.0, configuration.clock_at(now, frame.group) - frame.entered)
+            if i < started
+            else 0.0,
             counts_interruptions=frame.group.counts_interruptions,
         )
-        for i, frame in enumerate(place.frames)
+        for i, frame in enumerate(configuration.frames)
     )
 
 
-def reading_progress(place: Configuration, now: float) -> tuple[ReadingProgress, ...]:
-    """The readings with their ages."""
+def reading_progress(configuration: Configuration, now: float) -> tuple[ReadingProgress, ...]:
+    """Return the readings with their ages."""
     return tuple(
         ReadingProgress(
             object_id=id,
@@ -113,12 +126,12 @@ def reading_progress(place: Configuration, now: float) -> tuple[ReadingProgress,
             abnormal=reading.abnormal,
             age=max(0.0, now - reading.time),
         )
-        for id, reading in place.readings.items()
+        for id, reading in configuration.readings.items()
     )
 
 
 def tally_progress(tallies: Mapping[str, list[int]]) -> tuple[TaskTally, ...]:
-    """How often visits of each task have ended."""
+    """Return the number of ended visits of each task."""
     return tuple(
         TaskTally(task=task, done=done, failed=failed, by_hand=by_hand)
         for task, (done, failed, by_hand) in tallies.items()
@@ -126,20 +139,20 @@ def tally_progress(tallies: Mapping[str, list[int]]) -> tuple[TaskTally, ...]:
 
 
 def reaction_progress(
-    standing: InterruptState, held: float
+    state: InterruptState, held: float
 ) -> tuple[Reacting | None, tuple[Waiting, ...]]:
-    """The active reaction, which has held so long (s) if it holds, and those that wait."""
-    waiting = tuple(Waiting(event=p.event, over=p.over) for p in standing.waiting)
-    if standing.active is None:
+    """Return the active reaction and the waiting ones; `held` (s) is the time of its hold."""
+    waiting = tuple(Waiting(event=p.event, over=p.until_occurred) for p in state.waiting)
+    if state.active is None:
         return None, waiting
-    active = Reacting(event=standing.active, over=standing.over, phase=Phase.DRIVING)
-    if standing.stage is Stage.HOLDING:
+    active = Reacting(event=state.active, over=state.until_occurred, phase=Phase.DRIVING)
+    if state.stage is Stage.HOLDING:
         active = active.model_copy(update={"phase": Phase.HOLDING, "held": max(0.0, held)})
     return active, waiting
 
 
-def leaf_of(tables: Tables, name: str) -> LeafNode:
-    """Return the leaf of the task that a mission stands at. Raises ArgoError if there is none."""
+def leaf_for(tables: Tables, name: str) -> LeafNode:
+    """Return the leaf of the task at which a mission is. Raises ArgoError if there is none."""
     leaf = tables.leaves.get(RETURN if name == RETURN_TASK else task_id(name))
     if leaf is None:
         raise Conflict(
@@ -158,7 +171,7 @@ def _groups(leaf: LeafNode, progress: Progress) -> list[GroupNode]:
 
 
 def _reaction(tables: Tables, event: EventKind) -> Reaction:
-    """The reaction to an event. One that aborts is neither active nor waits."""
+    """Return the reaction to an event; it must be one that can be active or wait."""
     node = tables.reactions.get(event)
     reaction = None if node is None else node.state.reaction
     if reaction is None or reaction.response in (Response.REPORT, Response.ABORT):

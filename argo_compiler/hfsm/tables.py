@@ -1,10 +1,10 @@
-"""The tables that an executor runs on: a machine whose states know each other directly."""
+"""Tables that an executor runs on: a state machine whose states refer to each other directly."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from argo_compiler.base.garbage_collector import collector_held
-from argo_compiler.hfsm.conditions import Test, reading_test
+from argo_compiler.hfsm.conditions import ReadingTest, reading_test
 from argo_compiler.hfsm.kinds import Cause
 from argo_compiler.hfsm.model import (
     MISSION,
@@ -27,37 +27,37 @@ _CAUSES = {
     TransitionKind.MISSED: Cause.MISSED,
 }
 
-Guard = tuple[str, Test]
-"""A condition: the checkpoint, and the test of its reading."""
+Guard = tuple[str, ReadingTest]
+"""condition: the object_id of its checkpoint, and the predicate on the reading"""
 
 
-def guards(conditions: tuple[Condition, ...]) -> tuple[Guard, ...]:
-    """Conditions as an executor looks at them."""
+def compile_guards(conditions: tuple[Condition, ...]) -> tuple[Guard, ...]:
+    """Return the conditions in the form that an executor evaluates."""
     return tuple((condition.object_id, reading_test(condition)) for condition in conditions)
 
 
 @dataclass(slots=True, eq=False)
 class CompiledTransition:
-    """A transition. Filled in while the tables are made, then never changed."""
+    """Transition. It is filled in while the tables are made, and never changes afterwards."""
 
     cause: Cause
     guards: tuple[Guard, ...]
     conditions: tuple[Condition, ...]
     target: "LeafNode | None"
-    """None: the final state, or `completes`"""
-    keep: int
+    """None for the final state, or with `completes`"""
+    kept_groups: int
     """how many of the active groups, from the outermost, are not left"""
     domain: "GroupNode | None"
-    """the innermost of them"""
+    """the innermost of the groups that are not left; None if all are left"""
     completes: "GroupNode | None"
     repeats: "GroupNode | None"
-    free: bool
-    """whether it can be taken whatever was measured, in whatever round"""
+    always_possible: bool
+    """whether it can be taken in every round and with every reading"""
 
 
 @dataclass(slots=True, eq=False)
 class GroupNode:
-    """A group. `depth` is its place among the active groups, from 0."""
+    """Group. `depth` is its index among the active groups, from 0 for the outermost."""
 
     id: str
     name: str
@@ -66,18 +66,18 @@ class GroupNode:
     count: int
     duration: float
     counts_interruptions: bool
-    hard: bool
-    """whether a time-out leaves it"""
+    has_hard_stop: bool
+    """whether the machine leaves it at its time-out"""
     every: float
-    """s from one round to the next; 0: at once"""
+    """s from the start of one round to the next; 0: the next round starts at once"""
     until: tuple[Guard, ...]
-    ways: tuple[CompiledTransition, ...] = ()
+    transitions: tuple[CompiledTransition, ...] = ()
     timeout: CompiledTransition | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WaitNode:
-    """How long a WAIT lasts."""
+    """End of a WAIT: by time, by an event, or by conditions."""
 
     duration: float | None
     event: EventKind | None
@@ -88,7 +88,7 @@ class WaitNode:
 
 @dataclass(slots=True, eq=False)
 class LeafNode:
-    """A task, with what its action and its own times need."""
+    """Task, with the data that its action and its own times need."""
 
     id: str
     name: str
@@ -97,7 +97,7 @@ class LeafNode:
     retries: int
     optional: bool
     measures: str | None
-    """the checkpoint, for MEASURE"""
+    """object_id of the checkpoint, for MEASURE"""
     wait: WaitNode | None
     """for WAIT, which has no action"""
     earliest: float
@@ -105,19 +105,19 @@ class LeafNode:
     latest: float | None
     """s since the mission's start, for a hard window"""
     time_limit: float | None
-    timed: bool
-    """whether its own times bring something about while the machine stands at it"""
-    done: tuple[str, None, bool]
-    """what is kept of a visit that has ended well"""
-    returns: bool
-    """whether it is the way back to the dock"""
-    ways: tuple[CompiledTransition, ...] = ()
+    is_timed: bool
+    """whether its own times can change the state of the machine during a visit"""
+    ended_visit: tuple[str, None, bool]
+    """record of a visit that has ended well"""
+    is_return: bool
+    """whether it is the drive back to the dock after a failure"""
+    transitions: tuple[CompiledTransition, ...] = ()
     failure: CompiledTransition | None = None
     missed: CompiledTransition | None = None
 
     @property
     def groups(self) -> Iterator[GroupNode]:
-        """The groups that it lies in, from the innermost outward."""
+        """The groups around it, from the innermost outward."""
         group = self.parent
         while group is not None:
             yield group
@@ -125,13 +125,13 @@ class LeafNode:
 
     @property
     def may_fail(self) -> bool:
-        """Whether it can fail for good other than by its window."""
+        """True if it can fail for good in another way than by its window."""
         return self.wait is None or self.wait.limit is not None
 
 
 @dataclass(slots=True, eq=False)
 class ReactionNode:
-    """A reaction, with the task of its drive."""
+    """Reaction, with the task of its drive."""
 
     state: ReactionState
     task: Task | None
@@ -143,7 +143,7 @@ class ReactionNode:
 
 @dataclass(slots=True, eq=False)
 class Tables:
-    """A machine, looked up by ids. It does not change."""
+    """State machine as look-up tables by id. It does not change."""
 
     initial: LeafNode | None
     leaves: dict[str, LeafNode]
@@ -153,41 +153,42 @@ class Tables:
     has_hard_groups: bool = field(default=False)
 
 
-def tables(hfsm: Hfsm) -> Tables:
-    """The tables of a machine, in linear time."""
+def build_tables(hfsm: Hfsm) -> Tables:
+    """Return the tables of a machine, in linear time."""
     with collector_held():
-        return _tables(hfsm)
+        return _build_tables(hfsm)
 
 
-def _tables(hfsm: Hfsm) -> Tables:
+def _build_tables(hfsm: Hfsm) -> Tables:
     groups: dict[str, GroupNode] = {}
     for composite in hfsm.composites[1:]:
         groups[composite.id] = _group(composite, groups)
     leaves = {leaf.id: _leaf(leaf, groups) for leaf in hfsm.leaves}
 
-    def way(transition: StateTransition) -> CompiledTransition:
+    def compile_transition(transition: StateTransition) -> CompiledTransition:
         domain = None if transition.domain is None else groups.get(transition.domain)
         return CompiledTransition(
             cause=_CAUSES[transition.kind],
-            guards=guards(transition.conditions),
+            guards=compile_guards(transition.conditions),
             conditions=transition.conditions,
             target=None if transition.target is None else leaves.get(transition.target),
-            keep=0 if domain is None else domain.depth + 1,
+            kept_groups=0 if domain is None else domain.depth + 1,
             domain=domain,
             completes=None if transition.completes is None else groups[transition.completes],
             repeats=domain if transition.kind is TransitionKind.REPEAT else None,
-            free=transition.kind is not TransitionKind.REPEAT and not transition.conditions,
+            always_possible=transition.kind is not TransitionKind.REPEAT
+            and not transition.conditions,
         )
 
     for leaf in hfsm.leaves:
         node = leaves[leaf.id]
-        node.ways = tuple(map(way, leaf.transitions))
-        node.failure = None if leaf.failure is None else way(leaf.failure)
-        node.missed = None if leaf.missed is None else way(leaf.missed)
+        node.transitions = tuple(map(compile_transition, leaf.transitions))
+        node.failure = None if leaf.failure is None else compile_transition(leaf.failure)
+        node.missed = None if leaf.missed is None else compile_transition(leaf.missed)
     for composite in hfsm.composites[1:]:
         group = groups[composite.id]
-        group.ways = tuple(map(way, composite.transitions))
-        group.timeout = None if composite.timeout is None else way(composite.timeout)
+        group.transitions = tuple(map(compile_transition, composite.transitions))
+        group.timeout = None if composite.timeout is None else compile_transition(composite.timeout)
     return Tables(
         initial=leaves.get(hfsm.mission.initial),
         leaves=leaves,
@@ -196,7 +197,7 @@ def _tables(hfsm: Hfsm) -> Tables:
             state.reaction.event: ReactionNode(state, state.task) for state in hfsm.reactions
         },
         max_duration=hfsm.max_duration,
-        has_hard_groups=any(group.hard for group in groups.values()),
+        has_hard_groups=any(group.has_hard_stop for group in groups.values()),
     )
 
 
@@ -211,9 +212,9 @@ def _group(composite: Composite, groups: dict[str, GroupNode]) -> GroupNode:
         count=repeat.count if repeat else 1,
         duration=repeat.duration if repeat else 0.0,
         counts_interruptions=bool(repeat and repeat.count_interruptions),
-        hard=composite.timeout is not None and bool(repeat and repeat.stop is Stop.HARD),
+        has_hard_stop=composite.timeout is not None and bool(repeat and repeat.stop is Stop.HARD),
         every=repeat.every if repeat else 0.0,
-        until=guards(repeat.until) if repeat else (),
+        until=compile_guards(repeat.until) if repeat else (),
     )
 
 
@@ -233,11 +234,13 @@ def _leaf(leaf: Leaf, groups: dict[str, GroupNode]) -> LeafNode:
         earliest=0.0 if window is None else window.earliest,
         latest=latest,
         time_limit=task.time_limit,
-        timed=wait is not None or latest is not None,
-        done=(task.name, None, False),
-        returns=leaf.id == RETURN,
+        is_timed=wait is not None or latest is not None,
+        ended_visit=(task.name, None, False),
+        is_return=leaf.id == RETURN,
     )
 
 
 def _wait(rule: WaitRule) -> WaitNode:
-    return WaitNode(rule.duration, rule.event, guards(rule.conditions), rule.conditions, rule.limit)
+    return WaitNode(
+        rule.duration, rule.event, compile_guards(rule.conditions), rule.conditions, rule.limit
+    )

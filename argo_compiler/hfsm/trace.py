@@ -1,23 +1,23 @@
-"""The trace: what a machine did, when and why."""
+"""Trace of a machine: its changes, with their times and causes."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from argo_compiler.hfsm.conditions import words
+from argo_compiler.hfsm.conditions import condition_text
 from argo_compiler.hfsm.kinds import Cause
 from argo_compiler.hfsm.tables import CompiledTransition, LeafNode
 from argo_compiler.il import Condition, EventKind
 
 new_tuple = tuple.__new__
-"""makes a NamedTuple in half the time of its own"""
+"""creates a NamedTuple in half the time that its class needs"""
 
 
 @dataclass(frozen=True, slots=True)
 class TraceEntry:
-    """What happened at a time (s): the mission went from the task `source` to the task `target`.
+    """Entry of the trace: at a time (s), the mission went from task `source` to task `target`.
 
-    `source` is None at the start, `target` when the mission ends. What does not move the mission
-    has the task at which it stands as both.
+    `source` is None at the start, `target` at the end of the mission. If the mission stays at its
+    task, both are that task.
     """
 
     time: float
@@ -25,25 +25,25 @@ class TraceEntry:
     target: str | None
     cause: Cause
     conditions: tuple[str, ...] = ()
-    """those that held, for CONDITION"""
+    """the conditions that were satisfied, for CONDITION"""
     timed_out: str | None = None
     """the group whose time was up, for TIMEOUT"""
     repeated: str | None = None
-    """the group that began another round, for REPEAT and perhaps TIMEOUT"""
+    """the group that started another round, for REPEAT and perhaps TIMEOUT"""
     failure: str | None = None
-    """why the action of `source`, or of the reaction, failed, if it did"""
+    """why the action of `source` or of the reaction failed; None if it did not"""
     event: EventKind | None = None
-    """what occurred, for REPORT, REACTION, HOLD and what ends them"""
+    """the event of REPORT, REACTION, HOLD and the causes that end them"""
     by_hand: bool = False
-    """whether `source` was done or skipped by a person"""
+    """whether a person did or skipped `source`"""
     skipped: bool = False
     """with `by_hand`: whether it was skipped"""
     detail: str = ""
-    """more in words"""
+    """further details, as text"""
 
     @property
     def why(self) -> str:
-        """The cause in words, with the conditions, the group, the event or the failure."""
+        """The cause as text, with the conditions, the group, the event or the failure."""
         why = str(self.cause)
         if self.conditions:
             why = " and ".join(self.conditions)
@@ -67,7 +67,7 @@ class TraceEntry:
 
 
 class RawEntry(NamedTuple):
-    """The fields of a `TraceEntry`, but that conditions are put in words later."""
+    """Fields of a `TraceEntry`, with conditions that are not yet converted to text."""
 
     time: float
     source: str | None
@@ -83,29 +83,29 @@ class RawEntry(NamedTuple):
     detail: str = ""
 
 
-KeptStep = tuple[float, LeafNode, LeafNode | None, CompiledTransition, str]
-"""An entry as the executor stores it for most events: when a task ended well, the task, the next
-one, the transition between them, and the detail."""
+StoredStep = tuple[float, LeafNode, LeafNode | None, CompiledTransition, str]
+"""compact form in which the executor stores most entries: the time at which a task ended well, the
+task, the next one, the transition between them, and the detail"""
 
 
-def raw_entry(kept: RawEntry | KeptStep) -> RawEntry:
-    """Return the entry that was kept."""
-    if isinstance(kept, RawEntry):
-        return kept
-    time, source, target, way, detail = kept
+def raw_entry(stored: RawEntry | StoredStep) -> RawEntry:
+    """Return the stored entry in its full form."""
+    if isinstance(stored, RawEntry):
+        return stored
+    time, source, target, transition, detail = stored
     return RawEntry(
         time,
         source.name,
         None if target is None else target.name,
-        way.cause,
-        way.conditions,
-        repeated=None if way.repeats is None else way.repeats.name,
+        transition.cause,
+        transition.conditions,
+        repeated=None if transition.repeats is None else transition.repeats.name,
         detail=detail,
     )
 
 
-def entry(kept: RawEntry | KeptStep) -> TraceEntry:
-    """The entry that a person reads."""
-    raw = raw_entry(kept)
-    fields = raw._asdict() | {"conditions": tuple(map(words, raw.conditions))}
+def trace_entry(stored: RawEntry | StoredStep) -> TraceEntry:
+    """Return the stored entry in the form for people."""
+    raw = raw_entry(stored)
+    fields = raw._asdict() | {"conditions": tuple(map(condition_text, raw.conditions))}
     return TraceEntry(**fields)

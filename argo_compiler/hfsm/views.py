@@ -1,38 +1,41 @@
-"""Sequences whose items are made when they are looked at."""
+"""Read-only sequences whose items are created on access."""
 
 from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
 from typing import Generic, TypeVar, overload
 
-Kept = TypeVar("Kept")
-Made = TypeVar("Made", covariant=True)
+Stored = TypeVar("Stored")
+Item = TypeVar("Item", covariant=True)
 
 
-class View(Sequence[Made], Generic[Kept, Made]):
-    """What a list holds now, as its owner only ever adds to it. Each item is made on access."""
+class View(Sequence[Item], Generic[Stored, Item]):
+    """View of a list's present items, each created on access.
 
-    __slots__ = ("_kept", "_length", "_make")
+    The list's owner only ever appends to it.
+    """
 
-    def __init__(self, kept: list[Kept], make: Callable[[Kept], Made]) -> None:
-        self._kept = kept
+    __slots__ = ("_length", "_make", "_stored")
+
+    def __init__(self, stored: list[Stored], make: Callable[[Stored], Item]) -> None:
+        self._stored = stored
         self._make = make
-        self._length = len(kept)
+        self._length = len(stored)
 
     def __len__(self) -> int:
         return self._length
 
     @overload
-    def __getitem__(self, at: int) -> Made: ...
+    def __getitem__(self, index: int) -> Item: ...
     @overload
-    def __getitem__(self, at: slice) -> tuple[Made, ...]: ...
-    def __getitem__(self, at: int | slice) -> Made | tuple[Made, ...]:
-        picked = range(self._length)[at]
+    def __getitem__(self, index: slice) -> tuple[Item, ...]: ...
+    def __getitem__(self, index: int | slice) -> Item | tuple[Item, ...]:
+        picked = range(self._length)[index]
         if isinstance(picked, range):
-            return tuple(self._make(self._kept[i]) for i in picked)
-        return self._make(self._kept[picked])
+            return tuple(self._make(self._stored[i]) for i in picked)
+        return self._make(self._stored[picked])
 
-    def __iter__(self) -> Iterator[Made]:
-        return map(self._make, islice(self._kept, self._length))
+    def __iter__(self) -> Iterator[Item]:
+        return map(self._make, islice(self._stored, self._length))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, View | tuple | list):

@@ -1,4 +1,4 @@
-"""One visit of a task, and what its own times bring about."""
+"""Visit of a task, and the times at which it changes by itself."""
 
 import math
 from dataclasses import dataclass
@@ -8,50 +8,55 @@ from argo_compiler.hfsm.tables import LeafNode
 
 @dataclass(slots=True, eq=False)
 class TaskVisit:
-    """The machine's stay at a task. It changes while the machine stands there."""
+    """Visit of a task. The machine changes it during the visit and reuses it for the next one."""
 
     leaf: LeafNode | None
-    """None: the mission has not begun, or nothing is left to do"""
+    """None before the mission's start, or if nothing remains to be done"""
     number: int
-    """tells two visits of a task apart"""
+    """unique number of the visit"""
     turn: int
-    """tells two actions of a visit apart: the number at first, another one after a failure of the
-    action and after an interruption"""
+    """unique number of the action within the visit: at first that of the visit, a new one after a
+    failure of the action and after an interruption"""
     since: float
-    """s, when it began"""
-    look_at: float = -math.inf
-    """when the conditions of a WAIT are looked at next (s)"""
+    """time (s) at which it began"""
+    check_at: float = -math.inf
+    """time (s) of the next check of a WAIT's conditions"""
     attempt: int = 0
-    """failures of the action"""
+    """number of failures of the action"""
     occurred: bool = False
     """whether the event that a WAIT waits for has occurred"""
     action_due: float = math.inf
-    """when the time limit of the running action is over (s)"""
+    """time (s) at which the time limit of the running action ends"""
 
-    def wait_at(self, began: float) -> float:
-        """When a WAIT may end (s), its conditions apart. `began`: the mission's start (s)."""
+    def wait_end_at(self, started_at: float) -> float:
+        """Return the time (s) at which a WAIT may end, apart from its conditions.
+
+        `started_at` is the time (s) at which the mission started. Infinite if the task is no WAIT.
+        """
         leaf = self.leaf
         if leaf is None or leaf.wait is None:
             return math.inf
         if leaf.wait.duration is not None:
             at = self.since + leaf.wait.duration
         else:
-            at = self.since if self.occurred else self.look_at
-        return max(at, began + leaf.earliest) if leaf.earliest else at
+            at = self.since if self.occurred else self.check_at
+        return max(at, started_at + leaf.earliest) if leaf.earliest else at
 
     @property
     def limit_at(self) -> float:
-        """When a WAIT has waited too long (s)."""
+        """Time (s) at which the limit of a WAIT ends; infinite without one."""
         leaf = self.leaf
         if leaf is None or leaf.wait is None or leaf.wait.limit is None:
             return math.inf
         return self.since + leaf.wait.limit
 
-    def missed_at(self, began: float) -> float:
-        """When the task's hard window is over (s)."""
+    def missed_at(self, started_at: float) -> float:
+        """Return the time (s) at which the task's hard window ends; infinite without one."""
         leaf = self.leaf
-        return math.inf if leaf is None or leaf.latest is None else began + leaf.latest
+        return math.inf if leaf is None or leaf.latest is None else started_at + leaf.latest
 
-    def due(self, began: float) -> float:
-        """When the first of these is due (s)."""
-        return min(self.wait_at(began), self.limit_at, self.missed_at(began), self.action_due)
+    def next_due(self, started_at: float) -> float:
+        """Return the time (s) of the first of these changes."""
+        return min(
+            self.wait_end_at(started_at), self.limit_at, self.missed_at(started_at), self.action_due
+        )

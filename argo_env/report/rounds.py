@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import groupby, pairwise
 
 from argo_compiler.hfsm import Composite, Hfsm
-from argo_compiler.hfsm.conditions import all_words
+from argo_compiler.hfsm.conditions import conditions_text
 from argo_compiler.hfsm.model import task_id
 from argo_compiler.il import Condition
 from argo_compiler.il.reserved import RESERVED_NAMES
@@ -177,7 +177,7 @@ def repeat_rules(record: RunRecord) -> list[str]:
         if repeat is None or not (repeat.every or repeat.until):
             continue
         said = [f"a round every {repeat.every:g} s"] if repeat.every else []
-        said += [f"until {all_words(repeat.until)}"] if repeat.until else []
+        said += [f"until {conditions_text(repeat.until)}"] if repeat.until else []
         said += [f"{repeat.count} rounds at most"] if repeat.count else []
         said += [f"for {repeat.duration:g} s at most"] if repeat.duration else []
         rules.append(f"{group.name}: {', '.join(said)}.")

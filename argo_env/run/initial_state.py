@@ -6,7 +6,7 @@ from argo_compiler.base.errors import Conflict
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
 from argo_compiler.hfsm import ByHand, Executor, Progress, lower
-from argo_compiler.hfsm.handover import hand_over, match
+from argo_compiler.hfsm.handover import hand_over, match_to_mission
 from argo_compiler.il import Mission
 from argo_env.robot.pose import BodyPose
 from argo_env.run.machine import Machine
@@ -81,7 +81,7 @@ def match_progress(progress: Progress, mission: Mission) -> tuple[Progress, tupl
     Raises DiagnosticError if the mission has errors, or can't continue from this progress.
     """
     lower(mission)
-    matched, diagnostics = match(progress, mission)
+    matched, diagnostics = match_to_mission(progress, mission)
     if matched is None:
         raise DiagnosticError("the edited mission", diagnostics)
     return matched, diagnostics

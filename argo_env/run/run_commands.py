@@ -16,7 +16,7 @@ from argo_compiler.hfsm import (
     TakeOver,
 )
 from argo_compiler.hfsm.events import ReadingGiven
-from argo_compiler.hfsm.handover import match
+from argo_compiler.hfsm.handover import match_to_mission
 from argo_compiler.il import Action, Mission, Task
 from argo_env.faults.fault import Fault, TimedFault
 from argo_env.faults.kinds import AnyFault, resolve_fault
@@ -235,7 +235,7 @@ def _check(event: LoggedEvent, mission: Mission, site: Site) -> None:
 
 def _check_by_hand(results: Sequence[ByHand], mission: Mission) -> None:
     """Raise Invalid for results that a person can't have got by hand in the mission."""
-    _, diagnostics = match(Progress(active=None, by_hand=tuple(results)), mission)
+    _, diagnostics = match_to_mission(Progress(active=None, by_hand=tuple(results)), mission)
     for diagnostic in diagnostics:
         if diagnostic.code.startswith("handover.by-hand"):
             raise Invalid(f"{diagnostic.message}: {diagnostic.hint}")

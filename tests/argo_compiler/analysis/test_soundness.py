@@ -9,7 +9,7 @@ from argo_compiler.base.catalog import Area, Catalog
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.hfsm import Cause, lower
-from argo_compiler.hfsm.conditions import words
+from argo_compiler.hfsm.conditions import condition_text
 from argo_compiler.il import Group, Stop
 from tests.argo_compiler.analysis.building import mission, task, transition
 from tests.argo_compiler.analysis.worlds import (
@@ -64,7 +64,8 @@ def taken(task, entry):
         return [
             k
             for k, t in enumerate(task.transitions)
-            if t.target == entry.target and tuple(map(words, t.conditions)) == entry.conditions
+            if t.target == entry.target
+            and tuple(map(condition_text, t.conditions)) == entry.conditions
         ]
     if entry.cause is Cause.DEFAULT and entry.target is not None:
         return [k for k, t in enumerate(task.transitions) if not t.conditions]

@@ -25,7 +25,7 @@ from argo_compiler.hfsm import (
     Tick,
     lower,
 )
-from argo_compiler.hfsm.handover import hand_over, match
+from argo_compiler.hfsm.handover import hand_over, match_to_mission
 from argo_compiler.hfsm.progress import GroupProgress, Phase, Reacting, ReadingProgress, Waiting
 from argo_compiler.il import EventKind, Group, Mission, OnFailure, Reaction, Response
 from tests.argo_compiler.hfsm.play import started
@@ -347,7 +347,7 @@ class TestRemaining:
 
 class TestMatch:
     def codes(self, progress, mission):
-        matched, findings = match(progress, mission)
+        matched, findings = match_to_mission(progress, mission)
         assert (matched is None) == has_errors(findings)
         assert all(CODES[f.code].severity is f.severity and f.hint for f in findings)
         if matched is not None:
@@ -403,4 +403,4 @@ class TestMatch:
 
     def test_mission_that_has_ended_matches_all(self):
         ended = Progress(active=None, outcome="cancelled")
-        assert match(ended, line()) == (ended, ())
+        assert match_to_mission(ended, line()) == (ended, ())

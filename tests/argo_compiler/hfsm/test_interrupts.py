@@ -25,9 +25,9 @@ from argo_compiler.hfsm import (
     Tick,
     lower,
 )
-from argo_compiler.hfsm.interrupts import ROWS, TABLE, Given, Stage, Trigger
+from argo_compiler.hfsm.interrupt_state import InterruptState, advance
+from argo_compiler.hfsm.interrupts import ROWS, TABLE, InterruptGuard, Stage, Trigger
 from argo_compiler.hfsm.progress import Waiting
-from argo_compiler.hfsm.standing import InterruptState, advance
 from argo_compiler.il import Afterwards, EventKind, Mission, Reaction, Response, Task
 from tests.argo_compiler.hfsm.interrupt_rules import Alarmed, Rules
 from tests.conftest import sample
@@ -42,7 +42,13 @@ ACTIVE = (Stage.BEGINNING, Stage.DRIVING, Stage.ARRIVED, Stage.HOLDING, Stage.LE
 TRANSIENT = (Stage.CHOOSING, Stage.BEGINNING, Stage.ARRIVED, Stage.LETTING_GO)
 """Those that take no time."""
 STABLE = tuple(stage for stage in Stage if stage not in TRANSIENT)
-GIVEN_OF_EVENTS = {Given.ABORTS, Given.REACTS, Given.NEW, Given.HIGHER, Given.AWAITED}
+GIVEN_OF_EVENTS = {
+    InterruptGuard.ABORTS,
+    InterruptGuard.REACTS,
+    InterruptGuard.NEW,
+    InterruptGuard.HIGHER,
+    InterruptGuard.AWAITED,
+}
 
 
 def variants(
@@ -108,7 +114,7 @@ def by_rules(rules, state, trigger, event):
 def in_words_of_the_rules(state):
     return Alarmed(
         paused=state.paused,
-        alarms=tuple((pending.event, pending.over) for pending in state.pending),
+        alarms=tuple((pending.event, pending.until_occurred) for pending in state.pending),
         at=state.active,
         there=state.stage is Stage.HOLDING,
         outcome=state.outcome and str(state.outcome),
@@ -238,8 +244,10 @@ def test_each_stage_has_a_row_for_whatever_happens():
 
 def test_rows_ask_only_for_what_is_there():
     """Nothing of an event where there is none, nothing of an active reaction where none is."""
-    of_active = set(Given) - GIVEN_OF_EVENTS - {Given.PAUSED, Given.SOME_WAITS}
-    of_active |= {Given.HIGHER, Given.AWAITED}
+    of_active = (
+        set(InterruptGuard) - GIVEN_OF_EVENTS - {InterruptGuard.PAUSED, InterruptGuard.SOME_WAITS}
+    )
+    of_active |= {InterruptGuard.HIGHER, InterruptGuard.AWAITED}
     for row in TABLE:
         asked = {*row.when, *row.unless}
         assert row.trigger is Trigger.EVENT or not asked & GIVEN_OF_EVENTS

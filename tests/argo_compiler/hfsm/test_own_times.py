@@ -24,7 +24,7 @@ from argo_compiler.hfsm import (
     Tick,
     lower,
 )
-from argo_compiler.hfsm.handover import hand_over, match
+from argo_compiler.hfsm.handover import hand_over, match_to_mission
 from argo_compiler.il import (
     Action,
     Afterwards,
@@ -623,7 +623,7 @@ class TestRemaining:
         play = Play(plan(task("A"), groups=(group,)))
         play.at(3, well("A"))
         edited = plan(task("A"), groups=(group.model_copy(update={"every": every}),))
-        matched, findings = match(play.progress(), edited)
+        matched, findings = match_to_mission(play.progress(), edited)
         assert (matched.round_of, findings) == (kept, ())
         later = Executor.restore(lower(edited), matched, 3)
         assert len(later.start(3)) == (kept is None)

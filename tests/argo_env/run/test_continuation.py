@@ -188,7 +188,7 @@ class TestEdited:
         with simulation_of(spec_of(PLAN), site) as first:
             take_over_after(first, 1)
             # It stands at a task that the edit must keep.
-            with pytest.raises(DiagnosticError, match="which the plan does not have"):
+            with pytest.raises(DiagnosticError, match="which the mission plan does not have"):
                 first.continuation_spec(edited)
             kept = mission(measure(1), waypoint("A", 4.05, 2.05), measure(3))
             spec = first.continuation_spec(kept)

@@ -1,0 +1,364 @@
+"""State of the mission itself, without its interruptions: tasks, groups, their ends and times."""
+
+import math
+from collections import defaultdict, deque
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from argo_compiler.hfsm.conditions import CheckpointReading, conditions_text
+from argo_compiler.hfsm.configuration import Configuration
+from argo_compiler.hfsm.kinds import Cause, Outcome, ReadingKind
+from argo_compiler.hfsm.progress import ByHand
+from argo_compiler.hfsm.tables import CompiledTransition, LeafNode, Tables
+from argo_compiler.hfsm.trace import RawEntry, StoredStep, new_tuple
+from argo_compiler.il import EventKind
+
+_VALUE = ReadingKind.VALUE
+_OVER = "its time window is over"
+
+
+class DoneByHand(NamedTuple):
+    """Task that a person did or skipped and that the machine has not reached yet."""
+
+    number: int
+    """its position in the order in which they were given back"""
+    done: ByHand
+    at: float
+    """time (s) at which it was done"""
+
+
+class MissionState:
+    """Configuration of a mission with its trace, tallies and outcome. Each step changes it.
+
+    It does not know of reactions, persons and running actions: `interrupt` and `resume` tell it of
+    interruptions.
+    """
+
+    def __init__(self, tables: Tables) -> None:
+        self.tables = tables
+        self.configuration = Configuration(tables)
+        self.by_hand: dict[str, deque[DoneByHand]] = {}
+        """by task"""
+        self._by_hand_count = 0
+        self.now = -math.inf
+        """time (s) of the last step"""
+        self.time_up_at = math.inf
+        """time (s) at which TIME_UP occurs; infinite if it has occurred or never will"""
+        self.time_up = False
+        self.failed = False
+        """whether a task that is not optional has failed for good"""
+        self.outcome: Outcome | None = None
+        self.tallies: defaultdict[str, list[int]] = defaultdict(lambda: [0, 0, 0])
+        """by task, the numbers of ended visits: done, failed, by hand"""
+        # The history has no effect on what follows, so these lists only grow.
+        self.trace: list[RawEntry | StoredStep] = []
+        self.ended: list[tuple[str, str | None, bool]] = []
+
+    @property
+    def active(self) -> str | None:
+        leaf = self.configuration.leaf
+        return None if leaf is None else leaf.name
+
+    @property
+    def next_due(self) -> float:
+        """Time (s) of the next change that needs no event; infinite if there is none."""
+        configuration = self.configuration
+        due = (
+            configuration.group_due
+            if configuration.group_due < configuration.visit_due
+            else configuration.visit_due
+        )
+        return due if due < self.time_up_at else self.time_up_at
+
+    def record_event(self, kind: EventKind) -> None:
+        """Record an event: TIME_UP, or the event that the active WAIT waits for."""
+        if kind is EventKind.TIME_UP:
+            self.time_up = True
+            self.time_up_at = math.inf
+        configuration, leaf = self.configuration, self.configuration.leaf
+        if (
+            leaf is None
+            or leaf.wait is None
+            or leaf.wait.event is not kind
+            or configuration.awaited_round
+        ):
+            return
+        configuration.visit.occurred = True
+        configuration.update_visit_due()
+
+    def add_by_hand(self, tasks: Iterable[ByHand], now: float) -> None:
+        """Add tasks that a person did; each counts for the next visit of its task."""
+        for task in tasks:
+            self._by_hand_count += 1
+            done = DoneByHand(self._by_hand_count, task, now - (task.age or 0.0))
+            self.by_hand.setdefault(task.task, deque()).append(done)
+
+    def interrupt(self) -> None:
+        """Interrupt the mission, if it is not interrupted yet."""
+        self.configuration.interrupt(self.now)
+
+    def resume(self) -> None:
+        """Resume the mission at its present task."""
+        self.configuration.resume(self.now)
+
+    def end_wait(self) -> bool:
+        """End the active WAIT if it is over now, and return whether it was.
+
+        The mission must not be interrupted. A task done by hand ends before its WAIT, but after
+        time-outs.
+        """
+        configuration, visit = self.configuration, self.configuration.visit
+        leaf = visit.leaf
+        if (
+            leaf is None
+            or leaf.wait is None
+            or configuration.awaited_round
+            or leaf.name in self.by_hand
+        ):
+            return False
+        if (
+            not visit.wait_end_at(configuration.started_at)
+            <= self.now
+            <= visit.missed_at(configuration.started_at)
+        ):
+            return False
+        wait = leaf.wait
+        if wait.duration is not None:
+            why = f"waited {wait.duration:g} s"
+        elif visit.occurred:
+            assert wait.event is not None
+            why = f"{wait.event.replace('_', ' ')} has occurred"
+        else:
+            visit.check_at = math.inf
+            if not wait.guards or not configuration.are_satisfied(wait.guards, self.now):
+                configuration.update_visit_due()
+                return False
+            why = conditions_text(wait.conditions)
+        self.complete(leaf, why)
+        return True
+
+    def step(self) -> bool:
+        """Make one change that is due now and needs no action; return whether there was one.
+
+        The changes are: the end of the mission, a time-out, the end of a task that was done by
+        hand, or one that is due by the visit's own times. The mission must not be interrupted.
+        """
+        configuration = self.configuration
+        leaf = configuration.visit.leaf
+        if leaf is None:
+            failed = self.failed
+            self.outcome = Outcome.COMPLETED_WITH_FAILURES if failed else Outcome.COMPLETED
+            self.time_up_at = math.inf
+        elif configuration.group_due <= self.now:
+            self._time_out_group()
+        elif self.by_hand and not leaf.is_return and leaf.name in self.by_hand:
+            self._end_by_hand(leaf)
+        elif configuration.visit_due <= self.now:
+            return self._handle_visit_due(leaf)
+        else:
+            return False
+        return True
+
+    def _handle_visit_due(self, leaf: LeafNode) -> bool:
+        """Make the change that is due by the visit's own times, other than the end of a WAIT.
+
+        Returns whether there was one.
+        """
+        configuration, visit = self.configuration, self.configuration.visit
+        if configuration.awaited_round is not None:
+            frame = configuration.awaited_round
+            configuration.start_round(self.now)
+            self.add_entry(Cause.ROUND, detail=f"{frame.round} of '{frame.group.name}'")
+        elif visit.missed_at(configuration.started_at) <= self.now:
+            self._fail_for_good(leaf, _OVER, leaf.missed or leaf.failure)
+        elif visit.action_due <= self.now:
+            self.fail(leaf, f"not done within {leaf.time_limit:g} s")
+        elif visit.limit_at <= self.now:
+            assert leaf.wait is not None
+            self._fail_for_good(leaf, f"waited {leaf.wait.limit:g} s in vain", leaf.failure)
+        else:
+            return False
+        return True
+
+    def start_time_limit(self, seconds: float, not_before: float | None) -> None:
+        """Start the time limit of the action that the present visit has just started.
+
+        The time counts from `not_before`, if that is later than now.
+        """
+        begins = self.now if not_before is None else max(self.now, not_before)
+        self.configuration.visit.action_due = begins + seconds
+        self.configuration.update_visit_due()
+
+    def clear_time_limit(self) -> None:
+        """Clear the time limit, as the action has ended."""
+        if self.configuration.visit.action_due < math.inf:
+            self.configuration.visit.action_due = math.inf
+            self.configuration.update_visit_due()
+
+    def by_hand_progress(self) -> tuple[ByHand, ...]:
+        """Return the tasks done by hand that the machine has not reached yet, with their ages."""
+        remaining = sorted(done for queue in self.by_hand.values() for done in queue)
+        return tuple(
+            done.model_copy(update={"age": max(0.0, self.now - at)}) for _, done, at in remaining
+        )
+
+    def record_measurement(
+        self, object_id: str, leaf: LeafNode, value: float | None, abnormal: bool
+    ) -> None:
+        """Record the reading of an action that ended well; without a value it is unreadable."""
+        configuration, now = self.configuration, self.now
+        if value is None:
+            configuration.readings[object_id] = CheckpointReading(ReadingKind.UNREADABLE, now)
+        else:
+            configuration.readings[object_id] = new_tuple(
+                CheckpointReading, (_VALUE, now, value, abnormal)
+            )
+        if configuration.visit.leaf is not leaf:
+            configuration.reading_changed(now)
+
+    def set_reading(self, object_id: str, value: float, abnormal: bool, at: float) -> None:
+        """Set the reading of a checkpoint to a value that was read at the time `at` (s)."""
+        self.configuration.set_reading(
+            object_id, CheckpointReading(_VALUE, at, value, abnormal), self.now
+        )
+
+    def fail(self, leaf: LeafNode, reason: str, unreadable: bool = False) -> None:
+        """Handle a failure of the active task's action: retry, or fail for good."""
+        visit = self.configuration.visit
+        if visit.attempt < leaf.retries:
+            visit.attempt += 1
+            visit.turn = self.configuration.new_number()
+            visit.action_due = math.inf
+            self.configuration.update_visit_due()
+            self.add_entry(Cause.RETRY, failure=reason)
+        elif leaf.is_return:
+            self.end(Outcome.FAILED, Cause.FAILURE, failure=reason)
+        else:
+            self._fail_for_good(leaf, reason, leaf.failure, unreadable)
+
+    def _fail_for_good(
+        self,
+        leaf: LeafNode,
+        reason: str,
+        transition: CompiledTransition | None,
+        unreadable: bool = False,
+    ) -> None:
+        if leaf.measures is not None:
+            self._set_no_value(
+                leaf.measures, ReadingKind.UNREADABLE if unreadable else ReadingKind.FAILED
+            )
+        self.failed = self.failed or not leaf.optional
+        self._count_end(leaf, failure=reason)
+        if transition is None:
+            self._take_transition(leaf.transitions, reason)
+        elif transition.target is None:
+            self.end(Outcome.ABORTED, Cause.FAILURE, failure=reason)
+        else:
+            self._take_transition((transition,), reason)
+
+    def complete(self, leaf: LeafNode, detail: str = "") -> None:
+        """Complete the active task, and take its transition."""
+        if leaf.is_return:
+            self.end(Outcome.RETURNED, Cause.END)
+            return
+        # Same as `_count_end` and `_take_transition`, but faster: most events lead here.
+        self.tallies[leaf.name][0] += 1
+        self.ended.append(leaf.ended_visit)
+        configuration, now = self.configuration, self.now
+        transition = configuration.take_transition(leaf.transitions, now)
+        self.trace.append((now, leaf, configuration.visit.leaf, transition, detail))
+
+    def complete_late(self, leaf: LeafNode) -> None:
+        """Count a task that was done after the mission had left it."""
+        if not leaf.is_return:
+            self._count_end(leaf)
+            self.add_entry(Cause.LATE, detail=leaf.name)
+
+    def end(
+        self,
+        outcome: Outcome,
+        cause: Cause,
+        event: EventKind | None = None,
+        failure: str | None = None,
+    ) -> None:
+        """End the mission at once, whatever it was doing."""
+        source = self.active
+        self.outcome = outcome
+        self.configuration.clear()
+        self.time_up_at = math.inf
+        self.add_entry(cause, source, event=event, failure=failure, detail=str(outcome))
+
+    def add_entry(
+        self,
+        cause: Cause,
+        source: str | None = "",
+        event: EventKind | None = None,
+        failure: str | None = None,
+        detail: str = "",
+    ) -> None:
+        """Add an entry to the trace. By default its source is the active task."""
+        target = self.active
+        origin = target if source == "" else source
+        self.trace.append(
+            RawEntry(self.now, origin, target, cause, failure=failure, event=event, detail=detail)
+        )
+
+    def _count_end(self, leaf: LeafNode, failure: str | None = None, by_hand: bool = False) -> None:
+        """Count the end of a visit."""
+        self.tallies[leaf.name][2 if by_hand else 0 if failure is None else 1] += 1
+        self.ended.append((leaf.name, failure, by_hand))
+
+    def _set_no_value(self, object_id: str, kind: ReadingKind) -> None:
+        """Set the reading of a checkpoint whose measurement gave no value."""
+        self.configuration.set_reading(object_id, CheckpointReading(kind, self.now), self.now)
+
+    def _take_transition(
+        self,
+        transitions: tuple[CompiledTransition, ...],
+        failure: str | None = None,
+        timed_out: str | None = None,
+        by_hand: ByHand | None = None,
+    ) -> None:
+        configuration, now = self.configuration, self.now
+        source = configuration.visit.leaf
+        transition = configuration.take_transition(transitions, now)
+        target, repeated = configuration.visit.leaf, transition.repeats
+        self.trace.append(
+            RawEntry(
+                now,
+                None if source is None else source.name,
+                None if target is None else target.name,
+                transition.cause if timed_out is None else Cause.TIMEOUT,
+                transition.conditions,
+                timed_out,
+                None if repeated is None else repeated.name,
+                failure,
+                None,
+                by_hand is not None,
+                by_hand is not None and by_hand.skipped,
+            )
+        )
+
+    def _end_by_hand(self, leaf: LeafNode) -> None:
+        """End the active task, as it was done or skipped by hand."""
+        queue = self.by_hand[leaf.name]
+        _, done, at = queue.popleft()
+        if not queue:
+            del self.by_hand[leaf.name]
+        if self.configuration.awaited_round is not None:
+            self.configuration.start_round(self.now)
+        self.configuration.advance_clocks(done.duration, self.now)
+        if leaf.measures is not None:
+            if done.value is None or done.skipped:
+                self.configuration.set_reading(leaf.measures, None, self.now)
+            else:
+                self.set_reading(leaf.measures, done.value, done.abnormal, at)
+        self._count_end(leaf, by_hand=True)
+        self._take_transition(leaf.transitions, by_hand=done)
+
+    def _time_out_group(self) -> None:
+        """Take the time-out of the group whose time is up."""
+        group = self.configuration.due_group
+        assert group is not None
+        assert group.timeout is not None
+        self._take_transition((group.timeout,), timed_out=group.name)

@@ -16,7 +16,7 @@ from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from tests import plain_strategies
 from tests.argo_compiler.hfsm.reference import Reference
-from tests.argo_compiler.hfsm.world import Hears, compare
+from tests.argo_compiler.hfsm.world import Ticks, compare
 
 
 def counts(what, method):
@@ -98,7 +98,7 @@ def main():
         else:
             seen["run"] += 1
             try:
-                reference = compare(case, list(Hears)[number % 3], Counted)
+                reference = compare(case, list(Ticks)[number % 3], Counted)
                 seen.update(reference.happened)
             except Exception:
                 seen["differ"] += 1

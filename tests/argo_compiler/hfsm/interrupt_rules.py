@@ -1,4 +1,4 @@
-"""What interrupts a mission, restated from rules R1 to R10, I1, I2 and M9 without a table."""
+"""Interruptions of a mission by rules R1 to R10, I1, I2 and M9, without a table."""
 
 from dataclasses import dataclass, replace
 
@@ -7,27 +7,27 @@ from argo_compiler.il import Afterwards, Response
 
 @dataclass(frozen=True)
 class Alarmed:
-    """Who has the robot, as the rules have it."""
+    """Who controls the robot, in the terms of the rules."""
 
     paused: bool = False
     alarms: tuple = ()
-    """(event, whether its until has occurred), in the order in which the events occurred"""
+    """(event, whether its `until` has occurred), in the order in which the events occurred"""
     at: object = None
-    """the event of the alarm whose turn it is"""
+    """the event of the active alarm"""
     there: bool = False
     """whether its drive is over"""
     outcome: str | None = None
 
     @property
     def moves(self):
-        """Whose action may run."""
+        """The owner of the action that may run: "mission", an event, or None."""
         if self.outcome or self.paused or self.there:
             return None
         return "mission" if self.at is None else self.at
 
 
 class Rules:
-    """The rules for one set of reactions."""
+    """Rules for one set of reactions."""
 
     def __init__(self, reactions):
         self.reactions = {reaction.event: reaction for reaction in reactions}
@@ -94,7 +94,7 @@ class Rules:
     # Parts
 
     def arranged(self, s):
-        """After whatever has changed: the highest rank has its turn, and a hold may be over."""
+        """Return the state after a change: the highest rank is active, and a hold may be over."""
         if s.paused or not s.alarms:
             return s
         top = max(s.alarms, key=lambda alarm: self.reactions[alarm[0]].rank)[0]

@@ -1,4 +1,4 @@
-"""Random missions of the whole language, and what happens to them."""
+"""Random missions with all features of the language, and random events during them."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -50,9 +50,12 @@ EVENTS = (
 
 
 @dataclass(frozen=True)
-class Doing:
-    """How an action goes: for how long (s) and with what result; if it is cancelled, how long its
-    clean-up takes (s), and whether it reports its result after all."""
+class ActionResult:
+    """Duration (s) and result of an action.
+
+    If the action is cancelled: the duration of its clean-up (s), and whether it reports its result
+    after all (`late`).
+    """
 
     seconds: int
     value: int | None = None
@@ -63,8 +66,8 @@ class Doing:
     late: bool = False
 
 
-doings = st.builds(
-    Doing,
+action_results = st.builds(
+    ActionResult,
     seconds=st.integers(0, 4),
     value=st.one_of(st.integers(0, 6), st.integers(0, 6), st.none()),
     abnormal=st.booleans(),
@@ -73,7 +76,7 @@ doings = st.builds(
     clean_up=st.integers(0, 2),
     late=st.booleans(),
 )
-outcome_lists = st.lists(doings, min_size=1, max_size=8)
+result_lists = st.lists(action_results, min_size=1, max_size=8)
 
 
 @st.composite
@@ -85,8 +88,10 @@ def task_names(draw, least=1, most=9):
 
 @st.composite
 def tasks_of_all_kinds(draw, name, names, index, timed=True):
-    """Actions with limits and windows, and waits; not `timed`: nothing but what the clocks of
-    groups say hangs on when it is done."""
+    """Actions with limits and windows, and waits.
+
+    Without `timed`, only the clocks of groups depend on time.
+    """
     most = 1 if name.startswith("T") else 3  # or most would go round in circles that take no time
     ways = transitions(names, index, partial(conditions_of_readings, ages=timed), most)
     if name.startswith("T"):
@@ -107,8 +112,10 @@ def tasks_of_all_kinds(draw, name, names, index, timed=True):
 
 @st.composite
 def missions(draw, events=True):
-    """Missions of up to nine tasks; without `events` nothing but a person interrupts them, and
-    nothing hangs on the time but the clocks of groups."""
+    """Missions of up to nine tasks.
+
+    Without `events`, only a person interrupts them, and only the clocks of groups depend on time.
+    """
     names = draw(task_names())
     tasks = [draw(tasks_of_all_kinds(name, names, i, events)) for i, name in enumerate(names)]
     modes = [Mode.AUTONOMOUS] * 5 + [Mode.SUPERVISORY] * events
@@ -136,8 +143,8 @@ def _reactions_to(event, awaited):
 
 
 @st.composite
-def handworks(draw, names):
-    """What a person did with a task: done or skipped."""
+def tasks_by_hand(draw, names):
+    """A task that a person did or skipped."""
     name = draw(st.sampled_from(names))
     measured = name.startswith("M") and draw(st.booleans())
     return ByHand(
@@ -151,7 +158,7 @@ def handworks(draw, names):
 
 
 def expected(mission):
-    """The events that the mission waits for or reacts to; those that time brings come by time."""
+    """Return the events that the mission waits for or reacts to, except TIME_UP."""
     events = [task.wait.event for task in mission.tasks if task.wait is not None] * 3
     for reaction in mission.reactions:
         events += [reaction.event, reaction.until]
@@ -159,7 +166,7 @@ def expected(mission):
 
 
 def reading_for(condition):
-    """A reading that satisfies the condition if it compares, and is abnormal."""
+    """Return an abnormal reading, which satisfies the condition if it compares values."""
     values = {
         ConditionType.LESS: lambda c: c.param1 - 1,
         ConditionType.GREATER: lambda c: c.param1 + 1,
@@ -171,8 +178,7 @@ def reading_for(condition):
 
 @st.composite
 def scripts(draw, mission, most=8):
-    """What happens besides the ends of actions: how many seconds after the happening before, and
-    what it is."""
+    """Events other than the ends of actions, each with the seconds since the previous one."""
     names = [task.name for task in mission.tasks if task.action is not Action.START]
     occurs = st.sampled_from([*EVENTS, *expected(mission)]).map(Occurred)
     given = st.builds(
@@ -182,40 +188,42 @@ def scripts(draw, mission, most=8):
     if awaited:
         given = st.one_of(given, *[st.sampled_from(awaited)] * 3)
     alone = st.one_of(occurs, given).map(lambda one: (one,))
-    happenings = st.one_of(
+    scripted_events = st.one_of(
         alone,
         alone,
         st.sampled_from([(Pause(), Resume()), (Resume(),), (Pause(), Resume()), (Cancel(),)]),
-        st.lists(handworks(names), max_size=4).map(
+        st.lists(tasks_by_hand(names), max_size=4).map(
             lambda done: (TakeOver(), GiveBack(tuple(done)))
         ),
     )
     script = []
     if mission.mode is Mode.SUPERVISORY:
         script.append((draw(st.integers(0, 3)), Resume()))
-    for together in draw(st.lists(happenings, min_size=draw(st.integers(0, 3)), max_size=most)):
+    for together in draw(
+        st.lists(scripted_events, min_size=draw(st.integers(0, 3)), max_size=most)
+    ):
         script += [(draw(st.integers(0, 5)), one) for one in together]
     return script
 
 
 @dataclass(frozen=True)
 class Case:
-    """A mission, how its actions go, in turn, and what happens besides."""
+    """Mission, the results of its actions in turn, and the scripted events."""
 
     mission: Mission
-    doings: list[Doing]
+    results: list[ActionResult]
     script: list[tuple[int, object]]
 
 
 @st.composite
 def cases(draw, of=None):
     mission = draw(missions() if of is None else of)
-    return Case(mission, draw(outcome_lists), draw(scripts(mission)))
+    return Case(mission, draw(result_lists), draw(scripts(mission)))
 
 
 @st.composite
 def busy_missions(draw):
-    """Missions that go on and on, and are interrupted all the time."""
+    """Missions with many rounds and many interruptions."""
     two = (
         draw(tasks_named("M0", ["M0", "W1"], 0)).model_copy(
             update={"object_id": "1", "failure_target": "W1"}
@@ -248,10 +256,10 @@ BUSY = (EventKind.GAS_LEAK, EventKind.LOW_BATTERY, EventKind.ALL_CLEAR)
 @st.composite
 def busy_cases(draw):
     mission = draw(busy_missions())
-    happenings = st.one_of(
+    scripted_events = st.one_of(
         st.sampled_from(BUSY).map(Occurred),
         st.sampled_from(BUSY).map(Occurred),
         st.sampled_from([Pause(), Resume()]),
     )
-    script = st.lists(st.tuples(st.integers(0, 4), happenings), min_size=4, max_size=12)
-    return Case(mission, draw(outcome_lists), draw(script))
+    script = st.lists(st.tuples(st.integers(0, 4), scripted_events), min_size=4, max_size=12)
+    return Case(mission, draw(result_lists), draw(script))

@@ -1,7 +1,8 @@
-"""What a mission does, straight from the rules of docs/language.md.
+"""Reference interpreter of missions, written straight from the rules of docs/language.md.
 
-An interpreter of the IL that shares nothing with the machine: it steps through whole seconds,
-counts them on each clock that runs, and keeps all by name. A method names the rules it reads.
+It interprets the IL and shares no code with the machine: it steps through whole seconds, counts
+them on each clock that runs, and stores everything by name. The docstring of a method names its
+rules.
 """
 
 from argo_compiler.hfsm import (
@@ -35,7 +36,7 @@ ENDS = (ActionSucceeded, ActionFailed, ActionStopped)
 
 
 class Reading:
-    """What came of the last measurement at a checkpoint: "value", "unreadable" or "failed" (C3)."""
+    """Result of the last measurement at a checkpoint: "value", "unreadable" or "failed" (C3)."""
 
     def __init__(self, kind, value=None, abnormal=False, age=0):
         self.kind = kind
@@ -45,7 +46,7 @@ class Reading:
 
 
 class Alarm:
-    """A reaction that is active or waits."""
+    """Reaction that is active or waits."""
 
     def __init__(self, reaction):
         self.reaction = reaction
@@ -57,7 +58,7 @@ class Alarm:
 
 
 class Run:
-    """An action that has been started."""
+    """Action that has been started."""
 
     def __init__(self, id, task, visit, drives):
         self.id = id
@@ -65,14 +66,14 @@ class Run:
         self.visit = visit
         self.drives = drives
         self.seconds = 0
-        """of its time limit"""
+        """elapsed of its time limit"""
         self.dropped = False
-        """whether it is not wanted any more"""
+        """whether it is no longer needed, and has to be cancelled"""
         self.cancelled = False
 
 
-class HandWork:
-    """What a person did and the machine has not come to; `age` is how long ago."""
+class TaskByHand:
+    """Task that a person did and the machine has not reached; `age` is the time since then (s)."""
 
     def __init__(self, what):
         self.what = what
@@ -156,7 +157,7 @@ class Reference:
             elif isinstance(event, Resume):
                 self.resumed()
             elif isinstance(event, GiveBack):
-                self.by_hand += [HandWork(what) for what in event.by_hand]
+                self.by_hand += [TaskByHand(what) for what in event.by_hand]
                 self.resumed()
             elif isinstance(event, Cancel):
                 self.over("cancelled")
@@ -164,7 +165,7 @@ class Reference:
         return self.command()
 
     def wanted(self):
-        """The visit whose action is to run."""
+        """The visit whose action has to run."""
         if self.outcome is not None or self.paused:
             return None
         if self.active is not None:
@@ -174,7 +175,7 @@ class Reference:
         return self.visit
 
     def command(self):
-        """I3, I4: what to do now; of a start, in how many seconds it may begin there (W4)."""
+        """The present command; a start has the seconds until its work may begin (I3, I4, W4)."""
         if self.run is not None:
             if self.run.cancelled or not self.run.dropped:
                 return []
@@ -470,7 +471,7 @@ class Reference:
         return {g for g in self.groups if g == name or g.startswith(name + "/")}
 
     def plan(self, g):
-        """When its present round is due, on its clock (G13)."""
+        """The time on its clock at which its present round is due (G13)."""
         return (self.round[g] - 1) * self.groups[g].every
 
     def wants(self, g):
@@ -484,7 +485,9 @@ class Reference:
         return group.max_repeat_duration == 0 or begins < group.max_repeat_duration
 
     def round_over(self, g):
-        """G5 to G7: the group has come to the end of a round; it and those around it decide."""
+        """A round of the group has ended; it and the groups around it decide what follows (G5 to
+        G7).
+        """
         group = self.groups[g]
         if self.wants(g):
             self.round[g] += 1
@@ -573,7 +576,7 @@ class Reference:
         self.arrange()
 
     def arrange(self):
-        """Whose turn it is now (R7, R9)."""
+        """Activates the reaction of the highest rank (R7, R9)."""
         while self.outcome is None and not self.paused and self.alarms:
             # Of equal ones, max takes the one that occurred first.
             top = max(self.alarms, key=lambda alarm: rank(alarm.reaction))

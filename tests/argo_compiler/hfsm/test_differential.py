@@ -1,4 +1,4 @@
-"""Random missions through the machine and through a reference interpreter of the IL."""
+"""Comparison of the machine with a reference interpreter of the IL, on random missions."""
 
 from dataclasses import replace
 from itertools import tee
@@ -11,7 +11,7 @@ from argo_compiler.hfsm import ActionStopped, Executor, Hfsm, Pause, Progress, R
 from argo_compiler.hfsm.model import RETURN
 from argo_compiler.il import Action
 from tests.argo_compiler.hfsm.random_missions import busy_cases, cases, missions
-from tests.argo_compiler.hfsm.world import STEPS, Hears, World, compare
+from tests.argo_compiler.hfsm.world import STEPS, Ticks, World, compare
 from tests.conftest import examples
 from tests.mission_parts import assume_sound
 
@@ -21,24 +21,24 @@ def machine(mission):
 
 
 @settings(max_examples=examples(100))
-@given(cases(), st.sampled_from(Hears))
-def test_machine_does_what_the_rules_say(case, hears):
+@given(cases(), st.sampled_from(Ticks))
+def test_machine_does_what_the_rules_say(case, ticks):
     machine(case.mission)
-    compare(case, hears)
+    compare(case, ticks)
 
 
 @settings(max_examples=examples(100))
 @given(busy_cases())
 def test_interruptions_are_what_the_rules_say(case):
     machine(case.mission)
-    compare(case, Hears.DEADLINES)
+    compare(case, Ticks.DEADLINES)
 
 
 @settings(max_examples=examples(40))
 @given(cases())
 def test_more_ticks_change_nothing(case):
     hfsm = machine(case.mission)
-    worlds = [World(Executor(hfsm), case, hears) for hears in (Hears.DEADLINES, Hears.SECONDS)]
+    worlds = [World(Executor(hfsm), case, ticks) for ticks in (Ticks.DEADLINES, Ticks.SECONDS)]
     for world in worlds:
         world.run()
     until = min(world.now for world in worlds)
@@ -50,7 +50,7 @@ def test_more_ticks_change_nothing(case):
 @settings(max_examples=examples(60))
 @given(cases(), st.integers(0, 30), st.sampled_from([0, 0, 7]))
 def test_restored_machine_goes_on_alike(case, count, away):
-    """Against a machine that a person pauses for as long as the other one is away."""
+    """A restored machine does the same as one that a person paused for the same time."""
     hfsm = machine(case.mission)
     world = World(Executor(hfsm), case)
     world.start()
@@ -59,10 +59,10 @@ def test_restored_machine_goes_on_alike(case, count, away):
             break
     executor = world.executor
     if not executor.paused:
-        world.note(executor.handle(Pause(), world.now))
+        world.execute(executor.handle(Pause(), world.now))
     while world.running:
         world.ends_at = world.now
-        world.ending = ActionStopped(world.running.task.name, id=world.running.id)
+        world.end_event = ActionStopped(world.running.task.name, id=world.running.id)
         world.step()
     text = executor.progress().model_dump_json()
     world.now += away
@@ -77,10 +77,10 @@ def test_restored_machine_goes_on_alike(case, count, away):
     other.start(later)
     assert Progress.model_validate_json(other.progress().model_dump_json()) == executor.progress()
     rest = World(other, case, now=later)
-    rest.doings, world.doings = tee(world.doings)
+    rest.results, world.results = tee(world.results)
     shift = later - world.now
-    world.script = [(at + away, happening) for at, happening in world.script]
-    rest.script = [(at + shift, happening) for at, happening in world.script]
+    world.script = [(at + away, scripted) for at, scripted in world.script]
+    rest.script = [(at + shift, scripted) for at, scripted in world.script]
     world.script.insert(0, (world.now, Resume()))
     rest.script.insert(0, (later, Resume()))
     before = len(executor.trace), len(other.trace)

@@ -62,7 +62,7 @@ class TestCommands:
 
     def test_late_driver_starts_and_cancels_nothing_in_between(self):
         group = Group(name="G", start="A", end="A", max_repeat_duration=1)
-        mission = build("A", group, ways={"A": ["A"]})
+        mission = build("A", group, transitions={"A": ["A"]})
         executor = started(mission)
         (cancel,) = executor.handle(Tick(), 3.5)
         assert isinstance(cancel, CancelAction)
@@ -70,7 +70,7 @@ class TestCommands:
         assert [entry.time for entry in executor.trace] == [0, 1, 2, 3]
 
     def test_task_that_leads_to_itself_is_started_again(self):
-        mission = build("A", ways={"A": ["A"]})
+        mission = build("A", transitions={"A": ["A"]})
         executor = started(mission)
         assert executor.handle(ActionSucceeded("A"), 0) == (StartAction(mission.tasks[0], 2),)
 

@@ -1,4 +1,4 @@
-"""Handing a mission over to a person and back."""
+"""Handover of a mission to a person and back."""
 
 from collections import Counter, defaultdict
 
@@ -29,7 +29,7 @@ from argo_compiler.hfsm.handover import hand_over, match_to_mission
 from argo_compiler.hfsm.progress import GroupProgress, Phase, Reacting, ReadingProgress, Waiting
 from argo_compiler.il import EventKind, Group, Mission, OnFailure, Reaction, Response
 from tests.argo_compiler.hfsm.play import started
-from tests.argo_compiler.hfsm.random_missions import missions, outcome_lists
+from tests.argo_compiler.hfsm.random_missions import missions, result_lists
 from tests.conftest import examples
 from tests.mission_parts import assume_sound
 from tests.mission_writing import drive
@@ -40,9 +40,9 @@ PAUSE = Pause()
 
 
 class Site:
-    """Carries actions out; the n-th execution of a task is the same, whoever does it.
+    """World that executes actions; the n-th execution of a task is the same, whoever does it.
 
-    An action that a person interrupts goes on later with the time that it has left.
+    An action that a person interrupts later takes only its remaining time.
     """
 
     def __init__(self, outcomes):
@@ -51,7 +51,7 @@ class Site:
         self.spent = 0
         self.interrupted = None
         self.log = defaultdict(list)
-        """by task: for each execution, how long it took, what it gave, and whether it was done"""
+        """by task: for each execution, its duration, its value, and whether it succeeded"""
 
     def outcome(self, name, number):
         # Not the same for all tasks, but the same in each run.
@@ -59,7 +59,7 @@ class Site:
         return doing.seconds, doing.value if name.startswith("M") else None, doing.failed
 
     def run(self, executor, now, visits):
-        """Until so many visits have ended, or the mission has."""
+        """Run until `visits` visits have ended, or the mission has."""
         for _ in range(10 * VISITS):
             if executor.finished or visits_of(executor.progress()) >= visits:
                 return now
@@ -68,7 +68,7 @@ class Site:
         reject()
 
     def step(self, executor, now, until=None):
-        """To the next event, or at most to a time; returns the time."""
+        """Run to the next event, or to the time `until` if that comes first; return the time."""
         name = executor.running.name
         duration, value, failed = self.outcome(name, self.executions[name])
         ends_at = now + duration - self.spent
@@ -100,12 +100,12 @@ class Site:
 
 
 def visits_of(progress):
-    """How many visits have ended."""
+    """Return the number of visits that have ended."""
     return sum(t.done + t.failed + t.by_hand for t in progress.tallies)
 
 
 def stand(progress):
-    """All of a progress but times and persons."""
+    """Return the progress without times and commands of persons."""
     return {
         "ended": {t.task: (t.done + t.by_hand, t.failed) for t in progress.tallies},
         "active": progress.active,
@@ -117,13 +117,15 @@ def stand(progress):
 
 
 def order(*executors):
-    """The visits that have ended, one after the other, and whether they failed."""
+    """Return the visits that have ended, in order, and whether they failed."""
     return [(e.task, e.failure is not None) for executor in executors for e in executor.ended]
 
 
 def whole_and_interrupted(mission, outcomes, at, by=PAUSE):
-    """Return the mission carried out as a whole, and up to a time at which a person interrupts it,
-    each as the executor and its site; and the time of the interruption."""
+    """Return a complete run, a run that a person interrupts, and the time of the interruption.
+
+    Each run is an executor and its site.
+    """
     whole, once = started(assume_sound(mission)), Site(outcomes)
     once.run(whole, 0, VISITS)
     live, site = started(mission), Site(outcomes)
@@ -136,7 +138,7 @@ def whole_and_interrupted(mission, outcomes, at, by=PAUSE):
 
 @pytest.mark.rule("H2", "H3", "H4", "H5")
 @settings(max_examples=examples(200))
-@given(missions(events=False), outcome_lists, st.integers(0, 60), st.data())
+@given(missions(events=False), result_lists, st.integers(0, 60), st.data())
 def test_before_by_hand_and_after_are_the_whole_mission(mission, outcomes, at, data):
     (whole, once), (first, site), _ = whole_and_interrupted(mission, outcomes, at)
     before = first.progress()
@@ -162,9 +164,9 @@ def test_before_by_hand_and_after_are_the_whole_mission(mission, outcomes, at, d
 
 @pytest.mark.rule("H7")
 @settings(max_examples=examples(100))
-@given(missions(events=False), outcome_lists, st.integers(0, 60), st.integers(0, 30), st.data())
+@given(missions(events=False), result_lists, st.integers(0, 60), st.integers(0, 30), st.data())
 def test_giving_back_is_a_progress_handed_over_and_gone_on_from(mission, outcomes, at, more, data):
-    """A machine that was taken over and given back stands like one restored meanwhile."""
+    """A machine that was taken over and given back has the state of one restored meanwhile."""
     (_, once), (live, site), now = whole_and_interrupted(mission, outcomes, at, TakeOver())
     before = live.progress()
     by_hand = tuple(done_by_hand(data, site, once.log))
@@ -185,7 +187,7 @@ def whole_time(executor):
 
 
 def done_by_hand(data, site, log):
-    """Some of the next executions of tasks, as they went without a person."""
+    """Yield some of the next executions of tasks, with the results that the robot had."""
     for name, executions in log.items():
         count = data.draw(st.integers(0, 4), label=f"by hand: {name}")
         for seconds, value, done in executions[site.executions[name] :][:count]:
@@ -201,7 +203,7 @@ def done_by_hand(data, site, log):
 
 
 def line(*groups, **fields):
-    """A, B, C and D, one after the other."""
+    """Return a mission of A, B, C and D, one after the other."""
     tasks = (task("A", "B"), task("B", "C"), task("C", "D"), task("D"))
     return Mission(tasks=tasks, groups=groups, dock=Pose(x=0, y=0, z=0), **fields)
 
@@ -258,7 +260,7 @@ class TestByHand:
     @pytest.mark.parametrize("counts", [False, True])
     @pytest.mark.parametrize("durations", [(0, 0), (8, 4), (8, 40)])
     def test_their_time_is_no_part_of_the_interruption(self, counts, durations):
-        """It is added when the machine comes to what was done by hand, and not twice."""
+        """Their duration is added once, when the machine reaches the tasks done by hand."""
         group = Group(
             name="G", start="A", end="D", max_repeat_duration=90, count_interruptions=counts
         )

@@ -1,11 +1,11 @@
-"""Failures, reactions and persons: each rule on the smallest mission that shows it."""
+"""Failures, reactions and commands of persons: each rule on the smallest mission that shows it."""
 
 import pytest
 
 from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import Cancel, Cause, Occurred, Outcome, Pause, Resume, Tick
 from argo_compiler.il import Afterwards, EventKind, Group, Mission, OnFailure, Reaction, Response
-from tests.argo_compiler.hfsm.play import Play, badly, stopped, well
+from tests.argo_compiler.hfsm.play import Play, failure, stopped, success
 from tests.mission_writing import measure as task
 
 DOCK = Pose(x=1, y=0, z=0)
@@ -24,7 +24,7 @@ def reaction(event, response, **fields):
 
 
 def interrupted(by, **fields):
-    """Return the play of a plan with these fields, in which A is stopped at 1 s by an event."""
+    """Return the play of a mission with these fields, in which an event stops A at 1 s."""
     play = Play(plan(**fields))
     play.at(1, by)
     play.at(1, stopped("A"))
@@ -35,23 +35,26 @@ class TestFailures:
     @pytest.mark.rule("T7")
     def test_retries_are_those_of_a_visit(self):
         play = Play(plan(task("A", "A", retries=1)))
-        assert play.at(1, badly("A")) == ["+A"]
+        assert play.at(1, failure("A")) == ["+A"]
         assert play.trace[-1].cause is Cause.RETRY
         assert play.ended == ()
-        assert play.at(2, badly("A")) == ["+A"]
+        assert play.at(2, failure("A")) == ["+A"]
         assert play.trace[-1].cause is Cause.DEFAULT
-        assert play.at(3, badly("A")) == ["+A"]
+        assert play.at(3, failure("A")) == ["+A"]
         assert play.trace[-1].cause is Cause.RETRY
         assert [e.failure for e in play.ended] == ["stuck"]
 
     @pytest.mark.rule("T8")
     @pytest.mark.parametrize(
         ("drive", "outcome"),
-        [(well("return to dock"), Outcome.RETURNED), (badly("return to dock"), Outcome.FAILED)],
+        [
+            (success("return to dock"), Outcome.RETURNED),
+            (failure("return to dock"), Outcome.FAILED),
+        ],
     )
     def test_return(self, drive, outcome):
         play = Play(plan(task("A", "B", on_failure=OnFailure.RETURN), task("B")))
-        assert play.at(1, badly("A")) == ["+return to dock"]
+        assert play.at(1, failure("A")) == ["+return to dock"]
         assert play.running.pose == DOCK
         assert play.at(2, drive) == []
         assert (play.outcome, play.finished) == (outcome, True)
@@ -59,8 +62,8 @@ class TestFailures:
     @pytest.mark.rule("T8")
     def test_abort_and_continue(self):
         play = Play(plan(task("A", "B"), task("B", "A", on_failure=OnFailure.ABORT)))
-        assert play.at(1, badly("A")) == ["+B"]
-        assert play.at(2, badly("B")) == []
+        assert play.at(1, failure("A")) == ["+B"]
+        assert play.at(2, failure("B")) == []
         assert play.outcome is Outcome.ABORTED
 
 
@@ -79,13 +82,13 @@ class TestReactions:
         group = Group(name="G", start="A", end="B", max_repeat_duration=10)
         back = reaction(BATTERY, Response.RETURN, afterwards=Afterwards.RESUME)
         play = Play(plan(groups=(group,), reactions=(back,)))
-        play.at(4, well("A", 7.0))
+        play.at(4, success("A", 7.0))
         assert play.at(5, BATTERY) == ["-B"]
         assert play.configuration == ("mission", "group:G", "task:B", "reaction:low_battery")
         assert play.next_deadline is None
         assert play.at(6, stopped("B")) == ["+react to low_battery"]
         assert play.running.pose == DOCK
-        assert play.at(105, well("react to low_battery")) == ["+B"]
+        assert play.at(105, success("react to low_battery")) == ["+B"]
         assert (play.next_deadline, play.rounds) == (110, {"G": 1})
         assert play.progress().groups[0].elapsed == 5
         assert play.values["A"].value == 7
@@ -107,7 +110,7 @@ class TestReactions:
         play = interrupted(LEAK, reactions=(shelter,))
         assert play.running.pose == SHELTER
         play.at(2, CLEAR)
-        assert play.at(3, well("react to gas_leak")) == ["+A"]
+        assert play.at(3, success("react to gas_leak")) == ["+A"]
 
     @pytest.mark.rule("R3")
     def test_person_ends_a_hold(self):
@@ -123,14 +126,14 @@ class TestReactions:
     )
     def test_end(self, response, outcome):
         play = interrupted(LEAK, reactions=(reaction(LEAK, response),))
-        play.at(3, well("react to gas_leak"))
+        play.at(3, success("react to gas_leak"))
         assert (play.outcome, play.finished, play.active) == (outcome, True, None)
 
     @pytest.mark.rule("R4")
     def test_wait(self):
         wait = reaction(LEAK, Response.RETURN, afterwards=Afterwards.WAIT)
         play = interrupted(LEAK, reactions=(wait,))
-        assert play.at(3, well("react to gas_leak")) == []
+        assert play.at(3, success("react to gas_leak")) == []
         assert play.paused
         assert play.at(4, Resume()) == ["+A"]
 
@@ -152,17 +155,17 @@ class TestReactions:
         assert play.at(2, BATTERY) == []
         assert play.at(3, ALARM) == ["+react to platform_alarm"]
         assert [w.event for w in play.progress().waiting] == [LEAK.event, BATTERY.event]
-        assert play.at(4, well("react to platform_alarm")) == []
+        assert play.at(4, success("react to platform_alarm")) == []
         assert (play.reaction, play.holding) == (LEAK.event, True)
         assert play.at(5, CLEAR) == ["+react to low_battery"]
-        assert play.at(6, well("react to low_battery")) == ["+A"]
+        assert play.at(6, success("react to low_battery")) == ["+A"]
 
     @pytest.mark.rule("R8")
     @pytest.mark.parametrize("afterwards", Afterwards)
     def test_drive_fails(self, afterwards):
         back = reaction(LEAK, Response.RETURN, afterwards=afterwards)
         play = interrupted(LEAK, reactions=(back,))
-        play.at(3, badly("react to gas_leak"))
+        play.at(3, failure("react to gas_leak"))
         ends = afterwards is Afterwards.END
         assert (play.outcome, play.paused) == (Outcome.FAILED if ends else None, not ends)
 
@@ -176,7 +179,7 @@ class TestReactions:
         play.at(4, Pause())
         play.at(4, stopped("react to gas_leak"))
         assert play.at(5, Resume()) == ["+react to gas_leak"]
-        play.at(6, well("react to gas_leak"))
+        play.at(6, success("react to gas_leak"))
         play.at(7, Pause())
         play.at(8, ALARM)
         assert play.outcome is Outcome.ABORTED
@@ -210,7 +213,7 @@ class TestTimeUp:
     @pytest.mark.rule("M4")
     def test_mission_that_ends_just_then(self):
         play = Play(plan(task("A"), max_duration=5))
-        play.at(5, well("A"))
+        play.at(5, success("A"))
         assert (play.outcome, play.progress().time_up) == (Outcome.COMPLETED, False)
 
 
@@ -234,7 +237,7 @@ class TestPersons:
     def test_success_while_cancelled_counts(self):
         play = Play(plan())
         play.at(1, Pause())
-        assert play.at(2, well("A", 4.0)) == []
+        assert play.at(2, success("A", 4.0)) == []
         assert (play.active, play.values["A"].value) == ("B", 4)
         assert play.at(3, Resume()) == ["+B"]
         assert [e.task for e in play.ended] == ["A"]
@@ -243,7 +246,7 @@ class TestPersons:
     def test_failure_while_cancelled_is_a_stop(self):
         play = Play(plan(task("A", on_failure=OnFailure.ABORT)))
         play.at(1, Pause())
-        play.at(2, badly("A"))
+        play.at(2, failure("A"))
         assert (play.outcome, play.progress().attempt) == (None, 0)
         assert play.at(3, Resume()) == ["+A"]
 
@@ -254,25 +257,25 @@ class TestPersons:
         assert play.at(6, Tick()) == ["-A"]
         assert (play.active, play.running.name, play.trace[-1].time) == ("B", "A", 5)
         assert play.at(7, Tick()) == []
-        assert play.at(8, well("A", 1.0)) == ["+B"]
+        assert play.at(8, success("A", 1.0)) == ["+B"]
         assert (play.values["A"].value, play.active) == (1, "B")
         with pytest.raises(ValueError, match="'B' does"):
-            play.at(9, well("A"))
+            play.at(9, success("A"))
 
     @pytest.mark.rule("I6")
     def test_retries_go_on_after_an_interruption(self):
         play = Play(plan(task("A", "B", retries=1), task("B")))
-        play.at(1, badly("A"))
+        play.at(1, failure("A"))
         play.at(2, Pause())
         play.at(2, stopped("A"))
         play.at(3, Resume())
-        assert play.at(4, badly("A")) == ["+B"]
+        assert play.at(4, failure("A")) == ["+B"]
 
     @pytest.mark.rule("R5")
     def test_last_task_that_succeeds_while_cancelled_ends_the_mission_when_it_goes_on(self):
         play = Play(plan(task("A")))
         play.at(1, Pause())
-        play.at(2, well("A"))
+        play.at(2, success("A"))
         assert (play.active, play.outcome) == (None, None)
         play.at(3, Resume())
         assert play.outcome is Outcome.COMPLETED

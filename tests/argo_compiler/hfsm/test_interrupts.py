@@ -1,8 +1,8 @@
-"""The table of interruptions, checked in all states that it can come to.
+"""Table of interruptions, checked in all states that can be reached.
 
-For each set of reactions, everything that may happen is tried in every state that can be reached,
-so that sequences of any length are covered. What has to be so is taken from the rules, and each
-step is compared with `interrupt_rules`, which has no table.
+For each set of reactions, every trigger is tried in every state that can be reached, so that
+sequences of any length are covered. The expected properties come from the rules, and each step is
+compared with `interrupt_rules`, which has no table.
 """
 
 from itertools import product
@@ -38,9 +38,9 @@ HERE = Pose(x=0, y=0, z=0)
 SUPERVISED = InterruptState(Stage.STOPPED, paused=True)
 
 ACTIVE = (Stage.BEGINNING, Stage.DRIVING, Stage.ARRIVED, Stage.HOLDING, Stage.LETTING_GO)
-"""The stages that have an active reaction."""
+"""stages that have an active reaction"""
 TRANSIENT = (Stage.CHOOSING, Stage.BEGINNING, Stage.ARRIVED, Stage.LETTING_GO)
-"""Those that take no time."""
+"""stages that take no time"""
 STABLE = tuple(stage for stage in Stage if stage not in TRANSIENT)
 GIVEN_OF_EVENTS = {
     InterruptGuard.ABORTS,
@@ -58,7 +58,7 @@ def variants(
     afterwards=tuple(Afterwards),
     limits=(None, *Afterwards),
 ):
-    """The reactions to an event, their priority apart."""
+    """Return the reactions to an event, apart from their priority."""
     made = [{"response": r} for r in (Response.REPORT, Response.ABORT) if r in responses]
     for response in (r for r in responses if r not in (Response.REPORT, Response.ABORT)):
         pauses = response is Response.PAUSE
@@ -74,7 +74,7 @@ def variants(
 
 
 def sets(size, untils, priorities, **kinds):
-    """All sets of that many reactions."""
+    """Yield all sets of `size` reactions."""
     events = EVENTS[:size]
     for fields in product(*(variants(event, untils, **kinds) for event in events)):
         for given in product(priorities, repeat=size):
@@ -122,7 +122,11 @@ def in_words_of_the_rules(state):
 
 
 def explore(reactions, taken):
-    """Walks through all states; the rows that were taken, with the stage, are added to `taken`."""
+    """Visit all states that can be reached.
+
+    The rows that were taken are added to `taken`, with their stage. Returns the numbers of states
+    and steps.
+    """
     known = {reaction.event: reaction for reaction in reactions}
     rules = Rules(reactions)
     states = [InterruptState(), SUPERVISED]
@@ -144,7 +148,7 @@ def explore(reactions, taken):
 
 
 def holds_what_must(known, before, trigger, event, rows):
-    """What follows from the rules, whatever the table says."""
+    """Assert properties that follow from the rules, whatever the table contains."""
     after = rows[-1].after
     own = known.get(event)
     live = before.outcome is None
@@ -195,7 +199,7 @@ def holds_what_must(known, before, trigger, event, rows):
 
 
 def explore_all(many):
-    """Explores sets of reactions; returns how many, with how many states and steps."""
+    """Explore sets of reactions; return the rows taken, and the numbers of sets, states, steps."""
     taken, count, states, steps = set(), 0, 0, 0
     for reactions in many:
         here, tried = explore(reactions, taken)
@@ -243,7 +247,7 @@ def test_each_stage_has_a_row_for_whatever_happens():
 
 
 def test_rows_ask_only_for_what_is_there():
-    """Nothing of an event where there is none, nothing of an active reaction where none is."""
+    """Guards refer to an event only in rows of EVENT, to an active reaction only if there is one."""
     of_active = (
         set(InterruptGuard) - GIVEN_OF_EVENTS - {InterruptGuard.PAUSED, InterruptGuard.SOME_WAITS}
     )
@@ -255,7 +259,7 @@ def test_rows_ask_only_for_what_is_there():
 
 
 class TestExecutor:
-    """What the table says of limits and supervision, as a driver sees it."""
+    """Limits and supervision of the table, as seen by a driver."""
 
     def run(self, mission):
         executor = Executor(lower(mission))

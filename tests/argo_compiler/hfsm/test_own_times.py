@@ -1,4 +1,4 @@
-"""What a visit's own times bring about: waits, windows, limits and planned rounds."""
+"""Effects of a visit's own times: waits, windows, limits and planned rounds."""
 
 import pytest
 
@@ -40,7 +40,7 @@ from argo_compiler.il import (
     Task,
     TimeWindow,
 )
-from tests.argo_compiler.hfsm.play import Play, badly, started, stopped, well
+from tests.argo_compiler.hfsm.play import Play, failure, started, stopped, success
 from tests.mission_writing import measure as task
 from tests.mission_writing import wait
 from tests.mission_writing import way as when
@@ -58,7 +58,7 @@ class TestWaits:
     @pytest.mark.rule("W1", "I5")
     def test_time_is_dated_when_it_was_over(self):
         play = Play(plan(wait("W", "A", duration=10), task("A")))
-        assert (play.asked, play.running, play.next_deadline) == ([], None, 10)
+        assert (play.first_commands, play.running, play.next_deadline) == ([], None, 10)
         assert play.at(25, Tick()) == ["+A"]
         assert (play.trace[-1].time, play.trace[-1].detail) == (10, "waited 10 s")
 
@@ -84,7 +84,7 @@ class TestWaits:
     def test_event_before_the_visit_does_not_count(self):
         play = Play(plan(task("A", "W"), wait("W", event=EventKind.ALL_CLEAR)))
         play.at(1, CLEAR)
-        play.at(2, well("A"))
+        play.at(2, success("A"))
         assert (play.active, play.next_deadline) == ("W", None)
         play.at(3, CLEAR)
         assert play.finished
@@ -137,10 +137,10 @@ class TestWaits:
         play = Play(
             plan(*tasks, groups=(Group(name="G", start="A", end="End", max_repeat_count=2),))
         )
-        assert play.at(1, well("A", 9)) == ["+A"]
+        assert play.at(1, success("A", 9)) == ["+A"]
         assert play.rounds == {"G": 2}
-        assert play.at(2, well("A", 1)) == ["+B"]
-        assert play.at(3, well("B", 1)) == ["+C"]
+        assert play.at(2, success("A", 1)) == ["+B"]
+        assert play.at(3, success("B", 1)) == ["+C"]
 
 
 class TestWindows:
@@ -164,19 +164,19 @@ class TestWindows:
         window = TimeWindow(latest=20, missed_target="C")
         tasks = (task("A", "B"), task("B", "A", window=window, retries=3), task("C"))
         play = Play(plan(*tasks))
-        play.at(5, well("A"))
+        play.at(5, success("A"))
         assert play.next_deadline == 20
         assert play.at(20, Tick()) == ["-B"]
         assert (play.active, play.trace[-1].cause) == ("C", Cause.MISSED)
         assert play.readings["B"].kind is ReadingKind.FAILED
         assert play.at(21, stopped("B")) == ["+C"]
-        play.at(22, well("C"))
+        play.at(22, success("C"))
         assert play.outcome is Outcome.COMPLETED_WITH_FAILURES
 
     @pytest.mark.rule("W5")
     def test_what_ends_exactly_then_has_ended(self):
         play = Play(plan(task("A", window=TimeWindow(latest=20))))
-        play.at(20, well("A"))
+        play.at(20, success("A"))
         assert play.outcome is Outcome.COMPLETED
 
     @pytest.mark.rule("W5")
@@ -190,7 +190,7 @@ class TestWindows:
     def test_action_is_not_even_started_when_it_is_too_late(self):
         late = task("B", "C", window=TimeWindow(latest=5))
         play = Play(plan(task("A", "B"), late, task("C")))
-        assert play.at(9, well("A")) == ["+C"]
+        assert play.at(9, success("A")) == ["+C"]
 
     @pytest.mark.rule("W5")
     def test_takes_effect_when_the_mission_goes_on(self):
@@ -206,7 +206,7 @@ class TestWindows:
     def test_soft_window_changes_nothing(self):
         play = Play(plan(task("A", window=TimeWindow(latest=5, hard=False))))
         assert play.next_deadline is None
-        play.at(9, well("A"))
+        play.at(9, success("A"))
         assert play.outcome is Outcome.COMPLETED
 
 
@@ -221,20 +221,20 @@ class TestTimeLimits:
         assert play.next_deadline == 23
         assert play.at(23, Tick()) == ["-A"]
         assert play.ended[0].failure == "not done within 10 s"
-        assert play.at(24, badly("A")) == ["+B"]
+        assert play.at(24, failure("A")) == ["+B"]
 
     @pytest.mark.rule("T9", "I3")
     def test_success_while_cancelled_ends_the_task(self):
         play = Play(plan(task("A", "B", time_limit=10, retries=1), task("B")))
         play.at(10, Tick())
-        assert play.at(11, well("A", 3)) == ["+B"]
+        assert play.at(11, success("A", 3)) == ["+B"]
         assert [e.failure for e in play.ended] == [None]
 
     @pytest.mark.rule("T9", "I3")
     def test_success_after_it_failed_for_good_is_kept(self):
         play = Play(plan(task("A", "B", time_limit=10), task("B")))
         play.at(10, Tick())
-        assert play.at(11, well("A", 3)) == ["+B"]
+        assert play.at(11, success("A", 3)) == ["+B"]
         assert play.values["A"].value == 3
         (tally,) = play.progress().tallies
         assert (tally.done, tally.failed, play.progress().failed) == (1, 1, True)
@@ -247,7 +247,7 @@ class TestTimeLimits:
     @pytest.mark.rule("T9")
     def test_what_ends_exactly_then_has_ended(self):
         play = Play(plan(task("A", time_limit=10)))
-        play.at(10, well("A"))
+        play.at(10, success("A"))
         assert play.outcome is Outcome.COMPLETED
 
     @pytest.mark.rule("T9", "I6")
@@ -266,15 +266,15 @@ class TestFailures:
         failing = task("A", on_failure=OnFailure.BRANCH, failure_target="B")
         groups = (Group(name="G", start="B", end="B", max_repeat_count=2),)
         play = Play(plan(failing, task("B"), groups=groups))
-        assert play.at(1, badly("A")) == ["+B"]
+        assert play.at(1, failure("A")) == ["+B"]
         assert play.rounds == {"G": 1}
 
     @pytest.mark.rule("M3", "T11")
     @pytest.mark.parametrize("optional", [False, True])
     def test_outcome_tells_of_failures_that_matter(self, optional):
         play = Play(plan(task("A", "B", optional=optional), task("B")))
-        play.at(1, badly("A"))
-        play.at(2, well("B"))
+        play.at(1, failure("A"))
+        play.at(2, success("B"))
         failed = Outcome.COMPLETED_WITH_FAILURES
         assert play.outcome is (Outcome.COMPLETED if optional else failed)
 
@@ -305,14 +305,14 @@ class TestReadings:
         stale = Condition(type=ConditionType.STALE, object_id="A", max_age=3)
         ways = (when("B", stale), "C")
         play = Play(plan(task("A", "Z"), task("Z", *ways), task("B"), task("C")))
-        play.at(1, well("A", 1.0))
-        play.at(at, well("Z", 1.0))
+        play.at(1, success("A", 1.0))
+        play.at(at, success("Z", 1.0))
         assert play.active == follows
 
     @pytest.mark.rule("C3", "T7")
     def test_attempts_and_stops_do_not_count(self):
         play = Play(plan(task("A", retries=1)))
-        play.at(1, badly("A"))
+        play.at(1, failure("A"))
         assert play.readings == {}
         play.at(2, Pause())
         play.at(2, stopped("A"))
@@ -322,7 +322,7 @@ class TestReadings:
     @pytest.mark.parametrize("skipped", [False, True])
     def test_by_hand_without_a_value_leaves_none(self, skipped):
         play = Play(plan(task("A", "A")))
-        play.at(1, well("A", 4.0))
+        play.at(1, success("A", 4.0))
         play.at(2, TakeOver())
         play.at(2, stopped("A"))
         play.at(3, GiveBack((ByHand(task="A", skipped=skipped),)))
@@ -336,13 +336,13 @@ class TestRounds:
     @pytest.mark.rule("G13")
     def test_begin_when_they_are_due_and_do_not_drift(self):
         play = Play(self.rounds(task("A"), max_repeat_count=4, every=10))
-        assert play.at(3, well("A")) == []
+        assert play.at(3, success("A")) == []
         assert (play.active, play.rounds, play.next_deadline) == ("A", {"G": 2}, 10)
         assert play.progress().round_of == "G"
         assert play.at(10, Tick()) == ["+A"]
         assert play.trace[-1].cause is Cause.ROUND
-        assert play.at(25, well("A")) == ["+A"]
-        assert play.at(26, well("A")) == []
+        assert play.at(25, success("A")) == ["+A"]
+        assert play.at(26, success("A")) == []
         assert play.next_deadline == 30
 
     @pytest.mark.rule("G13", "W1")
@@ -354,22 +354,22 @@ class TestRounds:
         )
         play = Play(mission)
         play.at(4, Tick())
-        play.at(5, well("A"))
+        play.at(5, success("A"))
         play.at(30, Tick())
         assert [e.time for e in play.trace if e.source == "W" and e.target == "A"] == [4, 14]
 
     @pytest.mark.rule("G8", "G13")
     def test_round_that_would_be_due_too_late_is_not_begun(self):
         play = Play(self.rounds(task("A"), max_repeat_duration=20, every=10))
-        play.at(1, well("A"))
+        play.at(1, success("A"))
         play.at(10, Tick())
-        play.at(11, well("A"))
+        play.at(11, success("A"))
         assert play.finished
 
     @pytest.mark.rule("G12", "G13")
     def test_clock_of_the_rounds_stands_with_the_mission(self):
         play = Play(self.rounds(task("A"), max_repeat_count=2, every=10))
-        play.at(3, well("A"))
+        play.at(3, success("A"))
         play.at(4, Pause())
         play.at(9, Resume())
         assert play.next_deadline == 15
@@ -378,7 +378,7 @@ class TestRounds:
     def test_waits_for_the_round_after_a_handover(self):
         mission = self.rounds(task("A"), max_repeat_count=2, every=10)
         play = Play(mission)
-        play.at(3, well("A"))
+        play.at(3, success("A"))
         later = Executor.restore(lower(mission), play.progress(), 100, away=50)
         assert later.start(100) == ()
         assert later.next_deadline == 107
@@ -386,8 +386,8 @@ class TestRounds:
     @pytest.mark.rule("G8")
     def test_until_ends_them(self):
         play = Play(self.rounds(task("A"), until=(HIGH,)))
-        assert play.at(1, well("A", 5)) == ["+A"]
-        assert play.at(2, well("A", 6)) == []
+        assert play.at(1, success("A", 5)) == ["+A"]
+        assert play.at(2, success("A", 6)) == []
         assert play.finished
 
 
@@ -431,7 +431,7 @@ class TestSupervision:
     @pytest.mark.rule("M9")
     def test_begins_paused(self):
         play = Play(plan(task("A"), mode=Mode.SUPERVISORY))
-        assert (play.asked, play.paused) == ([], True)
+        assert (play.first_commands, play.paused) == ([], True)
         assert play.trace[-1].cause is Cause.PAUSE
         assert play.at(5, Resume()) == ["+A"]
 
@@ -449,12 +449,12 @@ class TestByHand:
         play.at(10, TakeOver())
         play.at(10, stopped("B"))
         play.at(20, GiveBack((ByHand(task="A", value=4, duration=60, age=age),)))
-        play.at(30, well("B"))
+        play.at(30, success("B"))
         assert play.values["A"].time == read
 
     @pytest.mark.rule("H2", "H3")
     def test_second_handover_before_the_time_of_the_first_is_over(self):
-        """By hand takes 60 s each time, and values are not a second too young."""
+        """The tasks of each handover take 60 s, and the ages of values are exact."""
         mission = plan(task("A", "B"), task("B", "C"), task("C"))
         play = Play(mission)
         play.at(10, TakeOver())
@@ -540,14 +540,14 @@ class TestStrictness:
         assert executor.values["Z"].value == 7
 
     def test_no_call_from_inside_of_another(self):
-        """An observer that hears of an event from a clock that the executor reads."""
+        """A call is refused that comes from the clock which the executor reads."""
         executor = started(plan(task("A")))
         refused = []
 
         class Nosy(float):
             def __ge__(self, other):
                 for call in (lambda: executor.handle(Tick(), 2.0), executor.progress):
-                    with pytest.raises(ValueError, match="one thread at a time"):
+                    with pytest.raises(ValueError, match="use one thread"):
                         call()
                     refused.append(call)
                 return float(self) >= other
@@ -561,7 +561,7 @@ class TestHistory:
     def test_views_are_what_had_happened(self):
         play = Play(plan(task("A", "A")))
         before = play.trace
-        play.at(1, well("A"))
+        play.at(1, success("A"))
         assert (len(before), len(play.trace)) == (1, 2)
         assert play.trace[:1] == tuple(before)
         assert play.trace[-1] == list(play.trace)[1]
@@ -573,7 +573,7 @@ class TestHistory:
         play = Play(plan(task("A", "A")))
         sizes = set()
         for i in range(100, 200):
-            play.at(i, well("A", 1.5))
+            play.at(i, success("A", 1.5))
             sizes.add(len(play.progress().model_copy(update={"elapsed": 0}).model_dump_json()))
         assert max(sizes) - min(sizes) < 5
         assert len(play.ended) == 100
@@ -621,7 +621,7 @@ class TestRemaining:
     def test_round_that_is_not_planned_any_more_is_not_awaited(self, every, kept):
         group = Group(name="G", start="A", end="A", max_repeat_count=3, every=10)
         play = Play(plan(task("A"), groups=(group,)))
-        play.at(3, well("A"))
+        play.at(3, success("A"))
         edited = plan(task("A"), groups=(group.model_copy(update={"every": every}),))
         matched, findings = match_to_mission(play.progress(), edited)
         assert (matched.round_of, findings) == (kept, ())

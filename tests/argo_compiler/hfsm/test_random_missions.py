@@ -1,4 +1,4 @@
-"""Whether random missions come to all that the language has."""
+"""Coverage of the language by the random missions."""
 
 import json
 import subprocess
@@ -23,11 +23,11 @@ HAPPENS = {
     "completed with failures": 5,
     "begins paused": 5,
 }
-"""At least so often in 500 machines."""
+"""least number of occurrences in 500 machines"""
 
 
 def test_random_missions_come_to_all_there_is():
-    """In a process of its own: the campaign takes the place of Hypothesis's strategies."""
+    """It runs in a process of its own, as the campaign replaces Hypothesis's strategies."""
     campaign = [sys.executable, "-m", "tests.campaigns.machines", "--count", "500"]
     done = subprocess.run(campaign, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr

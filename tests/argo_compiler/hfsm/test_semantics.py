@@ -1,4 +1,4 @@
-"""Each rule of what a mission means, on the smallest mission that shows it."""
+"""Semantics of missions: each rule on the smallest mission that shows it."""
 
 import pytest
 
@@ -23,7 +23,7 @@ from tests.mission_writing import way as when
 class TestTasks:
     @pytest.mark.rule("M3", "T5")
     def test_follow_their_transitions_until_one_has_none(self):
-        executor = drive(build("A B C", ways={"A": ["C"], "C": ["B"], "B": []}))
+        executor = drive(build("A B C", transitions={"A": ["C"], "C": ["B"], "B": []}))
         assert path(executor) == "A@0 C@1 B@2 end@3"
 
     @pytest.mark.rule("T3")
@@ -32,7 +32,7 @@ class TestTasks:
     @pytest.mark.rule("G8")
     @pytest.mark.parametrize(("value", "expected"), [(5.0, "A@0 C@1 end@2"), (3.0, "A@0 B@1")])
     def test_unconditional_comes_last_wherever_it_stands(self, value, expected):
-        mission = build("A B C", ways={"A": ["B", when("C", above("A", 3))]})
+        mission = build("A B C", transitions={"A": ["B", when("C", above("A", 3))]})
         assert path(drive(mission, reads={"A": [value]})).startswith(expected)
 
     @pytest.mark.rule("T2")
@@ -44,14 +44,14 @@ class TestTasks:
                 when("D", above("A", 0)),
             ]
         }
-        executor = drive(build("A B C D", ways=ways), reads={"A": [5]})
+        executor = drive(build("A B C D", transitions=ways), reads={"A": [5]})
         assert path(executor) == "A@0 C@1 D@2 end@3"
         assert executor.trace[1].cause is Cause.CONDITION
         assert executor.trace[1].conditions == ("#A > 1",)
 
     @pytest.mark.rule("M3", "T4")
     def test_mission_ends_when_no_condition_holds(self):
-        executor = drive(build("A B", ways={"A": [when("B", above("A", 1))]}))
+        executor = drive(build("A B", transitions={"A": [when("B", above("A", 1))]}))
         assert path(executor) == "A@0 end@1"
         assert executor.finished
         assert executor.configuration == ("mission", "done")
@@ -59,16 +59,18 @@ class TestTasks:
     @pytest.mark.rule("T8", "C4")
     def test_failure_is_recorded_and_the_mission_goes_on(self):
         ways = {"A": [when("C", above("A", -1)), "B"]}
-        executor = drive(build("A B C", ways=ways), reads={"A": [None]})
+        executor = drive(build("A B C", transitions=ways), reads={"A": [None]})
         assert path(executor) == "A@0 B@1 C@2 end@3"
         assert executor.trace[1].failure == "no view"
         assert str(executor.trace[1]) == "1 s: A -> B (default; failed: no view)"
 
     @pytest.mark.rule("T8", "C3", "C4", "C6")
     def test_failure_takes_the_place_of_the_value_before(self):
-        executor = drive(build("A B", ways={"B": [when("A", above("B", 0))]}), reads={"B": [1]})
+        executor = drive(
+            build("A B", transitions={"B": [when("A", above("B", 0))]}), reads={"B": [1]}
+        )
         assert executor.values["B"].value == 0
-        mission = build("A", ways={"A": [when("A", above("A", 0))]})
+        mission = build("A", transitions={"A": [when("A", above("A", 0))]})
         executor = drive(mission, reads={"A": [4, None, 0]})
         assert [entry.failure for entry in executor.trace[1:]] == [None, "no view"]
         assert executor.readings["A"].kind is ReadingKind.FAILED
@@ -77,7 +79,7 @@ class TestTasks:
     @pytest.mark.rule("C5")
     @pytest.mark.parametrize(("takes", "reached"), [(5.0, "A"), (5.5, "end")])
     def test_value_counts_up_to_its_greatest_age(self, takes, reached):
-        mission = build("A B", ways={"B": [when("A", above("A", 0, max_age=5))]})
+        mission = build("A B", transitions={"B": [when("A", above("A", 0, max_age=5))]})
         executor = drive(mission, takes={"B": takes}, reads={"A": [1, 0]})
         assert (executor.trace[2].target or "end") == reached
 
@@ -99,16 +101,16 @@ class TestTasks:
         ],
     )
     def test_comparisons_exclude_their_bounds(self, type, value, holds, inclusive):
-        """None: on the bound, which is what `inclusive` decides."""
+        """On a bound (`holds` is None), `inclusive` decides."""
         condition = Condition(type=type, object_id="A", param1=2, param2=3, inclusive=inclusive)
-        mission = build("A B C", ways={"A": ["B", when("C", condition)]})
+        mission = build("A B C", transitions={"A": ["B", when("C", condition)]})
         expected = inclusive if holds is None else holds
         assert drive(mission, reads={"A": [value]}).trace[1].target == ("C" if expected else "B")
 
     @pytest.mark.rule("C3")
     def test_value_is_the_last_one_whoever_measured_it(self):
         ways = {"B": [when("D", above("A", 5)), "C"]}
-        mission = build("A B C D", ways=ways)
+        mission = build("A B C D", transitions=ways)
         again = mission.tasks[1].model_copy(update={"object_id": "A"})
         mission = mission.model_copy(
             update={"tasks": (mission.tasks[0], again, *mission.tasks[2:])}
@@ -121,7 +123,7 @@ class TestTasks:
     def test_what_was_never_measured_holds_never(self, type):
         bounds = {"param1": 0, "param2": 1} if type.compares else {"max_age": 1}
         never = Condition(type=type, object_id="B", **bounds)
-        mission = build("A B C", ways={"A": [when("C", never), "B"]})
+        mission = build("A B C", transitions={"A": [when("C", never), "B"]})
         assert path(drive(mission)).startswith("A@0 B@1")
 
     @pytest.mark.rule("M5")
@@ -133,7 +135,7 @@ class TestTasks:
 
     @pytest.mark.rule("T1", "G9")
     def test_what_has_no_meaning_is_refused(self):
-        mission = build("A B", Group(name="G", start="A", end="B"), ways={"B": ["A"]})
+        mission = build("A B", Group(name="G", start="A", end="B"), transitions={"B": ["A"]})
         with pytest.raises(DiagnosticError, match=r"il\.endless-group"):
             lower(mission)
         twice = build("A").model_copy(update={"tasks": build("A").tasks * 2})
@@ -196,13 +198,13 @@ class TestRounds:
     @pytest.mark.rule("G2")
     def test_entry_in_the_middle_is_round_one(self):
         group = Group(name="G", start="B", end="C", max_repeat_count=2)
-        executor = drive(build("A B C D", group, ways={"A": ["C"]}))
+        executor = drive(build("A B C D", group, transitions={"A": ["C"]}))
         assert path(executor) == "A@0 C@1 B@2 C@3 D@4 end@5"
 
     @pytest.mark.rule("G4")
     def test_jump_inside_changes_no_round(self):
         group = Group(name="G", start="A", end="B", max_repeat_count=2)
-        mission = build("A B C", group, ways={"B": [when("A", above("B", 0)), "C"]})
+        mission = build("A B C", group, transitions={"B": [when("A", above("B", 0)), "C"]})
         executor = drive(mission, reads={"B": [1, 0, 0]})
         assert path(executor) == "A@0 B@1 A@2 B@3 A@4 B@5 C@6 end@7"
 
@@ -210,14 +212,14 @@ class TestRounds:
     def test_condition_leaves_in_the_middle_and_entry_starts_anew(self):
         group = Group(name="G", start="A", end="B", max_repeat_count=2)
         ways = {"A": [when("C", above("A", 0)), "B"], "C": [when("A", above("A", 0))]}
-        executor = drive(build("A B C", group, ways=ways), reads={"A": [0, 1, 0, 0]})
+        executor = drive(build("A B C", group, transitions=ways), reads={"A": [0, 1, 0, 0]})
         assert path(executor) == "A@0 B@1 A@2 C@3 A@4 B@5 A@6 B@7 C@8 end@9"
 
     @pytest.mark.rule("G6")
     def test_unconditional_to_a_member_after_the_last_round_enters_anew(self):
         group = Group(name="G", start="A", end="B", max_repeat_count=2)
         ways = {"B": ["A"], "A": [when("C", above("A", 0)), "B"], "C": []}
-        executor = drive(build("A B C", group, ways=ways), reads={"A": [0, 0, 0, 0, 1]})
+        executor = drive(build("A B C", group, transitions=ways), reads={"A": [0, 0, 0, 0, 1]})
         assert path(executor) == "A@0 B@1 A@2 B@3 A@4 B@5 A@6 B@7 A@8 C@9 end@10"
         assert [e.cause for e in executor.trace if e.source == "B"] == [
             Cause.REPEAT,
@@ -230,7 +232,7 @@ class TestRounds:
     def test_endless_group_is_left_by_a_condition(self):
         group = Group(name="G", start="A", end="B")
         ways = {"B": ["C", when("C", above("B", 0))]}
-        executor = drive(build("A B C", group, ways=ways), reads={"B": [0, 0, 1]})
+        executor = drive(build("A B C", group, transitions=ways), reads={"B": [0, 0, 1]})
         assert path(executor) == "A@0 B@1 A@2 B@3 A@4 B@5 C@6 end@7"
 
 
@@ -302,14 +304,14 @@ class TestDurations:
 
     @pytest.mark.rule("G6")
     def test_time_out_back_into_the_group_enters_it_anew(self):
-        mission = build("A B", self.group(Stop.HARD, 1.5), ways={"B": ["A"]})
-        executor = drive(mission, most=5)
+        mission = build("A B", self.group(Stop.HARD, 1.5), transitions={"B": ["A"]})
+        executor = drive(mission, max_actions=5)
         assert path(executor) == "A@0 B@1 A@1.5 B@2.5 A@3 B@4"
 
 
 @pytest.mark.rule("G13", "W5", "W7")
 def test_window_that_is_over_is_missed_when_the_round_is_due():
-    """Or rounds without a limit would follow each other in no time."""
+    """Otherwise rounds without a limit would follow each other in no time."""
     mission = build("A", Group(name="G", start="A", end="A", every=10, until=(above("A", 9),)))
     window = TimeWindow(latest=5)
     task = mission.tasks[0].model_copy(update={"window": window})

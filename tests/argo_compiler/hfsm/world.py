@@ -1,4 +1,4 @@
-"""What carries out an executor's commands, and compares it with the reference."""
+"""Simulated world that executes an executor's commands, and its comparison with the reference."""
 
 from enum import StrEnum
 from itertools import cycle
@@ -26,8 +26,8 @@ MOVES = {Cause.START, Cause.CONDITION, Cause.REPEAT, Cause.DEFAULT, Cause.TIMEOU
 FAILURES = {Cause.FAILURE, Cause.MISSED}
 
 
-class Hears(StrEnum):
-    """When a driver tells its executor the time."""
+class Ticks(StrEnum):
+    """When the world calls its executor."""
 
     DEADLINES = "at its deadlines"
     SECONDS = "every second"
@@ -35,23 +35,23 @@ class Hears(StrEnum):
 
 
 class World:
-    """Carries out what an executor asks for; `seen` is what it was asked, and when."""
+    """World that executes the commands of an executor; `seen` lists them with their times."""
 
-    def __init__(self, executor, case, hears=Hears.DEADLINES, now=0):
+    def __init__(self, executor, case, ticks=Ticks.DEADLINES, now=0):
         self.executor = executor
-        self.doings = cycle(case.doings)
+        self.results = cycle(case.results)
         self.script = []
-        for wait, happening in case.script:
-            self.script.append(((self.script[-1][0] if self.script else now) + wait, happening))
-        self.hears = hears
+        for wait, scripted in case.script:
+            self.script.append(((self.script[-1][0] if self.script else now) + wait, scripted))
+        self.ticks = ticks
         self.now = now
         self.running = None
         self.ends_at = None
-        self.ending = None
+        self.end_event = None
         self.seen = []
 
     def start(self):
-        self.note(self.executor.start(self.now))
+        self.execute(self.executor.start(self.now))
 
     def run(self):
         self.start()
@@ -59,78 +59,82 @@ class World:
             if not self.step():
                 break
 
-    def note(self, commands):
+    def execute(self, commands):
         for command in commands:
-            self.seen.append((self.now, *read(command, self.now)))
+            self.seen.append((self.now, *in_reference_terms(command, self.now)))
             if isinstance(command, StartAction):
                 assert self.running is None
-                self.running, self.doing = command, next(self.doings)
-                begins = self.now if self.doing.failed else max(self.now, command.not_before or 0)
-                self.ends_at = begins + self.doing.seconds
-                self.ending = result(command, self.doing)
+                self.running, self.result = command, next(self.results)
+                begins = self.now if self.result.failed else max(self.now, command.not_before or 0)
+                self.ends_at = begins + self.result.seconds
+                self.end_event = make_end_event(command, self.result)
             else:
                 assert self.running.id == command.id
-                self.ends_at = self.now + self.doing.clean_up
-                if not self.doing.late:
-                    self.ending = ActionStopped(command.task, id=command.id)
+                self.ends_at = self.now + self.result.clean_up
+                if not self.result.late:
+                    self.end_event = ActionStopped(command.task, id=command.id)
 
     def step(self):
-        """The next thing that happens; False: nothing will."""
-        happening = self.script[0][0] if self.script else None
-        times = [t for t in (self.ends_at, happening) if t is not None]
+        """Simulate the next event; return False if there will be none."""
+        scripted = self.script[0][0] if self.script else None
+        times = [t for t in (self.ends_at, scripted) if t is not None]
         due = self.executor.next_deadline
-        if due is not None and not (times and self.hears is Hears.EVENTS):
+        if due is not None and not (times and self.ticks is Ticks.EVENTS):
             times.append(due)
         if not times:
             return False
-        if self.hears is Hears.SECONDS and self.now + 1 < min(times):
-            self.tell(Tick(), self.now + 1)
+        if self.ticks is Ticks.SECONDS and self.now + 1 < min(times):
+            self.handle(Tick(), self.now + 1)
         elif min(times) == self.ends_at:
-            ending, now = self.ending, self.ends_at
+            end_event, now = self.end_event, self.ends_at
             self.running = self.ends_at = None
-            self.tell(ending, now)
+            self.handle(end_event, now)
             if now % 2:  # a driver that delivers it twice
                 with pytest.raises(ValueError, match=r"no action|does not run|another action"):
-                    self.tell(ending, now)
-        elif min(times) == happening:
-            self.happens(self.script.pop(0)[1], happening)
+                    self.handle(end_event, now)
+        elif min(times) == scripted:
+            self.handle_scripted(self.script.pop(0)[1], scripted)
         else:
-            self.tell(Tick(), due)
+            self.handle(Tick(), due)
         return True
 
-    def happens(self, happening, now):
-        """A person gives back what they have taken, and when it stands still."""
-        if isinstance(happening, GiveBack):
+    def handle_scripted(self, scripted, now):
+        """Pass a scripted event to the executor.
+
+        A `GiveBack` waits until no action runs, and is replaced by a `Tick` if the mission is not
+        paused.
+        """
+        if isinstance(scripted, GiveBack):
             if self.running is not None:
-                self.script.insert(0, (self.ends_at, happening))
+                self.script.insert(0, (self.ends_at, scripted))
                 return
             if not self.executor.paused:
-                happening = Tick()
-        self.tell(happening, max(now, self.now))
+                scripted = Tick()
+        self.handle(scripted, max(now, self.now))
 
-    def tell(self, event, now):
+    def handle(self, event, now):
         self.now = now
-        self.note(self.executor.handle(event, now))
+        self.execute(self.executor.handle(event, now))
 
 
-def read(command, now):
-    """A command in the reference's words."""
+def in_reference_terms(command, now):
+    """Return a command in the form of the reference."""
     if isinstance(command, CancelAction):
         return CancelAction, command.task, command.id
     return StartAction, command.task.name, command.id, max((command.not_before or now) - now, 0)
 
 
-def result(command, doing):
+def make_end_event(command, result):
     name = command.task.name
-    if doing.failed:
-        return ActionFailed(name, "failed", doing.unreadable, id=command.id)
+    if result.failed:
+        return ActionFailed(name, "failed", result.unreadable, id=command.id)
     if command.task.action is not Action.MEASURE:
         return ActionSucceeded(name, id=command.id)
-    return ActionSucceeded(name, doing.value, doing.abnormal, id=command.id)
+    return ActionSucceeded(name, result.value, result.abnormal, id=command.id)
 
 
 def steps(executor):
-    """The ways of the mission from task to task."""
+    """Return the transitions of the mission from task to task."""
     return [
         (e.time, e.target)
         for e in executor.trace
@@ -142,10 +146,10 @@ def reports(executor):
     return [(e.time, e.event) for e in executor.trace if e.cause is Cause.REPORT]
 
 
-def where(executor):
+def executor_state(executor):
     progress = executor.progress()
     task = progress.active
-    begun = task is not None and progress.round_of is None
+    started = task is not None and progress.round_of is None
     reaction = progress.reaction
     return {
         "outcome": progress.outcome,
@@ -155,7 +159,7 @@ def where(executor):
         "waiting": [(w.event, w.over) for w in progress.waiting],
         "task": task,
         "attempt": progress.attempt if task else None,
-        "since": progress.since if begun else None,
+        "since": progress.since if started else None,
         "round_of": progress.round_of,
         "groups": {g.group: (g.round, g.elapsed) for g in progress.groups},
         "readings": {r.object_id: (r.kind, r.value, r.abnormal, r.age) for r in progress.readings},
@@ -166,9 +170,9 @@ def where(executor):
     }
 
 
-def where_reference(reference):
+def reference_state(reference):
     active, task = reference.active, reference.current
-    begun = task is not None and reference.round_of is None
+    started = task is not None and reference.round_of is None
     return {
         "outcome": reference.outcome,
         "paused": reference.paused,
@@ -179,7 +183,7 @@ def where_reference(reference):
         ],
         "task": task,
         "attempt": reference.failures if task else None,
-        "since": reference.since if begun else None,
+        "since": reference.since if started else None,
         "round_of": reference.round_of,
         "groups": {g: (reference.round[g], clock) for g, clock in reference.clock.items()},
         "readings": {
@@ -195,7 +199,7 @@ def where_reference(reference):
 
 
 class Pair:
-    """A machine and the reference, which are to do the same at all times."""
+    """Executor and reference that run side by side; both must do the same at all times."""
 
     def __init__(self, executor, reference):
         self.executor = executor
@@ -216,15 +220,15 @@ class Pair:
         return self.agree(self.executor.handle(event, now), self.reference.handle(event, now), now)
 
     def agree(self, commands, expected, now):
-        assert [read(command, now) for command in commands] == expected
-        assert where(self.executor) == where_reference(self.reference)
+        assert [in_reference_terms(command, now) for command in commands] == expected
+        assert executor_state(self.executor) == reference_state(self.reference)
         return commands
 
 
-def compare(case, hears, reference=Reference):
-    """Nothing differs at any time; returns the reference."""
+def compare(case, ticks, reference=Reference):
+    """Assert that executor and reference never differ; return the reference."""
     pair = Pair(Executor(lower(case.mission)), reference(case.mission))
-    World(pair, case, hears).run()
+    World(pair, case, ticks).run()
     assert steps(pair.executor) == pair.reference.steps
     assert reports(pair.executor) == pair.reference.events
     return pair.reference

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from argo_compiler.base.model import Model
 from argo_compiler.il import Mission
-from argo_compiler.il.velocities import of_ways_on, of_ways_there
+from argo_compiler.il.velocities import with_approach_velocities, with_departure_velocities
 
 INTEGERS = st.integers(-(2**63), 2**63 - 1)
 FLOATS = st.floats(allow_nan=False, allow_infinity=False)
@@ -28,8 +28,11 @@ def carried_missions() -> st.SearchStrategy[Mission]:
 
 
 def _carried(mission: Mission) -> Mission:
-    mission, differ = of_ways_there(mission.model_copy(update={"left_out": ()}))
-    if not differ and of_ways_there(of_ways_on(mission)[0]) == (mission, ()):
+    mission, differ = with_approach_velocities(mission.model_copy(update={"left_out": ()}))
+    if not differ and with_approach_velocities(with_departure_velocities(mission)[0]) == (
+        mission,
+        (),
+    ):
         return mission
     tasks = tuple(task.model_copy(update={"velocity": None}) for task in mission.tasks)
     return mission.model_copy(update={"tasks": tasks})

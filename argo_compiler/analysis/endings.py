@@ -8,7 +8,7 @@ from argo_compiler.base.listing import quoted
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Task
-from argo_compiler.il.docked import at_dock
+from argo_compiler.il.docked import is_at_dock
 
 _MOST_PATHS = 200  # diagnostics that show a path
 _REMEDY = (
@@ -202,4 +202,4 @@ def _is_docked_after(study: Study, leaf: int, dock: Pose) -> bool:
 
 
 def _drives_to(task: Task, dock: Pose) -> bool:
-    return task.action is Action.WAYPOINT and task.pose is not None and at_dock(task.pose, dock)
+    return task.action is Action.WAYPOINT and task.pose is not None and is_at_dock(task.pose, dock)

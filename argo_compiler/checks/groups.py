@@ -21,7 +21,7 @@ from argo_compiler.il.grouping import (
     task_positions,
 )
 from argo_compiler.il.subjects import Subjects
-from argo_compiler.il.ways import branches, default_target
+from argo_compiler.il.transitions import default_target, failure_targets
 
 MIN_PERIOD_S = 1.0
 """Rounds that are late are made up for at once, so not too many may come to be late in a pause."""
@@ -46,7 +46,7 @@ def check_groups(mission: Mission) -> tuple[Diagnostic, ...]:
         *_check_starts(mission, ranges, subjects),
     ]
     if not diagnostics and ranges:
-        layout = GroupNesting.of(mission)
+        layout = GroupNesting.from_mission(mission)
         diagnostics += _check_endless(mission, layout, subjects)
         diagnostics += _check_leaving(mission, layout, subjects)
     return (*diagnostics, *_check_unused(mission.groups, subjects))
@@ -233,7 +233,7 @@ def _ways_out(task: Task) -> Iterator[tuple[str | None, str]]:
     """The targets of a task's ways with their fields; None for the unconditional one."""
     for k, transition in enumerate(task.transitions):
         yield f".transitions[{k}].target" if transition.conditions else None, transition.target
-    for field, target in branches(task).items():
+    for field, target in failure_targets(task).items():
         yield f".{field}", target
 
 

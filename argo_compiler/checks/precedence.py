@@ -7,7 +7,7 @@ from graphlib import CycleError, TopologicalSorter
 from argo_compiler.base.graphs import Successors, components, reached_from
 from argo_compiler.diagnostics import Diagnostic, Severity, diagnostic_of
 from argo_compiler.il import Mission, Order
-from argo_compiler.il.velocities import BEGINNING, ways
+from argo_compiler.il.velocities import MISSION_START, transition_pairs
 
 _SHOWN = 20
 """pairs whose order is broken, as far as they are named, and tasks of a circle"""
@@ -79,11 +79,11 @@ class _Ways:
     """The ways between the tasks of a mission, by the tasks' positions."""
 
     def __init__(self, mission: Mission) -> None:
-        self.names = [BEGINNING, *(task.name for task in mission.tasks)]
+        self.names = [MISSION_START, *(task.name for task in mission.tasks)]
         self.at = {name: i for i, name in enumerate(self.names)}
         following: list[dict[int, None]] = [{} for _ in self.names]
         begun = False
-        for source, target in ways(mission):
+        for source, target in transition_pairs(mission):
             if not begun:
                 following[0][self.at.get(target, 0)] = None
                 begun = True

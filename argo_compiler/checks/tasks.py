@@ -16,7 +16,7 @@ from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Action, Mission, OnFailure, Task
 from argo_compiler.il.reserved import RESERVED_NAMES
 from argo_compiler.il.subjects import Subjects
-from argo_compiler.il.ways import branches
+from argo_compiler.il.transitions import failure_targets
 
 MANY_RETRIES = 100
 """that few actions are worth; more look like a mission that hangs"""
@@ -120,7 +120,7 @@ class TaskChecks:
         for n, condition in enumerate(task.wait.conditions if task.wait else ()):
             field = f".wait.conditions[{n}]"
             yield from self.conditions.diagnostics(about, task, condition, field)
-        for field, target in branches(task).items():
+        for field, target in failure_targets(task).items():
             if target not in self.targets:
                 yield self._wrong_target(about, task, target, f".{field}")
 

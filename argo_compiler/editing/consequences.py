@@ -9,7 +9,7 @@ from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.errors import EditConflict, EditInvalid
 from argo_compiler.il import Action, Group, Mission, Task, Transition
-from argo_compiler.il.ways import beginning, branches, default_target
+from argo_compiler.il.transitions import default_target, failure_targets, initial_task
 
 _INVALID_IN_THEMSELVES = frozenset(
     [
@@ -118,8 +118,8 @@ def new_errors(before: Mission, after: Mission) -> list[Diagnostic]:
 def _task_consequences(
     before: Mission, after: Mission, requested: frozenset[str], renamed: Mapping[str, str]
 ) -> Iterator[Consequence]:
-    first = beginning(after)
-    former = beginning(before)
+    first = initial_task(after)
+    former = initial_task(before)
     if renamed:
         known = {renamed.get(task.name, task.name): task for task in before.tasks}
     else:
@@ -193,7 +193,7 @@ def _transition_consequences(
 def _branch_consequences(at: str, old: Task, new: Task) -> Iterator[Consequence]:
     if (old.failure_target, old.window) == (new.failure_target, new.window):
         return
-    former, now = branches(old), branches(new)
+    former, now = failure_targets(old), failure_targets(new)
     for field, occasion in _BRANCHES.items():
         was, is_now = former.get(field), now.get(field)
         if was != is_now:

@@ -9,7 +9,7 @@ from argo_compiler.editing.linked_list import LinkedList, ListItem
 from argo_compiler.editing.targets import default_targets, retargeted, with_default_target
 from argo_compiler.il import Action, Group, Mission, Task
 from argo_compiler.il.grouping import GroupNesting, GroupRange, group_ranges, parent_name
-from argo_compiler.il.ways import default_target
+from argo_compiler.il.transitions import default_target
 
 
 @dataclass(eq=False, slots=True)
@@ -259,7 +259,7 @@ def _groups_around(mission: Mission) -> list[str]:
     """Return the name of the innermost group around each task; empty if there is none."""
     if not mission.groups:
         return [""] * len(mission.tasks)
-    nesting = GroupNesting.of(mission)
+    nesting = GroupNesting.from_mission(mission)
     return ["" if i is None else nesting.ranges[i].group.name for i in nesting.innermost]
 
 

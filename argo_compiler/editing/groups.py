@@ -23,7 +23,7 @@ from argo_compiler.editing.errors import (
 from argo_compiler.editing.header import invalid_value_diagnostics, require_known_fields
 from argo_compiler.il import Action, Condition, Group, Mission, Stop
 from argo_compiler.il.grouping import parent_name
-from argo_compiler.il.ways import default_target
+from argo_compiler.il.transitions import default_target
 
 
 class GroupFields(TypedDict, total=False):

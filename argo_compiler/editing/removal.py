@@ -11,7 +11,7 @@ from argo_compiler.editing.draft import DraftGroup, DraftTask, MissionDraft
 from argo_compiler.editing.errors import EditConflict, conflict
 from argo_compiler.editing.targets import default_targets, retargeted
 from argo_compiler.il import Action, Mission, Task
-from argo_compiler.il.ways import beginning, branches, default_target
+from argo_compiler.il.transitions import default_target, failure_targets, initial_task
 
 _NAMES = 3
 """largest number of names that a message lists"""
@@ -62,9 +62,9 @@ def remove_task(mission: Mission, name: str) -> Edited:
 
 
 def _require_beginning(name: str, successor: str | None, before: Mission, after: Mission) -> None:
-    first = beginning(before)
+    first = initial_task(before)
     required = successor if first == name else first
-    actual = beginning(after)
+    actual = initial_task(after)
     if actual != required:
         how = f"with '{required}'" if required is not None else "and end at once"
         raise conflict(
@@ -112,7 +112,7 @@ class _Removal:
         ) or self._branches_to_it(task)
 
     def _branches_to_it(self, task: Task) -> bool:
-        return self.name in branches(task).values()
+        return self.name in failure_targets(task).values()
 
     def _successor(self) -> str | None:
         target = default_target(self.entry.task)

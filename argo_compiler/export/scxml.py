@@ -32,7 +32,7 @@ from argo_compiler.export.xml import Attributes, XmlWriter
 from argo_compiler.hfsm import Composite, Hfsm, Leaf, Outcome, StateTransition, TransitionKind
 from argo_compiler.hfsm.model import DONE, RETURN, RepeatRule
 from argo_compiler.il import Condition, ConditionType, Mission, Task
-from argo_compiler.il.ways import start_task
+from argo_compiler.il.transitions import start_task
 
 NAMESPACE = "http://www.w3.org/2005/07/scxml"
 

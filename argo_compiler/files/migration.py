@@ -7,7 +7,7 @@ from argo_compiler.base.listing import quoted
 from argo_compiler.diagnostics import Diagnostic, diagnostic_of
 from argo_compiler.files.json_places import JsonPath
 from argo_compiler.il import Action, EventKind, Mission, Mode, OnFailure, Response, Task
-from argo_compiler.il.velocities import of_ways_there
+from argo_compiler.il.velocities import with_approach_velocities
 
 VERSION = 3
 """Version of the mission format that Argo writes."""
@@ -78,7 +78,7 @@ def _to_3(mission: Mission) -> tuple[Mission, tuple[Diagnostic, ...]]:
     rank from its event.
     """
     warnings = tuple(_changes(mission))
-    mission, differ = of_ways_there(mission)
+    mission, differ = with_approach_velocities(mission)
     if differ:
         warnings = (*warnings, _velocity_warning(differ))
     reactions = tuple(

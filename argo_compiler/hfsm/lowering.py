@@ -38,7 +38,7 @@ from argo_compiler.il import (
 )
 from argo_compiler.il.grouping import GroupNesting
 from argo_compiler.il.reserved import RETURN_TASK, reaction_task_name
-from argo_compiler.il.ways import beginning, default_target
+from argo_compiler.il.transitions import default_target, initial_task
 
 if TYPE_CHECKING:
     from argo_compiler.hfsm.progress import Progress
@@ -80,7 +80,7 @@ class _Lowering:
 
     def __init__(self, mission: Mission) -> None:
         self.mission = mission
-        self.layout = GroupNesting.of(mission)
+        self.layout = GroupNesting.from_mission(mission)
         self.position = {task.name: i for i, task in enumerate(mission.tasks)}
         self.group_ids = [group_id(r.group.name) for r in self.layout.ranges]
 
@@ -113,7 +113,7 @@ class _Lowering:
         )
 
     def _initial(self) -> str:
-        target = beginning(self.mission)
+        target = initial_task(self.mission)
         return DONE if target is None else task_id(target)
 
     def _children(self) -> dict[int | None, list[str]]:
@@ -234,7 +234,7 @@ class _Lowering:
     def _domain(self, inside: int | None, target: str) -> str:
         at = self.position[target]
         if self.layout.innermost[at] != inside:
-            inside = self.layout.common(inside, at)
+            inside = self.layout.common_range(inside, at)
         return MISSION if inside is None else self.group_ids[inside]
 
     def _composite_id(self, index: int | None) -> str:

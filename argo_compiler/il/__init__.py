@@ -1,4 +1,4 @@
-"""The intermediate language: missions as data, and what their tasks and groups are made of."""
+"""Intermediate language: missions, their tasks, groups and reactions, as data."""
 
 from argo_compiler.il.mission import (
     DEFAULT_PRIORITIES,

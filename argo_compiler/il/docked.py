@@ -1,4 +1,4 @@
-"""When a robot counts as docked."""
+"""Test whether a robot is docked."""
 
 import math
 from typing import Protocol
@@ -9,8 +9,8 @@ DOCKED_DISTANCE_M = 0.1
 DOCKED_ANGLE = math.radians(5.0)
 
 
-class Standpoint(Protocol):
-    """A point (m) and a heading (rad), whatever else is known about the robot that is there."""
+class PoseLike(Protocol):
+    """Anything with a position (m) and a heading (rad), such as a pose of the robot."""
 
     @property
     def x(self) -> float: ...
@@ -22,8 +22,8 @@ class Standpoint(Protocol):
     def yaw(self) -> float: ...
 
 
-def at_dock(robot: Standpoint, dock: Pose) -> bool:
-    """Whether a robot is in the station of that pose: within 10 cm and 5 degrees."""
-    away = math.dist((robot.x, robot.y, robot.z), (dock.x, dock.y, dock.z))
-    turned = math.pi - (math.pi - (robot.yaw - dock.yaw)) % (2 * math.pi)
-    return away <= DOCKED_DISTANCE_M and abs(turned) <= DOCKED_ANGLE
+def is_at_dock(robot: PoseLike, dock: Pose) -> bool:
+    """Return True if the robot is at the dock: within 10 cm and 5 degrees of its pose."""
+    distance = math.dist((robot.x, robot.y, robot.z), (dock.x, dock.y, dock.z))
+    angle = math.pi - (math.pi - (robot.yaw - dock.yaw)) % (2 * math.pi)
+    return distance <= DOCKED_DISTANCE_M and abs(angle) <= DOCKED_ANGLE

@@ -1,4 +1,4 @@
-"""Which tasks lie in which group: the groups of a mission as nested ranges of its task list."""
+"""Groups of a mission as nested ranges of its task list."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,13 +9,13 @@ from argo_compiler.il.mission import Group, Mission
 
 @dataclass(frozen=True, slots=True)
 class GroupRange:
-    """A group with the positions of its first and last task in the mission's list, inclusive."""
+    """Group with the positions of its first and last task in the mission's list, inclusive."""
 
     group: Group
     first: int
     last: int
     index: int
-    """of the group in the mission's list"""
+    """position of the group in the mission's list of groups"""
 
     def contains(self, position: int) -> bool:
         return self.first <= position <= self.last
@@ -23,21 +23,25 @@ class GroupRange:
 
 @remembering
 def task_positions(mission: Mission) -> Mapping[str, int]:
-    """The position of each task by its name; of several with one name, the first one's."""
+    """Return the position of each task by its name; if several have one name, the first one's."""
     names = [task.name for task in mission.tasks]
     return dict(zip(reversed(names), range(len(names) - 1, -1, -1), strict=True))
 
 
 def parent_name(name: str) -> str | None:
-    """The name of the group that a group of this name lies in: `Alpha` for `Alpha/Beta`."""
+    """Return the name of the group in which this one lies, such as `Alpha` for `Alpha/Beta`.
+
+    Returns None if it lies in no group.
+    """
     parent, slash, _ = name.rpartition("/")
     return parent if slash else None
 
 
 def group_ranges(mission: Mission) -> tuple[GroupRange, ...]:
-    """The groups whose start and end exist in this order, each one before those that lie in it.
+    """Return the groups whose start and end exist in this order, parents before children.
 
-    By start, longest first; of two with the same range the one with the shorter path first.
+    They are sorted by start, longest first; of two with the same range, the one with the shorter
+    path comes first.
     """
     position = task_positions(mission)
     ranges = [
@@ -51,24 +55,27 @@ def group_ranges(mission: Mission) -> tuple[GroupRange, ...]:
 
 @dataclass(frozen=True)
 class GroupNesting:
-    """The nesting of a mission's groups. Tasks and groups are meant by position."""
+    """Nesting of a mission's groups. Tasks and ranges are identified by their positions."""
 
     ranges: tuple[GroupRange, ...]
     """parents before children"""
     parent: tuple[int | None, ...]
-    """for each range, the one that it lies in"""
+    """for each range, the smallest one around it; None if there is none"""
     innermost: tuple[int | None, ...]
-    """for each task, the smallest range that it lies in"""
+    """for each task, the smallest range around it; None if there is none"""
     ending: tuple[tuple[int, ...], ...]
     """for each task, the ranges that end with it, innermost first"""
 
     @staticmethod
-    def of(mission: Mission) -> "GroupNesting":
-        """The layout of a mission whose groups `check` finds no error in. Linear time."""
+    def from_mission(mission: Mission) -> "GroupNesting":
+        """Return the nesting of a mission whose groups have no error by `check`. Linear time."""
         return _nesting(mission)
 
-    def common(self, inside: int | None, task: int) -> int | None:
-        """The smallest range that holds both the range `inside` and the task; None: the mission."""
+    def common_range(self, inside: int | None, task: int) -> int | None:
+        """Return the smallest range that contains both the range `inside` and the task.
+
+        None stands for the mission, as an argument and as the result.
+        """
         while inside is not None and not self.ranges[inside].contains(task):
             inside = self.parent[inside]
         return inside

@@ -1,9 +1,9 @@
-"""The intermediate language (IL): what a mission is, as data.
+"""Intermediate language (IL): the data models of a mission.
 
-The structures and names are those of the thesis (sections 3.2 and 4.4), so that a plan maps one to
-one onto its ROS messages. What they mean is written in `docs/language.md` and carried out by
-`argo_compiler.hfsm`. A `Mission` read from JSON has the right shape; whether it makes sense is what
-`argo_compiler.checks` says.
+The structures and names are those of the thesis (sections 3.2 and 4.4), so that a mission maps one
+to one onto its ROS messages. `docs/language.md` defines their meaning, and `argo_compiler.hfsm`
+executes it. A `Mission` read from JSON has the right shape; `argo_compiler.checks` checks whether
+it makes sense.
 """
 
 from enum import StrEnum
@@ -15,55 +15,57 @@ from argo_compiler.base.model import Model, Pose
 from argo_compiler.diagnostics import Span
 
 MAX_TIME_S = 1e12
-"""of each time in a mission, and of its clock: some 30,000 years, as far as a clock in s counts
-milliseconds"""
+"""limit of each time in a mission, and of its clock: some 30,000 years; up to this, a clock in s
+still resolves milliseconds"""
 MAX_COUNT = 1_000_000_000
-"""of rounds, and of the numbers that rank reactions and tell areas apart"""
+"""limit of numbers of rounds, of priorities and of numbers of areas"""
 MAX_RETRIES = 1_000_000
 
 
 class Action(StrEnum):
-    """What a task does. START only says where the mission begins; the machine passes over it."""
+    """Action of a task. START only defines where the mission begins; the machine skips it."""
 
     START = "START"
     WAYPOINT = "WAYPOINT"
     MEASURE = "MEASURE"
     WAIT = "WAIT"
-    """stand still; the machine does it by itself, and the robot is told nothing"""
+    """stand still; the machine waits by itself, and the robot gets no command"""
 
 
 class Mode(StrEnum):
-    """Who drives (thesis 1.2)."""
+    """Mode of control: who drives the robot (thesis 1.2)."""
 
     AUTONOMOUS = "autonomous"
     SUPERVISORY = "supervisory"
 
 
 class Order(StrEnum):
-    """Whether the checkpoints' order is the script's or may be changed."""
+    """Order of the checkpoints: as in the script, or free to be changed."""
 
     PRECISE = "precise"
     ANY = "any"
 
 
 class Stop(StrEnum):
-    """What a group does when its time is up: leave at once, or complete the round."""
+    """End of a group when its time is up: leave it at once, or complete the round."""
 
     HARD = "hard"
     SOFT = "soft"
 
 
 class ConditionType(StrEnum):
-    """The comparisons of table 3.1 of the thesis, its misprint for GREATER corrected, and what else
-    a reading may be."""
+    """Comparisons and other tests of a reading.
+
+    The comparisons are those of table 3.1 of the thesis, with its misprint for GREATER corrected.
+    """
 
     LESS = "MEASURED_VALUE_LESS"
     GREATER = "MEASURED_VALUE_GREATER"
     WITHIN = "MEASURED_VALUE_WITHIN"
     UNREADABLE = "READING_UNREADABLE"
-    """the checkpoint was looked at, and no value could be read"""
+    """the robot looked at the checkpoint, but could not read a value"""
     FAILED = "READING_FAILED"
-    """the last measurement gave no value, for whatever reason; unreadable is one of them"""
+    """the last measurement gave no value, for whatever reason; this includes unreadable ones"""
     STALE = "READING_STALE"
     """there is a value, and it is older than `max_age`"""
     ABNORMAL = "READING_ABNORMAL"
@@ -71,7 +73,7 @@ class ConditionType(StrEnum):
 
     @property
     def compares(self) -> bool:
-        """Whether it compares the value with bounds."""
+        """True if it compares the value with bounds."""
         return self in _COMPARISONS
 
 
@@ -79,7 +81,7 @@ _COMPARISONS = frozenset([ConditionType.LESS, ConditionType.GREATER, ConditionTy
 
 
 class OnFailure(StrEnum):
-    """How the mission goes on when a task has failed for good, all its retries included."""
+    """Continuation of the mission after a task has failed for good, with all its retries."""
 
     CONTINUE = "continue"
     """as after a task that has ended without a value"""
@@ -88,12 +90,15 @@ class OnFailure(StrEnum):
     ABORT = "abort"
     """end where the robot stands"""
     BRANCH = "branch"
-    """go on with the task's `failure_target`"""
+    """continue with the task's `failure_target`"""
 
 
 class EventKind(StrEnum):
-    """What may happen besides the end of an action: the competition's events (thesis 1.2), and
-    what tells that one of them is over."""
+    """Kind of event that may occur, other than the end of an action.
+
+    These are the competition's events (thesis 1.2), and events that report that one of them is
+    over.
+    """
 
     GAS_LEAK = "gas_leak"
     HOT_SPOT = "hot_spot"
@@ -102,9 +107,9 @@ class EventKind(StrEnum):
     PLATFORM_ALARM = "platform_alarm"
     """the general platform alarm, GPA"""
     POSITIVE_OBSTACLE = "positive_obstacle"
-    """something stands in the way"""
+    """an object blocks the path"""
     NEGATIVE_OBSTACLE = "negative_obstacle"
-    """a part of the way is missing"""
+    """a part of the ground is missing on the path"""
     LOW_BATTERY = "low_battery"
     CONNECTION_LOST = "connection_lost"
     EMERGENCY_STOP = "emergency_stop"
@@ -121,10 +126,10 @@ class EventKind(StrEnum):
 
 
 class Response(StrEnum):
-    """What a reaction does. Each of them reports the event first."""
+    """Response of a reaction. Each of them reports the event first."""
 
     REPORT = "report"
-    """nothing else; the mission does not even notice"""
+    """nothing else; the mission is not affected"""
     PAUSE = "pause"
     """stop and stand still"""
     RETURN = "return"
@@ -136,19 +141,19 @@ class Response(StrEnum):
 
     @property
     def drives(self) -> bool:
-        """Whether it drives somewhere."""
+        """True if the robot drives to a pose."""
         return self in (Response.RETURN, Response.SAFE_AREA)
 
 
 class Afterwards(StrEnum):
-    """What happens to the mission when the drive of a reaction has ended."""
+    """Continuation of the mission after the drive and the hold of a reaction."""
 
     RESUME = "resume"
-    """go on where it was interrupted; the interrupted action is started anew"""
+    """continue where the mission was interrupted; the interrupted action is started again"""
     WAIT = "wait"
-    """stand still until a person resumes the mission or ends it"""
+    """stand still until a person resumes or ends the mission"""
     END = "end"
-    """the mission is over"""
+    """end the mission"""
 
 
 DEFAULT_PRIORITIES = {
@@ -168,15 +173,15 @@ DEFAULT_PRIORITIES = {
     EventKind.BATTERY_CHARGED: 2,
     EventKind.CONNECTION_RESTORED: 1,
 }
-"""The priority of a reaction that gives none, by how bad its event is: dangers to people first,
-then to the robot, then to the mission."""
+"""priority of a reaction that has none of its own, by how bad its event is: dangers to people
+first, then to the robot, then to the mission"""
 
 
 class Condition(Model):
-    """A test of the last reading of a checkpoint.
+    """Test of the last reading of a checkpoint.
 
     LESS: value < param1. GREATER: value > param1. WITHIN: param1 < value < param2. With `inclusive`
-    the bounds themselves count as well. The other types look at what the reading is, and have no
+    the bounds themselves satisfy it as well. The other types test the kind of reading, and have no
     bounds. Without a value, or with one that is older than `max_age`, a comparison is false.
     """
 
@@ -184,98 +189,103 @@ class Condition(Model):
     id: str = ""
     """a name for people; the machine does not use it"""
     object_id: str
-    """the checkpoint whose reading is looked at"""
+    """the checkpoint whose reading is tested"""
     param1: float | None = None
-    """the bound, for LESS, GREATER and WITHIN"""
+    """the bound, for LESS and GREATER; the lower bound, for WITHIN"""
     param2: float | None = None
-    """upper bound, for WITHIN only"""
+    """the upper bound, for WITHIN only"""
     inclusive: bool = False
-    """whether the bounds are among the values that satisfy it (at least, at most)"""
+    """whether values equal to a bound satisfy it (at least, at most)"""
     max_age: float | None = Field(default=None, gt=0, le=MAX_TIME_S)
     """s; None: a value never becomes too old. STALE needs one"""
 
 
 class Transition(Model):
-    """Where to go on when a task has ended and all conditions hold; none: unconditional."""
+    """Transition to the next task when a task has ended and all conditions are satisfied.
+
+    Without conditions it is unconditional.
+    """
 
     target: str
     conditions: tuple[Condition, ...] = ()
 
 
 class JointState(Model):
-    """Where named joints are to be during the action, for semi-autonomous ones (thesis 4.4)."""
+    """Target state of named joints during the action, for semi-autonomous ones (thesis 4.4)."""
 
     names: tuple[str, ...]
     positions: tuple[float, ...] = ()
     """rad or m, one for each name, or none at all"""
     velocities: tuple[float, ...] = ()
-    """rad/s or m/s, likewise"""
+    """rad/s or m/s, one for each name, or none at all"""
     efforts: tuple[float, ...] = ()
-    """Nm or N, likewise"""
+    """Nm or N, one for each name, or none at all"""
 
 
 class WaitRule(Model):
-    """How long a WAIT lasts: for a time, or until something has happened.
+    """Duration of a WAIT: a fixed time, or until an event or conditions.
 
     Either `duration` is given, or `event`, `conditions` or both of them, of which the first ends
     the wait.
     """
 
     duration: float | None = Field(default=None, ge=0, le=MAX_TIME_S)
-    """s since the task was come to; 0: a place where ways meet, at which nothing is done"""
+    """s since the visit of the task began; 0: the task does nothing, and only joins transitions"""
     event: EventKind | None = None
-    """until this occurs; what occurred before the task was come to does not count"""
+    """wait until it occurs; an occurrence before this visit of the task does not count"""
     conditions: tuple[Condition, ...] = ()
-    """until all of them hold"""
+    """wait until all of them are satisfied"""
     limit: float | None = Field(default=None, gt=0, le=MAX_TIME_S)
-    """s, with `event` or `conditions`: then the task has failed"""
+    """s, with `event` or `conditions`: the task fails when it is over"""
 
 
 class TimeWindow(Model):
-    """When a task is to be done, in s since the mission's start."""
+    """Time window of a task, in s since the mission's start."""
 
     earliest: float = Field(default=0.0, ge=0, le=MAX_TIME_S)
-    """before this, the robot goes there and waits at the place"""
+    """if the robot arrives earlier, it waits there until this time"""
     latest: float | None = Field(default=None, gt=0, le=MAX_TIME_S)
-    """by when the task has to have ended; None: any time"""
+    """when the task must have ended; None: no limit"""
     hard: bool = True
-    """whether the task has failed if it has not ended at `latest`; else it is done all the same"""
+    """whether the task fails if it has not ended at `latest`; otherwise it is done even if it is
+    late"""
     missed_target: str | None = None
     """the task that follows if a hard window is missed; None: as after any other failure"""
 
 
 class Task(Model):
-    """One thing to do. `name` is unique within the mission and never empty."""
+    """Step of a mission. `name` is unique within the mission and never empty."""
 
     name: str = Field(min_length=1)
     action: Action
     group: str = ""
-    """the group it is shown in; the machine goes by the group's own start and end"""
+    """the group it is displayed in; the machine uses the group's own start and end"""
     object_id: str | None = None
     """MEASURE: the checkpoint"""
     pose: Pose | None = None
-    """WAYPOINT: where to. START: where the robot stands at the beginning. MEASURE: where it is to
-    stand when it measures; None: wherever it sees the checkpoint from"""
+    """WAYPOINT: the target. START: the robot's initial pose. MEASURE: the pose from which it
+    measures; None: any pose from which it sees the checkpoint"""
     wait: WaitRule | None = None
-    """WAIT: how long"""
+    """WAIT: its duration"""
     velocity: float | None = Field(default=None, gt=0)
-    """m/s on the way to this task, wherever it comes from; None: the robot's planning speed"""
+    """m/s on the path to this task, wherever it starts; None: the robot's planning speed"""
     joint_states: JointState | None = None
     retries: int = Field(default=0, ge=0, le=MAX_RETRIES)
-    """how often a failed action is tried again before it counts as failed"""
+    """how often a failed action is tried again before the task fails"""
     on_failure: OnFailure = OnFailure.CONTINUE
     failure_target: str | None = None
     """BRANCH: the task that follows"""
     time_limit: float | None = Field(default=None, gt=0, le=MAX_TIME_S)
-    """s for each attempt, the way there included, after which it has failed; None: no limit"""
+    """s for each attempt, the drive to the task included, after which it has failed; None: no
+    limit"""
     reading_limit: float | None = Field(default=None, gt=0, le=MAX_TIME_S)
-    """MEASURE: s that the robot tries to read the value, after which it is unreadable; None: as
-    long as the robot does by itself"""
+    """MEASURE: s for which the robot tries to read the value, after which it is unreadable; None:
+    the robot's own limit"""
     optional: bool = False
     """whether the mission is complete without it: an order that has too little time may leave it
     out, and its failure does not count as one of the mission"""
     priority: int = Field(default=1, ge=1, le=1_000_000)
-    """what it is worth where not all can be done; the machine does not use it"""
+    """its value where not all tasks can be done; the machine does not use it"""
     window: TimeWindow | None = None
     transitions: tuple[Transition, ...] = ()
     source: Span | None = None
@@ -283,59 +293,60 @@ class Task(Model):
 
 
 class Group(Model):
-    """A round: the tasks from `start` to `end` in the mission's order, repeated.
+    """Group of tasks that are repeated: those from `start` to `end` in the mission's order.
 
-    Of count, duration and `until`, whichever comes first ends it; with none of them it is endless
-    and some transition must leave it. `/` in the name nests: `Alpha/Beta` lies inside `Alpha`.
+    The first of count, duration and `until` that is reached ends it; with none of them it is
+    endless and a transition must leave it. `/` in the name nests: `Alpha/Beta` lies inside `Alpha`.
     """
 
     name: str = Field(min_length=1)
     start: str
     end: str
     max_repeat_count: int = Field(default=0, ge=0, le=MAX_COUNT)
-    """rounds in all; 0: no limit"""
+    """total number of rounds; 0: no limit"""
     max_repeat_duration: float = Field(default=0.0, ge=0, le=MAX_TIME_S)
-    """s on the mission's clock since the group was entered; 0: no limit"""
+    """s on the group's clock since it was entered; 0: no limit"""
     count_interruptions: bool = False
     """whether the time of pauses, reactions and supervision counts as part of the duration"""
     stop: Stop = Stop.HARD
     every: float = Field(default=0.0, ge=0, le=MAX_TIME_S)
-    """s on the group's clock from the beginning of one round to that of the next. The plan does not
-    drift: round n is due (n - 1) times this after the group was entered, and one that is late
-    begins at once. 0: a round begins when the one before has ended"""
+    """s on the group's clock from the start of one round to that of the next. The schedule does not
+    drift: round n is due (n - 1) times this after the group was entered, and a round that is
+    late starts at once. 0: a round starts when the previous one has ended"""
     until: tuple[Condition, ...] = ()
-    """no other round begins once all of these hold at the end of one; none: not looked at"""
+    """no other round starts once all of these are satisfied at the end of one; empty: no such
+    limit"""
     source: Span | None = None
 
     @property
     def ends_at_once(self) -> bool:
-        """Return whether the group is left as soon as its time is up, in the middle of a round."""
+        """True if the group is left as soon as its time is up, in the middle of a round."""
         return self.stop is Stop.HARD and self.max_repeat_duration > 0
 
 
 class Reaction(Model):
-    """What to do when an event occurs. A mission has at most one for each kind of event.
+    """Reaction to an event. A mission has at most one for each kind of event.
 
-    The response is carried out, then `until` is waited for, if given, then `afterwards` is done.
-    A reaction of higher rank interrupts one of lower rank; see `docs/language.md`.
+    The response is executed; then the robot holds until `until`, if it is given; then `afterwards`
+    follows. A reaction of higher rank interrupts one of lower rank; see `docs/language.md`.
     """
 
     event: EventKind
     response: Response
     pose: Pose | None = None
-    """SAFE_AREA: where to. RETURN: to which dock; None: the mission's"""
+    """SAFE_AREA: the target. RETURN: the pose of the dock; None: the mission's dock"""
     area: int | None = Field(default=None, ge=-MAX_COUNT, le=MAX_COUNT)
-    """RETURN: the starting area that `pose` is the dock of, for people"""
+    """RETURN: the starting area whose dock is at `pose`, for people"""
     until: EventKind | None = None
-    """PAUSE, RETURN, SAFE_AREA: stand still until this event occurs, or a person resumes"""
+    """PAUSE, RETURN, SAFE_AREA: hold until this event occurs, or a person resumes"""
     afterwards: Afterwards = Afterwards.END
-    """RETURN and SAFE_AREA only: a PAUSE is followed by the mission, a REPORT interrupts nothing,
-    an ABORT is the end"""
+    """RETURN and SAFE_AREA only: after a PAUSE the mission resumes, a REPORT interrupts nothing,
+    and an ABORT ends the mission"""
     hold_limit: float | None = Field(default=None, gt=0, le=MAX_TIME_S)
-    """s that it stands still at most; None: no limit"""
+    """s for which it holds at most; None: no limit"""
     on_limit: Afterwards = Afterwards.WAIT
-    """what happens when that time is over: RESUME goes on as if `until` had occurred, WAIT pauses
-    the mission, END ends it"""
+    """what follows at that limit: RESUME continues as if `until` had occurred, WAIT pauses the
+    mission, END ends it"""
     priority: int | None = Field(default=None, ge=-MAX_COUNT, le=MAX_COUNT)
     """the greater one goes first; None: by how bad the event is, see `DEFAULT_PRIORITIES`"""
     battery_below: float | None = Field(default=None, gt=0, lt=1)
@@ -345,39 +356,41 @@ class Reaction(Model):
 
     @property
     def holds(self) -> bool:
-        """Whether it stands still until something occurs or a person resumes."""
+        """True if it stands still until something occurs or a person resumes."""
         return self.until is not None or self.response is Response.PAUSE
 
     @property
     def rank(self) -> tuple[int, int]:
-        """The greater one goes first: ABORT before all, then the reaction to an emergency stop,
-        then by priority."""
+        """Rank among reactions; the greater one goes first.
+
+        ABORT ranks above all others, then the reaction to an emergency stop, then the priority
+        decides.
+        """
         safety = 0
         if self.response is Response.ABORT:
             safety = 2
         elif self.event is EventKind.EMERGENCY_STOP:
             safety = 1
-        given = self.priority
-        return safety, DEFAULT_PRIORITIES[self.event] if given is None else given
+        priority = self.priority
+        return safety, DEFAULT_PRIORITIES[self.event] if priority is None else priority
 
 
 class Mission(Model):
-    """A planned mission: the sheet's header, the tasks in order, the groups over them, and the
-    reactions to what may happen."""
+    """Mission: header, tasks in order, groups over them, and reactions to events."""
 
     version: Literal[3] = 3
-    """of this format"""
+    """version of this format"""
     designation: str = ""
     site: str = ""
-    """the site that poses and checkpoints belong to"""
+    """the site of its poses and checkpoints"""
     mode: Mode = Mode.AUTONOMOUS
     max_duration: float | None = Field(default=None, gt=0, le=MAX_TIME_S)
     """s since the mission's start, interruptions included; None: no limit"""
     start_area: int | None = Field(default=None, ge=-MAX_COUNT, le=MAX_COUNT)
     end_area: int | None = Field(default=None, ge=-MAX_COUNT, le=MAX_COUNT)
-    """where the mission ends docked; None: it ends where its last task ends"""
+    """the area in whose dock the mission ends; None: it ends where its last task ends"""
     dock: Pose | None = None
-    """the docking station that RETURN drives to"""
+    """pose of the docking station to which RETURN drives"""
     order: Order = Order.PRECISE
     anomaly_specification: str = ""
     real_time_reporting: str = ""
@@ -388,17 +401,17 @@ class Mission(Model):
     current: str | None = None
     """the task that the planner shows as current; the machine does not use it"""
     left_out: tuple[str, ...] = ()
-    """the names of tasks that were taken away when the order was chosen, as they did not fit into
-    the time; for people, the machine does not use it"""
+    """names of tasks that were left out when the order was chosen, as there was not enough time for
+    them; for people, the machine does not use it"""
     before: tuple[tuple[str, str], ...] = ()
-    """pairs of tasks by their names: a run that comes to both of them comes to the first one before
-    it comes to the second. An order that is chosen keeps to it; the machine does not use it"""
+    """pairs of tasks by name: a run that reaches both of them reaches the first one before the
+    second. A chosen order respects it; the machine does not use it"""
 
     def task(self, name: str) -> Task | None:
         return next((t for t in self.tasks if t.name == name), None)
 
     @property
     def omitted(self) -> tuple[str, ...]:
-        """What was left out and has not been added again."""
+        """Names of the tasks that were left out and have not been added again."""
         names = {task.name for task in self.tasks}
         return tuple(name for name in self.left_out if name not in names)

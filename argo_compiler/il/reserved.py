@@ -1,4 +1,4 @@
-"""Names that the machine gives to tasks of its own; no task of a mission may have them."""
+"""Names of tasks that the machine adds; no task of a mission may have one of them."""
 
 from argo_compiler.il.mission import EventKind
 
@@ -7,7 +7,7 @@ RETURN_TASK = "return to dock"
 
 
 def reaction_task_name(event: str) -> str:
-    """The drive of the reaction to an event."""
+    """Return the name of the drive of the reaction to an event."""
     return f"react to {event}"
 
 

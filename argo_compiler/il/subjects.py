@@ -1,4 +1,4 @@
-"""The parts of a mission as diagnostics name them, and where such a subject is in its lists."""
+"""Subjects of diagnostics: names for the parts of a mission, and their places in its lists."""
 
 from collections.abc import Iterable
 from functools import cached_property
@@ -8,30 +8,31 @@ from argo_compiler.il.mission import Mission
 
 
 class Subjects:
-    """Names the tasks, groups and reactions of a mission; reactions go by their event.
+    """Subjects for the tasks, groups and reactions of a mission; a reaction's name is its event.
 
-    Of several with one name the first goes by it, the others by their positions. Linear time.
+    If several have one name, the first is identified by it, the others by their positions. Built in
+    linear time.
     """
 
     def __init__(self, mission: Mission) -> None:
         self.mission = mission
 
     def task(self, position: int, rest: str = "") -> str:
-        """The task at a position, or what of it `rest` leads to."""
+        """Return the subject of the task at a position; `rest` is a path within it."""
         return _named("tasks", position, self._tasks, rest)
 
     def group(self, position: int, rest: str = "") -> str:
-        """The same for a group."""
+        """Return the subject of the group at a position; `rest` is a path within it."""
         return _named("groups", position, self._groups, rest)
 
     def reaction(self, position: int, rest: str = "") -> str:
-        """The same for a reaction."""
+        """Return the subject of the reaction at a position; `rest` is a path within it."""
         return _named("reactions", position, self._reactions, rest)
 
     def path(self, text: str) -> tuple[str | int, ...]:
-        """A subject as fields and positions in the mission's lists.
+        """Return a subject as fields and positions in the mission's lists.
 
-        Where it names what the mission does not have, the path ends with the list.
+        If it names something that the mission does not have, the path ends with the list.
         """
         steps: list[str | int] = []
         for step in parse_subject(text):
@@ -64,7 +65,7 @@ _Names = tuple[list[str], dict[str, int]]
 
 def _names(names: Iterable[str]) -> _Names:
     ordered = list(names)
-    # The first of several with one name is the last that is put in.
+    # Reversed, so that the first of several with one name is inserted last and counts.
     return ordered, dict(zip(reversed(ordered), range(len(ordered) - 1, -1, -1), strict=True))
 
 

@@ -1,40 +1,43 @@
-"""The two conventions for velocities: of the way to a task, and of the way on to the next one.
+"""Conventions for velocities: on the path to a task, or on the path to the next task.
 
-A mission has that of the way to the task (rule T6). The thesis, its ROS messages, and mission files
-of versions 1 and 2 have that of the way to the next task, whichever it is.
+A mission has the velocity on the path to the task (rule T6). The thesis, its ROS messages, and
+mission files of versions 1 and 2 have the velocity on the path to the next task, whichever it is.
 """
 
 from collections.abc import Iterator, Mapping
 
 from argo_compiler.il.grouping import group_ranges
 from argo_compiler.il.mission import Action, Mission, Task
-from argo_compiler.il.ways import beginning, branches, default_target, start_task
+from argo_compiler.il.transitions import default_target, failure_targets, initial_task, start_task
 
 Velocity = float | None
 """m/s; None: the robot's planning speed"""
 
-BEGINNING = ""
-"""stands for where the robot begins, if a mission has no START; no task has an empty name"""
+MISSION_START = ""
+"""stands for the robot's initial pose, if a mission has no START; no task has an empty name"""
 
 
-def ways(mission: Mission) -> Iterator[tuple[str, str]]:
-    """Each way from one task to another, those after a time-out included, by their names; some
-    more than once. The first way comes from START, or from `BEGINNING`."""
+def transition_pairs(mission: Mission) -> Iterator[tuple[str, str]]:
+    """Yield each transition from one task to another as a pair of names, some more than once.
+
+    Transitions after a time-out are included. The first pair comes from START, or from
+    `MISSION_START`.
+    """
     tasks = mission.tasks
     start = start_task(mission)
-    if (first := beginning(mission)) is not None:
-        yield BEGINNING if start is None else start.name, first
+    if (first := initial_task(mission)) is not None:
+        yield MISSION_START if start is None else start.name, first
     for task in tasks:
         if task.action is not Action.START:
             for transition in task.transitions:
                 yield task.name, transition.target
-        for target in branches(task).values():
+        for target in failure_targets(task).values():
             yield task.name, target
     onward: dict[str, list[str]] = {task.name: [] for task in tasks}
     for task in tasks:
         if (following := default_target(task)) is not None:
             onward[task.name].append(following)
-    for around in group_ranges(mission):  # the outer ones before those that lie in them
+    for around in group_ranges(mission):  # parents before children
         group = around.group
         if group.ends_at_once:
             for task in tasks[around.first : around.last + 1]:
@@ -44,34 +47,36 @@ def ways(mission: Mission) -> Iterator[tuple[str, str]]:
         onward[group.end].append(group.start)
 
 
-def of_ways_there(mission: Mission) -> tuple[Mission, tuple[str, ...]]:
-    """A mission whose velocities are those of the way on, with those of the way to each task.
+def with_approach_velocities(mission: Mission) -> tuple[Mission, tuple[str, ...]]:
+    """Convert velocities to the next task into velocities to the task itself.
 
-    Also the names of the tasks that are come to at different velocities: these have the slowest one
-    that was given.
+    Also returns the names of tasks that are reached at different velocities: these have the slowest
+    one that was given.
     """
     on: Mapping[str, Velocity] = {task.name: task.velocity for task in mission.tasks}
     there: dict[str, set[Velocity]] = {}
-    for source, target in ways(mission):
+    for source, target in transition_pairs(mission):
         there.setdefault(target, set()).add(on.get(source))
     differ = tuple(task.name for task in mission.tasks if len(there.get(task.name, ())) > 1)
     tasks = tuple(_with(task, _slowest(there.get(task.name, set()))) for task in mission.tasks)
     return mission.model_copy(update={"tasks": tasks}), differ
 
 
-def of_ways_on(mission: Mission) -> tuple[Mission, tuple[str, ...]]:
-    """The opposite: a mission with the velocities of the way on from each task.
+def with_departure_velocities(mission: Mission) -> tuple[Mission, tuple[str, ...]]:
+    """Convert velocities to the task itself into velocities to the next task.
 
-    Also the names of the tasks from which ways of different velocities lead on, which have the
-    slowest one, and `BEGINNING` if the first way has a velocity and no START: neither has a
-    counterpart.
+    Also returns the names of tasks from which transitions of different velocities lead on, which
+    have the slowest one, and `MISSION_START` if the first transition has a velocity but there is no
+    START. Neither can be expressed in the other convention.
     """
     there: Mapping[str, Velocity] = {task.name: task.velocity for task in mission.tasks}
     on: dict[str, set[Velocity]] = {}
-    for source, target in ways(mission):
+    for source, target in transition_pairs(mission):
         on.setdefault(source, set()).add(there.get(target))
     differ = tuple(
-        name for name, found in on.items() if len(found) > 1 or (name == BEGINNING and any(found))
+        name
+        for name, velocities in on.items()
+        if len(velocities) > 1 or (name == MISSION_START and any(velocities))
     )
     tasks = tuple(_with(task, _slowest(on.get(task.name, set()))) for task in mission.tasks)
     return mission.model_copy(update={"tasks": tasks}), differ

@@ -38,7 +38,7 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
-from argo_compiler.il.velocities import of_ways_on, of_ways_there
+from argo_compiler.il.velocities import with_approach_velocities, with_departure_velocities
 from argo_compiler.ros.types import RosTypes
 
 _MESSAGES: dict[type[Model], str] = {
@@ -113,8 +113,8 @@ def to_message(mission: Mission, types: RosTypes) -> Any:
 
 def _with_onward_velocities(mission: Mission) -> Mission:
     """Return the mission with the velocity of the path from each task instead of the path to it."""
-    onward, _ = of_ways_on(mission)
-    back, differ = of_ways_there(onward)
+    onward, _ = with_departure_velocities(mission)
+    back, differ = with_approach_velocities(onward)
     for task, returned in zip(mission.tasks, back.tasks, strict=True):
         if task.velocity != returned.velocity or task.name in differ:
             velocity = "no velocity" if task.velocity is None else f"{task.velocity:g} m/s"
@@ -226,7 +226,7 @@ def from_message(message: Any, types: RosTypes, source_name: str) -> Received:
         )
     data = _MessageReader(types, source_name).part(message, "")
     try:
-        mission, differ = of_ways_there(Mission.model_validate(data))
+        mission, differ = with_approach_velocities(Mission.model_validate(data))
     except ValidationError as error:
         diagnostics = [
             diagnostic_of(

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.il.docked import DOCKED_DISTANCE_M, at_dock
+from argo_compiler.il.docked import DOCKED_DISTANCE_M, is_at_dock
 from argo_env.drives.battery import Battery, load
 from argo_env.robot.pose import BodyPose, Places
 from argo_env.robot.spec import RobotSpec
@@ -157,4 +157,4 @@ class PowerSupply:
         return least / self._battery.capacity, most / self._battery.capacity
 
     def _docked(self, pose: BodyPose) -> bool:
-        return any(at_dock(pose, dock) for dock in self._docks)
+        return any(is_at_dock(pose, dock) for dock in self._docks)

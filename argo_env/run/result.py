@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import Cause, Outcome, Progress, TraceEntry
 from argo_compiler.il import Action, Mission
-from argo_compiler.il.docked import at_dock
+from argo_compiler.il.docked import is_at_dock
 from argo_compiler.il.reserved import RESERVED_NAMES
 from argo_env.formatting import told_apart
 from argo_env.run.log import RunLog
@@ -84,7 +84,7 @@ def judge(
     last = log.last
     assert last is not None
     now, limit, area = last.t, mission.max_duration, mission.end_area
-    docked = None if area is None else at_dock(last.body_pose, docks[area])
+    docked = None if area is None else is_at_dock(last.body_pose, docks[area])
     missing = []
     if outcome is None and not last.ended:
         missing.append(f"the mission has not ended after {now:.0f} s")
@@ -108,7 +108,7 @@ def judge(
         took, most = told_apart(now, limit)
         missing.append(f"it took {took} s of at most {most} s")
     if docked is False and last.ended:
-        other = next((a for a, dock in docks.items() if at_dock(last.body_pose, dock)), None)
+        other = next((a for a, dock in docks.items() if is_at_dock(last.body_pose, dock)), None)
         missing.append(
             f"the robot is not docked in starting area {area}"
             if other is None

@@ -5,7 +5,7 @@ from itertools import product
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.il import Condition, ConditionType
-from argo_compiler.il.bounds import contradict, cover_all
+from argo_compiler.il.exclusive_conditions import are_contradictory, are_exhaustive
 from argo_compiler.script.resolve.lookup import told
 from argo_compiler.script.resolve.nouns import NounResolver
 from argo_compiler.script.resolve.program import Alternatives
@@ -59,7 +59,7 @@ class ConditionResolver:
         for tests in condition.alternatives:
             each = [self._test(test) for test in tests]
             combined = [sum(parts, ()) for parts in product(*each)]
-            combined = [held for held in combined if not contradict(held)]
+            combined = [held for held in combined if not are_contradictory(held)]
             if not combined:
                 said = self.diagnostics.source.said(tests[0].span, tests[-1].span)
                 span, hint = tests[-1].span, "is `or` meant?"
@@ -69,7 +69,7 @@ class ConditionResolver:
                 message = f"this condition has more than {_MOST} alternatives"
                 hint = "divide it into several sentences"
                 self.diagnostics.refuse("condition", message, condition.span, hint)
-        if cover_all(tuple(found)):
+        if are_exhaustive(tuple(found)):
             said = self.diagnostics.source.said(condition.span)
             message = f"`{said}` holds for every value"
             hint = "is `and` meant, or another bound?"

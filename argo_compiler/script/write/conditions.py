@@ -10,7 +10,7 @@ from argo_compiler.il import (
     Reaction,
     Response,
 )
-from argo_compiler.il.bounds import contradict
+from argo_compiler.il.exclusive_conditions import are_contradictory
 from argo_compiler.script.write.text import Places, UnwritableError, duration, number, point, quote
 
 _RELATIONS = {
@@ -60,7 +60,7 @@ _DRIVES = (Response.RETURN, Response.SAFE_AREA)
 
 def conditions(held: Sequence[Condition]) -> str:
     """All of the conditions: `checkpoint #1 is above 2.5 and checkpoint #4 is abnormal`."""
-    if contradict(held):
+    if are_contradictory(held):
         raise UnwritableError("no value satisfies all of its conditions at once")
     return " and\n".join(condition(c) for c in held)
 

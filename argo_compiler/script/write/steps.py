@@ -93,7 +93,7 @@ class _Writer:
         self.tasks = listed
         self.catalog = catalog
         self.places = places
-        self.layout = GroupNesting.of(mission)
+        self.layout = GroupNesting.from_mission(mission)
         self.result = StepsSaid()
         self.usual = _usual_names(mission, self._docks())
         self.patrols = _patrols(mission, catalog, self.layout, self.usual)

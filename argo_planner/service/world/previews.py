@@ -12,7 +12,7 @@ from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, has_errors
 from argo_compiler.il import Action, Mission, OnFailure, Task
 from argo_compiler.il.grouping import group_ranges
-from argo_compiler.il.ways import beginning, branches, default_target
+from argo_compiler.il.transitions import default_target, failure_targets, initial_task
 from argo_env.navigation import Path
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.travel import SiteTravel
@@ -113,7 +113,7 @@ def preview_mission(
     it begins, NotFound or Invalid for a mission whose tasks lead to none that is there."""
     ways = _Ways(site, obstacles)
     tasks = {task.name: task for task in mission.tasks}
-    start, first = ways.travel.start(mission), beginning(mission)
+    start, first = ways.travel.start(mission), initial_task(mission)
     if first is None:
         return PreviewedMission()
     order = _default_order(tasks, first)
@@ -241,7 +241,9 @@ def _other_ways(
         for transition in task.transitions:
             kind = WayKind.BRANCH if transition.conditions else WayKind.OTHER
             onward[task.name].append((transition.target, kind))
-        onward[task.name] += [(target, WayKind.FAILURE) for target in branches(task).values()]
+        onward[task.name] += [
+            (target, WayKind.FAILURE) for target in failure_targets(task).values()
+        ]
     for around in group_ranges(mission):
         onward[around.group.end].append((around.group.start, WayKind.ROUND))
     driven = set(pairwise(order))

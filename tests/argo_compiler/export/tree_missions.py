@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from argo_compiler.hfsm import ActionFailed, ActionSucceeded, Outcome
 from argo_compiler.il import Action, OnFailure, TimeWindow, Transition, WaitRule
 from tests.argo_compiler.export.missions import structured_missions
-from tests.argo_compiler.hfsm.play import execute
+from tests.argo_compiler.hfsm.play import run_mission
 from tests.mission_parts import conditions_of_readings
 
 OUTCOMES = [*(o for o in Outcome if o is not Outcome.COMPLETED_WITH_FAILURES)]
@@ -35,7 +35,7 @@ def executed(mission, outcomes, steps):
             end = ActionSucceeded(task.name, measured, abnormal=has_value and measured >= 5, id=id)
         return max(now, command.not_before or now) + duration, lambda: end
 
-    executor, log, _ = execute(mission, execute, steps)
+    executor, log, _ = run_mission(mission, execute, steps)
     return log, executor.outcome
 
 

@@ -9,7 +9,12 @@ from hypothesis import strategies as st
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.files.mission_file import decode_mission
 from argo_compiler.il import Group, Mission, Stop
-from argo_compiler.il.velocities import BEGINNING, of_ways_on, of_ways_there, ways
+from argo_compiler.il.velocities import (
+    MISSION_START,
+    transition_pairs,
+    with_approach_velocities,
+    with_departure_velocities,
+)
 from tests.mission_writing import drive
 
 LOW = {"type": "MEASURED_VALUE_LESS", "object_id": "1", "param1": 1}
@@ -156,18 +161,18 @@ def routes(draw):
 @settings(max_examples=200)
 @given(routes())
 def test_each_path_keeps_its_velocity_or_its_task_is_reported(mission):
-    there, differ = of_ways_there(mission)
+    there, differ = with_approach_velocities(mission)
     old_velocities, new_velocities = velocities(mission), velocities(there)
-    for source, target in ways(mission):
-        old = None if source == BEGINNING else old_velocities[source]
+    for source, target in transition_pairs(mission):
+        old = None if source == MISSION_START else old_velocities[source]
         assert new_velocities[target] == old or target in differ
 
 
 @settings(max_examples=200)
 @given(routes())
 def test_converting_velocities_to_version_2_and_back_changes_nothing(mission):
-    on, differ = of_ways_on(mission)
+    on, differ = with_departure_velocities(mission)
     if not differ:
-        there, _ = of_ways_there(on)
-        reached = {target for _, target in ways(mission)}
+        there, _ = with_approach_velocities(on)
+        reached = {target for _, target in transition_pairs(mission)}
         assert all(velocities(there)[t] == velocities(mission)[t] for t in reached)

@@ -74,7 +74,7 @@ ActionEnd = tuple[float, Callable[[], Event]]
 """time at which an action ends, and a function that makes the event of its end"""
 
 
-def execute(
+def run_mission(
     mission: Mission, end_of: Callable[[StartAction, float], ActionEnd], max_actions: int
 ) -> tuple[Executor, list[tuple[float, str]], float]:
     """Run a mission from 0 s on, to its end or until it would start more than `max_actions`.
@@ -131,7 +131,7 @@ def drive(
 
         return now + (takes or {}).get(name, 1.0), event
 
-    return execute(mission, end_of, max_actions)[0]
+    return run_mission(mission, end_of, max_actions)[0]
 
 
 def path(executor: Executor) -> str:

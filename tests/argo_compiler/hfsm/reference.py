@@ -485,9 +485,7 @@ class Reference:
         return group.max_repeat_duration == 0 or begins < group.max_repeat_duration
 
     def round_over(self, g):
-        """A round of the group has ended; it and the groups around it decide what follows (G5 to
-        G7).
-        """
+        """A round of the group has ended; it and those around it decide what follows (G5 to G7)."""
         group = self.groups[g]
         if self.wants(g):
             self.round[g] += 1

@@ -247,7 +247,7 @@ def test_each_stage_has_a_row_for_whatever_happens():
 
 
 def test_rows_ask_only_for_what_is_there():
-    """Guards refer to an event only in rows of EVENT, to an active reaction only if there is one."""
+    """Guards refer to an event only in rows of EVENT, to an active reaction only where one is."""
     of_active = (
         set(InterruptGuard) - GIVEN_OF_EVENTS - {InterruptGuard.PAUSED, InterruptGuard.SOME_WAITS}
     )

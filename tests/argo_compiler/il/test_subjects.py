@@ -1,4 +1,4 @@
-"""What diagnostics are about goes by name, whatever the names are, and leads back to its place."""
+"""Subjects of diagnostics use names, whatever the names are, and lead back to their places."""
 
 import json
 

@@ -269,7 +269,7 @@ def run_mission(mission, matrix, values, steps=400, fails=frozenset()):
 
         return max(arrival, command.not_before or 0.0) + work * matrix.unit, action_event
 
-    executor, _, now = play.execute(mission, execute_action, steps)
+    executor, _, now = play.run_mission(mission, execute_action, steps)
     return Run(visited, now, executor.finished, executor.outcome)
 
 

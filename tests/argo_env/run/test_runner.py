@@ -11,7 +11,7 @@ import argo_env.run.termination
 from argo_compiler.base.errors import ArgoError, Invalid
 from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, Group, Mission, Task
-from argo_compiler.il.docked import at_dock
+from argo_compiler.il.docked import is_at_dock
 from argo_env.faults.walkway import Brick
 from argo_env.navigation import Path
 from argo_env.navigation.path import Motion
@@ -344,11 +344,11 @@ def test_contacts_at_two_times_are_two(navigator):
 
 def test_docked_within_a_tolerance(umad):
     dock = umad.docks[1]
-    assert at_dock(BodyPose(dock.x, dock.y, dock.z, dock.yaw - 2 * math.pi), umad.docks[1])
-    assert at_dock(BodyPose(dock.x + 0.09, dock.y, dock.z, dock.yaw), umad.docks[1])
-    assert not at_dock(BodyPose(dock.x + 0.11, dock.y, dock.z, dock.yaw), umad.docks[1])
-    assert not at_dock(BodyPose(dock.x, dock.y, dock.z, dock.yaw + 0.1), umad.docks[1])
-    assert not at_dock(BodyPose(dock.x, dock.y, dock.z, dock.yaw), umad.docks[2])
+    assert is_at_dock(BodyPose(dock.x, dock.y, dock.z, dock.yaw - 2 * math.pi), umad.docks[1])
+    assert is_at_dock(BodyPose(dock.x + 0.09, dock.y, dock.z, dock.yaw), umad.docks[1])
+    assert not is_at_dock(BodyPose(dock.x + 0.11, dock.y, dock.z, dock.yaw), umad.docks[1])
+    assert not is_at_dock(BodyPose(dock.x, dock.y, dock.z, dock.yaw + 0.1), umad.docks[1])
+    assert not is_at_dock(BodyPose(dock.x, dock.y, dock.z, dock.yaw), umad.docks[2])
 
 
 @settings(max_examples=3, deadline=None)

@@ -1,7 +1,7 @@
-"""Whether a mission makes sense: the structure of its tasks, transitions, groups and reactions.
+"""Static checks of a mission: the structure of its tasks, transitions, groups and reactions.
 
-What is found here needs no knowledge of the paths that a run may take. An error means that the
-mission has no agreed meaning and can't be lowered; a warning, that it has one that may surprise.
+They need no knowledge of the execution paths of a run. An error means that the mission has no
+defined meaning and can't be lowered; a warning, that its meaning may surprise.
 """
 
 from argo_compiler.base.catalog import Catalog
@@ -19,10 +19,10 @@ __all__ = ["check"]
 
 
 def check(mission: Mission, catalog: Catalog | None = None) -> tuple[Diagnostic, ...]:
-    """All that is wrong or odd about a mission: its tasks, groups, reactions and header.
+    """Return the diagnostics of a mission: its tasks, groups, reactions and header.
 
-    With a catalogue, what the mission names on the site is looked up in it. Linear time. Each
-    diagnostic names what it is about as its `subject`.
+    With a catalogue, the names of things on the site are looked up in it. Runs in linear time. The
+    `subject` of each diagnostic is the part of the mission that it is about.
     """
     if not mission.tasks:
         return (
@@ -34,7 +34,7 @@ def check(mission: Mission, catalog: Catalog | None = None) -> tuple[Diagnostic,
             ),
         )
     if catalog and mission.site and mission.site != catalog.site:
-        known = None  # its numbers mean checkpoints of another site
+        known = None  # the mission's numbers are those of another site
     else:
         known = None if catalog is None else frozenset(str(c.id) for c in catalog.checkpoints)
     return (
@@ -47,7 +47,7 @@ def check(mission: Mission, catalog: Catalog | None = None) -> tuple[Diagnostic,
 
 @remembering
 def _check_structure(mission: Mission) -> tuple[Diagnostic, ...]:
-    """What no catalogue is needed for, and takes longest."""
+    """Return the diagnostics that need no catalogue; they are cached, as they take longest."""
     return (
         *check_instant_loops(mission),
         *check_groups(mission),

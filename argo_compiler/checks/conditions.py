@@ -1,30 +1,30 @@
-"""Whether the conditions of transitions can hold."""
+"""Checks of conditions: their fields, and whether they can be satisfied."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from argo_compiler.checks.about import About
+from argo_compiler.checks.checked_item import CheckedItem
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Condition, ConditionType, Group, Task
 
 
 @dataclass(frozen=True)
 class ConditionChecks:
-    """What is known of the checkpoints that a condition may look at."""
+    """Checkpoints that conditions may refer to, and the checks of conditions."""
 
     measured: set[str | None]
-    """by the mission's tasks"""
+    """those that tasks of the mission measure"""
     known: frozenset[str] | None
-    """on the site; None: not known"""
+    """those of the site; None if the site is not known"""
 
     def diagnostics(
-        self, about: About, part: Task | Group, condition: Condition, field: str
+        self, item: CheckedItem, part: Task | Group, condition: Condition, field: str
     ) -> Iterator[Diagnostic]:
         """Yield the diagnostics of a condition of the part, in that field."""
         which = f"a {condition.type} condition of {_name(part)}"
-        yield from _check_bounds(about, condition, field, which)
+        yield from _check_bounds(item, condition, field, which)
         if self.known is not None and condition.object_id not in self.known:
-            yield about.diagnostic(
+            yield item.diagnostic(
                 "il.unknown-object",
                 f"{_name(part)} names checkpoint '{condition.object_id}', which the site does not "
                 "have",
@@ -32,10 +32,10 @@ class ConditionChecks:
                 field + ".object_id",
             )
         elif condition.object_id not in self.measured:
-            yield about.diagnostic(
+            yield item.diagnostic(
                 "il.never-measured",
-                f"a condition of {_name(part)} looks at checkpoint '{condition.object_id}', which "
-                "no task measures, so it never holds unless somebody else tells a value",
+                f"a condition of {_name(part)} depends on checkpoint '{condition.object_id}', "
+                "which no task measures, so it never holds unless another source gives a value",
                 f"measure checkpoint '{condition.object_id}' before",
                 field + ".object_id",
             )
@@ -46,36 +46,36 @@ def _name(part: Task | Group) -> str:
 
 
 def _check_bounds(
-    about: About, condition: Condition, field: str, which: str
+    item: CheckedItem, condition: Condition, field: str, which: str
 ) -> Iterator[Diagnostic]:
     if not condition.type.compares:
-        yield from _check_state(about, condition, field, which)
+        yield from _check_state(item, condition, field, which)
         return
     low, high = condition.param1, condition.param2
     if low is None:
-        yield about.diagnostic(
+        yield item.diagnostic(
             "il.condition-bound",
             f"{which} has no param1",
-            "give it as the bound that the value is compared with",
+            "set it to the bound that the value is compared with",
             field,
         )
     elif condition.type is not ConditionType.WITHIN:
         if high is not None:
-            yield about.diagnostic(
+            yield item.diagnostic(
                 "il.unused-field",
                 f"{which} has a param2, which has no effect",
                 "only WITHIN has an upper bound as well: remove it",
                 field + ".param2",
             )
     elif high is None:
-        yield about.diagnostic(
+        yield item.diagnostic(
             "il.within-bounds",
             f"{which} has no param2",
-            "give it as the upper bound",
+            "set it to the upper bound",
             field,
         )
     elif low > high or (low == high and not condition.inclusive):
-        yield about.diagnostic(
+        yield item.diagnostic(
             "il.within-bounds",
             f"{which} never holds: no value lies between {low:g} and {high:g}",
             "param1 is the lower bound, param2 the upper one",
@@ -84,14 +84,14 @@ def _check_bounds(
 
 
 def _check_state(
-    about: About, condition: Condition, field: str, which: str
+    item: CheckedItem, condition: Condition, field: str, which: str
 ) -> Iterator[Diagnostic]:
-    """What a condition that looks at the state of a reading has too much or too little of."""
+    """Yield the missing and unused fields of a condition on the kind or age of a reading."""
     if condition.type is ConditionType.STALE and condition.max_age is None:
-        yield about.diagnostic(
+        yield item.diagnostic(
             "il.stale-without-age",
             f"{which} has no max_age",
-            "say from which age on (s) a value is stale",
+            "set it to the age (s) from which on a value is stale",
             field,
         )
     unused = {
@@ -101,8 +101,8 @@ def _check_state(
         "max_age": condition.max_age is not None
         and condition.type in (ConditionType.UNREADABLE, ConditionType.FAILED),
     }
-    for name in (name for name, given in unused.items() if given):
-        yield about.diagnostic(
+    for name in (name for name, is_unused in unused.items() if is_unused):
+        yield item.diagnostic(
             "il.unused-field",
             f"{which} has a {name}, which has no effect",
             "remove it",

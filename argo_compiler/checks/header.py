@@ -1,4 +1,4 @@
-"""Whether a mission's header agrees with its tasks and with the site."""
+"""Checks of a mission's header against its tasks and the site."""
 
 from collections.abc import Iterator
 
@@ -7,16 +7,15 @@ from argo_compiler.base.errors import Remedy, RemedyChoice
 from argo_compiler.diagnostics import Diagnostic, diagnostic_of
 from argo_compiler.il import Mission
 
-_SHOWN = 12  # tasks that are left out, as far as they are named
+_SHOWN = 12  # omitted tasks that a message names
 
 
 def check_header(mission: Mission, catalog: Catalog | None) -> Iterator[Diagnostic]:
-    """What is wrong with the site, the areas and the current task of a mission, and what it does
-    not do any more."""
+    """Yield the diagnostics of a mission's site, areas, current task and omitted tasks."""
     if mission.current is not None and mission.task(mission.current) is None:
         yield diagnostic_of(
             "il.unknown-current",
-            f"the current task '{mission.current}' is no task of the mission",
+            f"the current task '{mission.current}' is not a task of the mission",
             "name a task or leave it out: only the planner uses it",
             "current",
         )
@@ -26,8 +25,8 @@ def check_header(mission: Mission, catalog: Catalog | None) -> Iterator[Diagnost
             "il.left-out",
             f"left out when the order was chosen: {', '.join(omitted[:_SHOWN])}"
             + (f" and {more} more" if more > 0 else ""),
-            "they are not done: allow more time and choose the order anew, or make another "
-            "mission of them",
+            "they are not done: allow more time and choose the order again, or plan them in "
+            "another mission",
             "left_out",
         )
     if catalog is None:

@@ -1,25 +1,25 @@
-"""Circles of visits none of which takes time (rule W7)."""
+"""Check for cycles of visits that take no time (rule W7)."""
 
 from collections.abc import Iterator
 from graphlib import CycleError, TopologicalSorter
 
-from argo_compiler.checks.about import About
+from argo_compiler.checks.checked_item import CheckedItem
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Action, Mission, OnFailure, Task
 from argo_compiler.il.grouping import GroupRange, group_ranges
 from argo_compiler.il.subjects import Subjects
 
 MIN_TIME_S = 1e-3
-"""What lasts shorter takes no time: the machine might take steps for ever in one moment."""
+"""shorter durations count as no time: the machine might take endless steps at one time"""
 
 MOST_ROUNDS = 1000
-"""that may follow each other in one moment, those of nested groups multiplied"""
+"""how many rounds may follow each other without taking time, those of nested groups multiplied"""
 
-_SHOWN = 8  # tasks of a circle that a message names
+_SHOWN = 8  # tasks of a cycle that a message names
 
 
 def check_instant_loops(mission: Mission) -> Iterator[Diagnostic]:
-    """A circle of tasks each of which may be over as soon as it is come to."""
+    """Yield a diagnostic for a cycle of tasks each of which may end as soon as it is entered."""
     instant = {
         task.name
         for task in mission.tasks
@@ -27,24 +27,26 @@ def check_instant_loops(mission: Mission) -> Iterator[Diagnostic]:
     }
     if not instant:
         return
-    graph = {task.name: set(_onward(task)) & instant for task in mission.tasks
+    graph = {task.name: set(_instant_successors(task)) & instant for task in mission.tasks
              if task.name in instant}  # fmt: skip
-    for around in _unlimited(mission):
+    for around in _unlimited_groups(mission):
         if around.group.end in instant and around.group.start in instant:
             graph[around.group.end].add(around.group.start)
     try:
         TopologicalSorter(graph).prepare()
     except CycleError as error:
-        # It names each task with the one before it, the first one again at the end.
-        circle = error.args[1][::-1]
-        position = next(i for i, t in enumerate(mission.tasks) if t.name == circle[0])
-        shown = " > ".join(circle if len(circle) <= _SHOWN else [*circle[:_SHOWN], "..."])
-        yield About(Subjects(mission).task(position), mission.tasks[position].source).diagnostic(
+        # The error lists each task before its predecessor, and the first one again at the end.
+        cycle = error.args[1][::-1]
+        position = next(i for i, t in enumerate(mission.tasks) if t.name == cycle[0])
+        shown = " > ".join(cycle if len(cycle) <= _SHOWN else [*cycle[:_SHOWN], "..."])
+        yield CheckedItem(
+            Subjects(mission).task(position), mission.tasks[position].source
+        ).diagnostic(
             "il.instant-loop",
-            f"nothing takes time on the way {shown}, so the mission might go round for ever in one "
-            "moment",
-            "let a WAIT on it last, give the group `every` or at most "
-            f"{MOST_ROUNDS} rounds, or take a hard window away",
+            f"the tasks {shown} form a loop in which nothing takes time, so the mission might "
+            "never leave it",
+            "give a WAIT in it a duration, give the group `every` or at most "
+            f"{MOST_ROUNDS} rounds, or remove a hard window",
         )
 
 
@@ -64,9 +66,9 @@ def _may_be_missed(task: Task) -> bool:
     return task.window is not None and task.window.hard and task.window.latest is not None
 
 
-def _onward(task: Task) -> Iterator[str]:
-    """The tasks that may follow one that took no time."""
-    goes_on = _ends_at_once(task)
+def _instant_successors(task: Task) -> Iterator[str]:
+    """Yield the tasks that may follow one that took no time."""
+    continues = _ends_at_once(task)
     fails = _fails_at_once(task)
     if _may_be_missed(task) and task.window is not None:
         if task.window.missed_target is not None:
@@ -76,13 +78,13 @@ def _onward(task: Task) -> Iterator[str]:
     if fails and task.on_failure is OnFailure.BRANCH and task.failure_target is not None:
         yield task.failure_target
     elif fails and task.on_failure is OnFailure.CONTINUE:
-        goes_on = True
-    if goes_on:
+        continues = True
+    if continues:
         yield from (transition.target for transition in task.transitions)
 
 
-def _unlimited(mission: Mission) -> Iterator[GroupRange]:
-    """The groups whose rounds may follow each other at once, and too often."""
+def _unlimited_groups(mission: Mission) -> Iterator[GroupRange]:
+    """Yield the groups whose rounds may follow each other at once, without limit or too often."""
     around: list[tuple[GroupRange, int]] = []
     for inner in group_ranges(mission):
         while around and around[-1][0].last < inner.first:

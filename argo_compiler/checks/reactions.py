@@ -1,40 +1,40 @@
-"""Whether a mission's reactions say what to do, and whether all that they say has an effect."""
+"""Checks of reactions: whether their fields are complete and have an effect."""
 
 from collections.abc import Iterator
 
-from argo_compiler.checks.about import About
+from argo_compiler.checks.checked_item import CheckedItem
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Afterwards, EventKind, Mission, Reaction, Response
 from argo_compiler.il.subjects import Subjects
 
 
 def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
-    """All that is wrong or odd about a mission's reactions."""
+    """Yield the diagnostics of a mission's reactions."""
     first: dict[EventKind, Reaction] = {}
     for reaction in mission.reactions:
         first.setdefault(reaction.event, reaction)
     subjects = Subjects(mission)
     ranked: dict[tuple[int, int], Reaction] = {}
     for i, reaction in enumerate(mission.reactions):
-        about = About(subjects.reaction(i), reaction.source)
+        item = CheckedItem(subjects.reaction(i), reaction.source)
         if first[reaction.event] is not reaction:
-            yield about.diagnostic(
+            yield item.diagnostic(
                 "il.duplicate-reaction",
                 f"there is more than one reaction to {reaction.event}",
                 "keep one reaction for each event",
                 ".event",
             )
-        yield from _check_places(about, reaction, mission)
-        yield from _check_rank(about, reaction, ranked)
+        yield from _check_poses(item, reaction, mission)
+        yield from _check_rank(item, reaction, ranked)
         if reaction.response is not Response.REPORT:
             ranked.setdefault(reaction.rank, reaction)
-        yield from _check_battery(about, reaction)
-        yield from _check_unused(about, reaction)
+        yield from _check_battery(item, reaction)
+        yield from _check_unused(item, reaction)
         if _may_hold(reaction.response) and reaction.until is not None:
-            yield from _check_until(about, reaction, first)
+            yield from _check_until(item, reaction, first)
         for field, event in (("event", reaction.event), ("until", reaction.until)):
             if event is EventKind.TIME_UP and mission.max_duration is None:
-                yield about.diagnostic(
+                yield item.diagnostic(
                     "il.time-up-without-limit",
                     f"the reaction to {reaction.event} waits for {event}, which never occurs: the "
                     "mission has no max_duration",
@@ -43,27 +43,30 @@ def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
                 )
 
 
-def _check_places(about: About, reaction: Reaction, mission: Mission) -> Iterator[Diagnostic]:
+def _check_poses(item: CheckedItem, reaction: Reaction, mission: Mission) -> Iterator[Diagnostic]:
     if reaction.response is Response.SAFE_AREA and reaction.pose is None:
-        yield about.diagnostic(
+        yield item.diagnostic(
             "il.safe-area-without-pose",
-            f"the reaction to {reaction.event} does not say where the safe area is",
+            f"the reaction to {reaction.event} has no pose of the safe area",
             "give the reaction a `pose`",
             ".response",
         )
     if reaction.response is Response.RETURN and mission.dock is None and reaction.pose is None:
-        yield about.diagnostic(
+        yield item.diagnostic(
             "il.no-dock",
-            f"the robot is to return to the dock on {reaction.event}, but the mission has no dock",
+            f"the robot must return to the dock on {reaction.event}, but the mission has no dock",
             "give the mission the pose of its docking station as `dock`, or the reaction a `pose`",
             ".response",
         )
 
 
 def _check_rank(
-    about: About, reaction: Reaction, ranked: dict[tuple[int, int], Reaction]
+    item: CheckedItem, reaction: Reaction, ranked: dict[tuple[int, int], Reaction]
 ) -> Iterator[Diagnostic]:
-    """Of two reactions of one rank the later one waits; `ranked` are those that stand before."""
+    """Yield a reaction of the same rank as a previous one, as one would wait for the other.
+
+    `ranked` has the first reaction of each rank among the previous ones.
+    """
     other = ranked.get(reaction.rank)
     if (
         other is None
@@ -73,7 +76,7 @@ def _check_rank(
         or reaction.until is other.event
     ):
         return
-    yield about.diagnostic(
+    yield item.diagnostic(
         "il.equal-priority",
         f"the reactions to {other.event} and {reaction.event} have the same priority "
         f"{reaction.rank[1]}: the one whose event occurs later waits until the other is over",
@@ -82,18 +85,18 @@ def _check_rank(
     )
 
 
-def _check_battery(about: About, reaction: Reaction) -> Iterator[Diagnostic]:
+def _check_battery(item: CheckedItem, reaction: Reaction) -> Iterator[Diagnostic]:
     if reaction.battery_below is not None and reaction.event is not EventKind.LOW_BATTERY:
-        yield about.diagnostic(
+        yield item.diagnostic(
             "il.battery-level",
-            f"the reaction to {reaction.event} has `battery_below`, and the battery has nothing to "
-            "do with that event",
-            f"remove it, or let the reaction answer {EventKind.LOW_BATTERY}",
+            f"the reaction to {reaction.event} has `battery_below`, but that event does not depend "
+            "on the battery",
+            f"remove it, or set the event of the reaction to {EventKind.LOW_BATTERY}",
             ".battery_below",
         )
 
 
-def _check_unused(about: About, reaction: Reaction) -> Iterator[Diagnostic]:
+def _check_unused(item: CheckedItem, reaction: Reaction) -> Iterator[Diagnostic]:
     response = reaction.response
     may_hold = _may_hold(response)
     unused = {
@@ -105,11 +108,11 @@ def _check_unused(about: About, reaction: Reaction) -> Iterator[Diagnostic]:
         "until": reaction.until is not None and not may_hold,
         "afterwards": reaction.afterwards is not Afterwards.END
         and not response.drives
-        # That is what happens after a pause anyway.
+        # After a pause the mission resumes in any case.
         and not (response is Response.PAUSE and reaction.afterwards is Afterwards.RESUME),
     }
-    for field in (field for field, given in unused.items() if given):
-        yield about.diagnostic(
+    for field in (field for field, is_unused in unused.items() if is_unused):
+        yield item.diagnostic(
             "il.unused-field",
             f"the reaction to {reaction.event} has `{field}`, which has no effect on the response "
             f"{response}",
@@ -119,23 +122,23 @@ def _check_unused(about: About, reaction: Reaction) -> Iterator[Diagnostic]:
 
 
 def _check_until(
-    about: About, reaction: Reaction, first: dict[EventKind, Reaction]
+    item: CheckedItem, reaction: Reaction, first: dict[EventKind, Reaction]
 ) -> Iterator[Diagnostic]:
     if reaction.until is reaction.event:
-        yield about.diagnostic(
+        yield item.diagnostic(
             "il.until-itself",
             f"the reaction to {reaction.event} waits for {reaction.event} itself, which changes "
             "nothing while it is active",
-            "wait for an event that tells that it is over, such as all_clear",
+            "wait for an event that reports its end, such as all_clear",
             ".until",
         )
         return
     other = first.get(reaction.until) if reaction.until else None
     if other and other.response is not Response.REPORT and other.rank > reaction.rank:
-        yield about.diagnostic(
+        yield item.diagnostic(
             "il.until-answered",
             f"the reaction to {reaction.event} waits for {reaction.until}, which has a reaction of "
-            "higher priority that is carried out instead",
+            "higher priority that is executed instead",
             "wait for another event, or give this reaction the higher priority",
             ".until",
         )

@@ -1,9 +1,9 @@
-"""Whether the tasks of a mission and their transitions make sense."""
+"""Checks of tasks and their transitions."""
 
 from collections.abc import Iterable, Iterator
 
 from argo_compiler.base.nearest_name import nearest_name
-from argo_compiler.checks.about import About
+from argo_compiler.checks.checked_item import CheckedItem
 from argo_compiler.checks.conditions import ConditionChecks
 from argo_compiler.checks.timing import (
     check_failure,
@@ -19,9 +19,9 @@ from argo_compiler.il.subjects import Subjects
 from argo_compiler.il.transitions import failure_targets
 
 MANY_RETRIES = 100
-"""that few actions are worth; more look like a mission that hangs"""
+"""limit of retries without a warning; with more, the mission seems to hang"""
 
-# Looked up in the enumeration, each would take as long as the rest of a comparison.
+# Names of their own, as the look-up in an enumeration takes as long as the comparison itself.
 _START, _WAYPOINT, _MEASURE, _RETURN, _WAIT = (
     Action.START,
     Action.WAYPOINT,
@@ -33,14 +33,14 @@ _START, _WAYPOINT, _MEASURE, _RETURN, _WAIT = (
 _TARGET = ".transitions[{}].target"
 
 _MOST_HINTS = 20
-"""missing names for which a similar one is looked up"""
+"""number of unknown names for which a similar name is searched"""
 
 
 class TaskChecks:
-    """The sets over one mission that its tasks are checked with.
+    """Checks of a mission's tasks, with the sets of names that they need.
 
-    A mission may have a hundred thousand tasks: what is sound is recognised in the loop, and a call
-    is made only for what is not, or not at a glance.
+    A mission may have a hundred thousand tasks: the loop itself recognises correct ones, and calls
+    a function only for those that are wrong or need a closer look.
     """
 
     def __init__(self, mission: Mission, known: frozenset[str] | None) -> None:
@@ -65,84 +65,84 @@ class TaskChecks:
             if action is _MEASURE:
                 object_id = task.object_id
                 if object_id is None or (known is not None and object_id not in known):
-                    yield _wrong_object(self._about(i, task), task)
+                    yield _object_diagnostic(self._item(i, task), task)
             elif action is _WAYPOINT:
                 if task.pose is None:
-                    yield self._about(i, task).diagnostic(
+                    yield self._item(i, task).diagnostic(
                         "il.waypoint-without-pose",
                         f"the WAYPOINT task '{task.name}' has no pose",
-                        "say where it leads",
+                        "give it the pose of its target",
                     )
             elif action is _WAIT:
-                yield from check_wait(self._about(i, task), task)
-                yield from check_unused_fields(self._about(i, task), task)
+                yield from check_wait(self._item(i, task), task)
+                yield from check_unused_fields(self._item(i, task), task)
             else:
                 starts += 1
                 if starts > 1:
-                    yield self._about(i, task).diagnostic(
+                    yield self._item(i, task).diagnostic(
                         "il.many-starts",
                         f"'{task.name}' is a second START task; '{self.starts[0]}' is the first",
-                        "a mission begins at one place: remove all START tasks but one",
+                        "a mission begins at one pose: remove all START tasks but one",
                     )
-                yield from check_unused_fields(self._about(i, task), task)
+                yield from check_unused_fields(self._item(i, task), task)
             if has_timing_or_branch(task):
-                yield from self._timing(self._about(i, task), task)
+                yield from self._check_timing(self._item(i, task), task)
             transitions = task.transitions
             if len(transitions) != 1 or transitions[0].conditions:
-                yield from self._branching(self._about(i, task), task)
+                yield from self._check_branching(self._item(i, task), task)
             elif transitions[0].target not in targets:
-                about = self._about(i, task)
-                yield self._wrong_target(about, task, transitions[0].target, _TARGET.format(0))
+                item = self._item(i, task)
+                yield self._target_diagnostic(item, task, transitions[0].target, _TARGET.format(0))
             if task.retries > MANY_RETRIES:
-                yield self._about(i, task).diagnostic(
+                yield self._item(i, task).diagnostic(
                     "il.many-retries",
                     f"task '{task.name}' would be tried again {task.retries} times",
-                    f"up to {MANY_RETRIES} are thought of: let on_failure say what comes then",
+                    f"allow at most {MANY_RETRIES}, and set on_failure for what follows then",
                     ".retries",
                 )
             if task.joint_states is not None:
-                yield from _check_joints(self._about(i, task), task)
+                yield from _check_joints(self._item(i, task), task)
         yield from _check_returns(self.mission, self.subjects)
         for i, group in enumerate(self.mission.groups):
             for n, condition in enumerate(group.until):
-                about = About(self.subjects.group(i), group.source)
-                yield from self.conditions.diagnostics(about, group, condition, f".until[{n}]")
+                item = CheckedItem(self.subjects.group(i), group.source)
+                yield from self.conditions.diagnostics(item, group, condition, f".until[{n}]")
 
-    def _about(self, i: int, task: Task) -> About:
-        return About(self.subjects.task(i), task.source)
+    def _item(self, i: int, task: Task) -> CheckedItem:
+        return CheckedItem(self.subjects.task(i), task.source)
 
-    def _timing(self, about: About, task: Task) -> Iterator[Diagnostic]:
-        """What a task says about failing, waiting and time windows."""
+    def _check_timing(self, item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
+        """Yield the diagnostics of a task's failure policy, wait and time window."""
         if task.action in (_WAYPOINT, _MEASURE):
-            yield from check_unused_fields(about, task)
-        yield from check_failure(about, task)
-        yield from check_window(about, task)
+            yield from check_unused_fields(item, task)
+        yield from check_failure(item, task)
+        yield from check_window(item, task)
         for n, condition in enumerate(task.wait.conditions if task.wait else ()):
             field = f".wait.conditions[{n}]"
-            yield from self.conditions.diagnostics(about, task, condition, field)
+            yield from self.conditions.diagnostics(item, task, condition, field)
         for field, target in failure_targets(task).items():
             if target not in self.targets:
-                yield self._wrong_target(about, task, target, f".{field}")
+                yield self._target_diagnostic(item, task, target, f".{field}")
 
-    def _branching(self, about: About, task: Task) -> Iterator[Diagnostic]:
-        """The transitions of a task that has none, several, or a conditional one."""
+    def _check_branching(self, item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
+        """Yield the diagnostics of a task's transitions, unless there is one unconditional one."""
         unconditional = 0
         for k, transition in enumerate(task.transitions):
             if transition.target not in self.targets:
-                yield self._wrong_target(about, task, transition.target, _TARGET.format(k))
+                yield self._target_diagnostic(item, task, transition.target, _TARGET.format(k))
             unconditional += not transition.conditions
             for n, condition in enumerate(transition.conditions):
                 field = f".transitions[{k}].conditions[{n}]"
-                yield from self.conditions.diagnostics(about, task, condition, field)
+                yield from self.conditions.diagnostics(item, task, condition, field)
         if unconditional > 1:
-            yield about.diagnostic(
+            yield item.diagnostic(
                 "il.many-unconditional",
                 f"task '{task.name}' has {unconditional} unconditional transitions",
                 "keep one and give the others conditions",
                 ".transitions",
             )
         if task.action is Action.START and unconditional < len(task.transitions):
-            yield about.diagnostic(
+            yield item.diagnostic(
                 "il.start-condition",
                 f"the START task '{task.name}' has a conditional transition, which is never taken: "
                 "nothing has been measured yet",
@@ -150,26 +150,28 @@ class TaskChecks:
                 ".transitions",
             )
         elif task.transitions and not unconditional:
-            yield about.diagnostic(
+            yield item.diagnostic(
                 "il.no-unconditional",
                 f"the mission ends after task '{task.name}' if none of its conditions hold",
-                "add an unconditional transition if it is to go on",
+                "add an unconditional transition if it has to continue",
                 ".transitions",
             )
 
-    def _wrong_target(self, about: About, task: Task, target: str, field: str) -> Diagnostic:
+    def _target_diagnostic(
+        self, item: CheckedItem, task: Task, target: str, field: str
+    ) -> Diagnostic:
         if target in self.names:
-            return about.diagnostic(
+            return item.diagnostic(
                 "il.start-as-target",
-                f"a transition of task '{task.name}' leads to the START task '{target}', which is "
-                "only where the mission begins",
+                f"a transition of task '{task.name}' leads to the START task '{target}', which "
+                "only defines where the mission begins",
                 "lead it to the task that follows START",
                 field,
             )
         near = self._nearest(target)
-        return about.diagnostic(
+        return item.diagnostic(
             "il.unknown-target",
-            f"a transition of task '{task.name}' leads to '{target}', which is no task of the "
+            f"a transition of task '{task.name}' leads to '{target}', which is not a task of the "
             "mission",
             f"is '{near}' meant?"
             if near
@@ -185,16 +187,16 @@ class TaskChecks:
 def _check_names(tasks: Iterable[Task], subjects: Subjects) -> Iterator[Diagnostic]:
     seen: set[str] = set()
     for i, task in enumerate(tasks):
-        about = About(subjects.task(i), task.source)
+        item = CheckedItem(subjects.task(i), task.source)
         if task.name in seen:
-            yield about.diagnostic(
+            yield item.diagnostic(
                 "il.duplicate-task",
                 f"more than one task is named '{task.name}'",
-                "give each task a name of its own: transitions and groups go by it",
+                "give each task a name of its own: transitions and groups refer to it",
                 ".name",
             )
         if task.name in RESERVED_NAMES:
-            yield about.diagnostic(
+            yield item.diagnostic(
                 "il.reserved-name",
                 f"the machine needs the name '{task.name}' for a drive of its own",
                 "give the task another name",
@@ -203,14 +205,14 @@ def _check_names(tasks: Iterable[Task], subjects: Subjects) -> Iterator[Diagnost
         seen.add(task.name)
 
 
-def _wrong_object(about: About, task: Task) -> Diagnostic:
+def _object_diagnostic(item: CheckedItem, task: Task) -> Diagnostic:
     if task.object_id is None:
-        return about.diagnostic(
+        return item.diagnostic(
             "il.measure-without-object",
             f"the MEASURE task '{task.name}' has no object_id",
-            "say which checkpoint it measures",
+            "set it to the number of the checkpoint that it measures",
         )
-    return about.diagnostic(
+    return item.diagnostic(
         "il.unknown-object",
         f"task '{task.name}' names checkpoint '{task.object_id}', which the site does not have",
         "use the number of a checkpoint in the site's catalogue",
@@ -218,25 +220,25 @@ def _wrong_object(about: About, task: Task) -> Diagnostic:
     )
 
 
-def _check_joints(about: About, task: Task) -> Iterator[Diagnostic]:
+def _check_joints(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
     joints = task.joint_states
     if joints is None:
         return
-    given = {
+    lengths = {
         "positions": len(joints.positions),
         "velocities": len(joints.velocities),
         "efforts": len(joints.efforts),
     }
-    odd = [f"{n} {what}" for what, n in given.items() if n not in (0, len(joints.names))]
-    if odd:
-        fault = f"names {len(joints.names)} joints and gives {' and '.join(odd)}"
-    elif not any(given.values()):
-        fault = "names joints and does not say where they are to be"
+    mismatched = [f"{n} {what}" for what, n in lengths.items() if n not in (0, len(joints.names))]
+    if mismatched:
+        fault = f"names {len(joints.names)} joints and gives {' and '.join(mismatched)}"
+    elif not any(lengths.values()):
+        fault = "names joints, but has no positions, velocities or efforts for them"
     elif len(set(joints.names)) != len(joints.names):
         fault = "names a joint twice"
     else:
         return
-    yield about.diagnostic(
+    yield item.diagnostic(
         "il.joint-states",
         f"task '{task.name}' {fault}",
         "give one for each joint or none at all, and each joint once",
@@ -245,16 +247,16 @@ def _check_joints(about: About, task: Task) -> Iterator[Diagnostic]:
 
 
 def _check_returns(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]:
-    """One diagnostic for all tasks that are to return to a dock that is not there."""
+    """Yield one diagnostic for all tasks that return to the dock, if the mission has none."""
     if mission.dock:
         return
     returning = [i for i, t in enumerate(mission.tasks) if t.on_failure is _RETURN]
     if returning:
         task = mission.tasks[returning[0]]
         others = f" (and {len(returning) - 1} more)" if len(returning) > 1 else ""
-        yield About(subjects.task(returning[0]), task.source).diagnostic(
+        yield CheckedItem(subjects.task(returning[0]), task.source).diagnostic(
             "il.no-dock",
-            f"task '{task.name}'{others} is to return to the dock if it fails, but the mission has "
+            f"task '{task.name}'{others} must return to the dock if it fails, but the mission has "
             "no dock",
             "give the mission the pose of its docking station as `dock`",
             ".on_failure",

@@ -1,14 +1,14 @@
-"""Whether what tasks say about time, waiting and failing makes sense."""
+"""Checks of tasks' fields for times, waits and failures."""
 
 from collections.abc import Iterator
 
-from argo_compiler.checks.about import About
+from argo_compiler.checks.checked_item import CheckedItem
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Action, OnFailure, Task
 
 _PLAIN = Task(name="any", action=Action.WAYPOINT)
 
-# What has an effect on these actions only; the fields that all actions have are not listed.
+# Fields with the only actions that use them; fields that all actions use are not listed.
 _USED_BY = {
     "object_id": {Action.MEASURE},
     "pose": {Action.START, Action.WAYPOINT, Action.MEASURE},
@@ -28,7 +28,7 @@ _DEFAULTS = {field: getattr(_PLAIN, field) for field in _USED_BY}
 
 
 def has_timing_or_branch(task: Task) -> bool:
-    """Whether a task says something that this module looks at: most of a large mission do not."""
+    """Return True if a task has a field that this module checks; most tasks have none."""
     return (
         task.wait is not None
         or task.window is not None
@@ -38,11 +38,11 @@ def has_timing_or_branch(task: Task) -> bool:
     )
 
 
-def check_unused_fields(about: About, task: Task) -> Iterator[Diagnostic]:
-    """What a task says that has no effect on its action."""
+def check_unused_fields(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
+    """Yield the fields of a task that have no effect on its action."""
     for field, actions in _USED_BY.items():
         if task.action not in actions and getattr(task, field) != _DEFAULTS[field]:
-            yield about.diagnostic(
+            yield item.diagnostic(
                 "il.unused-field",
                 f"the {task.action} task '{task.name}' has `{field}`, which has no effect on it",
                 "remove it",
@@ -50,48 +50,55 @@ def check_unused_fields(about: About, task: Task) -> Iterator[Diagnostic]:
             )
 
 
-def check_wait(about: About, task: Task) -> Iterator[Diagnostic]:
-    """What is wrong with how long a WAIT lasts, its conditions apart."""
+def check_wait(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
+    """Yield the diagnostics of a WAIT's duration, apart from its conditions."""
     rule = task.wait
-    happens = rule is not None and (rule.event is not None or bool(rule.conditions))
-    if rule is None or (rule.duration is None) == (not happens):
-        says = "does not say how long it lasts"
+    waits_for_something = rule is not None and (rule.event is not None or bool(rule.conditions))
+    if rule is None or (rule.duration is None) == (not waits_for_something):
+        fault = "does not say how long it lasts"
         if rule is not None and rule.duration is not None:
-            says = "has both a duration and something that it waits for"
-        yield about.diagnostic(
+            fault = "has both a duration and an event or conditions"
+        yield item.diagnostic(
             "il.wait-rule",
-            f"the WAIT task '{task.name}' {says}",
+            f"the WAIT task '{task.name}' {fault}",
             "give its `wait` a `duration`, or else an `event`, `conditions` or both",
             ".wait" if rule else "",
         )
-    elif happens and rule.limit is None and (task.window is None or task.window.latest is None):
-        yield about.diagnostic(
+    elif (
+        waits_for_something
+        and rule.limit is None
+        and (task.window is None or task.window.latest is None)
+    ):
+        yield item.diagnostic(
             "il.wait-without-limit",
             f"the WAIT task '{task.name}' has no limit: it may last for ever",
             "give its `wait` a `limit` in seconds",
             ".wait",
         )
     elif rule.duration is not None and rule.limit is not None:
-        yield about.diagnostic(
+        yield item.diagnostic(
             "il.unused-field",
-            f"the WAIT task '{task.name}' lasts for a time, so its `limit` has no effect",
+            f"the WAIT task '{task.name}' has a `duration`, so its `limit` has no effect",
             "remove it",
             ".wait.limit",
         )
 
 
-def check_failure(about: About, task: Task) -> Iterator[Diagnostic]:
-    """Whether a failure branch and its policy belong together; the target itself apart."""
+def check_failure(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
+    """Yield a diagnostic if failure policy and failure target do not fit together.
+
+    Whether the target exists is checked elsewhere.
+    """
     branches = task.on_failure is OnFailure.BRANCH
     if branches and task.failure_target is None:
-        yield about.diagnostic(
+        yield item.diagnostic(
             "il.branch-without-target",
-            f"task '{task.name}' is to go on elsewhere when it has failed, and does not say where",
+            f"task '{task.name}' must branch when it has failed, but has no target for that",
             "give it a `failure_target`",
             ".on_failure",
         )
     elif not branches and task.failure_target is not None:
-        yield about.diagnostic(
+        yield item.diagnostic(
             "il.unused-field",
             f"task '{task.name}' has a `failure_target`, but its `on_failure` is {task.on_failure}",
             "set `on_failure` to branch, or remove the target",
@@ -99,22 +106,22 @@ def check_failure(about: About, task: Task) -> Iterator[Diagnostic]:
         )
 
 
-def check_window(about: About, task: Task) -> Iterator[Diagnostic]:
-    """What is wrong with a task's time window."""
+def check_window(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
+    """Yield the diagnostics of a task's time window."""
     window = task.window
     if window is None:
         return
     if window.latest is not None and window.latest <= window.earliest:
-        yield about.diagnostic(
+        yield item.diagnostic(
             "il.window-order",
-            f"task '{task.name}' is to be done between {window.earliest:g} s and "
+            f"task '{task.name}' must be done between {window.earliest:g} s and "
             f"{window.latest:g} s, which leaves no time",
             "give `latest` a time after `earliest`, in s since the mission's start",
             ".window",
         )
     if window.missed_target is not None and (window.latest is None or not window.hard):
         why = "has no `latest`" if window.latest is None else "is not hard"
-        yield about.diagnostic(
+        yield item.diagnostic(
             "il.unused-field",
             f"the window of task '{task.name}' {why}, so it is never missed and its "
             "`missed_target` has no effect",

@@ -242,7 +242,7 @@ SAID = {
     "check key.json": "is `object_id` meant?",
     "run action.json": "'START', 'WAYPOINT', 'MEASURE' or 'WAIT'",
     "run comma.json": "comma.json:6:2: error: is not JSON",
-    "run target.json": "leads to 'C', which is no task",
+    "run target.json": "leads to 'C', which is not a task",
     "run quotes.json": "quotes.json:2:2: error: is not JSON",
     "check comment.json": "comment.json:1:1: error: is not JSON",
     "run number.json": "names checkpoint '99'",

@@ -395,7 +395,7 @@ def test_fields_of_a_task_are_set_and_cleared():
         ({"failure_target": "nobody"}, EditNotFound, "'nobody'"),
         ({"window": TimeWindow(latest=5, missed_target="x")}, EditNotFound, "'x'"),
         ({"velocity": 0.0}, EditInvalid, "velocity"),
-        ({"on_failure": OnFailure.BRANCH}, EditInvalid, "does not say where"),
+        ({"on_failure": OnFailure.BRANCH}, EditInvalid, "has no target for that"),
         ({"window": TimeWindow(earliest=9, latest=5)}, EditInvalid, "no time"),
         ({"on_failure": OnFailure.RETURN}, EditConflict, "dock"),
         ({"group": "z"}, EditInvalid, "`group` is no field"),

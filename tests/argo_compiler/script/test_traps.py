@@ -102,7 +102,7 @@ def bounds(mission: Mission, name: str) -> list[Bounds]:
         (
             "Check 18 and 7. Check 7 before 18.",
             "precedence",
-            ["'MEASURE 7' is to come before 'MEASURE 18'"],
+            ["'MEASURE 7' must come before 'MEASURE 18'"],
         ),
         ("Check #1 and #4 (6 instead of 4).", "ambiguous-remark", ["instead", "a remark"]),
         ("Check #1 and #4 - I mean 8.", "ambiguous-remark", ["I mean"]),

@@ -1,4 +1,4 @@
-"""Diagnostics about tasks, groups and reactions."""
+"""Part of a mission that a check is about."""
 
 from dataclasses import dataclass
 
@@ -6,13 +6,13 @@ from argo_compiler.diagnostics import Diagnostic, Span, diagnostic_of
 
 
 @dataclass(frozen=True, slots=True)
-class About:
-    """A task, group or reaction that is looked at."""
+class CheckedItem:
+    """Task, group or reaction that a check is about."""
 
     subject: str
     source: Span | None
     """where a script asked for it"""
 
     def diagnostic(self, code: str, message: str, hint: str, field: str = "") -> Diagnostic:
-        """Return what is wrong with it, or with one of its fields."""
+        """Return a diagnostic of the item, or of one of its fields."""
         return diagnostic_of(code, message, hint, self.subject + field, self.source)

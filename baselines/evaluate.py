@@ -22,7 +22,7 @@ from rich.console import Console
 from rich.table import Table
 
 from argo_compiler.base.errors import ArgoError, Invalid
-from argo_compiler.base.stages import heard_by, stage
+from argo_compiler.base.stages import listen_to_stages, stage
 from argo_env.files.folders import make_folder
 from baselines.comparison import Beaten, PolicyComparison, compare
 from baselines.episodes import play
@@ -173,7 +173,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                         help="write results.json, results.csv and results.md here")  # fmt: skip
     given = parser.parse_args(arguments)
     try:
-        with heard_by(StageLines(lambda line: print(line, file=sys.stderr, flush=True))):
+        with listen_to_stages(StageLines(lambda line: print(line, file=sys.stderr, flush=True))):
             _evaluate(given)
     except ArgoError as error:
         print(f"error: {error}", file=sys.stderr)

@@ -11,7 +11,7 @@ from argo_compiler.analysis.reachability import Reachability
 from argo_compiler.analysis.step_costs import StepCosts
 from argo_compiler.analysis.travel import Travel
 from argo_compiler.base.catalog import Catalog
-from argo_compiler.base.graphs import components, first_ways, leading_to, way_to
+from argo_compiler.base.graphs import can_reach, components, path_to, shortest_path_predecessors
 from argo_compiler.diagnostics import Diagnostic, Severity, diagnostic_of
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Afterwards, Mission, Response, Task
@@ -45,7 +45,7 @@ class Study:
     @cached_property
     def trap_nodes(self) -> tuple[tuple[int, ...], ...]:
         """Nodes of each loop that can be reached and that only a failure leaves."""
-        ends = leading_to(self.successors, [self.flow.end_node])
+        ends = can_reach(self.successors, [self.flow.end_node])
         traps = []
         for part in components(self.successors):
             if ends[part[0]] or not self.nominal.is_reached(part[0]):
@@ -119,7 +119,7 @@ class Study:
 
     def path_words(self, leaf: int) -> str:
         """Return the text of a shortest path to a leaf if nothing fails; empty if there is none."""
-        path = way_to(self._path_tree, self.flow.initial, leaf)
+        path = path_to(self._path_tree, self.flow.initial, leaf)
         return "" if path is None else self.words(path)
 
     def words(self, path: tuple[int, ...]) -> str:
@@ -133,7 +133,7 @@ class Study:
 
     @cached_property
     def _path_tree(self) -> list[int | None]:
-        return first_ways(self.successors, self.flow.initial, lambda _a, _b: True)
+        return shortest_path_predecessors(self.successors, self.flow.initial, lambda _a, _b: True)
 
     def _successors_of(self, node: int) -> Iterator[int]:
         flow = self.flow

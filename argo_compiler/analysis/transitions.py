@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from argo_compiler.analysis.reachability import GuardStatus, compared_objects
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.value_regions import Scale
-from argo_compiler.base.graphs import first_ways, way_to
+from argo_compiler.base.graphs import path_to, shortest_path_predecessors
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.hfsm.conditions import condition_text, conditions_text
 from argo_compiler.il import Action, Condition
@@ -230,6 +230,8 @@ class _UnmeasuredPaths:
                     for conditions, t in here.conditional
                 )
 
-            self.predecessors[object_id] = first_ways(study.successors, flow.initial, passable)
-        path = way_to(self.predecessors[object_id], flow.initial, leaf)
+            self.predecessors[object_id] = shortest_path_predecessors(
+                study.successors, flow.initial, passable
+            )
+        path = path_to(self.predecessors[object_id], flow.initial, leaf)
         return "" if path is None else study.words(path)

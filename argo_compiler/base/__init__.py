@@ -1,1 +1,1 @@
-"""Foundations of the compiler: base classes of data, errors, and small functions of no domain."""
+"""Foundations of the compiler: base classes of data, errors, and general helper functions."""

@@ -1,4 +1,4 @@
-"""What the compiler knows of a site: the names a script may use, and what they stand for.
+"""Catalogue of a site: the names that a script may use, and what they stand for.
 
 The catalogue is data. `argo_env` makes it from a site; the compiler knows no geometry.
 """
@@ -11,7 +11,7 @@ from argo_compiler.base.model import Model, Pose
 
 
 class CheckpointKind(StrEnum):
-    """The three kinds of checkpoint of the competition (thesis 1.2)."""
+    """Kind of checkpoint in the competition (thesis 1.2)."""
 
     PRESSURE_GAUGE = "pressure gauge"
     LIQUID_LEVEL_GAUGE = "liquid level gauge"
@@ -19,7 +19,7 @@ class CheckpointKind(StrEnum):
 
 
 class Interval(Model):
-    """A closed interval of values, in the unit of what it belongs to."""
+    """Closed interval of values, in the unit of the quantity that it belongs to."""
 
     low: float
     high: float
@@ -35,12 +35,12 @@ class Interval(Model):
 
 
 class CheckpointInfo(Model):
-    """A checkpoint as a script sees it: `range` is its scale, `nominal` the normal values."""
+    """Checkpoint as a script sees it: `range` is its scale, `nominal` the normal values."""
 
     id: int = Field(ge=1)
     kind: CheckpointKind
     name: str
-    """with its kind, as scripts say it: `pressure gauge 1`, `valve R25`"""
+    """with its kind, as scripts write it: `pressure gauge 1`, `valve R25`"""
     floor: int = Field(ge=1)
     unit: str
     range: Interval
@@ -48,31 +48,32 @@ class CheckpointInfo(Model):
 
 
 class Area(Model):
-    """A starting area outside the site, with the pose of a robot docked in its station."""
+    """Starting area outside the site, with the pose of a robot docked in its station."""
 
     number: int = Field(ge=1)
     dock: Pose
 
 
 class Floor(Model):
-    """A floor, counted from 1 at the bottom (thesis 5.1)."""
+    """Floor, counted from 1 at the bottom (thesis 5.1)."""
 
     number: int = Field(ge=1)
     z: float
     """m, height of its deck"""
     patrol: tuple[Pose, ...]
-    """at least three poses near the floor's corners that the robot can reach, in a round's order"""
+    """at least three poses near the floor's corners that the robot can reach, in the order of a
+    patrol"""
 
 
 class Place(Model):
-    """A named place that a script may send the robot to, such as `front of the site`."""
+    """Named place to which a script may send the robot, such as `front of the site`."""
 
     name: str
     pose: Pose
 
 
 class Catalog(Model):
-    """All that a script can name on one site."""
+    """Everything that a script can name on one site."""
 
     site: str
     checkpoints: tuple[CheckpointInfo, ...]

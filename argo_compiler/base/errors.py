@@ -1,7 +1,8 @@
-"""What goes wrong by the input or the request, in kinds that a program can tell apart.
+"""Errors by the input or the request, in kinds that a program can tell apart.
 
-Every message names the thing, the place and the way out, in no front end's words; the command adds
-its own, prints it and exits with status 2. Anything else that is raised is a defect of Argo.
+Every message states the thing, the place and the way out, in words of no particular front end; the
+command adds its own words, prints them and exits with status 2. Any other exception is a defect of
+Argo.
 """
 
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ from argo_compiler.base.listing import listed
 
 
 class Remedy(StrEnum):
-    """What can be done about an error, for a front end that says in its own words how."""
+    """Remedy for an error; each front end expresses it in its own words."""
 
     CHECK_MISSION = "check-mission"
     CHOOSE_AREAS = "choose-areas"
@@ -35,7 +36,7 @@ class Remedy(StrEnum):
 
 @dataclass(frozen=True)
 class RemedyChoice:
-    """The values that a remedy offers to choose from; as text, the words of a hint."""
+    """Values from which a remedy lets the user choose; as text, the words of a hint."""
 
     remedy: Remedy
     what: str
@@ -47,14 +48,14 @@ class RemedyChoice:
 
 
 class ArgoError(Exception):
-    """Bad input or an impossible request: what all the others are kinds of.
+    """Error of bad input or an impossible request; the base class of all kinds.
 
-    The `remedies` are for front ends; the message makes sense without. `about` is what they need,
-    such as the file that the remedy works on.
+    The `remedies` are for front ends; the message can be understood without them. `about` is the
+    data that they need, such as the file that the remedy works on.
     """
 
     code: ClassVar[str] = "error"
-    """the kind, as programs and services name it; stable"""
+    """name of the kind for programs and services; it never changes"""
 
     def __init__(
         self, *message: object, remedies: tuple[Remedy, ...] = (), about: str = ""
@@ -65,38 +66,41 @@ class ArgoError(Exception):
 
 
 class NotFound(ArgoError):
-    """Something is named that is not there: a site, a task, a checkpoint, a file."""
+    """Error of a name of something that does not exist: a site, a task, a checkpoint, a file."""
 
     code = "not-found"
 
 
 class Invalid(ArgoError):
-    """What was given makes no sense, whatever else is there: text, a value, a combination."""
+    """Error of input that makes no sense in itself: a text, a value, a combination."""
 
     code = "invalid"
 
 
 class Unreachable(ArgoError):
-    """There is no way to where the robot should go."""
+    """Error of a pose that the robot should go to, but to which there is no path."""
 
     code = "unreachable"
 
 
 class Conflict(ArgoError):
-    """The request does not fit how things stand now: a file that is there already or in use, a run
-    whose mission has changed, an edit that something is in the way of."""
+    """Error of a request that does not fit the present state.
+
+    Examples: a file that already exists or is in use, a run whose mission has changed, an edit that
+    is blocked by something.
+    """
 
     code = "conflict"
 
 
 class Unavailable(ArgoError):
-    """This machine lacks what it takes: an optional package, a display, room on the disk."""
+    """Error of a resource that this machine lacks: an optional package, a display, disk space."""
 
     code = "unavailable"
 
 
 def located(error: ArgoError, name: str) -> ArgoError:
-    """An error of the same kind whose message begins with the name of what it is about."""
+    """Return an error of the same kind whose message begins with `name`, the thing it is about."""
     kinds = (NotFound, Invalid, Unreachable, Conflict, Unavailable)
     kind = next((kind for kind in kinds if isinstance(error, kind)), ArgoError)
     return kind(f"{name}: {error}", remedies=error.remedies, about=error.about)

@@ -1,4 +1,4 @@
-"""How the optional parts of Argo are installed."""
+"""Installation of Argo's optional parts (extras)."""
 
 import json
 from pathlib import Path
@@ -7,8 +7,11 @@ PROJECT = "argo-mission"
 
 
 def install_line(extra: str) -> str:
-    """The command that adds an extra to Argo, from where Argo itself was installed: no index need
-    have it, or have the same under its name."""
+    """Return the command that adds an extra to Argo.
+
+    It installs from the source from which Argo itself was installed: an index may not have Argo, or
+    may have something else under its name.
+    """
     import shlex
 
     return shlex.join(("pip", "install", *_source(extra)))
@@ -16,7 +19,7 @@ def install_line(extra: str) -> str:
 
 def _source(extra: str) -> tuple[str, ...]:
     """Return the arguments of `pip install`."""
-    # Most who import this have all they need, and these take long to import.
+    # Imported late: they take long to import, and are rarely needed.
     from importlib.metadata import PackageNotFoundError, distribution
     from urllib.parse import urlsplit
     from urllib.request import url2pathname
@@ -27,13 +30,13 @@ def _source(extra: str) -> tuple[str, ...]:
         return _checkout(Path(__file__).parents[2], extra)
     if origin is None:
         return (f"{PROJECT}[{extra}]",)
-    found = json.loads(origin)
-    url = found["url"]
-    if "dir_info" in found:
+    info = json.loads(origin)
+    url = info["url"]
+    if "dir_info" in info:
         folder = Path(url2pathname(urlsplit(url).path))
-        return _checkout(folder, extra, found["dir_info"].get("editable", False))
-    if "vcs_info" in found:
-        url = f"{found['vcs_info']['vcs']}+{url}@{found['vcs_info']['commit_id']}"
+        return _checkout(folder, extra, info["dir_info"].get("editable", False))
+    if "vcs_info" in info:
+        url = f"{info['vcs_info']['vcs']}+{url}@{info['vcs_info']['commit_id']}"
     return (f"{PROJECT}[{extra}] @ {url}",)
 
 

@@ -1,4 +1,4 @@
-"""Holds Python's cyclic garbage collector off while much data is built that stays."""
+"""Pauses of Python's cyclic garbage collector while large data is built that stays in use."""
 
 import gc
 from collections.abc import Iterator
@@ -6,19 +6,20 @@ from contextlib import contextmanager
 from threading import Lock
 
 _SELDOM = 200_000
-"""containers made since the last search that the next one waits for; Python's own number is 700"""
+"""threshold of the collector: new containers between two collections; Python's own value is 700"""
 
 _holding = Lock()
-"""held by the one thread that holds the collector off"""
+"""lock of the one thread that pauses the collector"""
 
 
 @contextmanager
 def collector_held() -> Iterator[None]:
-    """No collection inside; a large mission is built in half the time.
+    """Pause the garbage collector; a large mission is built in half the time.
 
-    The collector looks through all that lives each time that enough was added, and finds nothing
-    while what is built is still in use. It is the process' own, so one thread at a time holds it
-    off; what others build meanwhile may see it come back before they are done.
+    The collector examines all live objects each time that enough were added, and finds nothing
+    while the new data is still in use. There is one collector for the whole process, so only one
+    thread at a time pauses it; data that other threads build meanwhile may see it run again before
+    they are done.
     """
     if not _holding.acquire(blocking=False):
         yield
@@ -37,11 +38,11 @@ def collector_held() -> Iterator[None]:
 
 
 def collect_again(seldom: bool = False) -> None:
-    """Turn the collector on where it was turned off; what lives by now is never looked at.
+    """Turn the collector on if it was turned off; it never examines objects that live now.
 
-    With `seldom`, which is for commands that end soon, it hardly ever looks: the tables by which a
-    script is read are 150,000 containers that stay, and to look through them takes a twentieth of
-    the time of `argo check`.
+    With `seldom`, which is for commands that end soon, it hardly ever runs: the tables for parsing
+    scripts are 150,000 containers that stay, and examining them takes a twentieth of the time of
+    `argo check`.
     """
     if not gc.isenabled():
         gc.freeze()

@@ -1,4 +1,4 @@
-"""Graphs of numbered nodes: strongly connected parts and shortest ways."""
+"""Graphs of numbered nodes: strongly connected components and shortest paths."""
 
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
@@ -8,15 +8,16 @@ Successors = Sequence[Sequence[int]]
 
 
 def components(successors: Successors) -> list[list[int]]:
-    """The strongly connected parts, each one after those that it leads to. Linear time.
+    """Return the strongly connected components, each one after those that it leads to.
 
-    Tarjan, Depth-first search and linear graph algorithms, 1972, with a stack of its own.
+    Linear time. Tarjan, Depth-first search and linear graph algorithms, 1972, with an explicit
+    stack.
     """
     index = [-1] * len(successors)
     low = [0] * len(successors)
     on_stack = [False] * len(successors)
     stack: list[int] = []
-    found: list[list[int]] = []
+    result: list[list[int]] = []
     counter = 0
     for root in range(len(successors)):
         if index[root] >= 0:
@@ -40,30 +41,33 @@ def components(successors: Successors) -> list[list[int]]:
                     low[node] = min(low[node], index[following])
             else:
                 if low[node] == index[node]:
-                    part: list[int] = []
-                    while not part or part[-1] != node:
-                        part.append(stack.pop())
-                        on_stack[part[-1]] = False
-                    found.append(part)
-    return found
+                    component: list[int] = []
+                    while not component or component[-1] != node:
+                        component.append(stack.pop())
+                        on_stack[component[-1]] = False
+                    result.append(component)
+    return result
 
 
-def is_loop(part: Sequence[int], successors: Successors) -> bool:
-    """Whether a strongly connected part is more than a node that is passed once."""
-    return len(part) > 1 or part[0] in successors[part[0]]
+def is_loop(component: Sequence[int], successors: Successors) -> bool:
+    """Return True if a strongly connected component has a cycle.
+
+    It has one if it has several nodes, or an edge from its only node to itself.
+    """
+    return len(component) > 1 or component[0] in successors[component[0]]
 
 
-def leading_to(successors: Successors, goals: Iterable[int]) -> list[bool]:
-    """For each node, whether a goal can be reached from it."""
+def can_reach(successors: Successors, goals: Iterable[int]) -> list[bool]:
+    """Return, for each node, whether a goal can be reached from it."""
     before: list[list[int]] = [[] for _ in successors]
     for node, following in enumerate(successors):
         for other in following:
             before[other].append(node)
-    return reached_from(before, goals)
+    return reachable_from(before, goals)
 
 
-def reached_from(successors: Successors, sources: Iterable[int]) -> list[bool]:
-    """For each node, whether it can be reached from a source."""
+def reachable_from(successors: Successors, sources: Iterable[int]) -> list[bool]:
+    """Return, for each node, whether it can be reached from a source."""
     reached = [False] * len(successors)
     pending = list(sources)
     for node in pending:
@@ -76,11 +80,14 @@ def reached_from(successors: Successors, sources: Iterable[int]) -> list[bool]:
     return reached
 
 
-def first_ways(
+def shortest_path_predecessors(
     successors: Successors, source: int, passable: Callable[[int, int], bool]
 ) -> list[int | None]:
-    """For each node, the one before it on a way of fewest steps from `source`, over passable
-    steps only; None where there is none, and for the source itself."""
+    """Return, for each node, its predecessor on a path of fewest steps from `source`.
+
+    Only steps are used for which `passable` is True. The predecessor is None for nodes without such
+    a path, and for the source itself.
+    """
     before: list[int | None] = [None] * len(successors)
     seen = [False] * len(successors)
     seen[source] = True
@@ -95,12 +102,15 @@ def first_ways(
     return before
 
 
-def way_to(before: Sequence[int | None], source: int, target: int) -> tuple[int, ...] | None:
-    """The nodes from `source` to `target`, both included, or None if there is no way."""
-    way = [target]
-    while way[-1] != source:
-        previous = before[way[-1]]
+def path_to(before: Sequence[int | None], source: int, target: int) -> tuple[int, ...] | None:
+    """Return the nodes from `source` to `target`, both included, or None if there is no path.
+
+    `before` has the predecessor of each node, from `shortest_path_predecessors`.
+    """
+    path = [target]
+    while path[-1] != source:
+        previous = before[path[-1]]
         if previous is None:
             return None
-        way.append(previous)
-    return tuple(reversed(way))
+        path.append(previous)
+    return tuple(reversed(path))

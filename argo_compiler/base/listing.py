@@ -1,4 +1,4 @@
-"""Lists in words."""
+"""Lists as text for people."""
 
 from collections.abc import Iterable, Sequence
 
@@ -7,7 +7,7 @@ _SHOWN = 6
 
 
 def listed(items: Iterable[object], conjunction: str = "and") -> str:
-    """`a, b and c`; empty if there is nothing."""
+    """Return items as text, such as `a, b and c`; empty if there are none."""
     words = [str(item) for item in items]
     if len(words) < 2:
         return "".join(words)
@@ -15,7 +15,10 @@ def listed(items: Iterable[object], conjunction: str = "and") -> str:
 
 
 def quoted(names: Sequence[str]) -> str:
-    """Names in quotes: `'A', 'B' and 'C'`, the rest of a long list only counted."""
+    """Return names in quotes, such as `'A', 'B' and 'C'`.
+
+    A long list shows its first names, and the number of the others.
+    """
     shown = [f"'{name}'" for name in names[:_SHOWN]]
     if len(names) > _SHOWN:
         shown.append(f"{len(names) - _SHOWN} more")

@@ -1,16 +1,16 @@
-"""The base of all data that Argo reads and writes: frozen, and strict about unknown fields."""
+"""Base class of all data that Argo reads and writes: frozen, and strict about unknown fields."""
 
 from pydantic import BaseModel, ConfigDict
 
 
 class Model(BaseModel):
-    """A frozen record. Unknown fields, NaN and infinity are errors."""
+    """Frozen record. Unknown fields, NaN and infinity are errors."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 class Pose(Model):
-    """Where the robot stands: a point of the walking surface below its centre, and a heading."""
+    """Pose of the robot: a point of the walking surface below its centre, and a heading."""
 
     x: float
     """m, in the site's frame"""

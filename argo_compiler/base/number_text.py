@@ -1,7 +1,7 @@
-"""Numbers as text that loses nothing."""
+"""Numbers as text without loss."""
 
 
-def number(value: float) -> str:
-    """The value as text that is read back as the same value, without a point where it is whole."""
+def number_text(value: float) -> str:
+    """Return the value as text that is read back as the same value; whole numbers have no point."""
     whole = value == int(value) and abs(value) < 1e15
     return str(int(value)) if whole else repr(float(value))

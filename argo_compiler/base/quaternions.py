@@ -1,23 +1,26 @@
-"""Headings as quaternions and back, without loss."""
+"""Conversion of headings to quaternions and back, without loss."""
 
 import math
 
 TILT = 1e-6
 """sine of half the angle to the vertical that still counts as upright"""
 EQUAL = 1e-9
-"""between components of unit quaternions, far more than mathematical libraries differ by"""
+"""tolerance between components of unit quaternions, far more than mathematical libraries differ
+by"""
 
 
 def to_quaternion(yaw: float) -> tuple[float, float]:
-    """z and w of the unit quaternion of a turn about z by `yaw`; x and y are 0."""
+    """Return z and w of the unit quaternion of a turn about z by `yaw`; x and y are 0."""
     return math.sin(yaw / 2), math.cos(yaw / 2)
 
 
 def to_yaw(x: float, y: float, z: float, w: float, planned: float = 0.0) -> float:
-    """The heading of a quaternion of any length: `planned` itself where that is its heading, in
-    (-pi, pi] otherwise.
+    """Return the heading of a quaternion of any length.
 
-    Raises ValueError, saying what is wrong with the quaternion.
+    The result is `planned` itself if that is the heading of the quaternion, and lies in (-pi, pi]
+    otherwise.
+
+    Raises ValueError, with the fault of the quaternion as its message.
     """
     length = math.hypot(x, y, z, w)
     if not (math.isfinite(length) and math.isfinite(planned)):

@@ -1,8 +1,9 @@
-"""What takes long says what it is doing and how far it is, to whoever listens.
+"""Stages of long computations, reported with their progress to a listener.
 
-As with logging, nobody in between has to hand the listener on: what a site is made of is found when
-it is first asked for, wherever that is. Other threads are not heard. Only packages above this one
-have what takes long; it is here because `argo --help` shows stages and must not import `argo_env`.
+As in logging, callers in between need not pass the listener on: a site's data is computed on first
+use, wherever that is. Stages of other threads are not reported. Only packages above this one have
+long computations; the module is here because `argo --help` shows stages and must not import
+`argo_env`.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -13,24 +14,24 @@ from typing import Protocol, TypeVar
 T = TypeVar("T")
 
 StageListener = Callable[[str | None, float | None, str], None]
-"""Is told what is being done, None: nothing that takes long any more; the share of it that is done,
-None: that is not known; and a detail."""
+"""function that is called with the present stage, None if no stage is active any more; the share of
+it that is done, None if unknown; and a detail"""
 
 
-class TellShare(Protocol):
-    """Tells how far a stage is."""
+class ProgressReporter(Protocol):
+    """Function that reports the progress of a stage."""
 
     def __call__(self, share: float | None, detail: str = "") -> None:
-        """`share`: 0 to 1; the `detail` is shown with the stage."""
+        """Report `share`, from 0 to 1, and a `detail` that is shown with the stage."""
 
 
 _listener: ContextVar[StageListener | None] = ContextVar("stage listener", default=None)
-_under_way: ContextVar[str | None] = ContextVar("stage", default=None)
+_active_stage: ContextVar[str | None] = ContextVar("stage", default=None)
 
 
 @contextmanager
-def heard_by(listener: StageListener | None) -> Iterator[None]:
-    """Within this, the listener hears of all stages; None: nobody does."""
+def listen_to_stages(listener: StageListener | None) -> Iterator[None]:
+    """Call the listener with all stages within this context; None: with no stages."""
     token = _listener.set(listener)
     try:
         yield
@@ -39,35 +40,37 @@ def heard_by(listener: StageListener | None) -> Iterator[None]:
 
 
 @contextmanager
-def stage(name: str) -> Iterator[TellShare]:
-    """Something that may take seconds, in words such as `finding the walkable surface`. One within
-    another is said with it."""
+def stage(name: str) -> Iterator[ProgressReporter]:
+    """Report a computation that may take seconds, such as `finding the walkable surface`.
+
+    The name of a stage within another one follows that of the outer stage.
+    """
     listener = _listener.get()
     if listener is None:
-        yield _unheard
+        yield _ignore
         return
 
-    def tell(share: float | None, detail: str = "") -> None:
-        listener(said, share, detail)
+    def report(share: float | None, detail: str = "") -> None:
+        listener(full_name, share, detail)
 
-    around = _under_way.get()
-    said = f"{around}: {name}" if around else name
-    token = _under_way.set(said)
-    listener(said, None, "")
+    outer = _active_stage.get()
+    full_name = f"{outer}: {name}" if outer else name
+    token = _active_stage.set(full_name)
+    listener(full_name, None, "")
     try:
-        yield tell
+        yield report
     finally:
-        _under_way.reset(token)
-        listener(around, None, "")
+        _active_stage.reset(token)
+        listener(outer, None, "")
 
 
-def each(name: str, items: Sequence[T]) -> Iterator[T]:
-    """The items, one after the other, as a stage."""
-    with stage(name) as tell:
+def stage_items(name: str, items: Sequence[T]) -> Iterator[T]:
+    """Yield the items, one after the other, as a stage."""
+    with stage(name) as report:
         for k, item in enumerate(items):
-            tell(k / len(items))
+            report(k / len(items))
             yield item
 
 
-def _unheard(share: float | None, detail: str = "") -> None:
+def _ignore(share: float | None, detail: str = "") -> None:
     pass

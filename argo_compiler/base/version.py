@@ -1,3 +1,3 @@
-"""Argo's version."""
+"""Version of Argo."""
 
 __version__ = "0.1.0"

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from functools import cached_property
 from graphlib import CycleError, TopologicalSorter
 
-from argo_compiler.base.graphs import Successors, components, reached_from
+from argo_compiler.base.graphs import Successors, components, reachable_from
 from argo_compiler.diagnostics import Diagnostic, Severity, diagnostic_of
 from argo_compiler.il import Mission, Order
 from argo_compiler.il.velocities import MISSION_START, transition_pairs
@@ -90,7 +90,7 @@ class _TaskGraph:
             if source in self.position and target in self.position:
                 following[self.position[source]][self.position[target]] = None
         self.following: Successors = [list(targets) for targets in following]
-        self.reached = reached_from(self.following, [0])
+        self.reached = reachable_from(self.following, [0])
         self.components = components(self.following)
         self.component_of = [0] * len(self.names)
         for number, component in enumerate(self.components):

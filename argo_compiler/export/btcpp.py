@@ -8,7 +8,7 @@ tree can skip tasks, but it can go back only by starting another round of a grou
 from collections.abc import Iterable, Iterator
 
 from argo_compiler.base.model import Pose
-from argo_compiler.base.number_text import number
+from argo_compiler.base.number_text import number_text
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.export.exporter import battery_level_refusals, raise_refusals, refusal
 from argo_compiler.export.xml import Attributes, XmlWriter
@@ -253,7 +253,7 @@ class _Tree:
         """Write attempts until one succeeds; after a MEASURE, its reading is stored."""
         with self.xml.element("Sequence"):
             if task.window is not None and task.window.earliest:
-                earliest = number(task.window.earliest)
+                earliest = number_text(task.window.earliest)
                 self._script(f"not_before := began + {earliest}")
             if task.retries:
                 attempts = {"num_attempts": task.retries + 1}
@@ -326,10 +326,10 @@ class _Tree:
         if condition.type is ConditionType.FAILED:
             return f"failed_{k} == 1"
         if condition.type is ConditionType.STALE:
-            return f"(known_{k} == 1) && ({age} > {number(condition.max_age or 0.0)})"
+            return f"(known_{k} == 1) && ({age} > {number_text(condition.max_age or 0.0)})"
         tests = [f"known_{k} == 1"]
         if condition.max_age is not None:
-            tests.append(f"{age} <= {number(condition.max_age)}")
+            tests.append(f"{age} <= {number_text(condition.max_age)}")
         if condition.type is ConditionType.ABNORMAL:
             tests.append(f"abnormal_{k} == 1")
         else:
@@ -340,11 +340,11 @@ class _Tree:
         less = "<=" if condition.inclusive else "<"
         more = ">=" if condition.inclusive else ">"
         if condition.type is ConditionType.LESS:
-            yield f"{value} {less} {number(condition.param1 or 0.0)}"
+            yield f"{value} {less} {number_text(condition.param1 or 0.0)}"
         else:
-            yield f"{value} {more} {number(condition.param1 or 0.0)}"
+            yield f"{value} {more} {number_text(condition.param1 or 0.0)}"
         if condition.type is ConditionType.WITHIN:
-            yield f"{value} {less} {number(condition.param2 or 0.0)}"
+            yield f"{value} {less} {number_text(condition.param2 or 0.0)}"
 
     def _open_group(self, r: GroupRange, n: int) -> None:
         xml, group = self.xml, r.group
@@ -377,7 +377,7 @@ class _Tree:
             self._script(f"over_{n} := ({self._conjunction(group.until)}) ? 1 : 0")
             tests.append(f"over_{n} == 0")
         if group.max_repeat_duration:
-            tests.append(f"(now - entered_{n}) < {number(group.max_repeat_duration)}")
+            tests.append(f"(now - entered_{n}) < {number_text(group.max_repeat_duration)}")
         xml.add("ScriptCondition", {"code": " && ".join(f"({test})" for test in tests)})
         self._script(f"round_{n} := round_{n} + 1")
         for _ in range(3):
@@ -470,7 +470,9 @@ def _joints(joints: JointState | None) -> Attributes:
         "joint_velocities": joints.velocities,
         "joint_efforts": joints.efforts,
     }
-    listed = {port: ";".join(map(number, numbers)) for port, numbers in values.items() if numbers}
+    listed = {
+        port: ";".join(map(number_text, numbers)) for port, numbers in values.items() if numbers
+    }
     return {"joint_names": ";".join(joints.names), **listed}
 
 

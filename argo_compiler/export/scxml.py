@@ -9,7 +9,7 @@ chart reads.
 
 from collections.abc import Sequence
 
-from argo_compiler.base.number_text import number
+from argo_compiler.base.number_text import number_text
 from argo_compiler.export.scxml_control import (
     ControlRegion,
     outcome_code,
@@ -74,7 +74,7 @@ class _Document:
             write_data_model(xml, self.hfsm, self.ids)
             with xml.element("parallel", {"id": "run"}):
                 if self.timers and self.hfsm.max_duration is not None:
-                    limit = number(self.hfsm.max_duration)
+                    limit = number_text(self.hfsm.max_duration)
                     with xml.element("onentry"):
                         time_up = {"event": "event.time_up", "delay": f"{limit}s"}
                         with xml.element("send", time_up):
@@ -156,7 +156,7 @@ class _Document:
     def _set_group_clock(self, group: Composite) -> None:
         n, repeat = self.ids.groups[group.id], _repeat(group)
         if repeat.duration:
-            assign(self.xml, f"until_{n}", f"{_clock(repeat)} + {number(repeat.duration)}")
+            assign(self.xml, f"until_{n}", f"{_clock(repeat)} + {number_text(repeat.duration)}")
         if repeat.every:
             assign(self.xml, f"entered_{n}", _clock(repeat))
 
@@ -191,14 +191,16 @@ class _Document:
         if repeat.duration:
             cond += f" && {clock} < until_{n}"
             if repeat.every:
-                cond += f" && round_{n} * {number(repeat.every)} < {number(repeat.duration)}"
+                cond += (
+                    f" && round_{n} * {number_text(repeat.every)} < {number_text(repeat.duration)}"
+                )
         target = self._target(transition.target)
         attributes = {"cond": cond, "target": target, "type": "internal"}
         with self.xml.element("transition", attributes):
             self._assign([("completed", "0"), ("awaits", "0"), ("due_round", "0")])
             assign(self.xml, f"round_{n}", f"round_{n} + 1")
             if repeat.every:
-                due = f"entered_{n} + (round_{n} - 1) * {number(repeat.every)}"
+                due = f"entered_{n} + (round_{n} - 1) * {number_text(repeat.every)}"
                 with self.xml.element("if", {"cond": f"{due} > {clock}"}):
                     self._assign([("awaits", str(n)), ("due_round", round_deadline(n, repeat))])
 
@@ -244,12 +246,12 @@ class _Document:
                 ("first", "count"),
                 ("place", f"'{id}'"),
                 ("object", str(self.ids.object_number(task))),
-                ("limit", number(0 if waits else task.time_limit or 0)),
-                ("earliest", number(0 if window is None else window.earliest)),
+                ("limit", number_text(0 if waits else task.time_limit or 0)),
+                ("earliest", number_text(0 if window is None else window.earliest)),
                 ("occurred", "0"),
                 ("look", "1"),
                 ("due_action", "0"),
-                ("due_window", number(_hard_deadline(task) or 0)),
+                ("due_window", number_text(_hard_deadline(task) or 0)),
             ]
         )
         self._set_wait_deadlines(leaf)
@@ -271,8 +273,8 @@ class _Document:
         if wait is None:
             self._assign([("due_wait", "0"), ("due_limit", "0")])
             return
-        limit = "0" if wait.limit is None else f"now + {number(wait.limit)}"
-        end = "now" if wait.duration is None else f"now + {number(wait.duration)}"
+        limit = "0" if wait.limit is None else f"now + {number_text(wait.limit)}"
+        end = "now" if wait.duration is None else f"now + {number_text(wait.duration)}"
         self._assign([("due_limit", limit), ("due_wait", end)])
         with xml.element("if", {"cond": "due_wait < earliest"}):
             assign(xml, "due_wait", "earliest")
@@ -390,27 +392,27 @@ class _Document:
     def _guard(self, condition: Condition) -> str:
         k = self.ids.objects[condition.object_id]
         less = "<=" if condition.inclusive else "<"
-        low = number(condition.param1 or 0.0)
+        low = number_text(condition.param1 or 0.0)
         value = f"value_{k}"
         age = f"now - time_{k}"
         known = f"known_{k} == {_VALUE}"
         fresh = []
         if condition.max_age is not None:
-            fresh = [f"{age} <= {number(condition.max_age)}"]
+            fresh = [f"{age} <= {number_text(condition.max_age)}"]
         match condition.type:
             case ConditionType.LESS:
                 tests = [known, *fresh, f"{value} {less} {low}"]
             case ConditionType.GREATER:
                 tests = [known, *fresh, f"{low} {less} {value}"]
             case ConditionType.WITHIN:
-                upper = number(condition.param2 or 0.0)
+                upper = number_text(condition.param2 or 0.0)
                 tests = [known, *fresh, f"{low} {less} {value}", f"{value} {less} {upper}"]
             case ConditionType.UNREADABLE:
                 tests = [f"known_{k} == {_UNREADABLE}"]
             case ConditionType.FAILED:
                 tests = [f"known_{k} >= {_UNREADABLE}"]
             case ConditionType.STALE:
-                tests = [known, f"{age} > {number(condition.max_age or 0.0)}"]
+                tests = [known, f"{age} > {number_text(condition.max_age or 0.0)}"]
             case ConditionType.ABNORMAL:
                 tests = [known, f"abnormal_{k} == 1", *fresh]
         return " && ".join(tests)

@@ -10,7 +10,7 @@ waits. `over` is 1 if the event that ends its hold has occurred in the meantime.
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
 
-from argo_compiler.base.number_text import number
+from argo_compiler.base.number_text import number_text
 from argo_compiler.export.scxml_data import (
     NEVER,
     ChartIds,
@@ -192,7 +192,7 @@ class ControlRegion:
         with self._state(id):
             if reaction.hold_limit is not None:
                 with self.xml.element("onentry"):
-                    self._assign([("due_hold", f"now + {number(reaction.hold_limit)}")])
+                    self._assign([("due_hold", f"now + {number_text(reaction.hold_limit)}")])
                     if self.timers:
                         start_timer(self.xml, "hold")
                 with self.xml.element("onexit"):
@@ -399,5 +399,5 @@ def _events(own: Reaction | None, active: Reaction | None) -> dict[str, str]:
 
 def round_deadline(n: int, repeat: RepeatRule) -> str:
     """Return the expression for the due time of a group's round, in s since the mission's start."""
-    due = f"entered_{n} + (round_{n} - 1) * {number(repeat.every)}"
+    due = f"entered_{n} + (round_{n} - 1) * {number_text(repeat.every)}"
     return due if repeat.count_interruptions else f"{due} + lost"

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
-from argo_compiler.base.number_text import number
+from argo_compiler.base.number_text import number_text
 
 _NOT_IN_XML = re.compile("[^\t\n\r\u0020-\u007e\u0080-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _SPECIAL = {
@@ -77,7 +77,7 @@ def printable(text: str) -> str:
 
 def _attributes(attributes: Attributes | None) -> str:
     return "".join(
-        f' {name}="{escape(value if isinstance(value, str) else number(value))}"'
+        f' {name}="{escape(value if isinstance(value, str) else number_text(value))}"'
         for name, value in (attributes or {}).items()
         if value is not None
     )

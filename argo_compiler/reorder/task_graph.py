@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from argo_compiler.analysis.flow import NOWHERE, Flow
 from argo_compiler.base.errors import Invalid, Remedy
-from argo_compiler.base.graphs import leading_to, reached_from
+from argo_compiler.base.graphs import can_reach, reachable_from
 from argo_compiler.hfsm.lowering import lower
 from argo_compiler.il import Action, Condition, Mission
 
@@ -121,7 +121,7 @@ class TaskGraph:
                 following[flow.time_up(g)].append(group.successor)
             if group.parent >= 0:
                 following[flow.time_up(g)].append(flow.time_up(group.parent))
-        reached = reached_from(following, [flow.initial])
+        reached = reachable_from(following, [flow.initial])
         for i in self.own_leaves:
             if not reached[i]:
                 raise Invalid(
@@ -162,7 +162,7 @@ class TaskGraph:
                 number = child_of[within.last]
                 self._add_edge(level, group, number, within.last, within.successor, True, direct)
         level.edges = self._without_early_ends(level)
-        leads_to_end = leading_to(level.successors(level.edges), [level.sink])
+        leads_to_end = can_reach(level.successors(level.edges), [level.sink])
         if group != NOWHERE and not all(leads_to_end):
             stuck = children[leads_to_end.index(False)]
             level.chain_error = f"'{self.name(stuck)}' does not lead to the end of a round"
@@ -228,7 +228,7 @@ class TaskGraph:
     def _without_early_ends(self, level: Level) -> list[Edge]:
         """Return the edges without early ends of children from which the usual end is reached."""
         usual = [edge for edge in level.edges if not edge.early]
-        leads_to_end = leading_to(level.successors(usual), [level.sink])
+        leads_to_end = can_reach(level.successors(usual), [level.sink])
         remaining = []
         for edge in level.edges:
             if edge.early and leads_to_end[edge.source]:
@@ -241,7 +241,7 @@ class TaskGraph:
 
     def detach_early_ends(self, level: Level) -> None:
         """Remove from the mission's level the children that do not lead to its usual end."""
-        leads_to_end = leading_to(level.successors(level.edges), [level.sink])
+        leads_to_end = can_reach(level.successors(level.edges), [level.sink])
         last = None if self.end is None else level.child_of[self.end]
         out = {k for k in range(len(level.children)) if not leads_to_end[k] and k != last}
         self.detached = {leaf for leaf, k in level.child_of.items() if k in out}

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from argo_compiler.analysis.flow import NOWHERE, Flow
 from argo_compiler.base.errors import Invalid
-from argo_compiler.base.graphs import components, is_loop, reached_from
+from argo_compiler.base.graphs import components, is_loop, reachable_from
 from argo_compiler.il import Condition, Mission
 from argo_compiler.reorder.task_graph import Level, TaskGraph
 
@@ -115,7 +115,7 @@ class _Finder:
     def _units(self, group: int, level: Level, entry: int) -> tuple[Unit, ...]:
         """Return the units of a level in order. Each is entered at one leaf."""
         successors = level.successors(level.edges)
-        reached = reached_from(successors, [level.child_of[entry]])
+        reached = reachable_from(successors, [level.child_of[entry]])
         parts = [part for part in reversed(components(successors)) if reached[part[0]]]
         position = {child: k for k, part in enumerate(parts) for child in part}
         # A unit starts at each part that no edge passes over.
@@ -258,7 +258,7 @@ class _Finder:
         backup = set(self.graph.early_exits), list(self.reasons)
         level = self.graph.level(group)
         if level.chain_error is None:
-            reached = reached_from(level.successors(level.edges), [level.child_of[flow.start]])
+            reached = reachable_from(level.successors(level.edges), [level.child_of[flow.start]])
             if all(reached):
                 return GroupUnit(group, self._units(group, level, flow.start))
         self.graph.early_exits, self.reasons = backup

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.base.stages import each, stage
+from argo_compiler.base.stages import stage, stage_items
 from argo_env.files.parts import NOWHERE, Arrays, Parts
 from argo_env.navigation.graphs import Graph, Trees, graph_of, graph_of_moves, search
 from argo_env.navigation.lattice import Lattice
@@ -179,7 +179,7 @@ class Routes:
         """Searches now what all later searches use."""
         with stage("finding the ways between floors"):
             portals = len(self._portals.states) > 0
-        for area in each("searching the ways of each part", self.partition.regions):
+        for area in stage_items("searching the ways of each part", self.partition.regions):
             area.landmarks.prepare()
             if portals:
                 _ = area.to_exits

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from argo_compiler.base.catalog import Area, Catalog, CheckpointInfo, Floor, Place
 from argo_compiler.base.model import Pose
-from argo_compiler.base.stages import each
+from argo_compiler.base.stages import stage_items
 from argo_env.files.parts import Parts
 from argo_env.planning.patrols import kept_patrol, patrol
 from argo_env.site import Site
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def make_catalog(navigator: "Navigator") -> Catalog:
     """The catalogue of the navigator's site, its patrols along places that the robot can reach."""
-    floors = each("looking for patrols of all floors", navigator.site.spec.floors)
+    floors = stage_items("looking for patrols of all floors", navigator.site.spec.floors)
     return _catalog(navigator.site, {f.number: patrol(navigator, f.number) for f in floors})
 
 

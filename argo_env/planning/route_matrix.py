@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from argo_compiler.analysis import Leg, NoPath
 from argo_compiler.base.errors import Unreachable
 from argo_compiler.base.model import Pose
-from argo_compiler.base.stages import each
+from argo_compiler.base.stages import stage_items
 from argo_compiler.il import Action, Mission, Task
 from argo_compiler.reorder.mission_problem import MissionProblem, route_problem
 from argo_compiler.reorder.requirements import Requirements
@@ -69,7 +69,7 @@ def mission_ways(
     else:
         time, energy = _over_lattice(origins, places, standings, navigator, travel)
         slowed = {k for k, task in enumerate(places) if task.velocity is not None}
-        for row, origin in enumerate(each(_PLANNING, origins)):
+        for row, origin in enumerate(stage_items(_PLANNING, origins)):
             near = np.argsort(time[row], kind="stable")[:NEAREST].tolist()
             chosen = sorted(slowed.union(near))
             ways = _planned_from(origin, [places[k] for k in chosen], travel)
@@ -95,7 +95,7 @@ def _standings(places: Sequence[Task], start: Pose, travel: SiteTravel) -> list[
         around.append(leg.arrival if isinstance(leg.arrival, Pose) else start)
     origins = [around[k] for k in np.linspace(0, len(around) - 1, _ORIGINS).round().astype(int)]
     found = []
-    for k, task in enumerate(each("looking where each task is done", places), start=1):
+    for k, task in enumerate(stage_items("looking where each task is done", places), start=1):
         if task.action is not Action.MEASURE:
             found.append(around[k])
             continue
@@ -120,7 +120,7 @@ def _planned(
     """Times (s) and energies (Wh) of planned ways; inf where there is none."""
     time = np.full((len(origins), len(places)), np.inf)
     energy = time.copy()
-    for row, origin in enumerate(each(_PLANNING, origins)):
+    for row, origin in enumerate(stage_items(_PLANNING, origins)):
         time[row], energy[row] = _planned_from(origin, places, travel)
     return time, energy
 

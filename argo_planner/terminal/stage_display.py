@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from threading import Event, RLock, Thread
 from typing import TYPE_CHECKING
 
-from argo_compiler.base.stages import heard_by
+from argo_compiler.base.stages import listen_to_stages
 from argo_planner.terminal.verbosity import is_quiet
 
 # Most commands are done before there is anything to show.
@@ -27,7 +27,7 @@ def stages_shown() -> Iterator[None]:
     """Within this, stages that last are shown."""
     display = StageDisplay()
     try:
-        with heard_by(display):
+        with listen_to_stages(display):
             yield
     finally:
         display.close()

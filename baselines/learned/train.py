@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid
-from argo_compiler.base.stages import heard_by
+from argo_compiler.base.stages import listen_to_stages
 from argo_env.files.folders import make_folder
 from baselines.learned.extra import check_learned
 from baselines.stage_lines import StageLines
@@ -51,7 +51,7 @@ def _train(given: argparse.Namespace) -> None:
             raise Conflict(f"{folder} has a training already: --resume {folder}, or another --out")
         make_folder(folder)
         state = begin(replace(Settings(), **chosen))
-    with heard_by(StageLines(lambda line: print(line, file=sys.stderr, flush=True))):
+    with listen_to_stages(StageLines(lambda line: print(line, file=sys.stderr, flush=True))):
         train(state, folder, lambda line: print(line, flush=True))
 
 

@@ -15,7 +15,7 @@ from stable_baselines3.common.logger import Logger, configure
 from stable_baselines3.common.utils import set_random_seed
 
 from argo_compiler.base.errors import Invalid, NotFound
-from argo_compiler.base.stages import TellShare, stage
+from argo_compiler.base.stages import ProgressReporter, stage
 from argo_env.seeding import generator
 from baselines.learned.imitation import lessons, loss
 from baselines.learned.network import RouteNetwork
@@ -181,7 +181,7 @@ def _latest(losses: Sequence[tuple[float, float]]) -> str:
 class _Told(BaseCallback):
     """Tells how far MaskablePPO is."""
 
-    def __init__(self, tell: TellShare, total: int) -> None:
+    def __init__(self, tell: ProgressReporter, total: int) -> None:
         super().__init__()
         self._tell = tell
         self._total = total

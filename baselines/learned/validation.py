@@ -6,7 +6,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from argo_compiler.base.stages import each
+from argo_compiler.base.stages import stage_items
 from argo_env.envs.route_batch import RouteVectorEnv
 from argo_env.envs.route_instance import DOCK
 from baselines.learned.network import RouteNetwork
@@ -32,7 +32,7 @@ class Validation:
 
     def __call__(self, network: RouteNetwork) -> dict[str, float]:
         """By the name of the set."""
-        batches = each("evaluating", list(self._batches.items()))
+        batches = stage_items("evaluating", list(self._batches.items()))
         return {
             name: float(greedy_prizes(network, batch, range(batch.num_envs)).mean())
             for name, batch in batches

@@ -1,4 +1,4 @@
-"""Every finding of `check`, on a mission that is sound but for one thing."""
+"""Each diagnostic of `check`, on a mission that has one fault only."""
 
 from functools import partial
 

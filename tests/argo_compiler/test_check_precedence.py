@@ -1,4 +1,4 @@
-"""What has to come before what (rule M10), held against all runs through small missions."""
+"""Precedences (rule M10), compared with all runs through small missions."""
 
 import random
 from itertools import product
@@ -13,7 +13,7 @@ from tests.mission_writing import above, measure, way
 
 
 def task(name, *targets):
-    """The last of the ways is without conditions."""
+    """Return a task with transitions to the targets; the last one is unconditional."""
     ways = (way(target, above("1", 5.0)) for target in targets[:-1])
     return measure(name, *ways, *targets[-1:], object_id="1")
 
@@ -67,7 +67,7 @@ def test_pairs_that_may_be_broken_are_those_of_some_run():
 
 
 def _broken(mission, first, second):
-    """Whether a way leads from the beginning to the second task and on to the first one."""
+    """Return True if a path leads from the start to the second task and on to the first one."""
     ways = {t.name: [w.target for w in t.transitions] for t in mission.tasks}
     seen, pending = set(), [(mission.tasks[0].name, False)]
     while pending:

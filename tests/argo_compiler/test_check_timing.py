@@ -1,4 +1,4 @@
-"""What `check` finds about waiting, time windows, failing, readings, rounds and ranks."""
+"""Diagnostics of `check` about waits, time windows, failures, readings, rounds and ranks."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Errors cross the border of a process whole: pools hand them from worker to caller by pickle."""
+"""Errors keep all their data when pools pass them from worker to caller by pickle."""
 
 import copy
 import pickle

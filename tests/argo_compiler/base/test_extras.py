@@ -1,4 +1,4 @@
-"""Extras come from where Argo was installed from."""
+"""Extras are installed from the source from which Argo was installed."""
 
 import json
 import re
@@ -46,7 +46,7 @@ def test_argo_that_is_not_installed_is_a_checkout(monkeypatch):
 
 
 def test_pages_install_from_the_checkout():
-    """An index need not have Argo, and what it has by that name may be somebody else's."""
+    """An index may not have Argo, or may have a foreign package under its name."""
     for page in (ROOT / "README.md", *(ROOT / "docs").rglob("*.md")):
         for line in re.findall(r"pip install [^`\n]*", page.read_text(encoding="utf-8")):
             assert "argo-mission" not in line, f"{page.name}: {line}"

@@ -1,17 +1,20 @@
-"""What takes long says what it does, and who listens hears it."""
+"""Long computations report their stages to a listener."""
 
 import pytest
 
-from argo_compiler.base.stages import each, heard_by, stage
+from argo_compiler.base.stages import listen_to_stages, stage, stage_items
 
 
 def test_a_stage_within_another_is_said_with_it_and_then_the_other_goes_on():
-    heard = []
-    with heard_by(lambda *told: heard.append(told)), stage("making the site") as tell:
-        for _ in each("floors", [1, 2]):
+    reports = []
+    with (
+        listen_to_stages(lambda *stage_report: reports.append(stage_report)),
+        stage("making the site") as report,
+    ):
+        for _ in stage_items("floors", [1, 2]):
             pass
-        tell(0.75, "nearly done")
-    assert heard == [
+        report(0.75, "nearly done")
+    assert reports == [
         ("making the site", None, ""),
         ("making the site: floors", None, ""),
         ("making the site: floors", 0.0, ""),
@@ -23,13 +26,13 @@ def test_a_stage_within_another_is_said_with_it_and_then_the_other_goes_on():
 
 
 def test_what_fails_is_over():
-    heard = []
-    with heard_by(lambda *told: heard.append(told)):
+    reports = []
+    with listen_to_stages(lambda *stage_report: reports.append(stage_report)):
         with pytest.raises(ValueError, match="no"), stage("trying"):
             raise ValueError("no")
-        with heard_by(None), stage("in private"):
+        with listen_to_stages(None), stage("in private"):
             pass
-    assert heard == [("trying", None, ""), (None, None, "")]
-    with stage("unheard") as tell:
-        tell(1.0)
-    assert len(heard) == 2
+    assert reports == [("trying", None, ""), (None, None, "")]
+    with stage("unheard") as report:
+        report(1.0)
+    assert len(reports) == 2

@@ -12,7 +12,7 @@ pytest.importorskip("sb3_contrib")
 from sb3_contrib.common.maskable.utils import get_action_masks  # noqa: E402
 
 from argo_compiler.base.errors import ArgoError  # noqa: E402
-from argo_compiler.base.stages import heard_by  # noqa: E402
+from argo_compiler.base.stages import listen_to_stages  # noqa: E402
 from argo_env.envs import route_episodes  # noqa: E402
 from argo_env.envs.route_instance import score_route  # noqa: E402
 from argo_env.envs.route_sources import TEST, RandomRoutes  # noqa: E402
@@ -62,7 +62,7 @@ def heard() -> list[Told]:
 def trained(tmp_path_factory: pytest.TempPathFactory, heard: list[Told]) -> tuple[Path, State]:
     folder = tmp_path_factory.mktemp("trained")
     state = begin(SMALL)
-    with heard_by(lambda *told: heard.append(told)):
+    with listen_to_stages(lambda *told: heard.append(told)):
         train(state, folder, [].append)
     return folder, state
 

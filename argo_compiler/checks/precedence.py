@@ -43,7 +43,10 @@ def check_precedence(mission: Mission) -> Iterator[Diagnostic]:
 
 
 def _find_cycle(pairs: Iterable[tuple[str, str]]) -> list[str]:
-    """Return tasks each of which must come before the next, the first one again at the end."""
+    """Return a cycle of tasks, each of which must come before the next, or an empty list.
+
+    The first task is repeated at the end.
+    """
     before: dict[str, list[str]] = {}
     for first, second in pairs:
         before.setdefault(second, []).append(first)
@@ -99,12 +102,12 @@ class _TaskGraph:
 
     def violated(self, pairs: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
         """Yield the pairs whose second task can be reached while the first one is still ahead."""
-        found = [(self.position[first], self.position[second]) for first, second in pairs]
-        found = [(a, b) for a, b in found if self.reached[a] and self.reached[b]]
-        apart = [(a, b) for a, b in found if self.component_of[a] != self.component_of[b]]
+        nodes = [(self.position[first], self.position[second]) for first, second in pairs]
+        nodes = [(a, b) for a, b in nodes if self.reached[a] and self.reached[b]]
+        apart = [(a, b) for a, b in nodes if self.component_of[a] != self.component_of[b]]
         # If each can follow the other, the first one has to lie on all paths to the second.
         around: dict[int, list[int]] = {}
-        for a, b in found:
+        for a, b in nodes:
             if self.component_of[a] == self.component_of[b]:
                 around.setdefault(a, []).append(b)
         for a, seconds in around.items():
@@ -147,13 +150,13 @@ class _TaskGraph:
     @cached_property
     def _entries(self) -> list[list[int]]:
         """The nodes of each component to which transitions from other components lead."""
-        found: list[list[int]] = [[] for _ in self.components]
+        entries: list[list[int]] = [[] for _ in self.components]
         for node, following in enumerate(self.following):
             if self.reached[node]:
                 for other in following:
                     if self.component_of[other] != self.component_of[node]:
-                        found[self.component_of[other]].append(other)
-        return found
+                        entries[self.component_of[other]].append(other)
+        return entries
 
     def _ahead(self, bit: dict[int, int]) -> list[int]:
         """Return, for each component, the bits of the nodes that can be reached from it.

@@ -27,11 +27,11 @@ class CheckpointReading(NamedTuple):
 
 
 ReadingTest = Callable[[CheckpointReading, float], bool]
-"""Predicate on the reading of a condition's checkpoint and the present time (s)."""
+"""function that checks a reading of a condition's checkpoint at the present time (s)"""
 
 
 def reading_test(condition: Condition) -> ReadingTest:
-    """Return the predicate that tells whether a reading satisfies the condition.
+    """Return a function that checks whether a reading satisfies the condition.
 
     A checkpoint without a reading satisfies no condition; the caller checks that (C4, C7).
     """
@@ -64,7 +64,7 @@ def reading_test(condition: Condition) -> ReadingTest:
 
 
 def value_test(condition: Condition) -> Callable[[float], bool]:
-    """Return the predicate of a LESS, GREATER or WITHIN on a value, without its `max_age`."""
+    """Return a function that checks a value by a LESS, GREATER or WITHIN, without its `max_age`."""
     low, high = condition.param1, condition.param2
     if low is None:
         return lambda _: False

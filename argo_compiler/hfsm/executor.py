@@ -181,7 +181,7 @@ class Executor:
                 or now > mission.time_up_at
                 or now > control.hold_due
             ):
-                # The next float below `now` stands for all times before it.
+                # The next float below `now` represents all times before it.
                 control.advance_time(math.nextafter(now, -math.inf))
             mission.now = now
             if type(event) is ActionSucceeded:

@@ -133,7 +133,7 @@ def _match_by_hand(
     progress: Progress, mission: Mission
 ) -> tuple[tuple[ByHand, ...], list[Diagnostic]]:
     actions = {t.name: t.action for t in mission.tasks if t.action is not Action.START}
-    kept, diagnostics = [], []
+    matched, diagnostics = [], []
     for done in progress.by_hand:
         if done.task not in actions:
             diagnostics.append(
@@ -144,7 +144,7 @@ def _match_by_hand(
                 )
             )
             continue
-        kept.append(done)
+        matched.append(done)
         if done.value is not None and actions[done.task] is not Action.MEASURE:
             diagnostics.append(
                 diagnostic_of(
@@ -153,7 +153,7 @@ def _match_by_hand(
                     "leave the value out, or give it for the task that measures it",
                 )
             )
-    return tuple(kept), diagnostics
+    return tuple(matched), diagnostics
 
 
 def _match_reactions(

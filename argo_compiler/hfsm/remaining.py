@@ -20,27 +20,27 @@ def remaining(hfsm: Hfsm, progress: Progress) -> Hfsm:
     reach = _Reach(hfsm, progress)
     leaves = tuple(leaf for leaf in hfsm.leaves if leaf.id in reach.leaves)
     # Parents come before their children, so in reverse order each child is decided first.
-    kept = {leaf.parent for leaf in leaves} | {hfsm.mission.id}
+    kept_ids = {leaf.parent for leaf in leaves} | {hfsm.mission.id}
     for composite in reversed(hfsm.composites):
-        if composite.id in kept and composite.parent is not None:
-            kept.add(composite.parent)
+        if composite.id in kept_ids and composite.parent is not None:
+            kept_ids.add(composite.parent)
     first = _first_leaves(hfsm, leaves)
     composites = []
     for composite in hfsm.composites:
-        if composite.id in kept:
+        if composite.id in kept_ids:
             reachable = composite.initial in reach.leaves
             initial = composite.initial if reachable else first.get(composite.id, DONE)
-            composites.append(_prune(composite, initial, kept, reach))
+            composites.append(_prune(composite, initial, kept_ids, reach))
     active = DONE if reach.start is None else reach.start.id
     mission = composites[0].model_copy(update={"initial": active})
     return hfsm.model_copy(update={"composites": (mission, *composites[1:]), "leaves": leaves})
 
 
-def _prune(composite: Composite, initial: str, kept: set[str], reach: "_Reach") -> Composite:
+def _prune(composite: Composite, initial: str, kept_ids: set[str], reach: "_Reach") -> Composite:
     children = tuple(
         child
         for child in composite.children
-        if child in kept or child in reach.leaves or child == DONE
+        if child in kept_ids or child in reach.leaves or child == DONE
     )
     # Transitions that can't be taken are removed: those of a round whose end is never reached, and
     # those whose target is never reached, such as the default one of an endless group.

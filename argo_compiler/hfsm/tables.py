@@ -28,7 +28,7 @@ _CAUSES = {
 }
 
 Guard = tuple[str, ReadingTest]
-"""condition: the object_id of its checkpoint, and the predicate on the reading"""
+"""condition: the object_id of its checkpoint, and the check of the reading"""
 
 
 def compile_guards(conditions: tuple[Condition, ...]) -> tuple[Guard, ...]:

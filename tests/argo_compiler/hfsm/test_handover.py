@@ -61,7 +61,7 @@ class Site:
     def run(self, executor, now, visits):
         """Run until `visits` visits have ended, or the mission has."""
         for _ in range(10 * VISITS):
-            if executor.finished or visits_of(executor.progress()) >= visits:
+            if executor.finished or count_visits(executor.progress()) >= visits:
                 return now
             now = self.step(executor, now)
         # The time of a group may be up again and again before any of its tasks has ended.
@@ -99,12 +99,12 @@ class Site:
             executor.handle(ActionStopped(cancel.task), now)
 
 
-def visits_of(progress):
+def count_visits(progress):
     """Return the number of visits that have ended."""
     return sum(t.done + t.failed + t.by_hand for t in progress.tallies)
 
 
-def stand(progress):
+def state_without_times(progress):
     """Return the progress without times and commands of persons."""
     return {
         "ended": {t.task: (t.done + t.by_hand, t.failed) for t in progress.tallies},
@@ -121,7 +121,7 @@ def order(*executors):
     return [(e.task, e.failure is not None) for executor in executors for e in executor.ended]
 
 
-def whole_and_interrupted(mission, outcomes, at, by=PAUSE):
+def run_whole_and_interrupted(mission, outcomes, at, by=PAUSE):
     """Return a complete run, a run that a person interrupts, and the time of the interruption.
 
     Each run is an executor and its site.
@@ -130,7 +130,7 @@ def whole_and_interrupted(mission, outcomes, at, by=PAUSE):
     once.run(whole, 0, VISITS)
     live, site = started(mission), Site(outcomes)
     now = 0
-    while not live.finished and now < at and visits_of(live.progress()) < VISITS:
+    while not live.finished and now < at and count_visits(live.progress()) < VISITS:
         now = site.step(live, now, until=at)
     site.pause(live, now, by)
     return (whole, once), (live, site), now
@@ -140,7 +140,7 @@ def whole_and_interrupted(mission, outcomes, at, by=PAUSE):
 @settings(max_examples=examples(200))
 @given(missions(events=False), result_lists, st.integers(0, 60), st.data())
 def test_before_by_hand_and_after_are_the_whole_mission(mission, outcomes, at, data):
-    (whole, once), (first, site), _ = whole_and_interrupted(mission, outcomes, at)
+    (whole, once), (first, site), _ = run_whole_and_interrupted(mission, outcomes, at)
     before = first.progress()
     by_hand = list(done_by_hand(data, site, once.log))
     text = hand_over(before, by_hand).model_dump_json()
@@ -156,8 +156,8 @@ def test_before_by_hand_and_after_are_the_whole_mission(mission, outcomes, at, d
     after = second.progress()
     if not whole.finished:
         # What was done by hand may have carried it further.
-        once.run(whole, whole_time(whole), visits_of(after))
-    assert stand(after) == stand(whole.progress())
+        once.run(whole, whole_time(whole), count_visits(after))
+    assert state_without_times(after) == state_without_times(whole.progress())
     assert order(first, second) == order(whole)
     assert sum(t.by_hand for t in after.tallies) == len(by_hand) - len(after.by_hand)
 
@@ -167,7 +167,7 @@ def test_before_by_hand_and_after_are_the_whole_mission(mission, outcomes, at, d
 @given(missions(events=False), result_lists, st.integers(0, 60), st.integers(0, 30), st.data())
 def test_giving_back_is_a_progress_handed_over_and_gone_on_from(mission, outcomes, at, more, data):
     """A machine that was taken over and given back has the state of one restored meanwhile."""
-    (_, once), (live, site), now = whole_and_interrupted(mission, outcomes, at, TakeOver())
+    (_, once), (live, site), now = run_whole_and_interrupted(mission, outcomes, at, TakeOver())
     before = live.progress()
     by_hand = tuple(done_by_hand(data, site, once.log))
     away = sum(done.duration for done in by_hand) + more
@@ -175,7 +175,7 @@ def test_giving_back_is_a_progress_handed_over_and_gone_on_from(mission, outcome
     restored.start(now + away)
     expected = restored.handle(Resume(), now + away)
     assert live.handle(GiveBack(by_hand), now + away) == expected
-    assert stand(live.progress()) == stand(restored.progress())
+    assert state_without_times(live.progress()) == state_without_times(restored.progress())
     assert live.progress().readings == restored.progress().readings
     assert live.progress().by_hand == restored.progress().by_hand
     assert live.progress().elapsed == pytest.approx(restored.progress().elapsed)
@@ -277,7 +277,7 @@ class TestByHand:
         for at in (50, 60):
             if at == 60:
                 assert live.handle(Tick(), at) == restored.handle(Tick(), at)
-            assert stand(live.progress()) == stand(restored.progress())
+            assert state_without_times(live.progress()) == state_without_times(restored.progress())
             assert live.next_deadline == restored.next_deadline
 
     def test_not_while_an_action_runs(self):

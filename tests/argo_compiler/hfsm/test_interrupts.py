@@ -42,7 +42,7 @@ ACTIVE = (Stage.BEGINNING, Stage.DRIVING, Stage.ARRIVED, Stage.HOLDING, Stage.LE
 TRANSIENT = (Stage.CHOOSING, Stage.BEGINNING, Stage.ARRIVED, Stage.LETTING_GO)
 """stages that take no time"""
 STABLE = tuple(stage for stage in Stage if stage not in TRANSIENT)
-GIVEN_OF_EVENTS = {
+EVENT_GUARDS = {
     InterruptGuard.ABORTS,
     InterruptGuard.REACTS,
     InterruptGuard.NEW,
@@ -59,7 +59,7 @@ def variants(
     limits=(None, *Afterwards),
 ):
     """Return the reactions to an event, apart from their priority."""
-    made = [{"response": r} for r in (Response.REPORT, Response.ABORT) if r in responses]
+    all_fields = [{"response": r} for r in (Response.REPORT, Response.ABORT) if r in responses]
     for response in (r for r in responses if r not in (Response.REPORT, Response.ABORT)):
         pauses = response is Response.PAUSE
         for until, after, limit in product(untils, afterwards, limits):
@@ -69,11 +69,11 @@ def variants(
             limited = {} if limit is None else {"hold_limit": 10, "on_limit": limit}
             pose = HERE if response is Response.SAFE_AREA else None
             fields = {"response": response, "until": until, "pose": pose, **limited}
-            made.append(fields | ({} if pauses else {"afterwards": after}))
-    return [{"event": event, **fields} for fields in made]
+            all_fields.append(fields | ({} if pauses else {"afterwards": after}))
+    return [{"event": event, **fields} for fields in all_fields]
 
 
-def sets(size, untils, priorities, **kinds):
+def reaction_sets(size, untils, priorities, **kinds):
     """Yield all sets of `size` reactions."""
     events = EVENTS[:size]
     for fields in product(*(variants(event, untils, **kinds) for event in events)):
@@ -86,7 +86,7 @@ def sets(size, untils, priorities, **kinds):
             )
 
 
-def happenings(reactions):
+def all_triggers(reactions):
     kinds = {CLEAR, *(reaction.event for reaction in reactions)}
     kinds |= {reaction.until for reaction in reactions if reaction.until}
     yield from ((Trigger.EVENT, kind) for kind in sorted(kinds))
@@ -111,7 +111,7 @@ def by_rules(rules, state, trigger, event):
     }[trigger](state)
 
 
-def in_words_of_the_rules(state):
+def as_alarmed(state):
     return Alarmed(
         paused=state.paused,
         alarms=tuple((pending.event, pending.until_occurred) for pending in state.pending),
@@ -131,23 +131,23 @@ def explore(reactions, taken):
     rules = Rules(reactions)
     states = [InterruptState(), SUPERVISED]
     seen = set(states)
-    everything = list(happenings(reactions))
+    everything = list(all_triggers(reactions))
     for before in states:
         for trigger, event in everything:
             plan = Outcome.COMPLETED if trigger is Trigger.DONE else Outcome.RETURNED
             rows = advance(before, known, trigger, event, plan)
             taken.update((row.row, row.before.stage) for row in rows)
             after = rows[-1].after
-            expected = by_rules(rules, in_words_of_the_rules(before), trigger, event)
-            assert in_words_of_the_rules(after) == expected, (reactions, before, trigger, event)
-            holds_what_must(known, before, trigger, event, rows)
+            expected = by_rules(rules, as_alarmed(before), trigger, event)
+            assert as_alarmed(after) == expected, (reactions, before, trigger, event)
+            assert_invariants(known, before, trigger, event, rows)
             if after not in seen:
                 seen.add(after)
                 states.append(after)
     return len(states), len(states) * len(everything)
 
 
-def holds_what_must(known, before, trigger, event, rows):
+def assert_invariants(known, before, trigger, event, rows):
     """Assert properties that follow from the rules, whatever the table contains."""
     after = rows[-1].after
     own = known.get(event)
@@ -214,22 +214,26 @@ PLAIN = {"afterwards": (Afterwards.RESUME,), "limits": (None,)}
 
 @pytest.mark.rule("R1", "R2", "R3", "R4", "R6", "R7", "R8", "R9", "R10", "I1", "I2", "M9")
 def test_one_reaction_alone_and_two_that_interrupt_each_other():
-    one, _ = explore_all(sets(1, (None, CLEAR), (1,)))
-    two, _ = explore_all(sets(2, (CLEAR, EVENTS[1]), (1, 2), responses=PAIRED[1:], **PLAIN))
+    one, _ = explore_all(reaction_sets(1, (None, CLEAR), (1,)))
+    two, _ = explore_all(
+        reaction_sets(2, (CLEAR, EVENTS[1]), (1, 2), responses=PAIRED[1:], **PLAIN)
+    )
     assert {(row, stage) for row in TABLE for stage in row.stages} == one | two
 
 
 @pytest.mark.long
 @pytest.mark.rule("R7", "R9", "R10")
 def test_pairs():
-    _, tried = explore_all(sample(sets(2, (None, CLEAR, EVENTS[1]), (1, 2), responses=PAIRED)))
+    _, tried = explore_all(
+        sample(reaction_sets(2, (None, CLEAR, EVENTS[1]), (1, 2), responses=PAIRED))
+    )
     print("sets, states, steps:", *tried)
 
 
 @pytest.mark.long
 @pytest.mark.rule("R7", "R9", "R10")
 def test_three_reactions():
-    three = sets(3, (CLEAR, EVENTS[0]), (1, 2), responses=PAIRED[1:], **PLAIN)
+    three = reaction_sets(3, (CLEAR, EVENTS[0]), (1, 2), responses=PAIRED[1:], **PLAIN)
     _, tried = explore_all(sample(three))
     print("sets, states, steps:", *tried)
 
@@ -248,14 +252,14 @@ def test_each_stage_has_a_row_for_whatever_happens():
 
 def test_rows_ask_only_for_what_is_there():
     """Guards refer to an event only in rows of EVENT, to an active reaction only where one is."""
-    of_active = (
-        set(InterruptGuard) - GIVEN_OF_EVENTS - {InterruptGuard.PAUSED, InterruptGuard.SOME_WAITS}
+    active_guards = (
+        set(InterruptGuard) - EVENT_GUARDS - {InterruptGuard.PAUSED, InterruptGuard.SOME_WAITS}
     )
-    of_active |= {InterruptGuard.HIGHER, InterruptGuard.AWAITED}
+    active_guards |= {InterruptGuard.HIGHER, InterruptGuard.AWAITED}
     for row in TABLE:
-        asked = {*row.when, *row.unless}
-        assert row.trigger is Trigger.EVENT or not asked & GIVEN_OF_EVENTS
-        assert not asked & of_active or set(row.stages) <= set(ACTIVE)
+        guards = {*row.when, *row.unless}
+        assert row.trigger is Trigger.EVENT or not guards & EVENT_GUARDS
+        assert not guards & active_guards or set(row.stages) <= set(ACTIVE)
 
 
 class TestExecutor:

@@ -18,7 +18,7 @@ from argo_compiler.route import (
     suggest_route,
 )
 from tests.argo_compiler.route.random_problems import random_problem
-from tests.argo_compiler.route.second_reading import best_worth
+from tests.argo_compiler.route.reference import best_value
 from tests.conftest import examples, seeds
 
 PROBLEMS = examples(480)
@@ -29,7 +29,7 @@ def test_the_best_route_is_that_of_brute_force(part: int) -> None:
     for seed in seeds(480)[part::4]:
         large = PROBLEMS >= 1000 or seed % 8 == 0
         problem = random_problem(np.random.default_rng(seed), 8 if large else 5)
-        best = best_worth(problem)
+        best = best_value(problem)
         made = suggest_route(problem, time_limit=60.0, explain=False)
         assert made.proven, seed
         assert (None if made.route is None else (made.prize, made.cost)) == best, seed
@@ -65,7 +65,7 @@ def test_each_solver_agrees_with_brute_force(
         problem = random_problem(np.random.default_rng(seed), 5)
         limit = 20.0 if proves else 0.1
         made = suggest_route(problem, limit, explain=False, solvers=solvers)
-        best, got = best_worth(problem), None if made.route is None else (made.prize, made.cost)
+        best, got = best_value(problem), None if made.route is None else (made.prize, made.cost)
         proven += made.proven
         if made.proven:
             assert got == best, seed
@@ -81,7 +81,7 @@ def test_searches_beside_each_other_agree_with_brute_force() -> None:
         problem = random_problem(np.random.default_rng(seed), 5)
         made = suggest_route(problem, 6.0, workers=2, explain=False, solvers=solvers)
         assert made.proven, seed
-        assert (None if made.route is None else (made.prize, made.cost)) == best_worth(problem)
+        assert (None if made.route is None else (made.prize, made.cost)) == best_value(problem)
 
 
 def test_the_time_that_is_given_is_kept_to_and_something_is_always_known() -> None:
@@ -163,6 +163,6 @@ def test_of_labels_energy_is_not_taken_for_travel() -> None:
         battery = EnergyBudget(energy, capacity=9)
         problem = RouteProblem(visits, travel, (), (), None, battery, ("dock",), Objective.TRAVEL)
         made = suggest_route(problem, 20.0, explain=False, solvers=("labels",))
-        best = best_worth(problem)
+        best = best_value(problem)
         assert made.proven
         assert (None if made.route is None else (made.prize, made.cost)) == best

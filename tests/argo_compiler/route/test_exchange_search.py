@@ -15,7 +15,7 @@ from argo_compiler.route import (
     suggest_route,
 )
 from tests.argo_compiler.route.random_problems import random_problem
-from tests.argo_compiler.route.second_reading import best_worth
+from tests.argo_compiler.route.reference import best_value
 from tests.conftest import examples, sample
 
 pytest.importorskip("numba")
@@ -36,7 +36,7 @@ def test_small_problems_of_any_kind_are_solved_as_well_as_by_trying_all_routes()
     reached = possible = 0
     for seed in sample(range(2000, 2060)):
         problem = random_problem(np.random.default_rng(seed), 6)
-        best = best_worth(problem)
+        best = best_value(problem)
         if best is None or problem.battery is not None or problem.size < 2:
             continue
         made = suggest_route(problem, None, work_limit=0.2, explain=False, solvers=ONLY)

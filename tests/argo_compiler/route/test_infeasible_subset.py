@@ -8,7 +8,7 @@ import pytest
 from argo_compiler.route import NEVER, Precedence, Round, RouteProblem, Visit, suggest_route
 from argo_compiler.route.infeasible_subset import reduced, requirements
 from tests.argo_compiler.route.random_problems import random_problem
-from tests.argo_compiler.route.second_reading import best_worth
+from tests.argo_compiler.route.reference import best_value
 
 
 def hall(count: int, **more) -> RouteProblem:  # type: ignore[no-untyped-def]
@@ -87,7 +87,7 @@ def test_a_round_that_something_must_come_into() -> None:
 @pytest.mark.parametrize("seed", range(0, 90, 3))
 def test_a_clash_can_not_be_met_and_each_part_of_it_can(seed: int) -> None:
     problem = random_problem(np.random.default_rng(seed), 4)
-    if best_worth(problem) is not None:
+    if best_value(problem) is not None:
         return
     made = suggest_route(problem)
     assert made.infeasible_subset
@@ -95,8 +95,8 @@ def test_a_clash_can_not_be_met_and_each_part_of_it_can(seed: int) -> None:
     rest = [one for one in asked if one.kind != "visit"]
     visits = [one for one in asked if one.kind == "visit"]
     some = [one for one in rest if one.words in made.infeasible_subset]
-    assert best_worth(reduced(problem, visits + some)) is None
+    assert best_value(reduced(problem, visits + some)) is None
     # No smaller number of requirements clashes with all the visits.
     for fewer in combinations(rest, max(0, len(some) - 1)):
         if len(some):
-            assert best_worth(reduced(problem, [*visits, *fewer])) is not None
+            assert best_value(reduced(problem, [*visits, *fewer])) is not None

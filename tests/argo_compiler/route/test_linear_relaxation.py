@@ -13,7 +13,7 @@ from argo_compiler.route.network import StepNetwork, network
 from argo_compiler.route.pruning import Pruned, least_arc_times, prune
 from argo_compiler.route.search import Search, SearchLimits
 from tests.argo_compiler.route.random_problems import random_problem
-from tests.argo_compiler.route.second_reading import best_worth
+from tests.argo_compiler.route.reference import best_value
 from tests.conftest import seeds
 
 
@@ -57,7 +57,7 @@ def test_no_bound_is_above_the_best_route(part: int) -> None:
         pruned = prune(net)
         if not net.size or not pruned.possible:
             continue
-        best = best_worth(problem)
+        best = best_value(problem)
         won = _relaxed(net, pruned, _prizes(net), None)
         spent = _relaxed(net, pruned, _times(net), None if best is None else best[0] or None)
         if best is None:

@@ -11,7 +11,7 @@ from argo_compiler.route.pyvrp_search import PyvrpSearch
 from argo_compiler.route.suggested import RouteSuggestion
 from argo_compiler.route.suggestion import suggest_route
 from tests.argo_compiler.route.random_problems import random_problem
-from tests.argo_compiler.route.second_reading import best_worth
+from tests.argo_compiler.route.reference import best_value
 
 pytest.importorskip("pyvrp")
 
@@ -39,7 +39,7 @@ def test_best_routes_of_small_problems_with_any_constraints_it_can_state():
             continue
         counted = [replace(one, repeat=max(1, one.repeat), duration=0) for one in problem.rounds]
         problem = replace(problem, rounds=tuple(counted))
-        best, found = best_worth(problem), suggest(problem)
+        best, found = best_value(problem), suggest(problem)
         if best is None:
             assert found.route is None
             continue
@@ -91,7 +91,7 @@ def test_any_prize_comes_before_the_way_also_where_prizes_are_huge():
         visits = tuple(replace(v, mandatory=False, prize=v.prize * worth) for v in problem.visits)
         limited = replace(problem, visits=visits, max_duration=250)
         found = suggest(limited)
-        assert (found.prize, found.cost) == best_worth(limited)
+        assert (found.prize, found.cost) == best_value(limited)
 
 
 def test_what_makes_nothing_is_offered_only_where_it_is_possible():

@@ -1,4 +1,4 @@
-"""The meaning of routes, and the claims about them, against a second reading of both."""
+"""Evaluations and claims about routes agree with a reference implementation."""
 
 import numpy as np
 import pytest
@@ -19,83 +19,89 @@ from argo_compiler.route import (
     suggest_route,
 )
 from tests.argo_compiler.route.odd_problems import odd_problem, odd_tour
-from tests.argo_compiler.route.second_reading import Best, Reading
+from tests.argo_compiler.route.reference import Best, Reference
 from tests.conftest import examples, seeds
 
 NUMBERS = st.integers(0, 2**32)
-"""of odd problems"""
+"""numbers of odd problems"""
 UNPROVEN = "not proven"
 TIME_LIMITS = (2.0, 60.0)
-"""s, tried one after the other until something is proven: most problems take some hundredths"""
+"""time limits in s, tried until one leads to a proof: most problems take some hundredths"""
 
-WAYS = np.array([[50, 10, 100], [12, 60, 13], [14, 15, 16]])
-"""of two visits"""
+TRAVEL = np.array([[50, 10, 100], [12, 60, 13], [14, 15, 16]])
+"""travel times between two visits, the start and the end"""
 
 
 def two_visits(*rounds: Round) -> RouteProblem:
-    return RouteProblem((Visit("a", 1), Visit("b", 2)), WAYS.copy(), rounds=rounds)
+    return RouteProblem((Visit("a", 1), Visit("b", 2)), TRAVEL.copy(), rounds=rounds)
 
 
 def numbered(number: int, timed: bool) -> RouteProblem:
-    """The odd problem with that number."""
+    """Return the odd problem with this number."""
     return odd_problem(np.random.default_rng([number, timed]), timed)
 
 
-def wrong(problem: RouteProblem, said: RouteSuggestion, best: Best | None) -> str:
-    """What is wrong with what is said of a problem, or that it is not proven; empty: nothing."""
-    if said.route is None:
-        if said.proven and best is not None:
+def error_in(problem: RouteProblem, suggestion: RouteSuggestion, best: Best | None) -> str:
+    """Return the first false claim of a suggestion, or that it is not proven; empty: neither."""
+    if suggestion.route is None:
+        if suggestion.proven and best is not None:
             return "false infeasibility"
     else:
-        reading = Reading(problem)
-        end = reading.evaluate(said.route)
+        reference = Reference(problem)
+        end = reference.evaluate(suggestion.route)
         if end is None or best is None:
-            return "a route that is none"
-        if (reading.prize(said.route.order), reading.cost(end)) != (said.prize, said.cost):
+            return "an infeasible route"
+        if (reference.prize(suggestion.route.order), reference.cost(end)) != (
+            suggestion.prize,
+            suggestion.cost,
+        ):
             return "wrong prize or cost"
-        if said.proven and (said.prize, said.cost) != (best.prize, best.cost):
+        if suggestion.proven and (suggestion.prize, suggestion.cost) != (best.prize, best.cost):
             return "false proof"
-        if said.proven and (said.prize_bound, said.bound) != (said.prize, said.cost):
+        if suggestion.proven and (suggestion.prize_bound, suggestion.bound) != (
+            suggestion.prize,
+            suggestion.cost,
+        ):
             return "proven, but not by its bounds"
-        if set(said.dropped) != set(range(problem.size)) - set(said.route.order):
+        if set(suggestion.dropped) != set(range(problem.size)) - set(suggestion.route.order):
             return "wrong visits left out"
     if best is not None:
-        if said.prize_bound < best.prize:
+        if suggestion.prize_bound < best.prize:
             return "a route wins more than the bound"
-        if said.prize_bound == best.prize and said.bound > best.cost:
+        if suggestion.prize_bound == best.prize and suggestion.bound > best.cost:
             return "a route costs less than the bound"
-        if any(p.prize_bound < best.prize or p.bound > best.cost for p in said.history):
-            return "a bound on the way is wrong"
-    return "" if said.proven else UNPROVEN
+        if any(p.prize_bound < best.prize or p.bound > best.cost for p in suggestion.history):
+            return "a bound in the history is wrong"
+    return "" if suggestion.proven else UNPROVEN
 
 
 def require_true(problem: RouteProblem) -> None:
-    """All that `suggest_route` claims of the problem is true, and something is proven."""
-    best = Reading(problem).best()
+    """Require that all claims of `suggest_route` are true, and that it proves its result."""
+    best = Reference(problem).best()
     for time_limit in TIME_LIMITS:
-        said = suggest_route(problem, time_limit, explain=False)
-        what = wrong(problem, said, best)
-        if what != UNPROVEN:
+        suggestion = suggest_route(problem, time_limit, explain=False)
+        error = error_in(problem, suggestion, best)
+        if error != UNPROVEN:
             break
-    assert not what, (problem, said, best)
+    assert not error, (problem, suggestion, best)
 
 
 @pytest.mark.parametrize("timed", [False, True])
-def test_evaluation_agrees_with_the_second_reading(timed: bool) -> None:
+def test_evaluation_agrees_with_the_reference(timed: bool) -> None:
     rng = np.random.default_rng([timed, 2])
     possible = 0
     for number in seeds(800):
         problem = numbered(number, timed)
-        reading = Reading(problem)
+        reference = Reference(problem)
         for _ in range(5):
             tour = odd_tour(rng, problem)
-            evaluation, end = evaluate(problem, tour), reading.evaluate(tour)
+            evaluation, end = evaluate(problem, tour), reference.evaluate(tour)
             assert evaluation.feasible == (end is not None), (number, tour, evaluation.violations)
             if end is not None:
                 possible += 1
-                assert evaluation.prize == reading.prize(tour.order)
+                assert evaluation.prize == reference.prize(tour.order)
                 assert (evaluation.duration, evaluation.waiting) == (end.time, end.waiting)
-                assert evaluation.cost(problem.objective) == reading.cost(end), (number, tour)
+                assert evaluation.cost(problem.objective) == reference.cost(end), (number, tour)
     assert possible > examples(400)
 
 
@@ -114,30 +120,30 @@ def test_every_claim_is_true_of_rounds_that_last_for_some_time(number: int) -> N
 @pytest.mark.parametrize(
     ("duration", "soft", "end"),
     [
-        (26, False, 26 + 100),  # left in the middle, from the member farthest from the end
-        (27, False, 27 + 13),  # complete just when it is over
+        (26, False, 26 + 100),  # interrupted, left from the member farthest from the end
+        (27, False, 27 + 13),  # complete exactly when the duration has passed
         (28, False, 28 + 100),
         (27, True, 27 + 13),
-        (28, True, 27 + 25 + 13),  # one more round
+        (28, True, 27 + 25 + 13),  # one more repetition
     ],
 )
-def test_when_a_round_is_over(duration: int, soft: bool, end: int) -> None:
+def test_when_a_round_ends(duration: int, soft: bool, end: int) -> None:
     problem = two_visits(Round("r", (0, 1), repeat=0, duration=duration, soft=soft))
-    read = Reading(problem).evaluate(Tour((0, 1)))
-    assert read is not None
-    assert read.time == evaluate(problem, Tour((0, 1))).duration == end
+    robot = Reference(problem).evaluate(Tour((0, 1)))
+    assert robot is not None
+    assert robot.time == evaluate(problem, Tour((0, 1))).duration == end
 
 
-def test_of_two_rounds_with_the_same_members_the_later_lies_within() -> None:
+def test_the_later_of_two_rounds_with_the_same_members_is_the_inner_one() -> None:
     thrice, timed = Round("a", (0, 1), repeat=3), Round("b", (0, 1), 0, duration=28, soft=True)
     for rounds, end in (((timed, thrice), 27 + 2 * 25), ((thrice, timed), 27 + 25 + 4 * 25)):
         problem = two_visits(*rounds)
-        read = Reading(problem).evaluate(Tour((0, 1)))
-        assert read is not None
-        assert read.time == evaluate(problem, Tour((0, 1))).duration == end + 13
+        robot = Reference(problem).evaluate(Tour((0, 1)))
+        assert robot is not None
+        assert robot.time == evaluate(problem, Tour((0, 1))).duration == end + 13
 
 
-def test_a_soft_round_in_others_of_which_a_visit_may_be_left_out() -> None:
+def test_nested_soft_rounds_with_an_optional_visit() -> None:
     travel = [
         [2, 3, 2, 2, 3],
         [2, 2, 1, 0, 3],
@@ -157,14 +163,14 @@ def test_a_soft_round_in_others_of_which_a_visit_may_be_left_out() -> None:
         ),
         max_duration=46,
     )
-    found = suggest_route(problem, explain=False)
-    assert (found.proven, found.prize, found.cost) == (True, 13, 46)
-    assert found.order == (1, 2, 0, 3)
+    suggestion = suggest_route(problem, explain=False)
+    assert (suggestion.proven, suggestion.prize, suggestion.cost) == (True, 13, 46)
+    assert suggestion.order == (1, 2, 0, 3)
     require_true(problem)
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_a_round_with_an_end_and_the_same_once(seed: int) -> None:
+def test_a_round_with_a_duration_and_the_same_round_once(seed: int) -> None:
     rng = np.random.default_rng([seed, 3])
     longest = int(rng.choice([5, 20, 60]))
     rounds = [

@@ -110,7 +110,7 @@ class _Document:
     def _end_state(self) -> None:
         xml = self.xml
         with xml.element("state", {"id": "ended"}), xml.element("onentry"):
-            self._assign([("visit", "0"), *((f"due_{due}", "0") for due in _VISIT_DEADLINES)])
+            self._assign([("visit", "0"), *((f"due_{kind}", "0") for kind in _VISIT_DEADLINES)])
             with xml.element("if", {"cond": "ends == 0 && failures == 0"}):
                 assign(xml, "ends", str(outcome_code(Outcome.COMPLETED)))
             with xml.element("if", {"cond": "ends == 0"}):

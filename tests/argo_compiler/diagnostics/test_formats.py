@@ -107,7 +107,7 @@ SARIF = record(
 
 @settings(max_examples=60)
 @given(FINDINGS)
-def test_sarif_has_the_shape_that_code_hosts_ask_for(findings):
+def test_sarif_has_the_form_that_code_hosts_require(findings):
     log = json.loads(to_sarif(findings, "missions/plan.json"))
     Draft202012Validator(SARIF).validate(log)
     (run,) = log["runs"]

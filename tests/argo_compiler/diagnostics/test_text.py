@@ -26,7 +26,7 @@ def columns(text: str) -> int:
     )
 
 
-def test_place_message_line_mark_and_hint():
+def test_text_has_position_message_line_mark_and_hint():
     text = to_text(
         [finding(span=Span(line=3, column=5, length=2), excerpt="abc def", hint="h")], "f"
     )
@@ -40,7 +40,7 @@ def test_place_message_line_mark_and_hint():
 
 @settings(max_examples=200)
 @given(st.text("ab \t測é\u0301ﾊ🛢", min_size=1, max_size=12), st.data())
-def test_the_mark_is_below_what_it_means(line, data):
+def test_the_mark_is_below_the_span(line, data):
     start = data.draw(st.integers(0, len(line) - 1))
     length = data.draw(st.integers(1, len(line) - start))
     span = Span(line=1, column=start + 1, length=length)
@@ -55,13 +55,13 @@ def test_a_mark_beyond_a_shortened_line_is_left_out():
     assert "^" not in to_text([finding(span=span, excerpt="short")], "f")
 
 
-def test_nothing_steers_the_terminal():
+def test_no_character_controls_the_terminal():
     bad = finding(message="\x1b[2J\rm", hint="\x07", span=Span(line=1, column=1), excerpt="\x1b[0m")
     text = to_text([bad], "a\x1bb")
     assert all(c.isprintable() or c == "\n" for c in text)
 
 
-def test_findings_come_by_place_errors_first_and_are_counted():
+def test_diagnostics_are_sorted_by_position_and_counted():
     def at(line, column, severity, code):
         return finding(severity, code, span=Span(line=line, column=column))
 
@@ -94,5 +94,5 @@ def test_warnings_are_brief_beside_errors_only():
     assert "way out" not in to_text([warning, finding(span=span)], "f")
 
 
-def test_without_a_place_the_subject_stands_for_it():
+def test_without_a_span_the_subject_is_shown():
     assert "tasks[3]: m" in to_text([finding(subject="tasks[3]")], "f")

@@ -61,7 +61,7 @@ def order(edited):
     return " ".join(t.name for t in edited.mission.tasks)
 
 
-def test_a_task_is_added_where_the_list_goes_on():
+def test_a_task_is_added_between_its_neighbours():
     edited = editing.add_task(MISSION, task("new"), after="A")
     assert order(edited) == "START A new B C D E"
     assert changes(edited) == [("tasks['A'].transitions[0].target", "B", "new")]
@@ -70,7 +70,7 @@ def test_a_task_is_added_where_the_list_goes_on():
     assert order(editing.add_task(MISSION, task("new"), first=True)) == "START new A B C D E"
 
 
-def test_at_the_border_of_a_group_a_task_is_outside_unless_it_is_to_be_inside():
+def test_at_the_border_of_a_group_a_task_is_outside_unless_into_is_given():
     outside = editing.add_task(MISSION, task("new"), after="C").mission
     assert [(g.start, g.end) for g in outside.groups] == [("B", "C"), ("C", "C")]
     assert outside.task("new").group == ""
@@ -81,7 +81,7 @@ def test_at_the_border_of_a_group_a_task_is_outside_unless_it_is_to_be_inside():
     assert [(g.start, g.end) for g in within.groups] == [("B", "C"), ("new", "C")]
 
 
-def test_a_removed_task_leaves_its_place_to_its_neighbours():
+def test_the_neighbours_of_a_removed_task_take_over_its_roles():
     edited = editing.remove_task(MISSION, "C")
     assert order(edited) == "START A B D E"
     assert changes(edited) == [
@@ -106,7 +106,7 @@ def test_a_task_is_renamed_wherever_it_is_named():
     assert "'C'" not in edited.mission.model_dump_json().replace('"', "'")
 
 
-def test_a_replaced_task_keeps_its_ways_and_gives_its_place():
+def test_a_replacement_gets_the_transitions_and_position_of_the_task():
     edited = editing.replace_task(MISSION, "D", task("valve", retries=2))
     assert edited.mission.task("valve").transitions == MISSION.task("D").transitions
     assert edited.mission.task("C").transitions == (way("valve"),)
@@ -125,7 +125,7 @@ def test_a_moved_task_crosses_the_borders_of_groups():
     assert out.mission.tasks[0].transitions == (way("E"),)
 
 
-def test_the_names_of_groups_follow_from_what_lies_in_what():
+def test_the_names_of_groups_follow_their_nesting():
     edited = editing.wrap_tasks(MISSION, group("Round", "A", "D"))
     assert [g.name for g in edited.mission.groups] == ["Round/Alpha", "Round/Alpha/Beta", "Round"]
     assert edited.mission.task("C").group == "Round/Alpha/Beta"
@@ -141,7 +141,7 @@ def test_the_names_of_groups_follow_from_what_lies_in_what():
     assert wide.task("A").group == "Alpha"
 
 
-def test_a_group_that_gets_the_name_of_the_one_around_it_is_told():
+def test_a_group_that_gets_the_name_of_its_outer_group_is_reported():
     wrapped = editing.wrap_tasks(MISSION, group("Round", "A", "D")).mission
     wrapped = editing.rename_group(wrapped, "Round", "Alpha").mission
     assert [g.name for g in wrapped.groups] == ["Alpha/Alpha", "Alpha/Alpha/Beta", "Alpha"]
@@ -153,7 +153,7 @@ def test_a_group_that_gets_the_name_of_the_one_around_it_is_told():
     ]
 
 
-def test_ways_conditions_reactions_and_header():
+def test_edits_of_transitions_conditions_reactions_and_header():
     mission = editing.remove_transition(MISSION, "D", 0).mission
     assert mission.task("D").transitions == (way("E"),)
     mission = editing.add_transition(mission, "D", way("A", HIGH), at=0).mission
@@ -251,24 +251,24 @@ TESTED_ELSEWHERE = {
 
 
 @pytest.mark.parametrize(("kind", "code", "edit"), REFUSALS)
-def test_what_can_not_be_is_refused_by_its_kind_and_reason(kind, code, edit):
+def test_an_impossible_edit_raises_the_right_error_and_code(kind, code, edit):
     with pytest.raises(kind, match=code) as caught:
         edit()
     assert [d.code for d in caught.value.diagnostics] == [code]
     assert all(d.hint for d in caught.value.diagnostics)
 
 
-def test_every_reason_to_refuse_is_tried():
+def test_every_code_of_a_refused_edit_is_tested():
     tried = {code for _, code, _ in REFUSALS if code.startswith("edit.")}
     assert tried | TESTED_ELSEWHERE == {code for code in CODES if code.startswith("edit.")}
 
 
-def test_a_nearly_right_name_is_met_with_the_right_one():
+def test_a_misspelt_name_is_answered_with_the_right_one():
     with pytest.raises(EditNotFound, match="is 'START' meant"):
         editing.remove_task(MISSION, "STRT")
 
 
-def test_what_did_not_change_is_shared():
+def test_unchanged_parts_are_shared():
     edited = editing.remove_task(MISSION, "E").mission
     kept = [t for t in edited.tasks if any(t is old for old in MISSION.tasks)]
     assert [t.name for t in kept] == ["START", "A", "B", "C"]
@@ -301,7 +301,7 @@ def test_an_edit_as_data_is_the_call_of_its_function(kind):
         assert required or fields[name].default == parameter.default
 
 
-def test_an_edit_is_written_with_what_was_given_and_nothing_else():
+def test_an_edit_is_written_with_the_fields_that_were_set_only():
     edit = commands.SetHeader(max_duration=None)
     assert edit.model_dump_json() == '{"kind":"set_header","max_duration":null}'
     long = MISSION.model_copy(update={"max_duration": 60.0, "designation": "X"})
@@ -325,7 +325,7 @@ def test_a_start_that_is_moved_does_not_end_the_mission():
     assert consequence.message == "task 'START' leads nowhere now; the mission begins with 'A'"
 
 
-def test_without_a_task_that_led_to_itself_a_run_goes_on_and_that_is_told():
+def test_the_end_of_an_endless_task_is_reported_when_it_is_removed():
     mission = Mission(tasks=(task("A", "B"), task("B", "B"), task("C")))
     edited = editing.remove_task(mission, "B")
     assert edited.mission.task("A").transitions == (way("C"),)
@@ -345,13 +345,13 @@ def chain():
 
 
 @pytest.mark.rule("T8", "W5")
-def test_what_follows_a_failure_is_called_by_its_new_name():
+def test_a_failure_target_follows_a_new_name():
     made = editing.rename_task(chain(), "b", "new").mission.task("a")
     assert (made.failure_target, made.window.missed_target) == ("new", "new")
 
 
 @pytest.mark.rule("T8", "W5")
-def test_what_follows_a_failure_leads_on_from_a_task_that_is_removed():
+def test_a_failure_target_that_is_removed_becomes_its_successor():
     result = editing.remove_task(chain(), "b")
     made = result.mission.task("a")
     assert (made.failure_target, made.window.missed_target) == ("c", "c")
@@ -406,7 +406,7 @@ def test_fields_that_a_task_cannot_have_are_refused(fields, error, message):
         editing.change_task(chain(), "b", **fields)
 
 
-def test_a_place_is_added_at_the_end_of_a_round_and_rounds_are_planned():
+def test_a_wait_is_added_at_the_end_of_a_round_and_rounds_get_a_period():
     around = editing.wrap_tasks(chain(), group("G", "a", "b")).mission
     place = wait("end of 'G'", duration=0)
     made = editing.add_task(around, place, after="b", into="G").mission
@@ -429,7 +429,7 @@ def test_a_reaction_gets_a_dock_of_its_own_and_a_limit():
 
 
 @pytest.mark.rule("M10")
-def test_what_comes_before_what_is_renamed_and_goes_with_its_tasks():
+def test_precedences_follow_new_names_and_are_removed_with_their_tasks():
     mission = Mission(
         tasks=(task("A", "B"), task("B", "C"), task("C")),
         before=(("A", "B"), ("B", "C"), ("A", "C")),

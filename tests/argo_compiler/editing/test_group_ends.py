@@ -91,7 +91,7 @@ def test_a_new_end_that_leads_elsewhere_ends_the_rounds():
     ]
 
 
-def test_a_group_ends_where_a_round_can_get_to():
+def test_a_group_ends_with_a_task_that_a_round_reaches():
     with pytest.raises(
         EditConflict, match="ends with 'c', which leads to 'e': a round would never"
     ):
@@ -199,7 +199,7 @@ def random_model(rng):
     return model
 
 
-def test_the_rounds_of_groups_that_lead_elsewhere_stay_whatever_is_moved_or_added():
+def test_moves_and_additions_keep_the_rounds_of_groups_that_lead_elsewhere():
     outcomes = Counter()
 
     @settings(max_examples=examples(600))

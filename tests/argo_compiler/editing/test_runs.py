@@ -130,7 +130,7 @@ def try_edit(edit):
         return None, {d.code for d in refusal.diagnostics}
 
 
-def test_a_task_that_is_removed_is_missing_and_nothing_else_is():
+def test_a_run_without_a_removed_task_is_otherwise_the_same():
     """Without a task on whose value nothing depends, a run is the same but for its visits.
 
     Each reason to refuse a removal occurs.
@@ -180,7 +180,7 @@ def test_any_task_of_a_chain_with_rounds_can_be_removed(seed):
 
 @settings(max_examples=examples(300))
 @given(seeds, st.booleans())
-def test_a_task_that_is_added_is_carried_out_between_what_was_there(seed, plain):
+def test_an_added_task_is_executed_between_the_others(seed, plain):
     rng = random.Random(seed)
     mission = random_mission(rng, plain)
     where = rng.choice(["before", "after", "first", "last"])
@@ -215,7 +215,7 @@ def test_a_new_name_changes_no_run(seed):
 
 @settings(max_examples=examples(200))
 @given(seeds)
-def test_a_chain_is_carried_out_in_the_order_of_its_list_after_any_move(seed):
+def test_a_chain_is_executed_in_the_order_of_its_list_after_any_move(seed):
     rng = random.Random(seed)
     mission = random_mission(rng, plain=True).model_copy(update={"groups": ()})
     names = [t.name for t in mission.tasks]
@@ -233,7 +233,7 @@ def test_a_chain_is_carried_out_in_the_order_of_its_list_after_any_move(seed):
 
 @settings(max_examples=examples(200))
 @given(seeds)
-def test_a_group_around_tasks_repeats_them_and_without_it_they_are_done_once(seed):
+def test_a_group_around_tasks_repeats_them_and_dissolving_it_undoes_that(seed):
     rng = random.Random(seed)
     mission = random_mission(rng, plain=True)
     names = [t.name for t in mission.tasks]

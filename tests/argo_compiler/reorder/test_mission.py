@@ -96,7 +96,7 @@ def test_another_order_does_the_same_tasks_where_some_fail(mission, values, seed
 
 @given(wild_missions(), VALUES, SEEDS)
 @settings(max_examples=examples(60))
-def test_any_mission_is_refused_or_kept_the_same(mission, values, seed):
+def test_any_mission_is_refused_or_does_the_same_tasks(mission, values, seed):
     try:
         require_same_tasks_done(mission, values, seed)
     except ArgoError as error:
@@ -167,7 +167,7 @@ def test_no_branch_takes_longer_than_computed(mission, values, seed):
 
 @given(missions(), LIMITS, LIMITS, VALUES, SEEDS)
 @settings(max_examples=examples(60))
-def test_what_is_left_out_is_named_and_not_done(mission, most, budget, values, seed):
+def test_tasks_that_are_left_out_are_named_and_not_done(mission, most, budget, values, seed):
     mission = mission.model_copy(update={"max_duration": most})
     rng = np.random.default_rng(seed)
     matrix = random_matrix(mission, rng)

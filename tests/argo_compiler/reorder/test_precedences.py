@@ -81,7 +81,7 @@ def windows(planned):
 
 
 @pytest.mark.rule("M7")
-def test_the_order_says_what_may_move_and_nothing_to_the_machine():
+def test_the_order_changes_what_may_move_but_not_the_machine():
     precise, free = (sequence(measure(4), measure(8), order=order) for order in Order)
     assert lower(precise) == lower(free)
     moved = Tour((1, 0))
@@ -99,7 +99,7 @@ def test_a_precise_order_is_one_rule():
     assert kept_orders(make_problem(sequence(measure(4), measure(8)))) == []
 
 
-def test_what_is_asked_for_is_said_in_the_words_of_the_mission():
+def test_requirements_are_described_in_the_words_of_the_mission():
     planned = make_problem(sequence(measure(4), measure(8)), before=[(8, "M4")])
     assert kept_orders(planned) == ["checkpoint 8 before 'M4'"]
     assert planned.problem.precedences[0].sequence == (1, 0)
@@ -111,7 +111,7 @@ def test_what_is_asked_for_is_said_in_the_words_of_the_mission():
         make_problem(sequence(measure(4), measure(8)), before=[("DOCK", 8)])
 
 
-def test_a_sequence_holds_without_its_middle():
+def test_a_sequence_is_kept_without_its_middle():
     mission = sequence(measure(4), measure(8), measure(1), measure(3))
     planned = make_problem(mission, before=[(8, 4, 1)], budget=100.0)
     assert kept_orders(planned) == ["checkpoint 8 before checkpoint 4 before checkpoint 1"]
@@ -119,7 +119,7 @@ def test_a_sequence_holds_without_its_middle():
         assert evaluate(planned.problem, Tour(order)).feasible == feasible
 
 
-def test_a_sequence_with_a_group_holds_without_its_middle():
+def test_a_sequence_with_a_group_is_kept_without_its_middle():
     group = Group(name="G", start="M1", end="M2", max_repeat_count=2)
     mission = sequence(measure(4), measure(1), measure(2), measure(3), groups=(group,))
     planned = make_problem(mission, before=[("G", 3, 4)], budget=100.0)
@@ -134,7 +134,7 @@ def test_nothing_comes_before_itself():
         Requirements(before=((4, "4"),))
 
 
-def test_what_a_condition_asks_for_is_measured_before():
+def test_a_checkpoint_is_measured_before_a_condition_compares_it():
     planned = make_problem(
         sequence(measure(4), measure(8), measure(7, above(4, "M3")), measure(3), measure(5))
     )
@@ -154,7 +154,7 @@ def test_a_measurement_after_a_decision_stays_after_it():
     assert planned.visits.names[0] == "checkpoint 4 ('M4')"
 
 
-def test_what_may_end_the_mission_parts_it():
+def test_a_task_that_may_end_the_mission_separates_the_others():
     planned = make_problem(
         sequence(measure(1), measure(2, above(2, "DOCK")), measure(3), measure(4))
     )
@@ -202,14 +202,14 @@ def test_an_endless_group_is_kept_as_it_is_written():
     assert changed.task("M2").transitions[0].target == "DOCK"
 
 
-def test_how_old_a_value_is_depends_on_what_comes_between():
+def test_a_condition_on_the_age_of_a_value_keeps_the_tasks_before_it():
     tasks = measure(4), measure(8), measure(7, above(4, "M9", max_age=60.0)), measure(3), measure(9)
     planned = make_problem(sequence(*tasks))
     assert planned.visits.names == ("checkpoint 4", "checkpoint 9")
     assert "checks the age of the value of checkpoint 4" in planned.reasons[0]
 
 
-def test_the_time_of_a_group_does_not_begin_before_what_goes_along_is_done():
+def test_the_time_of_a_group_starts_after_the_conditional_tasks_before_it():
     patrol = Group(name="PATROL", start="M3", end="M4", max_repeat_duration=60.0)
     first = measure(1, above(1, "M2"), Transition(target="M3"))
     mission = sequence(first, measure(2), measure(3), measure(4), groups=(patrol,))
@@ -219,7 +219,7 @@ def test_the_time_of_a_group_does_not_begin_before_what_goes_along_is_done():
     assert evaluate(planned.problem, planned.written).duration >= 500 + 60
 
 
-def test_times_are_those_of_the_worst_way():
+def test_times_are_those_of_the_worst_case():
     mission = sequence(measure(1, above(1, "M2"), Transition(target="M3")), measure(2), measure(3))
     time = np.full((5, 4), 10.0)
     time[0, 1], time[1, 2], time[0, 2] = 30.0, 40.0, 20.0
@@ -254,7 +254,7 @@ def test_a_budget_makes_all_optional_that_is_not_mandatory():
 
 
 @pytest.mark.rule("W4", "T11")
-def test_what_is_asked_for_of_tasks_is_written_into_the_mission():
+def test_requirements_of_tasks_are_written_into_the_mission():
     own = TimeWindow(latest=50, missed_target="DOCK")
     mission = sequence(measure(1), measure(2, window=own, optional=True, priority=4), measure(3))
     planned = make_problem(
@@ -274,7 +274,7 @@ def test_what_is_asked_for_of_tasks_is_written_into_the_mission():
     assert planned.before == ()
 
 
-def test_a_mission_says_what_is_optional_and_when():
+def test_a_mission_states_optional_tasks_and_windows():
     soft = TimeWindow(latest=30, hard=False)
     mission = sequence(
         measure(1, optional=True, priority=7),
@@ -316,13 +316,13 @@ def test_a_wait_for_an_event_counts_with_its_limit():
     assert evaluate(planned.problem, planned.written).duration == 10 + 30 + 10 + 10
 
 
-def test_a_wait_before_all_else_stays_there():
+def test_an_initial_wait_stays_first():
     planned = make_problem(sequence(wait("W", duration=7), measure(1), measure(2)))
     assert set(kept_orders(planned)) == {"'W' is done before the robot sets off"}
     assert evaluate(planned.problem, Tour((0, 2, 1))).duration == 7 + 10 + 10 + 10
 
 
-def test_a_failure_branch_is_a_way():
+def test_a_failure_branch_counts_as_a_transition():
     ahead = measure(1, on_failure=OnFailure.BRANCH, failure_target="M3")
     planned = make_problem(sequence(ahead, measure(2), measure(3), measure(4)))
     names = [
@@ -333,14 +333,14 @@ def test_a_failure_branch_is_a_way():
     assert tasks["M1"].failure_target == "M4"
 
 
-def test_a_missed_window_is_a_way():
+def test_a_missed_window_counts_as_a_transition():
     late = measure(1, window=TimeWindow(latest=60, missed_target="M3"))
     planned = make_problem(sequence(late, measure(2), measure(3), measure(4)))
     tasks = {t.name: t for t in apply_route(planned, Tour((0, 2, 1))).tasks}
     assert tasks["M1"].window == TimeWindow(latest=60, missed_target="M4")
 
 
-def test_a_time_limit_rules_out_no_way_as_a_further_attempt_goes_on_from_there():
+def test_a_time_limit_rules_out_no_drive_because_a_retry_continues_it():
     time = np.full((4, 3), 10.0)
     time[3, 0] = 30.0  # from the start to M1
     planned = make_problem(sequence(measure(1, time_limit=20), measure(2)), time)
@@ -374,7 +374,7 @@ def test_what_can_not_be_computed_is_refused(tasks, groups, message):
         make_problem(sequence(*tasks, groups=groups))
 
 
-def test_what_ends_a_round_early_is_measured_before_or_after_as_it_was():
+def test_measurements_stay_before_or_after_the_until_of_a_group():
     group = Group(name="G", start="M2", end="M3", max_repeat_count=3, until=above(1, "").conditions)
     planned = make_problem(
         sequence(measure(1), measure(2), measure(3), measure(4), groups=(group,))
@@ -411,13 +411,13 @@ def test_a_mission_that_does_not_dock_ends_with_one_task():
 
 
 @pytest.mark.rule("T6")
-def test_a_task_is_come_to_at_its_own_speed_in_any_order():
+def test_a_task_keeps_the_speed_of_the_drive_to_it_in_any_order():
     planned = make_problem(sequence(measure(1, velocity=0.2), measure(2)))
     speeds = {t.name: t.velocity for t in apply_route(planned, Tour((1, 0))).tasks}
     assert speeds == {"M2": None, "M1": 0.2, "DOCK": None}
 
 
-def test_what_no_way_leads_to_has_no_place():
+def test_an_unreachable_task_is_refused():
     with pytest.raises(ArgoError, match="no path leads to task 'M2'"):
         make_problem(sequence(measure(1, Transition(target="DOCK")), measure(2)))
 
@@ -448,13 +448,13 @@ def test_durations_are_read(text, seconds):
 @pytest.mark.parametrize(
     "text", ["", "soon", "-5 min", "5 miles", "5 s 2 min", "-3 min", "3 min 4 min"]
 )
-def test_what_is_no_duration_is_refused(text):
+def test_text_that_is_no_duration_is_refused(text):
     with pytest.raises(ArgoError, match="20 min"):
         parse_seconds(text)
 
 
 @pytest.mark.rule("M10")
-def test_what_comes_before_what_is_kept_and_written():
+def test_precedences_are_kept_and_written():
     mission = sequence(measure(1), measure(2), measure(3), before=(("M3", "M1"), ("M2", "DOCK")))
     planned = route_problem(mission, matrix(mission))
     assert [(p.sequence, p.words) for p in planned.problem.precedences] == [

@@ -1,4 +1,4 @@
-"""What is claimed of route suggestions is checked by other means: so, not so, or not known."""
+"""Claims of route suggestions are confirmed, refuted or left open by independent checks."""
 
 import ast
 from dataclasses import replace
@@ -30,15 +30,15 @@ MAY_USE = CHECKING | {"problem", "evaluation", "suggested"}
 
 
 def problems(first: int, count: int, most: int = 5) -> list[tuple[RouteProblem, RouteSuggestion]]:
-    """Random small problems with what is suggested for them."""
-    made = [
+    """Random small problems with their suggestions."""
+    drawn = [
         random_problem(np.random.default_rng(seed), most) for seed in range(first, first + count)
     ]
-    return [(p, suggest_route(p, time_limit=60.0, explain=False)) for p in made]
+    return [(p, suggest_route(p, time_limit=60.0, explain=False)) for p in drawn]
 
 
 def check(problem: RouteProblem, suggestion: RouteSuggestion) -> Certificate:
-    """Without a limit of time."""
+    """Certificate without a limit of time."""
     return certify(problem, suggestion, 1.0, lambda: 0.0)
 
 
@@ -53,12 +53,12 @@ def test_true_claims_are_confirmed(part: int) -> None:
     for problem, suggestion in problems(20 * part, 12):
         certificate = check(problem, suggestion)
         assert {one.judgement for one in certificate.claims} == {Judgement.CONFIRMED}
-        what = Claim.NONE if suggestion.route is None else Claim.BEST
-        assert certificate.find(what)
+        claim = Claim.NONE if suggestion.route is None else Claim.BEST
+        assert certificate.find(claim)
         assert not certificate.refuted
 
 
-def test_wrong_claims_are_refuted_by_routes_that_show_it() -> None:
+def test_wrong_claims_are_refuted_by_counterexamples() -> None:
     raised = lowered = found = 0
     for problem, best in problems(100, 24):
         if best.route is None:
@@ -84,15 +84,15 @@ def test_wrong_claims_are_refuted_by_routes_that_show_it() -> None:
     assert min(raised, lowered) > found // 2
 
 
-def test_a_route_that_is_not_the_best_is_not_taken_for_it() -> None:
+def test_a_route_that_is_not_the_best_is_refuted() -> None:
     worse = 0
     for problem, best in problems(200, 30):
         if best.route is None or problem.selective or len(best.order) < 2:
             continue
-        turned = Tour(best.order[::-1])
-        worth = evaluate(problem, turned)
+        reversed_tour = Tour(best.order[::-1])
+        worth = evaluate(problem, reversed_tour)
         cost = worth.cost(problem.objective)
-        suggestion = replace(best, route=turned, cost=cost, bound=cost)
+        suggestion = replace(best, route=reversed_tour, cost=cost, bound=cost)
         certificate = check(problem, suggestion)
         expected = Judgement.CONFIRMED if worth.feasible else Judgement.REFUTED
         assert judged(certificate, Claim.ROUTE) is expected
@@ -102,7 +102,7 @@ def test_a_route_that_is_not_the_best_is_not_taken_for_it() -> None:
     assert worse > 3
 
 
-def test_what_there_is_not_and_what_is_left_out_is_found() -> None:
+def test_unknown_visits_and_wrong_dropped_visits_are_refuted() -> None:
     problem, best = next(p for p in problems(300, 20) if p[1].order)
     other = replace(best, route=Tour((*best.order, problem.size)))
     assert judged(check(problem, other), Claim.ROUTE) is Judgement.REFUTED
@@ -111,22 +111,22 @@ def test_what_there_is_not_and_what_is_left_out_is_found() -> None:
 
 
 @pytest.mark.parametrize("part", range(3))
-def test_no_search_finds_more_and_no_relaxation_shows_less(part: int) -> None:
+def test_dominance_keeps_the_best_route_and_relaxations_are_bounds(part: int) -> None:
     tight = 0
     for seed in range(400 + 30 * part, 420 + 30 * part):
         problem = random_problem(np.random.default_rng(seed), 5)
         blocks = Blocks(problem, lambda: None)
-        every, fewer = Enumeration(blocks, None, int), Enumeration(blocks, None, int)
-        every.run(use_dominance=False)
-        fewer.run(use_dominance=True)
+        all_routes, undominated = Enumeration(blocks, None, int), Enumeration(blocks, None, int)
+        all_routes.run(use_dominance=False)
+        undominated.run(use_dominance=True)
         relaxation = Relaxation(blocks, lambda: 0.0, 1.0)
         prize = relaxation.prize_bound(-1)
-        if every.best is None:
-            assert fewer.best is None
+        if all_routes.best is None:
+            assert undominated.best is None
             tight += prize is None
             continue
-        assert fewer.best is not None
-        best, same = (evaluate(problem, route) for route in (every.best, fewer.best))
+        assert undominated.best is not None
+        best, same = (evaluate(problem, route) for route in (all_routes.best, undominated.best))
         assert best.feasible
         assert same.feasible
         cost = best.cost(problem.objective)
@@ -140,23 +140,23 @@ def test_no_search_finds_more_and_no_relaxation_shows_less(part: int) -> None:
     assert tight > 8
 
 
-def test_a_relaxation_confirms_what_is_too_large_to_go_through() -> None:
+def test_a_relaxation_confirms_bounds_of_problems_too_large_to_enumerate() -> None:
     rng = np.random.default_rng(0)
-    way = rng.integers(1, 1000, (31, 31)).astype(np.int64)
-    problem = RouteProblem(tuple(Visit(f"checkpoint {k}", 5) for k in range(30)), way)
+    travel = rng.integers(1, 1000, (31, 31)).astype(np.int64)
+    problem = RouteProblem(tuple(Visit(f"checkpoint {k}", 5) for k in range(30)), travel)
     best = suggest_route(problem, 10.0, explain=False)
     certificate = check(problem, replace(best, bound=best.bound - 200, proven=False))
     assert judged(certificate, Claim.BOUND) is Judgement.CONFIRMED
 
 
-def test_large_rounds_count_with_one_pass_at_least() -> None:
-    way = np.full((11, 11), 10, np.int64)
+def test_large_rounds_count_with_one_repetition_at_least() -> None:
+    travel = np.full((11, 11), 10, np.int64)
     visits = tuple(Visit(f"checkpoint {k}", 5) for k in range(10))
-    for one, least in ((Round("patrol", tuple(range(9)), 2), 160), (_timed(50), 75)):
-        problem = RouteProblem(visits, way, (), (one,))
-        made = RouteSuggestion(None, 0, 0, 0, least, proven=False)
-        assert judged(check(problem, made), Claim.BOUND) is Judgement.CONFIRMED
-        certificate = check(problem, replace(made, bound=least + 1))
+    for round_, least in ((Round("patrol", tuple(range(9)), 2), 160), (_timed(50), 75)):
+        problem = RouteProblem(visits, travel, (), (round_,))
+        suggestion = RouteSuggestion(None, 0, 0, 0, least, proven=False)
+        assert judged(check(problem, suggestion), Claim.BOUND) is Judgement.CONFIRMED
+        certificate = check(problem, replace(suggestion, bound=least + 1))
         assert judged(certificate, Claim.BOUND) is Judgement.OPEN
         assert certificate.claims[-1].shown == (0, least)
 
@@ -165,11 +165,11 @@ def _timed(duration: int) -> Round:
     return Round("patrol", tuple(range(9)), 0, duration)
 
 
-def test_rounds_entered_from_elsewhere_may_take_less_in_an_order_that_is_longer_alone() -> None:
-    """The shortest cycle is not always the shortest way through a round with a duration."""
-    way = np.array([[0, 0, 4, 24], [8, 0, 32, 45], [59, 19, 0, 10], [4, 49, 21, 4]], np.int64)
+def test_the_best_order_of_a_round_may_be_a_longer_cycle() -> None:
+    """The shortest cycle is not always the best order of a round with a duration."""
+    travel = np.array([[0, 0, 4, 24], [8, 0, 32, 45], [59, 19, 0, 10], [4, 49, 21, 4]], np.int64)
     visits = tuple(Visit(f"checkpoint {k}", s) for k, s in enumerate((16, 19, 2)))
-    problem = RouteProblem(visits, way, (), (Round("patrol", (1, 0, 2), 0, 67, soft=True),))
+    problem = RouteProblem(visits, travel, (), (Round("patrol", (1, 0, 2), 0, 67, soft=True),))
     assert evaluate(problem, Tour((1, 0, 2))).duration == 108
     assert evaluate(problem, Tour((0, 1, 2))).duration == 83
     wrong = RouteSuggestion(Tour((1, 0, 2)), 0, 0, 108, 108, proven=True)
@@ -182,13 +182,13 @@ def test_rounds_entered_from_elsewhere_may_take_less_in_an_order_that_is_longer_
 
 
 def test_waiting_counts_only_where_it_costs() -> None:
-    way = np.full((2, 2), 10, np.int64)
+    travel = np.full((2, 2), 10, np.int64)
     for objective, cost in (
         (Objective.DURATION, 110),
         (Objective.TRAVEL, 20),
         (Objective.PRIZE, 0),
     ):
-        problem = RouteProblem((Visit("late", earliest=100),), way, objective=objective)
+        problem = RouteProblem((Visit("late", earliest=100),), travel, objective=objective)
         best = suggest_route(problem, 5.0)
         assert best.cost == cost
         assert all(o.judgement is Judgement.CONFIRMED for o in check(problem, best).claims)
@@ -204,7 +204,7 @@ def test_without_time_only_the_route_is_checked() -> None:
     assert not certificate.refuted
 
 
-def test_the_checks_use_nothing_of_the_solvers() -> None:
+def test_the_checks_use_no_code_of_the_solvers() -> None:
     folder = Path(certificate_module.__file__).parent
     for name in CHECKING:
         tree = ast.parse((folder / f"{name}.py").read_text())

@@ -1,4 +1,4 @@
-"""What is suggested against trying all routes, for random problems with any mix of constraints."""
+"""Suggestions for random problems with any mix of constraints agree with brute force."""
 
 from dataclasses import replace
 
@@ -75,7 +75,7 @@ def test_each_solver_agrees_with_brute_force(
     assert proven >= proves * len(tried)
 
 
-def test_searches_beside_each_other_agree_with_brute_force() -> None:
+def test_parallel_searches_agree_with_brute_force() -> None:
     solvers = ("first rules", "exchange search", "ruin and recreate", "CP-SAT")
     for seed in range(3000, 3000 + PROBLEMS // 20):
         problem = random_problem(np.random.default_rng(seed), 5)
@@ -84,7 +84,7 @@ def test_searches_beside_each_other_agree_with_brute_force() -> None:
         assert (None if made.route is None else (made.prize, made.cost)) == best_value(problem)
 
 
-def test_the_time_that_is_given_is_kept_to_and_something_is_always_known() -> None:
+def test_a_short_search_has_a_route_and_a_bound() -> None:
     problem = _grid(70)
     made = suggest_route(problem, time_limit=1.0, explain=False)
     assert made.route is not None
@@ -107,7 +107,7 @@ def test_a_large_problem_gets_a_route_and_a_bound() -> None:
     assert any("too many" in reason for reason in made.reasons)
 
 
-def test_equal_arguments_give_equal_routes_where_the_best_is_proven() -> None:
+def test_equal_arguments_give_equal_routes_if_the_best_is_proven() -> None:
     for seed in (3, 12, 40):
         problem = random_problem(np.random.default_rng(seed), 6)
         first, again = (suggest_route(problem, 60.0, explain=False) for _ in range(2))
@@ -118,11 +118,11 @@ def test_equal_arguments_give_equal_routes_where_the_best_is_proven() -> None:
 def _grid(count: int):  # type: ignore[no-untyped-def]
 
     rng = np.random.default_rng(count)
-    places = rng.integers(0, 1000, (count + 1, 2))
-    way = np.abs(places[:, None] - places).sum(axis=2).astype(np.int64)
-    way += np.maximum(places[None, :, 1] - places[:, None, 1], 0)
-    assert way.max() < NEVER
-    return RouteProblem(tuple(Visit(f"checkpoint {k}", 5) for k in range(count)), way)
+    points = rng.integers(0, 1000, (count + 1, 2))
+    travel = np.abs(points[:, None] - points).sum(axis=2).astype(np.int64)
+    travel += np.maximum(points[None, :, 1] - points[:, None, 1], 0)
+    assert travel.max() < NEVER
+    return RouteProblem(tuple(Visit(f"checkpoint {k}", 5) for k in range(count)), travel)
 
 
 def test_a_route_that_can_win_nothing_is_proven() -> None:
@@ -133,7 +133,7 @@ def test_a_route_that_can_win_nothing_is_proven() -> None:
 
 
 @pytest.mark.long
-def test_of_a_round_with_many_members_nothing_is_claimed() -> None:
+def test_nothing_is_proven_with_a_round_of_many_members() -> None:
 
     grid = _grid(12)
     problem = replace(grid, rounds=(Round("patrol", tuple(range(11)), repeat=2),))
@@ -144,7 +144,7 @@ def test_of_a_round_with_many_members_nothing_is_claimed() -> None:
     assert any("too many orders" in reason for reason in made.reasons)
 
 
-def test_a_round_to_which_there_is_no_way() -> None:
+def test_a_round_that_can_not_be_reached() -> None:
 
     travel = np.array([[NEVER, NEVER, 1], [NEVER, 0, 1], [NEVER, NEVER, 3]])
     round_ = Round("patrol", (0, 1), repeat=0, duration=5)
@@ -153,8 +153,8 @@ def test_a_round_to_which_there_is_no_way() -> None:
     assert made.route is None
 
 
-def test_of_labels_energy_is_not_taken_for_travel() -> None:
-    """With a battery and a visit that must begin early, but none that is waited for."""
+def test_labels_do_not_take_energy_for_travel() -> None:
+    """The problems have a battery and latest times, but no visit to wait for."""
     rng = np.random.default_rng(3)
     for _ in range(60):
         n = 3

@@ -1,4 +1,4 @@
-"""The compiled local search, against trying all routes and against what it must keep to."""
+"""The compiled local search agrees with brute force, and its routes are feasible."""
 
 from importlib import import_module
 from itertools import combinations
@@ -32,7 +32,7 @@ def with_orders(seed: int, count: int, orders: int) -> RouteProblem:
 
 
 @pytest.mark.long
-def test_small_problems_of_any_kind_are_solved_as_well_as_by_trying_all_routes() -> None:
+def test_small_problems_of_any_kind_are_solved_as_well_as_by_brute_force() -> None:
     reached = possible = 0
     for seed in sample(range(2000, 2060)):
         problem = random_problem(np.random.default_rng(seed), 6)
@@ -60,7 +60,7 @@ def test_the_order_is_kept_and_better_routes_are_found(seed: int) -> None:
         assert not any(p.sequence == (other, one) for p in problem.precedences)
 
 
-def test_it_repeats_under_a_limit_of_work() -> None:
+def test_it_is_deterministic_under_a_limit_of_work() -> None:
     problem = with_orders(9, 60, 40)
     costs = [
         suggest_route(problem, None, work_limit=0.2, seed=seed, explain=False, solvers=ONLY).history
@@ -77,15 +77,15 @@ def test_it_is_compiled_once_for_small_and_large_problems() -> None:
     assert len(kernel.set_line.signatures) == 1
 
 
-def test_there_is_no_route_where_the_compiler_has_no_time() -> None:
+def test_it_finds_no_route_without_time_to_compile() -> None:
     made = suggest_route(with_orders(1, 30, 10), 0.001, explain=False, solvers=ONLY)
     assert not made.proven
 
 
 def test_prizes_within_a_limit() -> None:
-    """Visits on a line, one unit apart, and a limit that lets the robot reach half of them."""
-    places = np.append(np.arange(1, 21), 0)
-    travel = np.abs(places[:, None] - places).astype(np.int64)
+    """The limit lets the robot reach half of the visits, which are on a line, one unit apart."""
+    points = np.append(np.arange(1, 21), 0)
+    travel = np.abs(points[:, None] - points).astype(np.int64)
     visits = tuple(Visit(f"checkpoint {k}", 0, False, 1) for k in range(20))
     needs = Precedence(tuple(range(20)), "outwards", needed=True)
     for objective in Objective:

@@ -1,4 +1,4 @@
-"""Why there is no route: the requirements that infeasible_subset, in the mission's words."""
+"""A problem without a route has a smallest infeasible subset, in the mission's words."""
 
 from itertools import combinations
 
@@ -12,13 +12,13 @@ from tests.argo_compiler.route.reference import best_value
 
 
 def hall(count: int, **more) -> RouteProblem:  # type: ignore[no-untyped-def]
-    """Checkpoints 1, 2, … ten units of time from each other and from the docks."""
+    """Checkpoints 1, 2, … ten units of time from each other and from the start and end."""
     visits = more.pop("visits", tuple(Visit(f"checkpoint {k + 1}", 5) for k in range(count)))
     travel = more.pop("travel", np.full((count + 1, count + 1), 10, np.int64))
     return RouteProblem(visits, travel, **more)
 
 
-def test_an_order_against_another() -> None:
+def test_two_contradicting_precedences() -> None:
     problem = hall(
         9,
         precedences=(
@@ -33,10 +33,10 @@ def test_an_order_against_another() -> None:
     assert made.infeasible_subset == ("precise order 4, 8", "checkpoint 8 before checkpoint 4")
 
 
-def test_the_shortest_of_several_circles() -> None:
-    around = [(0, 1), (1, 2), (2, 3), (3, 0), (2, 0)]
+def test_the_shortest_of_several_cycles() -> None:
+    pairs = [(0, 1), (1, 2), (2, 3), (3, 0), (2, 0)]
     problem = hall(
-        5, precedences=tuple(Precedence(pair, f"{pair[0]} before {pair[1]}") for pair in around)
+        5, precedences=tuple(Precedence(pair, f"{pair[0]} before {pair[1]}") for pair in pairs)
     )
     assert suggest_route(problem).infeasible_subset == ("0 before 1", "1 before 2", "2 before 0")
 
@@ -51,7 +51,7 @@ def test_too_little_time_names_as_few_visits_as_do_not_fit() -> None:
     assert "fewer requirements" in made.reasons[-1]
 
 
-def test_windows_against_an_order_and_not_the_rest() -> None:
+def test_a_window_against_a_precedence() -> None:
     visits = (
         Visit("checkpoint 1", 5, latest=20),
         Visit("checkpoint 2", 5, earliest=300, latest=400),
@@ -66,13 +66,13 @@ def test_windows_against_an_order_and_not_the_rest() -> None:
     )
 
 
-def test_a_checkpoint_without_a_way() -> None:
+def test_a_checkpoint_that_can_not_be_reached() -> None:
     travel = np.full((4, 4), 10, np.int64)
     travel[:, 1] = NEVER
     assert suggest_route(hall(3, travel=travel)).infeasible_subset == ("checkpoint 2 is visited",)
 
 
-def test_a_round_that_something_must_come_into() -> None:
+def test_a_round_against_a_precedence() -> None:
     problem = hall(
         3,
         rounds=(Round("round of floor 2", (0, 1), repeat=2),),
@@ -85,18 +85,18 @@ def test_a_round_that_something_must_come_into() -> None:
 
 
 @pytest.mark.parametrize("seed", range(0, 90, 3))
-def test_a_clash_can_not_be_met_and_each_part_of_it_can(seed: int) -> None:
+def test_an_infeasible_subset_is_infeasible_and_smaller_ones_are_not(seed: int) -> None:
     problem = random_problem(np.random.default_rng(seed), 4)
     if best_value(problem) is not None:
         return
     made = suggest_route(problem)
     assert made.infeasible_subset
-    asked = requirements(problem)
-    rest = [one for one in asked if one.kind != "visit"]
-    visits = [one for one in asked if one.kind == "visit"]
-    some = [one for one in rest if one.words in made.infeasible_subset]
-    assert best_value(reduced(problem, visits + some)) is None
-    # No smaller number of requirements clashes with all the visits.
-    for fewer in combinations(rest, max(0, len(some) - 1)):
-        if len(some):
+    all_requirements = requirements(problem)
+    others = [r for r in all_requirements if r.kind != "visit"]
+    visits = [r for r in all_requirements if r.kind == "visit"]
+    clash = [r for r in others if r.words in made.infeasible_subset]
+    assert best_value(reduced(problem, visits + clash)) is None
+    # No smaller number of requirements is infeasible with all the visits.
+    for fewer in combinations(others, max(0, len(clash) - 1)):
+        if len(clash):
             assert best_value(reduced(problem, [*visits, *fewer])) is not None

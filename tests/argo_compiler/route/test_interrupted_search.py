@@ -1,4 +1,4 @@
-"""Ctrl-C ends a search as it ends all else in Python; searches in threads are as they are alone."""
+"""Ctrl-C ends a search like any Python code, and searches in threads find the same as alone."""
 
 import subprocess
 import sys
@@ -56,7 +56,7 @@ os._exit(0)  # the searches of other threads have no time limit
 
 @pytest.mark.parametrize("thread", ["main", "other"])
 def test_ctrl_c_is_left_to_python(thread: str) -> None:
-    """The first time and once more: the search has put no handler in Python's place."""
+    """Python handles both the first and a second signal: the search replaces no handler."""
     run = subprocess.run(
         [sys.executable, "-c", _INTERRUPTED, thread], capture_output=True, text=True, check=False
     )

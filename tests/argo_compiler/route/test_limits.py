@@ -1,4 +1,4 @@
-"""First something, then better, within the limit: also where a problem is large."""
+"""A search finds a first route soon, and keeps its limits, also for large problems."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ from benchmarks.routes_limits import KINDS, places
 
 
 class Clock:
-    """Goes on by a step whenever it is looked at."""
+    """Clock that advances by a step at each call."""
 
     def __init__(self, step: float) -> None:
         self.now, self._step = 0.0, step
@@ -30,7 +30,7 @@ def of_kind(kind: str, size: int) -> RouteProblem:
 
 
 def clashing(size: int) -> RouteProblem:
-    """Five visits each before the next, and the last before the first."""
+    """Problem with a cycle of precedences between five visits."""
     pairs = [(k, (k + 1) % 5) for k in range(5)]
     order = tuple(Precedence(pair, "{} before {}".format(*pair)) for pair in pairs)
     return replace(of_kind("plain", size), precedences=order)
@@ -48,14 +48,14 @@ def test_the_first_solver_finds_a_route(kind: str, size: int) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("kind", KINDS)
-def test_whoever_looks_at_the_clock_stops_soon_after_the_limit(kind: str) -> None:
+def test_a_search_stops_soon_after_the_limit(kind: str) -> None:
     clock = Clock(0.002)
     made = suggest_route(of_kind(kind, 60), 1.0, clock=clock)
     assert made.route is not None
     assert clock.now <= 1.0 * 1.1 + 0.2
 
 
-def test_an_explanation_that_has_no_time_says_so() -> None:
+def test_an_explanation_without_time_states_that() -> None:
     clock = Clock(0.001)
     made = suggest_route(clashing(60), 0.5, clock=clock)
     assert made.route is None
@@ -70,7 +70,7 @@ def test_an_explanation_with_time_is_a_smallest_one() -> None:
     assert "fewer requirements" in made.reasons[-1]
 
 
-def test_rounds_are_made_somehow_when_there_is_no_time_to_weigh_their_orders() -> None:
+def test_rounds_have_a_feasible_order_without_time_to_compare_orders() -> None:
     problem = of_kind("rounds", 30)
     made = suggest_route(problem, 2.0, clock=Clock(0.02))
     assert made.route is not None
@@ -79,7 +79,7 @@ def test_rounds_are_made_somehow_when_there_is_no_time_to_weigh_their_orders() -
     assert any("too many orders" in reason for reason in made.reasons)
 
 
-def test_rounds_keep_their_order_when_there_is_no_time_to_weigh_them() -> None:
+def test_rounds_meet_precedences_without_time_to_compare_orders() -> None:
     problem = of_kind("rounds", 30)
     order = tuple(Precedence((k + 4, k, k + 2), "from the last") for k in range(0, 15, 5))
     problem = replace(problem, precedences=order)
@@ -89,14 +89,14 @@ def test_rounds_keep_their_order_when_there_is_no_time_to_weigh_them() -> None:
 
 
 @pytest.mark.parametrize("size", [40, 310])
-def test_ways_between_nodes_are_never_longer_than_the_shortest(size: int) -> None:
+def test_least_path_times_are_lower_bounds(size: int) -> None:
     rng = np.random.default_rng(size)
     travel = rng.integers(1, 1000, (size + 1, size + 1))  # without the triangle inequality
     problem = replace(places(size, rng), travel=travel)
     service = np.array([visit.service for visit in problem.visits])
     arcs = travel[:size, :size] + service[:, None]
     shortest = shortest_path(arcs) - service[:, None]
-    found = least_path_times(network(problem, lambda step: tuple(step.parts)))
-    between = ~np.eye(size, dtype=np.bool_)
-    assert (found <= shortest)[between].all()
-    assert (found <= travel[:size, :size])[between].all()
+    times = least_path_times(network(problem, lambda step: tuple(step.parts)))
+    off_diagonal = ~np.eye(size, dtype=np.bool_)
+    assert (times <= shortest)[off_diagonal].all()
+    assert (times <= travel[:size, :size])[off_diagonal].all()

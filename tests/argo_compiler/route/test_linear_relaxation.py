@@ -1,4 +1,4 @@
-"""The linear relaxation against trying all routes: never above the best, whatever GLOP says."""
+"""The linear relaxation's bound is never above the best route of brute force."""
 
 import time
 from math import inf
@@ -36,17 +36,19 @@ def _times(net: StepNetwork) -> NDArray[np.int64]:
     return np.asarray(least_arc_times(net) + np.append(net.service, 0))
 
 
-def _kept(net: StepNetwork, relaxation: LinearRelaxation, most: int, problem: RouteProblem) -> None:
-    """A best route has only arcs that are left for its worth, and all steps that must be made."""
+def _require_best_route(
+    net: StepNetwork, relaxation: LinearRelaxation, most: int, problem: RouteProblem
+) -> None:
+    """A best route has only the arcs that its value allows, and all mandatory steps."""
     route = suggest_route(problem, time_limit=60.0, explain=False).route
     assert route is not None
     path, charges = net.path(route)
     if path is None or charges:
         return
-    arcs, must = relaxation.restrict(most)
+    arcs, mandatory = relaxation.restrict(most)
     ends = [net.size, *path, net.size]
     assert arcs[ends[:-1], ends[1:]].all()
-    assert set(np.flatnonzero(must)) <= set(net.step[list(path)].tolist())
+    assert set(np.flatnonzero(mandatory)) <= set(net.step[list(path)].tolist())
 
 
 @pytest.mark.parametrize("part", range(4))
@@ -64,11 +66,11 @@ def test_no_bound_is_above_the_best_route(part: int) -> None:
             continue
         assert won.bound is not None, seed
         assert -won.bound >= best[0], seed
-        _kept(net, won, -best[0], problem)
+        _require_best_route(net, won, -best[0], problem)
         if problem.objective is not Objective.PRIZE:
             assert spent.bound is not None, seed
             assert spent.bound <= best[1], seed
-            _kept(net, spent, best[1], problem)
+            _require_best_route(net, spent, best[1], problem)
 
 
 @pytest.mark.parametrize("size", [12, 20])
@@ -89,6 +91,6 @@ def test_arcs_of_the_best_route_are_left_at_its_cost(size: int) -> None:
         assert own.cost == proven.cost
         assert relaxation.bound is not None
         assert 0.9 * own.cost <= relaxation.bound <= own.cost
-        _kept(net, relaxation, own.cost, problem)
+        _require_best_route(net, relaxation, own.cost, problem)
         left, _ = relaxation.restrict(own.cost)
         assert left.sum() < pruned.arcs.sum() / 2

@@ -1,4 +1,4 @@
-"""PyVRP as one of the route solvers, alone and under a limit of work."""
+"""PyVRP as the only route solver, under a limit of work."""
 
 from dataclasses import replace
 
@@ -23,47 +23,47 @@ def suggest(problem: RouteProblem, work: float = 0.04, seed: int = 1) -> RouteSu
 
 
 def plain_problem(n: int, seed: int = 0) -> RouteProblem:
-    """Visits in a square; each is worth something."""
+    """Visits in a square, each with a prize."""
     rng = np.random.default_rng(seed)
-    at = rng.uniform(0, 100, (n + 1, 2))
-    travel = np.rint(np.abs(at[:, None] - at).sum(axis=2)).astype(np.int64)
+    points = rng.uniform(0, 100, (n + 1, 2))
+    travel = np.rint(np.abs(points[:, None] - points).sum(axis=2)).astype(np.int64)
     visits = tuple(Visit(f"{k}", int(rng.integers(0, 9)), prize=k + 1) for k in range(n))
     return RouteProblem(visits, travel)
 
 
-def test_best_routes_of_small_problems_with_any_constraints_it_can_state():
-    told: set[str] = set()
+def test_best_routes_of_small_problems_with_any_constraints_it_supports():
+    covered: set[str] = set()
     for seed in range(60):
         problem = replace(random_problem(np.random.default_rng(seed), 6), precedences=())
         if problem.battery is not None:
             continue
-        counted = [replace(one, repeat=max(1, one.repeat), duration=0) for one in problem.rounds]
+        counted = [replace(r, repeat=max(1, r.repeat), duration=0) for r in problem.rounds]
         problem = replace(problem, rounds=tuple(counted))
-        best, found = best_value(problem), suggest(problem)
+        best, suggestion = best_value(problem), suggest(problem)
         if best is None:
-            assert found.route is None
+            assert suggestion.route is None
             continue
-        assert found.route is not None, seed
-        assert evaluate(problem, found.route).feasible
-        assert (found.prize, found.cost) == best, seed
-        told |= {"rounds"} if problem.rounds else set()
-        told |= {"windows"} if any(v.latest is not None for v in problem.visits) else set()
-        told |= {"prizes"} if problem.selective else set()
-        told |= {"no way"} if (problem.travel == NEVER).any() else set()
-    assert told == {"rounds", "windows", "prizes", "no way"}
+        assert suggestion.route is not None, seed
+        assert evaluate(problem, suggestion.route).feasible
+        assert (suggestion.prize, suggestion.cost) == best, seed
+        covered |= {"rounds"} if problem.rounds else set()
+        covered |= {"windows"} if any(v.latest is not None for v in problem.visits) else set()
+        covered |= {"prizes"} if problem.selective else set()
+        covered |= {"no path"} if (problem.travel == NEVER).any() else set()
+    assert covered == {"rounds", "windows", "prizes", "no path"}
 
 
 def test_same_route_for_the_same_seed_and_work():
     problem = plain_problem(40)
     optional = tuple(replace(visit, mandatory=False) for visit in problem.visits)
-    for one in (problem, replace(problem, visits=optional, max_duration=300)):
-        first, again = suggest(one), suggest(one)
+    for case in (problem, replace(problem, visits=optional, max_duration=300)):
+        first, again = suggest(case), suggest(case)
         assert first.route == again.route
-        courses = [[(p.work, p.prize, p.cost) for p in s.history] for s in (first, again)]
-        assert courses[0] == courses[1]
+        curves = [[(p.work, p.prize, p.cost) for p in s.history] for s in (first, again)]
+        assert curves[0] == curves[1]
 
 
-def test_each_better_route_is_known_at_once():
+def test_each_better_route_is_offered_at_once():
     problem = plain_problem(60)
     costs: list[int] = []
     found = suggest_route(
@@ -78,14 +78,14 @@ def test_each_better_route_is_known_at_once():
     assert costs[-1] == found.cost
 
 
-def test_a_better_route_than_the_first_is_gone_on_from():
+def test_the_search_improves_a_given_route():
     problem = plain_problem(60)
     simple = suggest_route(problem, None, work_limit=0.1, solvers=("first rules",))
     better = suggest_route(problem, None, work_limit=0.1, solvers=("first rules", PyvrpSearch()))
     assert better.cost < simple.cost
 
 
-def test_any_prize_comes_before_the_way_also_where_prizes_are_huge():
+def test_any_prize_comes_before_the_cost_also_if_prizes_are_huge():
     problem = plain_problem(6)
     for worth in (1, 1 << 35):
         visits = tuple(replace(v, mandatory=False, prize=v.prize * worth) for v in problem.visits)
@@ -94,7 +94,7 @@ def test_any_prize_comes_before_the_way_also_where_prizes_are_huge():
         assert (found.prize, found.cost) == best_value(limited)
 
 
-def test_what_makes_nothing_is_offered_only_where_it_is_possible():
+def test_the_empty_route_is_offered_only_if_it_is_feasible():
     travel = np.array([[0, NEVER], [NEVER, 7]])
     visit = Visit("a", mandatory=False, prize=1)
     found = suggest(RouteProblem((visit,), travel, max_duration=7))
@@ -104,7 +104,7 @@ def test_what_makes_nothing_is_offered_only_where_it_is_possible():
     assert suggest(RouteProblem((), travel[1:, 1:])).cost == 7
 
 
-def test_what_it_can_not_state():
+def test_unsupported_problems():
     problem = plain_problem(4)
     ordered = replace(problem, precedences=(Precedence((0, 1), "0 before 1"),))
     within = replace(ordered, rounds=(Round("r", (0, 1), 2),))

@@ -1,4 +1,4 @@
-"""How probable it is that a route is completed, and routes that are made for that."""
+"""The probability that a route is completed, and the search for robust routes."""
 
 from dataclasses import replace
 from itertools import permutations
@@ -34,7 +34,7 @@ NEAR = 5.0 * 0.5 / sqrt(SAMPLES)
 
 
 def chain(legs, service=0, **limits):
-    """Visits of which only one order is possible, with these travel times between them."""
+    """Problem with only one possible order of visits, and with given travel times between them."""
     n = len(legs) - 1
     travel = np.full((n + 1, n + 1), NEVER)
     for k, leg in enumerate(legs):
@@ -49,25 +49,25 @@ def probability(problem, route, samples=SAMPLES, seed=1, **spread):
 
 
 def log_normal(ratio, deviation):
-    """How probable a factor of mean 1 is to be at most the ratio."""
+    """Probability that a log-normal factor of mean 1 is at most the ratio."""
     variance = log1p(deviation**2)
     return norm.cdf((log(ratio) + variance / 2) / sqrt(variance))
 
 
 @st.composite
 def routes(draw):
-    """Random problems, and for each an order that may or may not be possible."""
+    """Random problems, each with a route that may or may not be feasible."""
     rng = np.random.default_rng(draw(st.integers(0, 2**32)))
     problem = random_problem(rng)
     made = [v for v in range(problem.size) if problem.visits[v].mandatory or rng.random() < 0.6]
     order = [*map(int, rng.permutation(made))]
-    for one in sorted(problem.rounds, key=lambda one: len(one.members)):
-        inside = [v for v in order if v in one.members]
-        if inside and rng.random() < 0.9:  # most orders would tear it apart
+    for round_ in sorted(problem.rounds, key=lambda round_: len(round_.members)):
+        inside = [v for v in order if v in round_.members]
+        if inside and rng.random() < 0.9:  # most orders would split the round
             at = order.index(inside[0])
-            inside += [v for v in one.members if v not in inside]
-            before = [v for v in order[:at] if v not in one.members]
-            order = before + inside + [v for v in order[at:] if v not in one.members]
+            inside += [v for v in round_.members if v not in inside]
+            before = [v for v in order[:at] if v not in round_.members]
+            order = before + inside + [v for v in order[at:] if v not in round_.members]
     charges = {}
     if problem.chargers:
         charges = {
@@ -80,7 +80,7 @@ def routes(draw):
 
 @settings(max_examples=examples(150))
 @given(case=routes())
-def test_without_spread_it_is_the_evaluation(case):
+def test_without_spread_the_simulation_agrees_with_the_evaluation(case):
     problem, route = case
     exact = evaluate(problem, route)
     found = probability(problem, route, samples=3)
@@ -89,15 +89,20 @@ def test_without_spread_it_is_the_evaluation(case):
         assert (found.duration, found.duration_95) == (exact.duration, exact.duration)
 
 
-def test_what_is_torn_or_left_out_is_not_completed():
+def test_an_infeasible_order_is_never_completed():
     problem, _ = chain([0, 0, 0])
     problem = replace(problem, visits=(*problem.visits, Visit("2")), travel=np.zeros((4, 4), int))
-    whole = replace(problem, rounds=(Round("round", (0, 2)),))
-    for order, done in [((0, 1, 2), 0.0), ((1, 2, 0), 1.0), ((0, 1), 0.0), ((2, 2, 0, 1), 0.0)]:
-        assert probability(whole, Tour(order), samples=2).probability == done
+    with_round = replace(problem, rounds=(Round("round", (0, 2)),))
+    for order, expected in [
+        ((0, 1, 2), 0.0),
+        ((1, 2, 0), 1.0),
+        ((0, 1), 0.0),
+        ((2, 2, 0, 1), 0.0),
+    ]:
+        assert probability(with_round, Tour(order), samples=2).probability == expected
     ordered = replace(problem, precedences=(Precedence((2, 0), "2 before 0"),))
-    for order, done in [((0, 1, 2), 0.0), ((1, 2, 0), 1.0)]:
-        assert probability(ordered, Tour(order), samples=2).probability == done
+    for order, expected in [((0, 1, 2), 0.0), ((1, 2, 0), 1.0)]:
+        assert probability(ordered, Tour(order), samples=2).probability == expected
 
 
 @settings(max_examples=examples(40))
@@ -114,7 +119,7 @@ def test_more_time_is_never_worse(case, limits, seed):
 
 
 @pytest.mark.parametrize("limit", [80, 100, 130])
-def test_one_way_and_one_common_factor(limit):
+def test_one_leg_and_one_common_factor(limit):
     expected = log_normal(limit / 100, 0.3)
     problem, route = chain([100], max_duration=limit)
     assert probability(problem, route, way=0.3).probability == pytest.approx(expected, abs=NEAR)
@@ -126,7 +131,7 @@ def test_one_way_and_one_common_factor(limit):
 
 
 @pytest.mark.parametrize("margin", [-1.0, 0.0, 1.5])
-def test_many_ways_are_normal(margin):
+def test_many_legs_are_normal(margin):
     legs = [20 + k % 7 for k in range(80)]
     deviation = 0.1 * sqrt(sum(leg**2 for leg in legs))
     problem, route = chain(legs, max_duration=round(sum(legs) + margin * deviation))
@@ -135,7 +140,7 @@ def test_many_ways_are_normal(margin):
     assert found == pytest.approx(exact, abs=NEAR + 0.005)  # the sum is not quite normal
 
 
-def test_repeated_readings_are_binomial():
+def test_repeated_measurements_are_binomial():
     problem, route = chain([5] * 11, service=10, max_duration=55 + 100 + 25)
     found = probability(problem, route, repeat_chance=0.2).probability
     assert found == pytest.approx(binom.cdf(2, 10, 0.2), abs=NEAR)
@@ -150,13 +155,13 @@ def test_delays():
     assert again == found
 
 
-def test_waiting_takes_up_delays():
+def test_waiting_absorbs_delays():
     problem, route = chain([100, 50])
     visit = replace(problem.visits[0], earliest=300, latest=310)
-    waits = replace(problem, visits=(visit,), max_duration=350)
-    found = probability(waits, route, common=0.1)
-    assert 0.45 < found.probability < 0.6  # after the window the second way decides
-    assert probability(replace(waits, max_duration=400), route, common=0.1).probability == 1.0
+    windowed = replace(problem, visits=(visit,), max_duration=350)
+    found = probability(windowed, route, common=0.1)
+    assert 0.45 < found.probability < 0.6  # after the window the second leg decides
+    assert probability(replace(windowed, max_duration=400), route, common=0.1).probability == 1.0
 
 
 def test_an_empty_battery_ends_a_route():
@@ -169,7 +174,7 @@ def test_an_empty_battery_ends_a_route():
     assert probability(powered, route).probability == 1.0
 
 
-def test_the_same_samples_for_all_routes():
+def test_all_routes_have_the_same_samples():
     problem, route = chain([30, 20, 40], max_duration=90)
     draws = Draws(CAUTIOUS, 500, np.random.default_rng(3))
     assert completion(problem, route, draws) == completion(problem, route, draws)
@@ -188,7 +193,7 @@ UNEVEN = np.array([
 ])  # fmt: skip
 
 
-def test_a_longer_route_may_be_surer():
+def test_a_longer_route_may_be_more_robust():
     problem = RouteProblem((Visit("a"), Visit("b")), UNEVEN, max_duration=150)
     spread = TravelSpread(way=0.3)
     found = suggest_robust_route(problem, spread, time_limit=2.0)
@@ -199,7 +204,7 @@ def test_a_longer_route_may_be_surer():
 
 
 @pytest.mark.parametrize("objective", [Objective.DURATION, Objective.PRIZE])
-def test_as_much_prize_as_is_sure_enough(objective):
+def test_the_prize_is_maximised_at_the_confidence(objective):
     travel = np.abs(np.subtract.outer([10, 20, 30, 40, 0], [10, 20, 30, 40, 0]))
     visits = tuple(Visit(f"{k}", 20, mandatory=k == 0, prize=3) for k in range(4))
     problem = RouteProblem(visits, travel, max_duration=161, objective=objective)
@@ -209,8 +214,8 @@ def test_as_much_prize_as_is_sure_enough(objective):
     assert len(found.route.order) == 3
     assert found.prize == 9
     assert found.dropped == (3,)
-    daring = suggest_robust_route(problem, CAUTIOUS, time_limit=2.0, confidence=0.01)
-    assert len(daring.route.order) == 4
+    risky = suggest_robust_route(problem, CAUTIOUS, time_limit=2.0, confidence=0.01)
+    assert len(risky.route.order) == 4
 
 
 @settings(max_examples=examples(5))
@@ -232,7 +237,7 @@ def test_never_less_sure_than_the_usual_route(seed):
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2])
-def test_near_the_surest_of_all_orders(seed):
+def test_the_route_is_near_the_most_robust_order(seed):
     rng = np.random.default_rng(seed)
     problem = RouteProblem(
         tuple(Visit(f"{k}", 20) for k in range(5)), rng.integers(20, 300, (6, 6)), max_duration=700
@@ -240,19 +245,19 @@ def test_near_the_surest_of_all_orders(seed):
     found = suggest_robust_route(problem, CAUTIOUS, time_limit=2.0, seed=seed, confidence=1.0)
     draws = Draws(CAUTIOUS, 2000, rng)
     every = [completion(problem, Tour(order), draws) for order in permutations(range(5))]
-    best = max(one.probability for one in every)
+    best = max(estimate.probability for estimate in every)
     assert 0.2 < best < 1.0
     assert completion(problem, found.route, draws).probability >= best - 0.01
 
 
-def test_nothing_to_gain_is_seen_at_once():
+def test_a_perfect_nominal_route_ends_the_search():
     problem = RouteProblem((Visit("a"), Visit("b")), UNEVEN)
     found = suggest_robust_route(problem, SIMULATED, time_limit=5.0)
     assert (found.tried, found.route) == (1, found.nominal.route)
     assert found.completion.probability == 1.0
 
 
-def test_what_has_no_route_is_refused():
+def test_a_problem_without_a_route_is_refused():
     problem, _ = chain([100, 100], max_duration=150)
     with pytest.raises(ArgoError, match="there is no route"):
         suggest_robust_route(problem, CAUTIOUS, time_limit=1.0)

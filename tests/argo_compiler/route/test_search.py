@@ -1,4 +1,4 @@
-"""How a search is limited, watched and taken part in."""
+"""Limits, observers and custom solvers of a search."""
 
 import os
 import signal
@@ -38,14 +38,14 @@ IMPROVING = ("first rules", "ruin and recreate")
 
 def plain(count: int, seed: int = 0) -> RouteProblem:
     rng = np.random.default_rng(seed)
-    places = rng.integers(0, 1000, (count + 1, 2))
-    travel = np.abs(places[:, None] - places).sum(axis=2).astype(np.int64)
+    points = rng.integers(0, 1000, (count + 1, 2))
+    travel = np.abs(points[:, None] - points).sum(axis=2).astype(np.int64)
     return RouteProblem(tuple(Visit(f"checkpoint {k}", 5) for k in range(count)), travel)
 
 
 class TestStopCriteria:
     @pytest.mark.parametrize(
-        ("criterion", "holds"),
+        ("criterion", "is_met"),
         [
             (FirstFeasible(), lambda p: p.cost is not None),
             (MaxIterations(50), lambda p: p.iterations >= 50),
@@ -56,32 +56,32 @@ class TestStopCriteria:
             (lambda p: p.work > 0.01, lambda p: p.work > 0.01),
         ],
     )
-    def test_a_search_ends_when_its_criterion_holds(
-        self, criterion: StopCriterion, holds: Callable[[SearchProgress], bool]
+    def test_a_search_ends_when_its_criterion_is_met(
+        self, criterion: StopCriterion, is_met: Callable[[SearchProgress], bool]
     ) -> None:
         met: list[bool] = []
 
         def watched(progress: SearchProgress) -> bool:
-            over = criterion(progress)
-            assert over == holds(progress)
-            met.append(over)
-            return over
+            stops = criterion(progress)
+            assert stops == is_met(progress)
+            met.append(stops)
+            return stops
 
         made = suggest_route(plain(40), 600.0, stop=watched, solvers=IMPROVING)
         assert met.index(True) == len(met) - 1
         assert made.route is not None
         assert evaluate(plain(40), made.route).feasible
 
-    def test_any_of_several(self) -> None:
+    def test_any_of_several_criteria_ends_a_search(self) -> None:
         either = MultipleCriteria((MaxIterations(10**9), FirstFeasible()))
         assert suggest_route(plain(60), 600.0, stop=either).route is not None
 
-    def test_without_improvement_for_how_long(self) -> None:
+    def test_no_improvement_needs_a_limit(self) -> None:
         with pytest.raises(Invalid, match="give iterations or seconds"):
             NoImprovement()
 
     @pytest.mark.parametrize("workers", [1, 2])
-    def test_what_a_criterion_raises_comes_through(self, workers: int) -> None:
+    def test_exceptions_of_a_criterion_are_passed_on(self, workers: int) -> None:
         def criterion(progress: SearchProgress) -> bool:
             if progress.cost is not None:
                 raise ValueError("enough")
@@ -113,7 +113,7 @@ def test_observers_see_the_curve_of_the_result(workers: int) -> None:
     assert [p.bound for p in made.history] == sorted(p.bound for p in made.history)
 
 
-def test_what_an_observer_raises_comes_through() -> None:
+def test_exceptions_of_an_observer_are_passed_on() -> None:
     def observer(_progress: SearchProgress, _tour: Tour) -> None:
         raise KeyError("lost")
 
@@ -139,31 +139,31 @@ def test_a_limit_of_work_gives_the_same_each_time(seed: int) -> None:
     assert found(slow=False) == found(slow=True)
 
 
-def test_limits_that_make_no_sense_are_refused() -> None:
+def test_impossible_limits_are_refused() -> None:
     for limits in ({"time_limit": 0.0}, {"time_limit": None}, {"work_limit": -1.0}, {"workers": 0}):
         with pytest.raises(Invalid, match="needs a limit of time or work"):
             suggest_route(plain(3), **limits)  # type: ignore[arg-type]
 
 
 class Reversed:
-    """One's own solver: the visits from the last to the first."""
+    """Custom solver that offers the visits from the last to the first."""
 
     name = "reversed"
 
     def __init__(self, claim: int | None = None, supported: bool = True) -> None:
-        self.asked, self._claim, self._supported = 0, claim, supported
+        self.calls, self._claim, self._supported = 0, claim, supported
 
     def supports(self, _problem: RouteProblem, /) -> bool:
         return self._supported
 
     def solve(self, search: Search, /) -> None:
-        self.asked += 1
+        self.calls += 1
         search.offer_tour(Tour(tuple(reversed(range(search.problem.size)))))
         if self._claim is not None:
             search.report_bounds(bound=self._claim)
 
 
-class TestOnesOwnSolver:
+class TestCustomSolver:
     def test_it_takes_part_when_it_is_registered(self) -> None:
         solver = Reversed()
         register_solver(solver)
@@ -174,23 +174,23 @@ class TestOnesOwnSolver:
             suggest_route(plain(60), 0.5)
         finally:
             unregister_solver("reversed")
-        assert solver.asked > 1
+        assert solver.calls > 1
         assert (made.method, made.order) == ("reversed", tuple(reversed(range(60))))
         with pytest.raises(NotFound, match="no route solver is named 'reversed'"):
             suggest_route(plain(3), solvers=("reversed",))
 
-    def test_it_takes_part_where_it_is_given(self) -> None:
+    def test_it_takes_part_when_it_is_passed(self) -> None:
         line = plain(1)
         assert suggest_route(line, solvers=(Reversed(),)).order == (0,)
         refusing = Reversed(supported=False)
         assert suggest_route(line, solvers=(refusing,)).route is None
-        assert refusing.asked == 0
+        assert refusing.calls == 0
 
-    def test_its_false_claims_are_told(self) -> None:
+    def test_its_false_claims_are_reported(self) -> None:
         with pytest.raises(Conflict, match="'reversed': its result contradicts"):
             suggest_route(plain(5), solvers=(Reversed(claim=10**9),))
 
-    def test_its_routes_must_keep_to_everything(self) -> None:
+    def test_its_routes_must_be_feasible(self) -> None:
         ordered = replace(plain(2), precedences=(Precedence((0, 1), "0 before 1"),))
         with pytest.raises(
             Invalid, match="'reversed' offers a route that violates a constraint: 0 before"
@@ -199,14 +199,14 @@ class TestOnesOwnSolver:
 
 
 class Killed(Reversed):
-    """A solver that takes its process with it."""
+    """Solver that kills its process."""
 
     def solve(self, _search: Search, /) -> None:
         os.kill(os.getpid(), signal.SIGKILL)
 
 
 class TestBatches:
-    def test_they_are_what_one_by_one_gives(self) -> None:
+    def test_they_give_the_same_as_single_calls(self) -> None:
         problems = [random_problem(np.random.default_rng(seed), 6) for seed in range(7)]
         alone = [suggest_route(problem, 60.0) for problem in problems]
         together = list(suggest_routes(problems, time_limit=60.0, stop=MaxGap(0.0)))
@@ -218,6 +218,6 @@ class TestBatches:
         with pytest.raises(Invalid, match=r"^problem 1: the times"):
             list(suggest_routes(many, time_limit=5.0))
 
-    def test_a_process_that_is_killed_is_told(self) -> None:
+    def test_a_killed_process_is_reported(self) -> None:
         with pytest.raises(Unavailable, match="a search process was killed"):
             list(suggest_routes([plain(3)], 1, time_limit=5.0, solvers=(Killed(),)))

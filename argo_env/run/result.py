@@ -28,7 +28,7 @@ from argo_env.run.verdict_line import AS_PLANNED
 from argo_env.run.visits_and_rounds import (
     InterruptionTracker,
     RoundTracker,
-    Visit,
+    VisitRun,
     visits_from_trace,
     wait_runs,
     window_runs,
@@ -46,7 +46,7 @@ _ENDINGS = {
 
 
 def failed_tasks(
-    runs: Sequence[TaskRun], trace: Sequence[TraceEntry], visits: Sequence[Visit]
+    runs: Sequence[TaskRun], trace: Sequence[TraceEntry], visits: Sequence[VisitRun]
 ) -> tuple[str, ...]:
     """Return the names of the tasks that failed without a retry, in the order of their failures."""
     retried = {(e.time, e.source) for e in trace if e.cause is Cause.RETRY}
@@ -65,7 +65,7 @@ def judge(
     log: RunLog,
     outcome: Outcome | None,
     trace: Sequence[TraceEntry],
-    visits: Sequence[Visit],
+    visits: Sequence[VisitRun],
     windows: Sequence[WindowRun],
     earlier: Progress,
 ) -> Result:
@@ -138,7 +138,7 @@ def _success_verdict(
     mission: Mission,
     runs: Sequence[TaskRun],
     trace: Sequence[TraceEntry],
-    visits: Sequence[Visit],
+    visits: Sequence[VisitRun],
     failed: Sequence[str],
     earlier: Progress,
 ) -> str:

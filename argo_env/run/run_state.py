@@ -83,7 +83,7 @@ class ScheduledEvents:
         return isinstance(self._events[self.occurred][1], GiveBack)
 
 
-class RunState:
+class SimulationState:
     """State of a run: the machine, the log and the running action.
 
     It changes with the entries that it applies. Equal entries lead to equal states, whether they

@@ -40,7 +40,7 @@ from argo_env.run.run_commands import (
     resolve_new_fault,
 )
 from argo_env.run.run_setup import RunSetup, check_spec, make_run_setup
-from argo_env.run.run_state import RunState
+from argo_env.run.run_state import SimulationState
 from argo_env.run.spec import RunSpec, validate_spec
 from argo_env.run.termination import exhaustion_reason, standstill_reason
 from argo_env.run.validation import (
@@ -138,7 +138,7 @@ class Simulation(Closing):
             self._vehicle: AnyRobot = robot or Vehicle(
                 setup or make_run_setup(spec, site.navigator, gui, stack)
             )
-            self._state = RunState(machine, self._vehicle, spec)
+            self._state = SimulationState(machine, self._vehicle, spec)
             time_step = self.setup.drive.time_step
             self._steps_per_sample = max(1, round(SAMPLE_PERIOD / time_step))
             for observer in self._observers:

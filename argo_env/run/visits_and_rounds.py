@@ -28,7 +28,7 @@ VISIT_STARTS = VISIT_ENDS | {Cause.START, Cause.RESTORE}
 
 
 @dataclass(frozen=True)
-class Visit:
+class VisitRun:
     """Visit of a task by the machine."""
 
     task: str
@@ -55,7 +55,7 @@ class Visit:
         return by_itself and self.failure is None
 
 
-def visits_from_trace(trace: Sequence[TraceEntry], since: float = 0.0) -> Iterator[Visit]:
+def visits_from_trace(trace: Sequence[TraceEntry], since: float = 0.0) -> Iterator[VisitRun]:
     """Yield the visits of all tasks in a trace, in the order of time.
 
     The visit of a task that waits for its round to be due begins with the round. The first task of
@@ -70,13 +70,13 @@ def visits_from_trace(trace: Sequence[TraceEntry], since: float = 0.0) -> Iterat
             start = entry.time
         elif entry.cause in VISIT_ENDS:
             if task is not None:
-                yield Visit(task, start, entry.time, entry.failure, entry)
+                yield VisitRun(task, start, entry.time, entry.failure, entry)
             task, start = entry.target, entry.time
     if task is not None:
-        yield Visit(task, start, None)
+        yield VisitRun(task, start, None)
 
 
-def wait_runs(mission: Mission, visits: Sequence[Visit], now: float) -> tuple[WaitRun, ...]:
+def wait_runs(mission: Mission, visits: Sequence[VisitRun], now: float) -> tuple[WaitRun, ...]:
     """Return the visits, up to time `now` (s), of WAIT tasks that do wait for something."""
     tasks = {t.name: t for t in mission.tasks if t.action is Action.WAIT and not _is_junction(t)}
     return tuple(
@@ -95,7 +95,7 @@ def wait_runs(mission: Mission, visits: Sequence[Visit], now: float) -> tuple[Wa
 
 
 def window_runs(
-    mission: Mission, visits: Sequence[Visit], earlier: Collection[str] = ()
+    mission: Mission, visits: Sequence[VisitRun], earlier: Collection[str] = ()
 ) -> tuple[WindowRun, ...]:
     """Return the visits of tasks with time windows, then the tasks that were not visited.
 
@@ -125,14 +125,14 @@ def _is_junction(task: Task) -> bool:
     return task.wait is not None and task.wait.duration == 0 and task.window is None
 
 
-def _end_reason(visit: Visit) -> str | None:
+def _end_reason(visit: VisitRun) -> str | None:
     """Return why a visit ended, in words; None if it has not ended."""
     if visit.end_entry is None:
         return None
     return visit.failure or visit.end_entry.detail or visit.end_entry.why
 
 
-def _window_run(task: Task, visit: Visit | None) -> WindowRun:
+def _window_run(task: Task, visit: VisitRun | None) -> WindowRun:
     window = task.window
     assert window is not None
     end = None if visit is None else visit.end

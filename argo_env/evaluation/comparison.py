@@ -100,8 +100,8 @@ class PlanComparison:
         """Return the power of McNemar's exact test for this number of pairs.
 
         That is the probability that the test shows that one plan succeeds more often by `gain`
-        (0 to 1). In the pairs that differ beside that, each plan is assumed to succeed alone
-        equally often, as often as the plan that did so less often here.
+        (0 to 1). In addition, each plan is assumed to succeed alone in the share of pairs in which
+        the plan with fewer such pairs did so here.
         """
         pairs = self.successes
         noise = min(pairs.first_only, pairs.second_only) / pairs.pairs if pairs.pairs else 0.0

@@ -42,7 +42,7 @@ class EvaluationPlan(Model):
     cases: tuple[EvaluationCase, ...] = Field(min_length=1)
     seeds: tuple[int, ...] = Field(min_length=1)
     variation: Variation = NO_VARIATION
-    """values that vary from world to world, beside those that every run draws by its seed"""
+    """values that vary from world to world, in addition to those that each run draws by seed"""
     stopping: Stopping = Stopping()
     strata: bool = False
     """whether runs are allocated to the cases by their uncertainty (stratified sampling), instead

@@ -83,7 +83,7 @@ def estimate_plan_rate(
     if evaluation.strata:
         by_case = {name: [row for row in ran if row.faults == name] for name in weights}
         outcomes = {name: _outcomes(rows, quantity) for name, rows in by_case.items()}
-        # A case that was run, but of which no run counts, is not part of the rate.
+        # A case that was run, but has no run that counts, is not part of the rate.
         counting = [name for name in weights if outcomes[name] or not by_case[name]]
         if not counting:
             return PlanRate(math.nan, 0.0, 1.0, 0, lost, IntervalMethod.STRATA)

@@ -94,7 +94,7 @@ class RunRow(Model):
 
     @property
     def is_completed(self) -> bool:
-        """True if the simulation reached its end, with success or failure of the mission."""
+        """True if the run was carried out to its end, with success or failure of the mission."""
         return self.outcome in (RunOutcome.SUCCESS, RunOutcome.FAILURE)
 
 

@@ -69,7 +69,7 @@ _CONDITIONS = ("ahead", "left", "turned", "speed", "friction", "charge", "capaci
 
 
 class Variation(_Ranges):
-    """Ranges of values that vary from world to world, beside those that every run draws anyway.
+    """Ranges of values that vary from world to world, in addition to what every run draws anyway.
 
     Each value is drawn from its own random stream, so that a further one does not change the
     others. None: the value does not vary.

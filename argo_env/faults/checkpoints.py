@@ -45,7 +45,7 @@ class AbnormalValue(CheckpointFault):
     value: float | None = None
     """in the checkpoint's unit"""
 
-    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         checkpoint = self._at_checkpoint(site, rng)
         drawn = _abnormal(checkpoint, rng)
         value = drawn if self.value is None else self.value
@@ -60,7 +60,7 @@ class AbnormalValue(CheckpointFault):
                 f"{value:g} {checkpoint.unit} is not abnormal at checkpoint {checkpoint.id} "
                 f"({checkpoint.name}): its nominal range is {nominal.low:g} to {nominal.high:g}"
             )
-        return super().resolve(site, rng)._copy_with(checkpoint=checkpoint.id, value=value)
+        return super().resolve_for(site, rng)._copy_with(checkpoint=checkpoint.id, value=value)
 
     def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.checkpoint is not None
@@ -93,7 +93,7 @@ class DisplacedCheckpoint(CheckpointFault):
             raise ValueError(f"the offset is {away:.3f} m, and may be at most {MAX_OFFSET:g} m")
         return self
 
-    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         checkpoint = self._at_checkpoint(site, rng)
         upright = checkpoint.kind is CheckpointKind.LIQUID_LEVEL_GAUGE
         if upright and self.roll:
@@ -102,7 +102,7 @@ class DisplacedCheckpoint(CheckpointFault):
         # Round towards zero, since an offset that is rounded up might exceed the limit.
         x, y, z = (math.trunc(v * 1e4) / 1e4 for v in drawn.offset)
         turn, roll = (round(math.degrees(angle), 1) for angle in (drawn.turn, drawn.roll))
-        resolved = super().resolve(site, rng)._copy_with(checkpoint=checkpoint.id)
+        resolved = super().resolve_for(site, rng)._copy_with(checkpoint=checkpoint.id)
         return resolved._fill_unset(offset=(x, y, z), turn=turn, roll=roll)
 
     def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002

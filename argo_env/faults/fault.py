@@ -57,7 +57,7 @@ class Fault(Model):
         """Time in s at which it ends, or None if it never ends."""
         return None
 
-    def resolve(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
+    def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
         """Return the fault with all its fields set: those that are None are drawn.
 
         Raises ArgoError if the site does not have the place, checkpoint or pump of the fault.
@@ -119,7 +119,7 @@ class TimedFault(Fault):
     def end_time(self) -> float | None:
         return self.until
 
-    def resolve(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
+    def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
         latest = LATEST if self.until is None else min(LATEST, self.until)
         drawn = draw(rng, 0.0, latest, 1)
         return self._fill_unset(at=max(0.0, min(drawn, latest - 0.1)))

@@ -72,7 +72,7 @@ def resolve_fault(fault: AnyFault, number: int, site: Site, seed: int) -> AnyFau
     """Return the fault that `resolve_faults` would return for this number in a list."""
     own = seed if fault.seed is None else fault.seed
     rng = generator(own, "fault", fault.kind, number if fault.seed is None else 0)
-    return fault.resolve(site, rng)
+    return fault.resolve_for(site, rng)
 
 
 def find_site_errors(faults: Sequence[AnyFault], site: Site, seed: int) -> dict[int, str]:

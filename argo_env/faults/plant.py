@@ -53,10 +53,10 @@ class GasLeakFault(ProcessFault):
     rate: float | None = Field(default=None, gt=0, le=1.0)
     """kg/s"""
 
-    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         _check_place(site, self.place)
         place, rate = _near_equipment(site, rng, 0.0), draw(rng, 0.01, 0.04, 4)
-        return super().resolve(site, rng)._fill_unset(place=place, rate=rate)
+        return super().resolve_for(site, rng)._fill_unset(place=place, rate=rate)
 
     def can_explain(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
         return _is_within(_GAS_REACH, self.place, noticed_from)
@@ -79,11 +79,11 @@ class HotSpotFault(ProcessFault):
     radius: float = Field(default=0.15, gt=0, le=1.0)
     """m"""
 
-    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         _check_place(site, self.place)
         place = _near_equipment(site, rng, 0.3)
         temperature = draw(rng, 80.0, 150.0, 1)
-        return super().resolve(site, rng)._fill_unset(place=place, temperature=temperature)
+        return super().resolve_for(site, rng)._fill_unset(place=place, temperature=temperature)
 
     def can_explain(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
         return _is_within(_SPOT_ERROR, self.place, place)
@@ -104,7 +104,7 @@ class AbnormalPump(ProcessFault):
     defect: PumpFault | None = None
     """defect that it sounds like"""
 
-    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         known = [pump.name for floor in site.spec.floors for pump in floor.pumps]
         if not known:
             raise NotFound(f"site {site.name} has no pump")
@@ -113,7 +113,7 @@ class AbnormalPump(ProcessFault):
             raise NotFound(
                 f"site {site.name} has no pump `{self.pump}`; there are: {', '.join(known)}"
             )
-        return super().resolve(site, rng)._fill_unset(pump=pump, defect=defect)
+        return super().resolve_for(site, rng)._fill_unset(pump=pump, defect=defect)
 
     def can_explain(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
         # The watch reports the position of the pump that it hears.

@@ -24,7 +24,7 @@ class LowBattery(Fault):
     charge: float | None = Field(default=None, gt=0, le=1)
     """share of the capacity at the start, unless the charge is lower anyway"""
 
-    def resolve(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
+    def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
         return self._fill_unset(charge=draw(rng, 0.1, 0.25, 3))
 
     def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
@@ -40,7 +40,7 @@ class WornBattery(Fault):
     capacity: float | None = Field(default=None, gt=0, le=1)
     """share of the capacity that remains"""
 
-    def resolve(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
+    def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
         return self._fill_unset(capacity=draw(rng, 0.2, 0.6, 3))
 
     def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
@@ -59,10 +59,10 @@ class ConnectionLoss(TimedFault):
     floor: int | None = Field(default=None, ge=1)
     """number of the floor; None: every floor"""
 
-    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         if self.floor is not None:
             site.floor(self.floor)
-        return super().resolve(site, rng)
+        return super().resolve_for(site, rng)
 
     def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         targets.network.shadows.append(Shadow(self.rect, self.floor))
@@ -94,9 +94,9 @@ class SensorDysfunction(TimedFault):
     noise: float = Field(default=0.1, gt=0, le=1)
     """standard deviation of the noise, as a share of the scale"""
 
-    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         drawn = "fails" if rng.uniform() < 0.5 else "noise"
-        return super().resolve(site, rng)._fill_unset(effect=drawn)
+        return super().resolve_for(site, rng)._fill_unset(effect=drawn)
 
     def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         if self.effect == "fails":
@@ -117,9 +117,9 @@ class DriveDysfunction(TimedFault):
     speed: float | None = Field(default=None, ge=0, lt=1)
     """share of the speed that remains; 0: the robot stops"""
 
-    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         drawn = draw(rng, 0.0, 0.5, 2)
-        return super().resolve(site, rng)._fill_unset(speed=drawn)
+        return super().resolve_for(site, rng)._fill_unset(speed=drawn)
 
     def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.speed is not None

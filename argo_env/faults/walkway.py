@@ -49,7 +49,7 @@ class Brick(Fault):
     yaw: float | None = None
     """deg"""
 
-    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         for _ in range(1 if self.place else _DRAWS):
             floor, place = _choose_position(site, rng, self.floor, self.place, lowest=1)
             if not any(_contains(r, place) for r in floor.walkways.values()):
@@ -111,7 +111,7 @@ class MissingPlate(Fault):
     rect: Rect | None = None
     """m, [x0, y0, x1, y1]; `floor` must be given too; drawn: a square of 0.6 m"""
 
-    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         centre = None
         if self.rect is not None:
             x0, y0, x1, y1 = self.rect
@@ -156,7 +156,7 @@ class BlockedStairs(Fault):
     floor: int | None = Field(default=None, ge=1)
     """the lower one of the two floors"""
 
-    def resolve(self, site: Site, rng: np.random.Generator) -> Self:
+    def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         towers, floors = [t.name for t in site.spec.towers], site.spec.floors[:-1]
         if not towers or not floors:
             raise NotFound(f"site {site.name} has no stairs")

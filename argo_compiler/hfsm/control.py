@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from argo_compiler.hfsm.interrupt_state import AppliedRow, InterruptState, advance
 from argo_compiler.hfsm.interrupts import Effect, Stage, Trigger
 from argo_compiler.hfsm.kinds import Cause, Outcome
-from argo_compiler.hfsm.mission_state import MissionState
+from argo_compiler.hfsm.machine_state import MachineState
 from argo_compiler.hfsm.progress import ByHand
 from argo_compiler.hfsm.tables import ReactionNode, Tables
 from argo_compiler.il import EventKind
@@ -25,7 +25,7 @@ class Control:
 
     def __init__(self, tables: Tables) -> None:
         self.tables = tables
-        self.mission = MissionState(tables)
+        self.mission = MachineState(tables)
         self.interrupt_state = InterruptState()
         self.drive_turn = 0
         """turn of the active reaction's drive; unique among the turns of visits"""

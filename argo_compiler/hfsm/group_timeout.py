@@ -1,7 +1,7 @@
 """Time-outs of groups: the transition that the machine takes when the time of a group is up.
 
 With a hard stop the machine leaves the group at once, by the transition that is made here:
-`configuration.py` computes when it is due by the group's clock, and `mission_state.py` takes it.
+`configuration.py` computes when it is due by the group's clock, and `machine_state.py` takes it.
 With a soft stop the present round continues to its end, and `configuration.py` starts no other.
 """
 

@@ -27,7 +27,7 @@ class DoneByHand(NamedTuple):
     """time (s) at which it was done"""
 
 
-class MissionState:
+class MachineState:
     """Configuration of a mission with its trace, tallies and outcome. Each step changes it.
 
     It does not know of reactions, persons and running actions: `interrupt` and `resume` tell it of

@@ -1,1 +1,1 @@
-"""Plans under edit: revisions, commands, undo and redo. Pure: no disk, no clock, no web."""
+"""Mission plans: revisions, commands, undo and redo; without access to disk, clock or network."""

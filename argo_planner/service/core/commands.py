@@ -1,4 +1,4 @@
-"""What a person asks of a plan, as data, and what came of it."""
+"""Commands that people send to a mission plan, and the revisions that they make."""
 
 from datetime import datetime
 from typing import Annotated, Literal
@@ -11,14 +11,14 @@ from argo_compiler.il import Mission
 from argo_planner.service.core.change import MissionChange
 
 MOST_EDITS = 1000
-"""in one command"""
+"""edits in one command"""
 
 CommandId = Annotated[str, Field(pattern=r"^[A-Za-z0-9._:-]{1,64}$")]
-"""chosen by whoever sends the command, so that sending it again does nothing twice"""
+"""chosen by the sender, so that a command that is sent again is executed only once"""
 
 
 class EditPlan(Model):
-    """Edits that are made together, or none of them."""
+    """Command to make all of the edits together, or none if one of them is refused."""
 
     kind: Literal["edit"] = "edit"
     id: CommandId
@@ -26,7 +26,7 @@ class EditPlan(Model):
 
 
 class UndoEdit(Model):
-    """Puts back what the author changed last, or in one revision of theirs."""
+    """Command to undo the author's last change, or one revision of theirs."""
 
     kind: Literal["undo"] = "undo"
     id: CommandId
@@ -34,26 +34,27 @@ class UndoEdit(Model):
 
 
 class RedoEdit(Model):
-    """Changes again what the author has undone last."""
+    """Command to redo the change that the author has undone last."""
 
     kind: Literal["redo"] = "redo"
     id: CommandId
 
 
 class ReplacePlan(Model):
-    """Another mission in place of the whole one: read from a script, an earlier version, in
-    another order."""
+    """Command to replace the whole mission, such as by a script, a version or another order."""
 
     kind: Literal["replace"] = "replace"
     id: CommandId
     mission: Mission
     about: str = ""
-    """where it comes from, for people"""
+    """source of the mission, for people"""
 
 
 class ReplaceFrom(Model):
-    """Stands for a `replace` by a mission that is kept somewhere: what is kept there may have gone,
-    or be another one, when the command is sent again."""
+    """Request for a `replace` by a stored mission, identified by where the mission is stored.
+
+    When the request is sent again, the stored mission may have changed or been deleted.
+    """
 
     id: CommandId
     kept_as: str
@@ -63,23 +64,23 @@ PlanCommand = EditPlan | UndoEdit | RedoEdit | ReplacePlan
 
 
 class Revision(Model):
-    """One step of a plan's history: what was asked for, by whom, and what it changed."""
+    """Step of a mission plan's history: the command, its author, and its changes."""
 
     number: int = Field(ge=1)
-    """of the plan as it is after this"""
+    """number of the plan's state after this step"""
     id: CommandId
-    """of the command"""
+    """id of the command"""
     kind: Literal["edit", "undo", "redo", "replace"]
     author: str
     at: datetime
     edits: tuple[Edit, ...] = ()
-    """those of an `edit`"""
+    """edits of an `edit` command; empty for other kinds"""
     reverts: int | None = None
-    """the revision that an `undo` or a `redo` puts back"""
+    """the revision that an `undo` or a `redo` reverts"""
     about: str = ""
-    """where the mission of a `replace` comes from"""
+    """source of the mission of a `replace`, for people"""
     digest: str = ""
-    """of the command, so that another one with its id is told from it"""
+    """digest of the command and its author; tells it apart from another command with the same id"""
     change: MissionChange
     consequences: tuple[Consequence, ...] = ()
-    """what else had to change"""
+    """further changes that the command made necessary"""

@@ -1,4 +1,4 @@
-"""A plan with its name and its kept versions, and the records of which its file consists."""
+"""Mission plan with its name and versions, and the records that its file consists of."""
 
 from dataclasses import dataclass, replace
 from datetime import datetime
@@ -14,14 +14,14 @@ from argo_planner.service.core.plan import MissionPlan
 from argo_planner.service.core.plan_limits import require_name
 
 MOST_VERSIONS = 100
-"""of a plan"""
+"""versions of one plan"""
 
 
 class PlanVersion(Model):
-    """A mission that was kept under a name."""
+    """Mission that was stored under a name."""
 
     number: int = Field(ge=1)
-    """that no other version of the plan has, or has had while it was there"""
+    """unique among the versions that the plan has at the same time"""
     name: str
     revision: int
     author: str
@@ -30,14 +30,14 @@ class PlanVersion(Model):
 
 
 class RevisionMade(Model):
-    """A command was carried out."""
+    """Record of a command that was executed."""
 
     kind: Literal["revision"] = "revision"
     revision: Revision
 
 
 class PlanRenamed(Model):
-    """The plan has another name."""
+    """Record of a new name of the plan."""
 
     kind: Literal["renamed"] = "renamed"
     name: str
@@ -46,14 +46,14 @@ class PlanRenamed(Model):
 
 
 class VersionKept(Model):
-    """A version was kept under a name."""
+    """Record of a version that was stored."""
 
     kind: Literal["version-kept"] = "version-kept"
     version: PlanVersion
 
 
 class VersionDropped(Model):
-    """A version is kept no longer."""
+    """Record of a version that was deleted."""
 
     kind: Literal["version-dropped"] = "version-dropped"
     number: int
@@ -62,12 +62,12 @@ class VersionDropped(Model):
 PlanRecord = Annotated[
     RevisionMade | PlanRenamed | VersionKept | VersionDropped, Field(discriminator="kind")
 ]
-"""what has happened to a plan, one line of its file each"""
+"""a change of a plan; one line of its file"""
 
 
 @dataclass(frozen=True)
 class PlanDocument:
-    """All that is known of one plan."""
+    """Mission plan with its history, name, times and versions."""
 
     id: str
     name: str
@@ -76,36 +76,46 @@ class PlanDocument:
     plan: MissionPlan
     versions: tuple[PlanVersion, ...] = ()
 
-    def after(self, record: PlanRecord) -> "PlanDocument":
-        """The document after a record. Raises ValueError if it does not follow."""
+    def apply(self, record: PlanRecord) -> "PlanDocument":
+        """Return the document after a record.
+
+        Raises ValueError if the record does not follow the document's state.
+        """
         match record:
             case RevisionMade(revision=revision):
-                return replace(self, plan=self.plan.repeat(revision), changed=revision.at)
+                return replace(self, plan=self.plan.replay(revision), changed=revision.at)
             case PlanRenamed(name=name, at=at):
                 return replace(self, name=name, changed=at)
             case VersionKept(version=version):
                 return replace(self, versions=(*self.versions, version))
             case VersionDropped(number=number):
-                kept = tuple(v for v in self.versions if v.number != number)
-                return replace(self, versions=kept)
+                versions = tuple(v for v in self.versions if v.number != number)
+                return replace(self, versions=versions)
 
-    def made(self, plan: MissionPlan) -> tuple["PlanDocument", RevisionMade]:
-        """The document with the plan after one more revision, and the record of that."""
+    def with_plan(self, plan: MissionPlan) -> tuple["PlanDocument", RevisionMade]:
+        """Return the document with a plan that has one more revision, and the revision's record."""
         revision = plan.history[-1]
         changed = replace(self, plan=plan, changed=revision.at)
         return changed, RevisionMade.model_construct(revision=revision)
 
-    def rename(self, name: str, author: str, at: datetime) -> PlanRenamed:
-        """The record of another name. Raises Invalid for what can't be one."""
+    def make_rename_record(self, name: str, author: str, at: datetime) -> PlanRenamed:
+        """Return the record of a new name.
+
+        Raises Invalid if the text can't be a name.
+        """
         require_name(name, "the mission")
         return PlanRenamed(name=name, author=author, at=at)
 
-    def keep_version(self, name: str, author: str, at: datetime) -> VersionKept:
-        """The record of the present mission under a name. Raises Invalid, or Conflict if the name
-        is taken or there are too many."""
+    def make_version_record(self, name: str, author: str, at: datetime) -> VersionKept:
+        """Return the record that stores the present mission as a version.
+
+        Raises:
+            Invalid: The text can't be a name.
+            Conflict: The name is taken, or there are too many versions.
+        """
         require_name(name, "the version")
         if any(version.name == name for version in self.versions):
-            raise Conflict(f"there is a version '{name}' already: choose another name")
+            raise Conflict(f"there is already a version '{name}': choose another name")
         if len(self.versions) >= MOST_VERSIONS:
             raise Conflict(f"the mission has {MOST_VERSIONS} versions: drop one of them first")
         version = PlanVersion.model_construct(
@@ -119,7 +129,7 @@ class PlanDocument:
         return VersionKept.model_construct(version=version)
 
     def version(self, number: int) -> PlanVersion:
-        """The version of that number. Raises NotFound."""
+        """Return the version with that number; raises NotFound if there is none."""
         for version in self.versions:
             if version.number == number:
                 return version

@@ -1,4 +1,4 @@
-"""A mission under edit: its revisions, and what each command makes of it."""
+"""Mission plan: a mission with its revisions, and the execution of commands on it."""
 
 import hashlib
 from collections.abc import Mapping
@@ -11,7 +11,7 @@ from argo_compiler.editing import Consequence, EditError
 from argo_compiler.editing.commands import apply
 from argo_compiler.editing.consequences import new_errors
 from argo_compiler.il import Mission
-from argo_planner.service.core.change import applied, difference
+from argo_planner.service.core.change import apply_change, difference
 from argo_planner.service.core.commands import (
     EditPlan,
     PlanCommand,
@@ -21,7 +21,7 @@ from argo_planner.service.core.commands import (
     Revision,
     UndoEdit,
 )
-from argo_planner.service.core.plan_limits import require_fitting
+from argo_planner.service.core.plan_limits import require_within_limits
 from argo_planner.service.core.refusals import (
     ChangedSince,
     CommandIdTaken,
@@ -32,7 +32,7 @@ from argo_planner.service.core.refusals import (
 from argo_planner.service.core.reverting import Subject, revert
 
 HISTORY = 500
-"""revisions that are kept, and can be undone"""
+"""number of revisions that are stored and can be undone"""
 
 Stacks = Mapping[str, tuple[int, ...]]
 """revisions by author, the newest one last"""
@@ -40,77 +40,87 @@ Stacks = Mapping[str, tuple[int, ...]]
 
 @dataclass(frozen=True)
 class MissionPlan:
-    """A mission with its history. Each command makes another plan of it; this one stays."""
+    """Mission with its history, immutable: each command returns a new plan."""
 
     mission: Mission
     revision: int = 1
-    """of the mission; a new plan has 1"""
+    """number of the mission's state; 1 in a new plan"""
     history: tuple[Revision, ...] = ()
-    """the last ones, up to the present one"""
+    """the last revisions, up to the present one"""
     missions: tuple[Mission, ...] = ()
-    """before the first one in the history, then after each of them but the last"""
+    """the mission before the first revision of the history, then after each one except the last"""
     undoable: Stacks = field(default_factory=dict)
     redoable: Stacks = field(default_factory=dict)
 
     def since(self, revision: int) -> tuple[Revision, ...] | None:
-        """The revisions after that one, in order; None if they are not known any more, or not
-        yet."""
+        """Return the revisions after the given one, in order.
+
+        Returns None if they are no longer in the history, or the given one does not exist yet.
+        """
         count = self.revision - revision
         if not 0 <= count <= len(self.history):
             return None
         return self.history[len(self.history) - count :]
 
     def require_newest(self, made_on: int | None) -> None:
-        """Raises StaleRevision if the plan has another revision by now; None: it may have any."""
+        """Raise StaleRevision if the plan is not at this revision; None allows any revision."""
         if made_on is not None and made_on != self.revision:
             raise StaleRevision(made_on, self.revision, self.since(made_on))
 
-    def repeated(self, command: PlanCommand | ReplaceFrom, author: str) -> Revision | None:
-        """What came of the command, if it has been carried out before.
+    def revision_for(self, command: PlanCommand | ReplaceFrom, author: str) -> Revision | None:
+        """Return the revision that the command has made, or None if it was not executed yet.
 
-        Raises CommandIdTaken if another one has had its id.
+        Raises CommandIdTaken if another command has used its id.
         """
         known = next((r for r in self.history if r.id == command.id), None)
-        if known is not None and known.digest != digest_of(command, author):
+        if known is not None and known.digest != command_digest(command, author):
             raise CommandIdTaken(
-                f"another command has had the id {command.id}: give each command its own"
+                f"another command has used the id {command.id}: give each command its own id"
             )
         return known
 
-    def carried_out(
+    def execute(
         self,
         command: PlanCommand,
         author: str,
         made_on: int | None,
         at: datetime,
-        asked: ReplaceFrom | None = None,
+        request: ReplaceFrom | None = None,
     ) -> "MissionPlan":
-        """The plan after a command that an author has made on a revision; its last revision tells
-        what changed. A command that has been carried out before is not carried out again; it is
-        known by what was `asked`, where that stands for it.
+        """Return the plan after a command; its last revision states what changed.
+
+        A command that was executed before is not executed again: the plan is returned unchanged.
+        Such a command is recognized by its `request` if there is one.
+
+        Args:
+            command: The command.
+            author: Its author.
+            made_on: The revision that the command was made on; None allows any revision.
+            at: The present time.
+            request: The request that the command was made from.
 
         Raises:
-            StaleRevision: the plan has another revision by now.
+            StaleRevision: The plan is at another revision than `made_on`.
             EditRefused, ChangedSince, NothingToUndo, CommandIdTaken, DiagnosticError,
-                PlanTooLarge, Invalid: it can't be carried out.
+                PlanTooLarge, Invalid: The command can't be executed.
         """
-        if self.repeated(asked or command, author) is not None:
+        if self.revision_for(request or command, author) is not None:
             return self
         self.require_newest(made_on)
         reverts: int | None = None
         consequences: tuple[Consequence, ...] = ()
         match command:
             case EditPlan():
-                mission, consequences = _edited(self.mission, command)
+                mission, consequences = _apply_edits(self.mission, command)
             case ReplacePlan():
                 mission = command.mission
                 if has_errors(found := check(mission)):
                     raise DiagnosticError("the mission", found)
             case UndoEdit() | RedoEdit():
-                reverts = self._to_revert(command, author)
-                mission = self._reverted(reverts)
+                reverts = self._revision_to_revert(command, author)
+                mission = self._revert(reverts)
         change = difference(self.mission, mission)
-        require_fitting(mission, change)
+        require_within_limits(mission, change)
         revision = Revision.model_construct(
             number=self.revision + 1,
             id=command.id,
@@ -120,31 +130,31 @@ class MissionPlan:
             edits=command.edits if isinstance(command, EditPlan) else (),
             reverts=reverts,
             about=command.about if isinstance(command, ReplacePlan) else "",
-            digest=digest_of(asked or command, author),
+            digest=command_digest(request or command, author),
             change=change,
             consequences=consequences,
         )
-        return self._with(revision, mission)
+        return self._with_revision(revision, mission)
 
-    def repeat(self, revision: Revision) -> "MissionPlan":
-        """The plan after a revision that was made before, as it is read from a file.
+    def replay(self, revision: Revision) -> "MissionPlan":
+        """Return the plan after a revision that was read from a file.
 
-        Raises ValueError if it is not the one that follows here.
+        Raises ValueError if the revision does not follow the plan's present one.
         """
         if revision.number != self.revision + 1:
             raise ValueError(f"revision {revision.number} does not follow {self.revision}")
         try:
-            mission = applied(self.mission, revision.change)
+            mission = apply_change(self.mission, revision.change)
         except KeyError as error:
-            raise ValueError(f"revision {revision.number} changes what is not there") from error
-        return self._with(revision, mission)
+            raise ValueError(f"revision {revision.number} does not fit the mission") from error
+        return self._with_revision(revision, mission)
 
-    def before(self, revision: int) -> "MissionPlan":
-        """The plan as it was before a revision of its history, without what came before that."""
+    def plan_before(self, revision: int) -> "MissionPlan":
+        """Return the plan before a revision of its history, with an empty history."""
         mission = self._mission_before(revision)
         return MissionPlan(mission, revision - 1)
 
-    def _with(self, revision: Revision, mission: Mission) -> "MissionPlan":
+    def _with_revision(self, revision: Revision, mission: Mission) -> "MissionPlan":
         author, number = revision.author, revision.number
         undoable, redoable = dict(self.undoable), dict(self.redoable)
         mine, undone = undoable.get(author, ()), redoable.get(author, ())
@@ -158,11 +168,11 @@ class MissionPlan:
             undoable[author] = (*mine, number)
             redoable.pop(author, None)
         history, missions = (*self.history, revision), (*self.missions, self.mission)
-        forgotten = history[0].number if len(history) > HISTORY else 0
-        if forgotten:
+        evicted = history[0].number if len(history) > HISTORY else 0
+        if evicted:
             history, missions = history[1:], missions[1:]
-            undoable = {a: tuple(n for n in ns if n > forgotten) for a, ns in undoable.items()}
-            redoable = {a: tuple(n for n in ns if n > forgotten) for a, ns in redoable.items()}
+            undoable = {a: tuple(n for n in ns if n > evicted) for a, ns in undoable.items()}
+            redoable = {a: tuple(n for n in ns if n > evicted) for a, ns in redoable.items()}
         return replace(
             self,
             mission=mission,
@@ -173,25 +183,25 @@ class MissionPlan:
             redoable=redoable,
         )
 
-    def _to_revert(self, command: UndoEdit | RedoEdit, author: str) -> int:
-        """The revision that an author undoes, or whose undoing they take back."""
+    def _revision_to_revert(self, command: UndoEdit | RedoEdit, author: str) -> int:
+        """Return the number of the edit to undo, or of the undo to revert by a redo."""
         if isinstance(command, RedoEdit):
             if not (undone := self.redoable.get(author)):
-                raise NothingToUndo(f"{author} has undone nothing that could be done again")
+                raise NothingToUndo(f"nothing to redo: {author} has undone no change")
             return undone[-1]
         mine = self.undoable.get(author, ())
         if not mine:
-            raise NothingToUndo(f"{author} has changed nothing that could be undone")
+            raise NothingToUndo(f"nothing to undo: {author} has made no change that can be undone")
         if command.revision is None:
             return mine[-1]
         if command.revision not in mine:
             raise NothingToUndo(
-                f"revision {command.revision} is none of {author}'s that could be undone: "
-                f"those are {', '.join(map(str, mine[-10:]))}"
+                f"{author} can't undo revision {command.revision}: choose one of "
+                f"{', '.join(map(str, mine[-10:]))}"
             )
         return command.revision
 
-    def _reverted(self, number: int) -> Mission:
+    def _revert(self, number: int) -> Mission:
         before, after = self._mission_before(number), self._mission_before(number + 1)
         reverted = revert(self.mission, before, after)
         if reverted.changed_since:
@@ -201,42 +211,42 @@ class MissionPlan:
             others = sorted({r.author for r in later})
             message = f"revision {number} can't be undone: {found[0].message}"
             if others:
-                message += f"; what {' and '.join(others)} changed since may depend on it"
+                message += f"; later changes by {' and '.join(others)} may depend on it"
             raise ChangedSince(message, found)
         return reverted.mission
 
     def _reason(self, number: int, subjects: tuple[Subject, ...]) -> str:
-        """Why a revision can't be put back: what has changed since, and by whom."""
+        """Return why a revision can't be reverted: what was changed later, and by whom."""
         kind, name = subjects[0]
         what = f"`{name}`" if kind == "header" else f"{kind[:-1]} '{name}'"
-        message = f"revision {number} can't be undone, as {what} is not as it left it"
+        message = f"revision {number} can't be undone: {what} was changed later"
         later = self.since(number) or ()
         by = [r for r in later if (kind, name) in r.change.subjects]
         if by:
-            message += f": {by[-1].author} changed it in revision {by[-1].number}"
+            message += f", by {by[-1].author} in revision {by[-1].number}"
         more = len(subjects) - 1
-        return message + (f", and {more} more like that" if more else "")
+        return message + (f"; so were {more} more parts" if more else "")
 
     def _mission_before(self, revision: int) -> Mission:
         missions = (*self.missions, self.mission)
         return missions[revision - 1 - self.revision + len(missions) - 1]
 
 
-def digest_of(command: PlanCommand | ReplaceFrom, author: str) -> str:
-    """Tells commands apart that have the same id."""
+def command_digest(command: PlanCommand | ReplaceFrom, author: str) -> str:
+    """Return a digest of a command and its author, to tell commands with the same id apart."""
     content = f"{author}\n{command.model_dump_json()}"
     return hashlib.sha256(content.encode(errors="surrogatepass")).hexdigest()[:16]
 
 
-def _edited(mission: Mission, command: EditPlan) -> tuple[Mission, tuple[Consequence, ...]]:
+def _apply_edits(mission: Mission, command: EditPlan) -> tuple[Mission, tuple[Consequence, ...]]:
     consequences: list[Consequence] = []
-    for place, edit in enumerate(command.edits):
+    for index, edit in enumerate(command.edits):
         try:
             edited = apply(mission, edit)
         except EditError as error:
-            which = f"edit {place + 1} of {len(command.edits)}: " if place else ""
+            which = f"edit {index + 1} of {len(command.edits)}: " if index else ""
             raise EditRefused(
-                which + error.diagnostics[0].message, place, error.diagnostics
+                which + error.diagnostics[0].message, index, error.diagnostics
             ) from None
         mission = edited.mission
         consequences += edited.consequences

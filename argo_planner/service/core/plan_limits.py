@@ -1,4 +1,4 @@
-"""How large plans may be, and which texts names may be."""
+"""Limits on the size of mission plans, and on the texts that can be names."""
 
 import re
 import unicodedata
@@ -10,7 +10,7 @@ from argo_planner.service.core.change import MissionChange
 from argo_planner.service.core.refusals import PlanTooLarge
 
 MOST_TASKS = 10_000
-"""of a plan"""
+"""tasks of one plan"""
 MOST_GROUPS = 2_000
 LONGEST_NAME = 200
 """characters of a name"""
@@ -18,47 +18,52 @@ LONGEST_TEXT = 20_000
 """characters of each text in the header"""
 
 _BLANK = "\u115f\u1160\u2800\u3164\uffa0"
-"""letters and signs that nothing is drawn of"""
-_UNSEEN = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
-"""control characters, those that turn the direction of what follows, and halves of characters"""
+"""letters and signs that are drawn as blanks"""
+_INVISIBLE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
+"""control characters, characters that change the writing direction, and surrogates"""
 
 
-def _seen(character: str) -> bool:
+def _is_visible(character: str) -> bool:
     return unicodedata.category(character)[0] in "LNPSM" and character not in _BLANK
 
 
 def require_name(name: str, what: str) -> None:
-    """Raises Invalid for what can't be shown to people as a name; any other text can be one."""
-    if not any(map(_seen, name)):
-        raise Invalid(f"{what} needs a name that can be seen: give it one")
+    """Raise Invalid if a text can't be shown to people as a name; all other texts are allowed."""
+    if not any(map(_is_visible, name)):
+        raise Invalid(f"{what} needs a name with visible characters: give it one")
     if len(name) > LONGEST_NAME:
         raise Invalid(
             f"{what} has a name of {len(name)} characters: give it one of at most {LONGEST_NAME}"
         )
-    if found := _UNSEEN.search(name):
+    if found := _INVISIBLE.search(name):
         raise Invalid(
-            f"the name of {what} has a character that can't be seen (U+{ord(found[0]):04X}): "
-            "leave it out"
+            f"the name of {what} has an invisible character (U+{ord(found[0]):04X}): remove it"
         )
 
 
-def require_fitting(mission: Mission, change: MissionChange) -> None:
-    """Raises PlanTooLarge or Invalid if a change makes a mission of a size, or of names, that the
-    service does not take."""
+def require_within_limits(mission: Mission, change: MissionChange) -> None:
+    """Check a mission and the names that a change sets in it against the service's limits.
+
+    Raises:
+        PlanTooLarge: The mission has too many tasks or groups, or a changed header text is too
+            long.
+        Invalid: A new name of a task or a group can't be shown.
+    """
     for count, most, what in (
         (len(mission.tasks), MOST_TASKS, "tasks"),
         (len(mission.groups), MOST_GROUPS, "groups"),
     ):
         if count > most:
             raise PlanTooLarge(
-                f"the plan would have {count} {what}, and may have {most}: divide it into several"
+                f"the mission would have {count} {what}, but at most {most} are allowed: split it"
             )
     for what, name in _names(change):
         require_name(name, what)
     for field, value in (change.header.given_fields() if change.header else {}).items():
         if isinstance(value, str) and len(value) > LONGEST_TEXT:
             raise PlanTooLarge(
-                f"`{field}` has {len(value)} characters, and may have {LONGEST_TEXT}: shorten it"
+                f"`{field}` has {len(value)} characters, but at most {LONGEST_TEXT} are allowed: "
+                "shorten it"
             )
 
 

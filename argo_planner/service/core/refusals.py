@@ -1,4 +1,4 @@
-"""Why a command is refused, in kinds that a program can tell apart. The plan is as it was."""
+"""Errors of commands that are refused, by kind; the plan is left unchanged."""
 
 from collections.abc import Iterable
 
@@ -8,8 +8,10 @@ from argo_planner.service.core.commands import Revision
 
 
 class StaleRevision(Conflict):
-    """The command was made on a revision that is not the newest one; `since` is what was done since
-    then, None if that is not known."""
+    """Raised when a command was made on a revision that is not the newest one.
+
+    `since` has the revisions since then; None if they are no longer known.
+    """
 
     code = "stale-revision"
 
@@ -18,8 +20,8 @@ class StaleRevision(Conflict):
     ) -> None:
         self.made_on, self.newest, self.since = made_on, newest, since
         super().__init__(
-            f"the command was made on revision {made_on}, and the plan is at revision {newest}: "
-            "look at what has changed since, and send it again on that"
+            f"the command was made on revision {made_on}, but the mission is at revision {newest}: "
+            "read the changes since then, and send the command again on the newest revision"
         )
 
     def __reduce__(self) -> tuple[object, ...]:
@@ -27,19 +29,19 @@ class StaleRevision(Conflict):
 
 
 class CommandIdTaken(Conflict):
-    """Another command has had this id."""
+    """Raised when another command has used this id."""
 
     code = "command-id-taken"
 
 
 class NothingToUndo(Conflict):
-    """The author has changed nothing that could be undone, or undone nothing to be done again."""
+    """Raised when the author has no change to undo or to redo."""
 
     code = "nothing-to-undo"
 
 
 class ChangedSince(Conflict):
-    """What is to be undone has been changed by somebody else, or is needed by what they did."""
+    """Raised when the parts to revert were changed later, or later changes depend on them."""
 
     code = "changed-since"
 
@@ -52,13 +54,13 @@ class ChangedSince(Conflict):
 
 
 class EditRefused(ArgoError):
-    """An edit can't be made; `diagnostics` tell what is in the way."""
+    """Raised when an edit can't be made; `diagnostics` state the reasons."""
 
     code = "edit-refused"
 
     def __init__(self, message: str, place: int, diagnostics: Iterable[Diagnostic]) -> None:
         self.place = place
-        """of the edit in its command, from 0"""
+        """index of the edit in its command, from 0"""
         self.diagnostics = tuple(diagnostics)
         super().__init__(message)
 
@@ -67,6 +69,6 @@ class EditRefused(ArgoError):
 
 
 class PlanTooLarge(Invalid):
-    """The plan would have more tasks, or longer texts, than the service takes."""
+    """Raised when a plan would be larger than the service allows: tasks, texts or its file."""
 
     code = "plan-too-large"

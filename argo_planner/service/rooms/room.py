@@ -99,7 +99,7 @@ class PlanRoom:
 
     def repeated(self, asked: ReplaceFrom, author: str) -> CommandDone | None:
         """The answer to a command that has been carried out before. Raises CommandIdTaken."""
-        known = self.document.plan.repeated(asked, author)
+        known = self.document.plan.revision_for(asked, author)
         return None if known is None else self._done(known, author)
 
     @_to_the_end
@@ -119,11 +119,11 @@ class PlanRoom:
         async with self._turn:
             self._require_open()
             plan = self.document.plan
-            known = plan.repeated(asked or command, author)
+            known = plan.revision_for(asked or command, author)
             if known is not None:
                 return self._done(known, author)
-            changed, record = self.document.made(
-                plan.carried_out(command, author, made_on, self._clock(), asked)
+            changed, record = self.document.with_plan(
+                plan.execute(command, author, made_on, self._clock(), asked)
             )
             await self._write(changed, record)
             before, self._findings = self._findings, self._found()
@@ -137,8 +137,8 @@ class PlanRoom:
         """Gives the plan another name. Raises Invalid, Unavailable."""
         async with self._turn:
             self._require_open()
-            record = self.document.rename(name, author, self._clock())
-            await self._write(self.document.after(record), record)
+            record = self.document.make_rename_record(name, author, self._clock())
+            await self._write(self.document.apply(record), record)
             self._tell(NameTold(name=name))
 
     @_to_the_end
@@ -148,8 +148,8 @@ class PlanRoom:
         async with self._turn:
             self._require_open()
             self.document.plan.require_newest(made_on)
-            record = self.document.keep_version(name, author, self._clock())
-            await self._write(self.document.after(record), record)
+            record = self.document.make_version_record(name, author, self._clock())
+            await self._write(self.document.apply(record), record)
             self._tell_versions()
             return VersionSummary.of(record.version)
 
@@ -159,7 +159,7 @@ class PlanRoom:
         async with self._turn:
             self._require_open()
             record = VersionDropped(number=self.document.version(number).number)
-            await self._write(self.document.after(record), record)
+            await self._write(self.document.apply(record), record)
             self._tell_versions()
 
     # ---- those who have it open

@@ -231,7 +231,7 @@ def _following(document: PlanDocument, line: bytes, number: int) -> PlanDocument
     if data is None or data.pop("n", None) != number:
         return None
     try:
-        return document.after(_RECORD.validate_python(data))
+        return document.apply(_RECORD.validate_python(data))
     except ValueError:
         return None
 
@@ -266,7 +266,7 @@ def _written(
     its own. Returns the open file, and how large it is."""
     plan = document.plan
     made = _last_made(plan, records)
-    begins = plan.before(made[0].revision.number) if made else plan
+    begins = plan.plan_before(made[0].revision.number) if made else plan
     base = PlanBase.model_construct(
         id=document.id,
         name=document.name,

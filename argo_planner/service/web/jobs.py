@@ -112,7 +112,7 @@ async def accept_order(
         id=accepted.id, mission=mission, about="a suggested order"
     )
     plan = room.document.plan
-    if plan.repeated(command, visitor.author) is None:
+    if plan.revision_for(command, visitor.author) is None:
         for on in (job.revision, made_on):
             plan.require_newest(on)
     return await carried_out(room, command, visitor.author, job.revision)

@@ -21,7 +21,7 @@ from argo_env.planning.opening import OpenedSite
 from argo_planner.service.core.change import difference
 from argo_planner.service.core.commands import Revision
 from argo_planner.service.core.document import PlanDocument
-from argo_planner.service.core.plan_limits import require_fitting
+from argo_planner.service.core.plan_limits import require_within_limits
 from argo_planner.service.rooms.messages import PlanState
 from argo_planner.service.storage.folder import summary_of
 from argo_planner.service.storage.notes import drop_notes, keep_notes, read_notes
@@ -294,7 +294,7 @@ def sound(document: PlanDocument, site: OpenedSite) -> ImportedMission:
 async def _create(
     service: Service, name: str, mission: Mission, notes: tuple[Diagnostic, ...] = ()
 ) -> Response:
-    require_fitting(mission, difference(Mission(tasks=()), mission))
+    require_within_limits(mission, difference(Mission(tasks=()), mission))
     room = await service.rooms.create(name, mission)
     document = room.document
     if notes:

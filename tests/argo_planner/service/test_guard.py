@@ -168,8 +168,8 @@ def test_missions_that_are_too_large_are_not_taken(service: Served) -> None:
     [
         ("x" * 1_000_000, "at most"),
         ("x" * 201, "at most 200"),
-        ("a\0b", "can't be seen"),
-        ("a\u202egnp.exe", "can't be seen"),
+        ("a\0b", "invisible character"),
+        ("a\u202egnp.exe", "invisible character"),
         ("", "needs a name"),
     ],
 )

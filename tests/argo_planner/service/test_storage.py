@@ -46,8 +46,8 @@ def folder(tmp_path):
 
 def carry_out(file: PlanFile, command: EditPlan | UndoEdit) -> None:
     document = file.document
-    plan = document.plan.carried_out(command, "ann", document.plan.revision, AT)
-    file.append(*document.made(plan))
+    plan = document.plan.execute(command, "ann", document.plan.revision, AT)
+    file.append(*document.with_plan(plan))
 
 
 def edit(file: PlanFile, id: str, velocity: float) -> None:
@@ -70,9 +70,9 @@ def test_what_was_written_is_there_again(folder):
     with folder.create("Round", mission("a", "b"), AT) as file:
         edit(file, "c1", 0.2)
         document = file.document
-        file.append(document.after(r := document.rename("Tour", "ann", AT)), r)
+        file.append(document.apply(r := document.make_rename_record("Tour", "ann", AT)), r)
         document = file.document
-        file.append(document.after(r := document.keep_version("first", "ann", AT)), r)
+        file.append(document.apply(r := document.make_version_record("first", "ann", AT)), r)
         edit(file, "c2", 0.3)
         carry_out(file, UndoEdit(id="u"))
         written = file.document
@@ -83,7 +83,7 @@ def test_what_was_written_is_there_again(folder):
         with pytest.raises(NotFound, match="it has: 1 \\('first'\\)"):
             again.document.version(2)
         with pytest.raises(Conflict, match="already"):
-            again.document.keep_version("first", "bob", AT)
+            again.document.make_version_record("first", "bob", AT)
     (summary,) = folder.plans()
     assert (summary.name, summary.revision, summary.tasks) == ("Tour", 4, 2)
 
@@ -154,7 +154,7 @@ def test_a_file_is_written_anew_and_its_last_revisions_can_be_undone(folder):
         assert plan.revision == document.plan.revision
         assert len(plan.history) >= KEPT_RECORDS
         assert plan.history == document.plan.history[-len(plan.history) :]
-        undone = plan.carried_out(UndoEdit(id="u"), "ann", plan.revision, AT)
+        undone = plan.execute(UndoEdit(id="u"), "ann", plan.revision, AT)
         assert undone.mission == document.plan.missions[-1]
 
 
@@ -274,7 +274,7 @@ def test_a_file_of_few_large_records_stays_small_however_often_it_is_opened(fold
     with folder.open(id) as file:
         plan = file.document.plan
         assert plan.revision == 61
-        assert plan.carried_out(UndoEdit(id="u"), "ann", 61, AT).mission == plan.missions[-1]
+        assert plan.execute(UndoEdit(id="u"), "ann", 61, AT).mission == plan.missions[-1]
 
 
 def test_what_could_not_be_opened_again_is_not_written(folder, monkeypatch):

@@ -133,8 +133,8 @@ class World(Bodies):
     def stays_clear(self, pose: BodyPose) -> bool:
         """Return True if `touches` would surely be empty with the robot at `pose` too.
 
-        PyBullet is not asked. Always False in a world with a window, or if the last call of
-        `touches` did not find the robot clear by its bounding boxes.
+        PyBullet is not asked. Always False in a world with a window, after `set_drive_touches`, or
+        if the last call of `touches` did not find the robot clear by its bounding boxes.
         """
         return (
             self._was_clear

@@ -261,7 +261,7 @@ class Executor:
 
     @property
     def outcome(self) -> Outcome | None:
-        """How the mission has ended; None if it has not."""
+        """Outcome of the mission; None if it has not ended."""
         return self._control.outcome
 
     @property

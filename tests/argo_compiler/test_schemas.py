@@ -60,7 +60,7 @@ def paths(data, at=()):
 @settings(max_examples=200)
 @given(missions(), st.data())
 def test_schema_and_model_refuse_the_same_data(mission, data):
-    """One value is replaced by another, or one field is removed."""
+    """In each example, one value is replaced by another, or one field is removed."""
     changed = deepcopy(json.loads(mission_text(mission)))
     *path, last = data.draw(st.sampled_from([p for p in paths(changed) if p]))
     container = changed

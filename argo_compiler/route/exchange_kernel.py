@@ -178,9 +178,10 @@ def _exchange(network: KernelNetwork, state: State, first: int, second: int, thi
 
 @compiled
 def _best_exchange(network: KernelNetwork, state: State, a: int) -> tuple[int, int, int, int]:
-    """Return the best exchange that gives node `a` a shorter arc: its change in cost, and its cuts.
+    """Return the best exchange that gives node `a` a shorter arc.
 
-    The change is 0 if no exchange saves anything.
+    The first number is the change of the sum of arcs, which is negative, or 0 if there is no such
+    exchange; the others are its cuts.
     """
     line, time = state[LINE], network.time
     i, last, most = state[POSITION, a], state[NUMBERS, COUNT] + 1, state[NUMBERS, LENGTH]

@@ -150,9 +150,9 @@ def find_infeasible_subset(
         problem: A problem without a route.
         is_feasible: Returns whether a problem has a route, or None if that is not known.
         is_time_up: Returns True when the search must end.
-        most_checks: Highest number of calls of `is_feasible`, for the visits and for the other
-            requirements each. After that number, or when the time is up, smaller infeasible subsets
-            than the result may exist.
+        most_checks: Number of calls of `is_feasible`, for the visits and for the other requirements
+            each, after which the search for smaller subsets ends. Then, and when the time is up,
+            smaller infeasible subsets than the result may exist.
     """
     all_requirements = requirements(problem)
     visits = [r for r in all_requirements if r.kind == "visit"]

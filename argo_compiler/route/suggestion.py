@@ -33,13 +33,14 @@ def suggest_route(
     """Search for the best route within the limits.
 
     The result of a proof does not depend on the seed; the route may, if others are as good or the
-    time ends first.
+    time ends first. Exceptions of the criterion and of the callbacks are passed on.
 
     Args:
         problem: The visits, travel times and constraints.
         time_limit: Limit of time in s, or None.
         seed: Seed of all random choices.
-        workers: Number of threads that search; a limit of work uses one.
+        workers: If above 1, solvers that improve routes and solvers that prove run in parallel;
+            with a limit of work they run one after the other in any case.
         explain: If there is no route, and time remains, search for requirements that cannot all be
             met.
         work_limit: Limit of work in nominal s, by the solvers' own count, on one core for any
@@ -54,8 +55,6 @@ def suggest_route(
     Raises:
         Invalid: if a limit or the number of workers is not positive, or there is no limit.
         NotFound: if there is no solver of a name.
-
-    Exceptions of the criterion and of the callbacks are passed on.
     """
     limits = [limit for limit in (time_limit, work_limit) if limit is not None]
     if not limits or not all(limit > 0.0 for limit in limits) or workers < 1:

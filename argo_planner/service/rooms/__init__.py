@@ -1,1 +1,1 @@
-"""Plans that are open: what somebody changes is on disk, then everybody who is there is told."""
+"""Open mission plans: each change is written to disk and then sent to all members."""

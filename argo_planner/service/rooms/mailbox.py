@@ -1,4 +1,4 @@
-"""What waits to be sent to one client."""
+"""Queue of messages for one client."""
 
 import asyncio
 from collections import deque
@@ -9,7 +9,7 @@ MOST_CHARACTERS = 16_000_000
 
 
 class MailboxClosed(Exception):
-    """Nothing more comes; the client is to be let go."""
+    """Raised when a mailbox has no further messages; the client is to be disconnected."""
 
     def __init__(self, reason: str, *, too_slow: bool = False) -> None:
         self.too_slow = too_slow
@@ -17,21 +17,26 @@ class MailboxClosed(Exception):
 
 
 class Mailbox:
-    """Messages for one client, in order. Of poses only the newest one waits; nothing else is ever
-    dropped: a client for which too much waits is let go, and resumes."""
+    """Queue of messages for one client, in order.
+
+    A message of `post_newest` replaces the waiting one of its kind. No other message is ever
+    dropped: a client for which too many messages wait is disconnected, and may resume.
+    """
 
     def __init__(self, past: Iterable[str] = ()) -> None:
-        """`past`: what the client is told first, however much it is. Whoever has just come is not
-        slow, and these texts are kept anyway."""
+        """Create a mailbox with the messages of the `past`, which do not count towards the limits.
+
+        A client that has just connected is not slow, and these texts are in memory anyway.
+        """
         self._messages: deque[str] = deque(past)
         self._past = len(self._messages)
         self._characters = 0
         self._newest: dict[str, str] = {}
-        self._there = asyncio.Event()
+        self._changed = asyncio.Event()
         self._closed: MailboxClosed | None = None
 
     def post(self, message: str) -> None:
-        """A message that has to arrive."""
+        """Add a message that has to arrive."""
         if self._closed is not None:
             return
         self._messages.append(message)
@@ -41,21 +46,24 @@ class Mailbox:
             self._past = 0
             self._newest.clear()
             self.close(MailboxClosed("too slow: connect again and resume", too_slow=True))
-        self._there.set()
+        self._changed.set()
 
     def post_newest(self, kind: str, message: str) -> None:
-        """A message that takes the place of the one of its kind that still waits."""
+        """Add a message that replaces the waiting message of its kind, if there is one."""
         if self._closed is None:
             self._newest[kind] = message
-            self._there.set()
+            self._changed.set()
 
     def close(self, why: MailboxClosed) -> None:
-        """What waits is still taken, then the reason is raised."""
+        """Close the mailbox: after the waiting messages, `next_message` raises the reason."""
         self._closed = self._closed or why
-        self._there.set()
+        self._changed.set()
 
-    async def take(self) -> str:
-        """The next message: first those that have to arrive. Raises MailboxClosed at the end."""
+    async def next_message(self) -> str:
+        """Remove and return the next message, those that have to arrive first.
+
+        Waits for one if there is none. Raises MailboxClosed at the end.
+        """
         while True:
             if self._messages:
                 message = self._messages.popleft()
@@ -68,5 +76,5 @@ class Mailbox:
                 return self._newest.pop(next(iter(self._newest)))
             if self._closed is not None:
                 raise self._closed
-            self._there.clear()
-            await self._there.wait()
+            self._changed.clear()
+            await self._changed.wait()

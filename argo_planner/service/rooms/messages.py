@@ -1,4 +1,4 @@
-"""What those who have a plan open are told, message by message."""
+"""Messages to and from the members of a room, who have a mission plan open."""
 
 from datetime import datetime
 from typing import Annotated, Literal
@@ -14,24 +14,24 @@ from argo_planner.service.jobs.analysis import AnalysisFound
 from argo_planner.service.jobs.job import AnyJob
 
 MOST_DIAGNOSTICS = 500
-"""that are told of a mission; the first ones by place"""
+"""diagnostics that are sent for one mission: the first ones by place"""
 
 
 class Findings(Model):
-    """What the check of a mission found."""
+    """Diagnostics from the check of a mission."""
 
     diagnostics: tuple[Diagnostic, ...] = ()
     more: int = 0
-    """how many further ones there are"""
+    """number of further diagnostics, which are left out"""
 
     @staticmethod
-    def of(found: tuple[Diagnostic, ...]) -> "Findings":
-        told = found[:MOST_DIAGNOSTICS]
-        return Findings.model_construct(diagnostics=told, more=len(found) - len(told))
+    def from_diagnostics(diagnostics: tuple[Diagnostic, ...]) -> "Findings":
+        first = diagnostics[:MOST_DIAGNOSTICS]
+        return Findings.model_construct(diagnostics=first, more=len(diagnostics) - len(first))
 
 
 class VersionSummary(Model):
-    """A version without its mission."""
+    """Version of a mission plan, without its mission."""
 
     number: int
     name: str
@@ -40,22 +40,22 @@ class VersionSummary(Model):
     at: datetime
 
     @staticmethod
-    def of(version: PlanVersion) -> "VersionSummary":
+    def from_version(version: PlanVersion) -> "VersionSummary":
         return VersionSummary.model_validate(version, from_attributes=True)
 
 
 class Member(Model):
-    """Somebody who has the plan open, and what they have selected."""
+    """Client that has the plan open, with its author and selection."""
 
     client: str
-    """of the connection"""
+    """id of the connection"""
     author: str
     selection: tuple[str, ...] = ()
-    """names of tasks and groups"""
+    """names of the selected tasks and groups"""
 
 
 class PlanState(Model):
-    """A plan as it stands."""
+    """Present state of a mission plan, for one author."""
 
     id: str
     name: str
@@ -65,16 +65,17 @@ class PlanState(Model):
     mission: Mission
     findings: Findings
     analysis: AnalysisFound | None = None
-    """the last one, which may be of an earlier revision; None: there is none yet"""
+    """last analysis, which may be of an earlier revision; None: there is none yet"""
     versions: tuple[VersionSummary, ...] = ()
     undoable: tuple[int, ...] = ()
-    """revisions of whoever asks that can be undone, the newest one last"""
+    """revisions of the requesting author that can be undone, the newest one last"""
     redoable: tuple[int, ...] = ()
+    """undos of the requesting author that can be reverted by a redo, the newest one last"""
     recovered: str | None = None
-    """what was lost of a damaged file when it was opened"""
+    """what was lost when a damaged file was opened; None: nothing"""
 
     @staticmethod
-    def of(
+    def from_document(
         document: PlanDocument,
         findings: Findings,
         author: str,
@@ -91,7 +92,7 @@ class PlanState(Model):
             mission=plan.mission,
             findings=findings,
             analysis=analysis,
-            versions=tuple(map(VersionSummary.of, document.versions)),
+            versions=tuple(map(VersionSummary.from_version, document.versions)),
             undoable=plan.undoable.get(author, ()),
             redoable=plan.redoable.get(author, ()),
             recovered=recovered,
@@ -99,96 +100,97 @@ class PlanState(Model):
 
 
 class CommandDone(Model):
-    """What came of a command."""
+    """Result of a command."""
 
     revision: Revision
-    """what it made; of a command that was sent again, what it made then"""
+    """the revision that the command made; also when the command is sent again"""
     newest: int
-    """revision of the plan by now"""
+    """present revision of the plan"""
     findings: Findings
-    """of the mission by now"""
+    """of the present mission"""
     undoable: tuple[int, ...] = ()
     """revisions of the author that can be undone, the newest one last"""
     redoable: tuple[int, ...] = ()
+    """undos of the author that can be reverted by a redo, the newest one last"""
 
 
 class SnapshotTold(Model):
-    """All of it, at the beginning."""
+    """First message of a connection: the whole state of the plan."""
 
     kind: Literal["snapshot"] = "snapshot"
     client: str
-    """what this connection is called among the members"""
+    """id of this connection among the members"""
     state: PlanState
     members: tuple[Member, ...]
 
 
 class ResumedTold(Model):
-    """The client knows the plan; what it has missed follows."""
+    """First message of a connection that resumes; the missed revisions follow."""
 
     kind: Literal["resumed"] = "resumed"
     client: str
     revision: int
-    """that it has said it knows"""
+    """last revision that the client knows, as it has stated"""
     name: str
     versions: tuple[VersionSummary, ...]
     members: tuple[Member, ...]
 
 
 class RevisionTold(Model):
-    """A command was carried out."""
+    """Message that a command was executed."""
 
     kind: Literal["revision"] = "revision"
     revision: Revision
     findings: Findings | None = None
-    """of the mission now; None: as before"""
+    """of the present mission; None: unchanged"""
 
 
 class AnalysisTold(Model):
-    """The analysis of a revision is there."""
+    """Message that the analysis of a revision is complete."""
 
     kind: Literal["analysis"] = "analysis"
     analysis: AnalysisFound
 
 
 class NameTold(Model):
-    """The plan has another name."""
+    """Message that the plan was renamed."""
 
     kind: Literal["name"] = "name"
     name: str
 
 
 class VersionsTold(Model):
-    """A version was kept or dropped; these are all."""
+    """Message that a version was stored or deleted, with all present versions."""
 
     kind: Literal["versions"] = "versions"
     versions: tuple[VersionSummary, ...]
 
 
 class MembersTold(Model):
-    """Who is there, and what they have selected."""
+    """Message with all members and their selections."""
 
     kind: Literal["members"] = "members"
     members: tuple[Member, ...]
 
 
 class JobTold(Model):
-    """How far a job of the plan is. Of several that wait to be sent only the last one is."""
+    """Message with the state of a job; if several wait for the same job, only the last is sent."""
 
     kind: Literal["job"] = "job"
     job: AnyJob
-    """without the mission in its new order"""
+    """the job, without the mission in its new order"""
 
 
 class WorldTold(Model):
-    """The obstacles on the site have changed."""
+    """Message that the obstacles on the site have changed."""
 
     kind: Literal["world"] = "world"
     revision: int
-    """of the obstacles"""
+    """revision of the obstacles"""
 
 
 class DeletedTold(Model):
-    """The plan was moved to the bin; the connection ends."""
+    """Message that the plan was moved to the bin; the connection ends."""
 
     kind: Literal["deleted"] = "deleted"
 
@@ -206,11 +208,11 @@ RoomMessage = Annotated[
     | DeletedTold,
     Field(discriminator="kind"),
 ]
-"""all that those who have a plan open are told"""
+"""any message that is sent to a member"""
 
 
 class SelectTasks(Model):
-    """What a client tells: it has selected these tasks and groups."""
+    """Message from a client with the names of the tasks and groups that it has selected."""
 
     kind: Literal["select"] = "select"
     names: Annotated[tuple[Annotated[str, Field(max_length=200)], ...], Field(max_length=2_000)]

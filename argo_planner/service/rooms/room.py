@@ -1,4 +1,4 @@
-"""One open plan: its file, those who have it open, and the one way to change it."""
+"""Room of one open mission plan: its file, its members, and all changes of the plan."""
 
 import asyncio
 from collections.abc import Callable, Coroutine
@@ -37,23 +37,23 @@ from argo_planner.service.storage.plan_file import PlanFile
 P = ParamSpec("P")
 T = TypeVar("T")
 ANALYSED_AFTER = 0.3
-"""s without another command"""
+"""s without a further command"""
 
 
-def _to_the_end(
+def _shielded(
     work: Callable[P, Coroutine[Any, Any, T]],
 ) -> Callable[P, Coroutine[Any, Any, T]]:
-    """Does the work to its end, even where whoever asked for it does not wait any longer."""
+    """Return a function that completes the work even if its caller is cancelled."""
 
     @wraps(work)
-    async def done(*arguments: P.args, **named: P.kwargs) -> T:
+    async def run(*arguments: P.args, **named: P.kwargs) -> T:
         return await asyncio.shield(asyncio.create_task(work(*arguments, **named)))
 
-    return done
+    return run
 
 
 class PlanRoom:
-    """One open plan. Holds its file; what it does is done one after the other."""
+    """Room of one open mission plan. Owns its file; executes changes one after the other."""
 
     def __init__(
         self,
@@ -69,115 +69,126 @@ class PlanRoom:
         self._clock = clock
         self._turn = asyncio.Lock()
         self._members: dict[str, tuple[Member, Mailbox]] = {}
-        self._findings = self._found()
+        self._findings = self._check()
         self._analysis: AnalysisFound | None = None
         self._analysing: asyncio.Task[None] | None = None
         self._closed = False
-        self._analyse_soon()
+        self._schedule_analysis()
 
     @property
     def document(self) -> PlanDocument:
-        """The plan as all who are there have been told."""
+        """The mission plan, with all changes that were sent to the members."""
         return self._document
 
     @property
-    def empty(self) -> bool:
-        """Whether nobody has the plan open, and nothing is being done to it."""
+    def is_idle(self) -> bool:
+        """True if the room has no members and no change is under way."""
         return not self._members and not self._turn.locked()
 
     @property
     def analysis(self) -> AnalysisFound | None:
-        """The last one; it may be of an earlier revision."""
+        """The last analysis, which may be of an earlier revision; None if there is none yet."""
         return self._analysis
 
     def state(self, author: str) -> PlanState:
-        """The plan as it stands, for an author."""
+        """Return the present state of the plan, for an author."""
         lost = self._file.recovery
-        return PlanState.of(
+        return PlanState.from_document(
             self.document, self._findings, author, self._analysis, lost.message if lost else None
         )
 
-    def repeated(self, asked: ReplaceFrom, author: str) -> CommandDone | None:
-        """The answer to a command that has been carried out before. Raises CommandIdTaken."""
-        known = self.document.plan.revision_for(asked, author)
-        return None if known is None else self._done(known, author)
+    def earlier_answer(self, request: ReplaceFrom, author: str) -> CommandDone | None:
+        """Return the answer to a request that was executed before, or None if it was not.
 
-    @_to_the_end
-    async def carry_out(
+        Raises CommandIdTaken if another command has used its id.
+        """
+        known = self.document.plan.revision_for(request, author)
+        return None if known is None else self._command_done(known, author)
+
+    @_shielded
+    async def execute(
         self,
         command: PlanCommand,
         author: str,
         made_on: int | None,
-        asked: ReplaceFrom | None = None,
+        request: ReplaceFrom | None = None,
     ) -> CommandDone:
-        """Carries out a command that was made on a revision; None: on whichever there is. When
-        this returns, it is on disk, and all who are there are being told. It is known by what was
-        `asked`, where that stands for it.
+        """Execute a command that was made on a revision; None allows any revision.
 
-        Raises what `MissionPlan.carried_out` raises, or Unavailable where it can't be written.
+        On return, the change is on disk, and its message is queued for all members. A command that
+        was made from a `request` is recognized by that request when it is sent again.
+
+        Raises the errors of `MissionPlan.execute`, or Unavailable if the file can't be written.
         """
         async with self._turn:
             self._require_open()
             plan = self.document.plan
-            known = plan.revision_for(asked or command, author)
+            known = plan.revision_for(request or command, author)
             if known is not None:
-                return self._done(known, author)
+                return self._command_done(known, author)
             changed, record = self.document.with_plan(
-                plan.execute(command, author, made_on, self._clock(), asked)
+                plan.execute(command, author, made_on, self._clock(), request)
             )
             await self._write(changed, record)
-            before, self._findings = self._findings, self._found()
-            findings = None if self._findings == before else self._findings
-            self._tell(RevisionTold.model_construct(revision=record.revision, findings=findings))
-            self._analyse_soon()
-            return self._done(record.revision, author)
+            previous, self._findings = self._findings, self._check()
+            findings = None if self._findings == previous else self._findings
+            self._broadcast(
+                RevisionTold.model_construct(revision=record.revision, findings=findings)
+            )
+            self._schedule_analysis()
+            return self._command_done(record.revision, author)
 
-    @_to_the_end
+    @_shielded
     async def rename(self, name: str, author: str) -> None:
-        """Gives the plan another name. Raises Invalid, Unavailable."""
+        """Rename the plan; raises Invalid or Unavailable."""
         async with self._turn:
             self._require_open()
             record = self.document.make_rename_record(name, author, self._clock())
             await self._write(self.document.apply(record), record)
-            self._tell(NameTold(name=name))
+            self._broadcast(NameTold(name=name))
 
-    @_to_the_end
-    async def keep_version(self, name: str, author: str, made_on: int | None) -> VersionSummary:
-        """Keeps the present mission under a name. Raises StaleRevision, Invalid, Conflict,
-        Unavailable."""
+    @_shielded
+    async def store_version(self, name: str, author: str, made_on: int | None) -> VersionSummary:
+        """Store the present mission as a version.
+
+        Raises StaleRevision, Invalid, Conflict or Unavailable.
+        """
         async with self._turn:
             self._require_open()
             self.document.plan.require_newest(made_on)
             record = self.document.make_version_record(name, author, self._clock())
             await self._write(self.document.apply(record), record)
-            self._tell_versions()
-            return VersionSummary.of(record.version)
+            self._broadcast_versions()
+            return VersionSummary.from_version(record.version)
 
-    @_to_the_end
-    async def drop_version(self, number: int) -> None:
-        """Keeps a version no longer. Raises NotFound, Unavailable."""
+    @_shielded
+    async def delete_version(self, number: int) -> None:
+        """Delete a version; raises NotFound or Unavailable."""
         async with self._turn:
             self._require_open()
             record = VersionDropped(number=self.document.version(number).number)
             await self._write(self.document.apply(record), record)
-            self._tell_versions()
+            self._broadcast_versions()
 
-    # ---- those who have it open
+    # ---- members
 
     def join(self, client: str, author: str, since: int | None = None) -> Mailbox:
-        """Somebody opens the plan. Their first message is the whole state, or, where the revision
-        that they know is known here, what happened since then."""
+        """Add a member and return its mailbox.
+
+        Its first message is the whole state; if it knows the revision `since` and this one is in
+        the history, the first messages are a `resumed` message and the revisions since then.
+        """
         self._require_open()
         member = Member(client=client, author=author)
-        members = (*self._present(), member)
+        members = (*self._member_list(), member)
         missed = None if since is None else self.document.plan.since(since)
-        past: list[Model] = []
+        messages: list[Model] = []
         if since is None or missed is None:
             state = self.state(author)
-            told = SnapshotTold.model_construct(client=client, state=state, members=members)
-            past.append(told)
+            snapshot = SnapshotTold.model_construct(client=client, state=state, members=members)
+            messages.append(snapshot)
         else:
-            past.append(
+            messages.append(
                 ResumedTold.model_construct(
                     client=client,
                     revision=since,
@@ -186,52 +197,55 @@ class PlanRoom:
                     members=members,
                 )
             )
-            past += [RevisionTold.model_construct(revision=revision) for revision in missed]
+            messages += [RevisionTold.model_construct(revision=revision) for revision in missed]
             if missed:
                 newest = RevisionTold.model_construct(revision=missed[-1], findings=self._findings)
-                past[-1] = newest
+                messages[-1] = newest
             if self._analysis is not None:
-                past.append(AnalysisTold.model_construct(analysis=self._analysis))
-        mailbox = Mailbox(told.model_dump_json() for told in past)
-        self._tell(MembersTold(members=members))
+                messages.append(AnalysisTold.model_construct(analysis=self._analysis))
+        mailbox = Mailbox(message.model_dump_json() for message in messages)
+        self._broadcast(MembersTold(members=members))
         self._members[client] = (member, mailbox)
         return mailbox
 
     def select(self, client: str, names: tuple[str, ...]) -> None:
-        """Somebody has selected these tasks and groups."""
+        """Set the selection of a member to these tasks and groups."""
         member, mailbox = self._members[client]
         if member.selection != names:
             self._members[client] = (member.model_copy(update={"selection": names}), mailbox)
-            self._tell(MembersTold(members=self._present()), but=client)
+            self._broadcast(MembersTold(members=self._member_list()), except_for=client)
 
-    def tell_of(self, job: Job) -> None:
-        """How far a job is is told to all who are there."""
+    def publish_job(self, job: Job) -> None:
+        """Send the state of a job to all members."""
         text = JobTold.model_construct(job=job.told()).model_dump_json()
         for _, mailbox in self._members.values():
             mailbox.post_newest(job.id, text)
 
-    def tell_of_world(self, revision: int) -> None:
-        """That the obstacles on the site have changed is told to all who are there."""
-        self._tell(WorldTold(revision=revision))
+    def publish_world(self, revision: int) -> None:
+        """Tell all members that the obstacles on the site have changed."""
+        self._broadcast(WorldTold(revision=revision))
 
     def leave(self, client: str) -> None:
-        """Somebody has gone."""
+        """Remove a member."""
         if self._members.pop(client, None) is not None:
-            self._tell(MembersTold(members=self._present()))
+            self._broadcast(MembersTold(members=self._member_list()))
 
     async def close(self, deleting: Callable[[], None] | None = None) -> None:
-        """Lets everybody go, and closes the file once nothing is being done. `deleting` moves the
-        file away before; raises what it raises, and goes on as before then."""
+        """Wait for the change under way, then disconnect all members and close the file.
+
+        `deleting`, if given, is called first to move the file away. If it raises an error, the
+        room stays open and the error is passed on.
+        """
         async with self._turn:
             if self._closed:
                 return
             if deleting is not None:
                 await asyncio.to_thread(deleting)
-                self._tell(DeletedTold())
+                self._broadcast(DeletedTold())
             self.close_idle()
 
     def close_idle(self) -> None:
-        """Closes the file, while nothing is being done."""
+        """Disconnect all members and close the file, while no change is under way."""
         self._closed = True
         if self._analysing is not None:
             self._analysing.cancel()
@@ -239,31 +253,31 @@ class PlanRoom:
             mailbox.close(MailboxClosed("the mission is closed"))
         self._file.close()
 
-    def _present(self) -> tuple[Member, ...]:
+    def _member_list(self) -> tuple[Member, ...]:
         return tuple(member for member, _ in self._members.values())
 
-    def _tell(self, message: Model, but: str | None = None) -> None:
+    def _broadcast(self, message: Model, except_for: str | None = None) -> None:
         if not self._members:
             return
         text = message.model_dump_json()
         for client, (_, mailbox) in self._members.items():
-            if client != but:
+            if client != except_for:
                 mailbox.post(text)
 
-    def _tell_versions(self) -> None:
-        self._tell(VersionsTold(versions=self._versions()))
+    def _broadcast_versions(self) -> None:
+        self._broadcast(VersionsTold(versions=self._versions()))
 
     def _versions(self) -> tuple[VersionSummary, ...]:
-        return tuple(map(VersionSummary.of, self.document.versions))
+        return tuple(map(VersionSummary.from_version, self.document.versions))
 
-    # ---- what is found out
+    # ---- the file, checks and analysis
 
     async def _write(self, document: PlanDocument, record: PlanRecord) -> None:
         await asyncio.to_thread(self._file.append, document, record)
-        # Not before, so that whoever joins meanwhile is told of it like all others.
+        # After the file: a client that joins in the meantime gets this change as a message.
         self._document = document
 
-    def _done(self, revision: Revision, author: str) -> CommandDone:
+    def _command_done(self, revision: Revision, author: str) -> CommandDone:
         plan = self.document.plan
         return CommandDone.model_construct(
             revision=revision,
@@ -275,12 +289,12 @@ class PlanRoom:
 
     def _require_open(self) -> None:
         if self._closed:
-            raise Conflict("the mission was closed or deleted meanwhile: open it again")
+            raise Conflict("the mission was closed or deleted in the meantime: open it again")
 
-    def _found(self) -> Findings:
-        return Findings.of(check(self.document.plan.mission, self._catalog))
+    def _check(self) -> Findings:
+        return Findings.from_diagnostics(check(self.document.plan.mission, self._catalog))
 
-    def _analyse_soon(self) -> None:
+    def _schedule_analysis(self) -> None:
         if self._analyst is None:
             return
         if self._analysing is not None:
@@ -291,4 +305,4 @@ class PlanRoom:
         await asyncio.sleep(ANALYSED_AFTER)
         plan = self.document.plan
         self._analysis = await analyst.analyse(plan.mission, plan.revision)
-        self._tell(AnalysisTold.model_construct(analysis=self._analysis))
+        self._broadcast(AnalysisTold.model_construct(analysis=self._analysis))

@@ -1,4 +1,4 @@
-"""The plans of a folder, those that are in use open."""
+"""Rooms of the mission plans in a folder; a room is open while its plan is in use."""
 
 import asyncio
 from collections.abc import Callable
@@ -13,11 +13,11 @@ from argo_planner.service.storage.folder import PlanFolder, summary_of
 from argo_planner.service.storage.outline import PlanSummary
 
 MOST_OPEN = 50
-"""rooms without anybody in them that stay open"""
+"""rooms without members that stay open"""
 
 
 class PlanRooms:
-    """Opens plans when they are asked for, one room each. Holds the folder."""
+    """Open rooms of a folder's mission plans, one for each plan. Owns the folder."""
 
     def __init__(
         self,
@@ -32,46 +32,46 @@ class PlanRooms:
         self._clock = clock
         self._rooms: dict[str, PlanRoom] = {}
         self._turn = asyncio.Lock()
-        self._listing = asyncio.Lock()  # lists are only read: nobody's edits wait for them
+        self._listing = asyncio.Lock()  # separate from `_turn`: edits do not wait for lists
 
-    async def plans(self) -> list[PlanSummary]:
-        """All plans, the newest ones first."""
+    async def list_plans(self) -> list[PlanSummary]:
+        """Return all plans, the newest ones first."""
         async with self._listing:
-            opened = {id: summary_of(room.document) for id, room in self._rooms.items()}
-            return await asyncio.to_thread(self._folder.plans, opened)
+            open_plans = {id: summary_of(room.document) for id, room in self._rooms.items()}
+            return await asyncio.to_thread(self._folder.plans, open_plans)
 
-    async def deleted(self) -> list[PlanSummary]:
-        """Those in the bin."""
+    async def list_deleted(self) -> list[PlanSummary]:
+        """Return the plans in the bin, the newest ones first."""
         async with self._listing:
             return await asyncio.to_thread(self._folder.deleted)
 
     async def create(self, name: str, mission: Mission) -> PlanRoom:
-        """A new plan. Raises what `PlanFolder.create` raises."""
+        """Create a plan and open it; raises the errors of `PlanFolder.create`."""
         async with self._turn:
             file = await asyncio.to_thread(self._folder.create, name, mission, self._clock())
-            return self._opened(PlanRoom(file, self._catalog, self._analyst, self._clock))
+            return self._add(PlanRoom(file, self._catalog, self._analyst, self._clock))
 
     async def open(self, id: str) -> PlanRoom:
-        """The plan with that id. Raises what `PlanFolder.open` raises."""
+        """Return the room of a plan, opened if needed; raises the errors of `PlanFolder.open`."""
         if (room := self._rooms.get(id)) is not None:
             return room
         async with self._turn:
             if (room := self._rooms.get(id)) is not None:
                 return room
             file = await asyncio.to_thread(self._folder.open, id)
-            return self._opened(PlanRoom(file, self._catalog, self._analyst, self._clock))
+            return self._add(PlanRoom(file, self._catalog, self._analyst, self._clock))
 
-    def opened(self, id: str) -> PlanRoom | None:
-        """The plan with that id, if it is open."""
+    def find_open(self, id: str) -> PlanRoom | None:
+        """Return the room of a plan, or None if it is not open."""
         return self._rooms.get(id)
 
-    def tell_of_world(self, revision: int) -> None:
-        """That the obstacles on the site have changed is told to all who have a plan open."""
+    def publish_world(self, revision: int) -> None:
+        """Tell the members of all rooms that the obstacles on the site have changed."""
         for room in self._rooms.values():
-            room.tell_of_world(revision)
+            room.publish_world(revision)
 
     async def delete(self, id: str) -> None:
-        """Moves a plan to the bin; whoever has it open is told. Raises NotFound, Conflict."""
+        """Move a plan to the bin and inform its members; raises NotFound or Conflict."""
         async with self._turn:
             deleting = partial(self._folder.delete, id)
             if (room := self._rooms.get(id)) is None:
@@ -81,26 +81,26 @@ class PlanRooms:
                 self._rooms.pop(id, None)
 
     async def restore(self, id: str) -> PlanRoom:
-        """Takes a plan out of the bin. Raises NotFound."""
+        """Move a plan out of the bin and open it; raises NotFound if the bin does not have it."""
         async with self._turn:
             await asyncio.to_thread(self._folder.restore, id)
         return await self.open(id)
 
     async def destroy(self, id: str) -> None:
-        """Deletes a plan in the bin for good. Raises NotFound."""
+        """Delete a plan in the bin permanently; raises NotFound if the bin does not have it."""
         async with self._turn:
             await asyncio.to_thread(self._folder.destroy, id)
 
     async def close(self) -> None:
-        """Closes all of them, and the folder."""
+        """Close all rooms and the folder."""
         for id, room in [*self._rooms.items()]:
             await room.close()
             self._rooms.pop(id, None)
         self._folder.close()
 
-    def _opened(self, room: PlanRoom) -> PlanRoom:
+    def _add(self, room: PlanRoom) -> PlanRoom:
         self._rooms[room.document.id] = room
-        idle = [id for id, other in self._rooms.items() if other.empty and other is not room]
+        idle = [id for id, other in self._rooms.items() if other.is_idle and other is not room]
         for id in idle[: max(0, len(idle) - MOST_OPEN)]:
             self._rooms.pop(id).close_idle()
         return room

@@ -110,6 +110,6 @@ async def carried_out(
     made_on: int | None,
     asked: ReplaceFrom | None = None,
 ) -> Response:
-    """The answer to a command. Raises what `PlanRoom.carry_out` raises."""
-    done = await room.carry_out(command, author, made_on, asked)
+    """The answer to a command. Raises what `PlanRoom.execute` raises."""
+    done = await room.execute(command, author, made_on, asked)
     return said(done, revision=done.newest)

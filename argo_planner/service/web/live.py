@@ -106,7 +106,7 @@ async def carry(socket: WebSocket, mailbox: Mailbox, heard: Callable[[str], None
 
 async def _sending(socket: WebSocket, mailbox: Mailbox) -> None:
     while True:
-        await socket.send_text(await mailbox.take())
+        await socket.send_text(await mailbox.next_message())
 
 
 async def _hearing(socket: WebSocket, heard: Callable[[str], None]) -> None:

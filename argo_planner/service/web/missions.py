@@ -97,7 +97,7 @@ class ImportNotes(Model):
 @router.get("/missions", operation_id="list_missions", response_model=PlanList)
 async def list_missions(service: Service, _: Viewer) -> Response:
     """The missions of the folder."""
-    return said(PlanList(missions=tuple(await service.rooms.plans())))
+    return said(PlanList(missions=tuple(await service.rooms.list_plans())))
 
 
 @router.post(
@@ -199,7 +199,7 @@ async def delete_mission(service: Service, _: Planner, id: PlanId) -> Response:
 @router.get("/bin", operation_id="list_bin", response_model=PlanList)
 async def list_bin(service: Service, _: Viewer) -> Response:
     """What was deleted."""
-    return said(PlanList(missions=tuple(await service.rooms.deleted())))
+    return said(PlanList(missions=tuple(await service.rooms.list_deleted())))
 
 
 @router.post("/bin/{id}/restore", operation_id="restore_mission", response_model=PlanSummary)

@@ -64,8 +64,8 @@ def opened_service(
             rooms = PlanRooms(plans, site.catalog, analyst, _now)
 
             def tell(job: Job) -> None:
-                if (room := rooms.opened(job.mission)) is not None:
-                    room.tell_of(job)
+                if (room := rooms.find_open(job.mission)) is not None:
+                    room.publish_job(job)
 
             new_id = partial(secrets.token_hex, 6)
             jobs = Jobs(tell)

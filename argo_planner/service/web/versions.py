@@ -51,7 +51,7 @@ class VersionList(Model):
 async def list_versions(service: Service, _: Viewer, id: PlanId) -> Response:
     """The versions that were kept of a mission."""
     document = (await service.rooms.open(id)).document
-    return said(VersionList(versions=tuple(map(VersionSummary.of, document.versions))))
+    return said(VersionList(versions=tuple(map(VersionSummary.from_version, document.versions))))
 
 
 @router.post(
@@ -70,7 +70,7 @@ async def keep_version(
 ) -> Response:
     """Keeps the mission as it stands under a name."""
     room = await service.rooms.open(id)
-    version = await room.keep_version(given.name, visitor.author, made_on)
+    version = await room.store_version(given.name, visitor.author, made_on)
     return said(version, 201, location=f"/api/missions/{id}/versions/{version.number}")
 
 
@@ -88,7 +88,7 @@ async def read_version(service: Service, _: Viewer, id: PlanId, number: VersionN
 @router.delete("/missions/{id}/versions/{number}", operation_id="drop_version", status_code=204)
 async def drop_version(service: Service, _: Planner, id: PlanId, number: VersionNumber) -> Response:
     """Keeps a version no longer."""
-    await (await service.rooms.open(id)).drop_version(number)
+    await (await service.rooms.open(id)).delete_version(number)
     return Response(status_code=204)
 
 
@@ -105,7 +105,7 @@ async def restore_version(
     room = await service.rooms.open(id)
     asked = ReplaceFrom(id=command.id, kept_as=f"version {number}")
     # Before the version is looked for, which may have been dropped since.
-    if (again := room.repeated(asked, visitor.author)) is not None:
+    if (again := room.earlier_answer(asked, visitor.author)) is not None:
         return said(again, revision=again.newest)
     version = room.document.version(number)
     replaced = ReplacePlan.model_construct(

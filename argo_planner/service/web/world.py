@@ -136,7 +136,7 @@ async def put_obstacles(
     obstacles = given.obstacles
     await service.on_site(with_obstacles, service.site, obstacles)
     changed = await service.on_site(service.obstacles.replace, obstacles, made_on)
-    service.rooms.tell_of_world(changed.revision)
+    service.rooms.publish_world(changed.revision)
     return said(changed, revision=changed.revision)
 
 

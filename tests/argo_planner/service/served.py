@@ -153,7 +153,7 @@ async def taken(mailbox: Mailbox, kind: str) -> list[dict[str, Any]]:
     found = []
     while True:
         try:
-            message = json.loads(await asyncio.wait_for(mailbox.take(), 0.05))
+            message = json.loads(await asyncio.wait_for(mailbox.next_message(), 0.05))
         except TimeoutError:
             return found
         if message["kind"] == kind:

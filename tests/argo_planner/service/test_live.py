@@ -29,7 +29,7 @@ class Listener:
             revision = Revision.model_validate(message["revision"])
             assert revision.number == (self.revision or 0) + 1
             assert self.follower is not None
-            self.follower.hears(revision)
+            self.follower.apply(revision)
             self.revision = revision.number
 
 

@@ -1,4 +1,4 @@
-"""Open plans: slow clients, and work that goes on when nobody waits for it."""
+"""Rooms: slow clients, and commands that are completed although their sender is gone."""
 
 import asyncio
 import json
@@ -37,35 +37,35 @@ async def rooms(tmp_path):
     await rooms.close()
 
 
-def renamed(k: int) -> EditPlan:
+def rename_command(k: int) -> EditPlan:
     old = "a" if k == 1 else f"a{k - 1}"
     return EditPlan(id=f"k{k}", edits=(edits.RenameTask(name=old, new_name=f"a{k}"),))
 
 
-async def test_poses_are_the_newest_and_events_are_all_there() -> None:
+async def test_only_the_newest_pose_and_all_events_are_sent() -> None:
     mailbox = Mailbox()
     for k in range(5):
         mailbox.post_newest("pose", f"pose {k}")
         mailbox.post(f"event {k}")
     mailbox.close(MailboxClosed("over"))
     mailbox.post("too late")
-    heard = [await mailbox.take() for _ in range(6)]
+    messages = [await mailbox.next_message() for _ in range(6)]
     with pytest.raises(MailboxClosed, match="over"):
-        await mailbox.take()
-    assert heard == [*(f"event {k}" for k in range(5)), "pose 4"]
+        await mailbox.next_message()
+    assert messages == [*(f"event {k}" for k in range(5)), "pose 4"]
 
 
-async def test_who_is_too_slow_is_let_go_delays_nobody_and_resumes(rooms, monkeypatch) -> None:
+async def test_a_slow_client_is_disconnected_delays_nobody_and_resumes(rooms, monkeypatch) -> None:
     monkeypatch.setattr(mailboxes, "MOST_MESSAGES", 10)
     room = await rooms.create("Round", mission("a", "b"))
     slow, quick = room.join("1", "ann"), room.join("2", "bob")
-    heard = []
+    messages = []
     for k in range(1, 21):
-        await room.carry_out(renamed(k), "ann", k)
-        heard += await taken(quick, "revision")
-    assert [message["revision"]["number"] for message in heard] == [*range(2, 22)]
+        await room.execute(rename_command(k), "ann", k)
+        messages += await taken(quick, "revision")
+    assert [message["revision"]["number"] for message in messages] == [*range(2, 22)]
     with pytest.raises(MailboxClosed) as closed:
-        await slow.take()
+        await slow.next_message()
     assert closed.value.too_slow
     room.leave("1")
     monkeypatch.setattr(mailboxes, "MOST_MESSAGES", 100)
@@ -73,38 +73,38 @@ async def test_who_is_too_slow_is_let_go_delays_nobody_and_resumes(rooms, monkey
     assert [message["revision"]["number"] for message in again] == [*range(12, 22)]
 
 
-async def test_who_has_just_come_is_told_much_without_being_let_go(monkeypatch) -> None:
+async def test_a_new_client_may_get_many_messages_at_first(monkeypatch) -> None:
     monkeypatch.setattr(mailboxes, "MOST_MESSAGES", 2)
     mailbox = Mailbox(f"past {k}" for k in range(5))
     mailbox.post("event 0")
     mailbox.post("event 1")
-    heard = [await mailbox.take() for _ in range(6)]
-    assert heard == [*(f"past {k}" for k in range(5)), "event 0"]
+    messages = [await mailbox.next_message() for _ in range(6)]
+    assert messages == [*(f"past {k}" for k in range(5)), "event 0"]
     mailbox.post("event 2")
     mailbox.post("event 3")
     with pytest.raises(MailboxClosed) as closed:
-        await mailbox.take()
+        await mailbox.next_message()
     assert closed.value.too_slow
 
 
-async def test_a_command_is_carried_out_to_its_end_where_nobody_waits(rooms) -> None:
+async def test_a_command_is_completed_although_its_sender_is_gone(rooms) -> None:
     room = await rooms.create("Round", mission("a", "b"))
-    told = room.join("1", "ann")
-    asked = asyncio.ensure_future(room.carry_out(renamed(1), "ann", 1))
+    page = room.join("1", "ann")
+    sending = asyncio.ensure_future(room.execute(rename_command(1), "ann", 1))
     await asyncio.sleep(0)
-    asked.cancel()
+    sending.cancel()
     with pytest.raises(asyncio.CancelledError):
-        await asked
-    done = await room.carry_out(renamed(2), "ann", 2)
+        await sending
+    done = await room.execute(rename_command(2), "ann", 2)
     assert done.newest == 3
-    assert len(await taken(told, "revision")) == 2
+    assert len(await taken(page, "revision")) == 2
 
 
-async def test_commands_at_once_are_done_one_after_the_other(rooms) -> None:
+async def test_simultaneous_commands_are_executed_one_after_the_other(rooms) -> None:
     room = await rooms.create("Round", mission("a", "b"))
     answers = await asyncio.gather(
-        *(room.carry_out(renamed(1), "ann", 1) for _ in range(5)),
-        room.carry_out(EditPlan(id="x", edits=(edits.RemoveTask(name="b"),)), "bob", None),
+        *(room.execute(rename_command(1), "ann", 1) for _ in range(5)),
+        room.execute(EditPlan(id="x", edits=(edits.RemoveTask(name="b"),)), "bob", None),
     )
     assert [answer.revision.number for answer in answers] == [2, 2, 2, 2, 2, 3]
 
@@ -113,45 +113,45 @@ async def test_a_closed_room_refuses(rooms) -> None:
     room: PlanRoom = await rooms.create("Round", mission("a", "b"))
     await rooms.delete(room.document.id)
     with pytest.raises(Conflict, match="closed or deleted"):
-        await room.carry_out(renamed(1), "ann", 1)
+        await room.execute(rename_command(1), "ann", 1)
     with pytest.raises(Conflict):
         room.join("1", "ann")
     back = await rooms.restore(room.document.id)
     assert back.document.plan.mission == mission("a", "b")
 
 
-async def test_rooms_that_nobody_uses_are_closed(rooms, monkeypatch) -> None:
+async def test_unused_rooms_are_closed(rooms, monkeypatch) -> None:
     monkeypatch.setattr("argo_planner.service.rooms.rooms.MOST_OPEN", 2)
     used = await rooms.create("used", mission("a"))
     used.join("1", "ann")
     others = [await rooms.create(str(k), mission("a")) for k in range(5)]
     with pytest.raises(Conflict):
         others[0].join("2", "bob")
-    await used.carry_out(renamed(1), "ann", 1)
+    await used.execute(rename_command(1), "ann", 1)
     assert (await rooms.open(others[0].document.id)).document.name == "0"
-    assert len(await rooms.plans()) == 6
+    assert len(await rooms.list_plans()) == 6
 
 
 async def test_files_of_open_plans_are_not_read_for_a_list(rooms, monkeypatch) -> None:
     read = []
     monkeypatch.setattr(folders, "read_outline", read.append)
     room = await rooms.create("Round", mission("a", "b"))
-    await room.carry_out(renamed(1), "ann", 1)
-    (listed,) = await rooms.plans()
+    await room.execute(rename_command(1), "ann", 1)
+    (listed,) = await rooms.list_plans()
     assert (listed.name, listed.revision) == ("Round", 2)
     assert read == []
 
 
-async def test_who_joins_while_a_command_is_written_hears_of_it_once(rooms) -> None:
+async def test_a_client_that_joins_during_a_command_gets_its_revision_once(rooms) -> None:
     room = await rooms.create("Round", mission("a", "b"))
     for k in range(1, 31):
-        asked = asyncio.ensure_future(room.carry_out(renamed(k), "ann", k))
+        sending = asyncio.ensure_future(room.execute(rename_command(k), "ann", k))
         for _ in range(k % 7):
             await asyncio.sleep(0.001)
         page = room.join(str(k), "bob")
-        await asked
-        told = [json.loads(await page.take())]
-        known = told[0]["state"]["revision"]
+        await sending
+        first = [json.loads(await page.next_message())]
+        known = first[0]["state"]["revision"]
         later = [m["revision"]["number"] for m in await taken(page, "revision")]
         assert later == [*range(known + 1, k + 2)]
         room.leave(str(k))

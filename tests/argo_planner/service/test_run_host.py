@@ -353,7 +353,7 @@ async def test_the_state_is_told_before_what_has_brought_it_about(tmp_path, site
             assert await done(host, request) == "confirmed"
             heard = []
             while not heard or heard[-1].get("request", {}).get("progress") != "confirmed":
-                heard.append(json.loads(await follower.take()))
+                heard.append(json.loads(await follower.next_message()))
             states = [message["state"] for message in heard if message["kind"] == "state"]
             assert states[-1]["mode"] == mode
             assert states[-1]["skipped"] == skipped

@@ -86,7 +86,7 @@ def plan_mission(
 
 def _placed(plans: "PlanFolder", name: str, mission: Mission) -> str:
     """Id of the mission in the folder: of the one that is just like it, or of a new one."""
-    known = plans.plans()
+    known = plans.list_plans()
     for summary in known:
         if summary.problem is None and summary.tasks == len(mission.tasks):
             with plans.open(summary.id) as file:

@@ -140,7 +140,7 @@ def test_an_evaluation_ends_with_the_service_and_goes_on(serving: Serving, end: 
 @pytest.mark.long
 def test_one_service_has_a_folder(serving: Serving, argo_process) -> None:
     ended = argo_process("serve", str(serving.folder), "--port", "0", "--token", TOKEN)
-    assert "another service has this folder" in refused(ended)
+    assert "another service uses this folder" in refused(ended)
 
 
 class Subscriber(Listener):

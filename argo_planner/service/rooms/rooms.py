@@ -9,7 +9,7 @@ from argo_compiler.base.catalog import Catalog
 from argo_compiler.il import Mission
 from argo_planner.service.jobs.analysis import Analyst
 from argo_planner.service.rooms.room import PlanRoom
-from argo_planner.service.storage.folder import PlanFolder, summary_of
+from argo_planner.service.storage.folder import PlanFolder, summarize
 from argo_planner.service.storage.outline import PlanSummary
 
 MOST_OPEN = 50
@@ -37,13 +37,13 @@ class PlanRooms:
     async def list_plans(self) -> list[PlanSummary]:
         """Return all plans, the newest ones first."""
         async with self._listing:
-            open_plans = {id: summary_of(room.document) for id, room in self._rooms.items()}
-            return await asyncio.to_thread(self._folder.plans, open_plans)
+            open_plans = {id: summarize(room.document) for id, room in self._rooms.items()}
+            return await asyncio.to_thread(self._folder.list_plans, open_plans)
 
     async def list_deleted(self) -> list[PlanSummary]:
         """Return the plans in the bin, the newest ones first."""
         async with self._listing:
-            return await asyncio.to_thread(self._folder.deleted)
+            return await asyncio.to_thread(self._folder.list_deleted)
 
     async def create(self, name: str, mission: Mission) -> PlanRoom:
         """Create a plan and open it; raises the errors of `PlanFolder.create`."""

@@ -1,1 +1,1 @@
-"""Plans on disk: what was acknowledged survives a process that is killed."""
+"""Mission plans on disk; acknowledged changes survive a process that is killed."""

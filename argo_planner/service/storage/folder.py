@@ -1,4 +1,4 @@
-"""A folder with the plans of a service, and a bin for those that were deleted."""
+"""Folder with the mission plans of a service, and a bin for deleted ones."""
 
 import fcntl
 import os
@@ -20,31 +20,36 @@ from argo_planner.service.storage.outline import PlanSummary, read_outline
 from argo_planner.service.storage.plan_file import PlanFile, create_plan_file, open_plan_file
 
 MOST_PLANS = 2_000
-"""in a folder, and in its bin"""
+"""plans in a folder, and as many in its bin"""
 PLAN_ID = r"[0-9a-f]{12}"
-"""what a plan's id looks like, as a regular expression"""
+"""regular expression for the id of a plan"""
 _BIN = "bin"
 _SUFFIX = ".plan"
 
 
 @dataclass(frozen=True)
-class _Known:
-    """What was read of a file, and the state that it was in."""
+class _CachedSummary:
+    """Summary of a plan's file, and the file's state when it was read."""
 
     state: tuple[int, int, int]
+    """modification time in ns, size in bytes, and inode"""
     summary: PlanSummary
 
 
 class PlanFolder(Closing):
-    """A folder with plans. Holds a lock, so that one service at a time has it; one thread at a
-    time may use it. Links in it are not followed."""
+    """Folder with mission plans. Holds a lock, so that only one service at a time uses it.
+
+    Only one thread at a time may use it. It does not follow links.
+    """
 
     def __init__(self, path: Path, new_id: Callable[[], str]) -> None:
-        """Opens the folder, or makes it. Raises Conflict if another service has it, Unavailable if
-        it can't be written to."""
+        """Open the folder, and create it if needed.
+
+        Raises Conflict if another service uses it, Unavailable if it can't be written to.
+        """
         self.path = path
         self._new_id = new_id
-        self._known: dict[Path, _Known] = {}
+        self._cache: dict[Path, _CachedSummary] = {}
         try:
             (path / _BIN).mkdir(parents=True, exist_ok=True)
             self._lock = os.open(
@@ -59,22 +64,25 @@ class PlanFolder(Closing):
         except BlockingIOError:
             os.close(self._lock)
             raise Conflict(
-                f"{path}: another service has this folder: end that one, or choose another folder"
+                f"{path}: another service uses this folder: stop it, or choose another folder"
             ) from None
 
     def close(self) -> None:
         os.close(self._lock)
 
-    def plans(self, opened: Mapping[str, PlanSummary] | None = None) -> list[PlanSummary]:
-        """All of them, the newest ones first. Files of those that are open are not read."""
-        return self._listed(self.path, opened or {})
+    def list_plans(self, open_plans: Mapping[str, PlanSummary] | None = None) -> list[PlanSummary]:
+        """Return all plans, the newest ones first; does not read the files of open plans."""
+        return self._summaries(self.path, open_plans or {})
 
-    def deleted(self) -> list[PlanSummary]:
-        """Those in the bin, the newest ones first."""
-        return self._listed(self.path / _BIN, {})
+    def list_deleted(self) -> list[PlanSummary]:
+        """Return the plans in the bin, the newest ones first."""
+        return self._summaries(self.path / _BIN, {})
 
     def create(self, name: str, mission: Mission, at: datetime) -> PlanFile:
-        """A new plan. Raises Invalid for what can't be its name, Conflict if the folder is full."""
+        """Create a plan.
+
+        Raises Invalid if the text can't be its name, Conflict if the folder is full.
+        """
         require_name(name, "the mission")
         if sum(1 for _ in _files(self.path)) >= MOST_PLANS:
             raise Conflict(f"there are {MOST_PLANS} missions: delete some of them first")
@@ -83,33 +91,35 @@ class PlanFolder(Closing):
         return create_plan_file(self._path(id), document)
 
     def open(self, id: str) -> PlanFile:
-        """The plan with that id. Raises NotFound, or what `open_plan_file` raises."""
+        """Open the plan with that id; raises NotFound or the errors of `open_plan_file`."""
         path = self._path(id)
         _require_file(path, id)
         return open_plan_file(path)
 
     def delete(self, id: str) -> None:
-        """Moves a plan to the bin. Raises NotFound, Conflict if the bin
-        is full."""
+        """Move a plan to the bin.
+
+        Raises NotFound, or Conflict if the bin is full.
+        """
         if sum(1 for _ in _files(self.path / _BIN)) >= MOST_PLANS:
             raise Conflict(f"there are {MOST_PLANS} missions in the bin: empty it first")
         self._move(self._path(id), self._deleted_path(id), id)
 
     def restore(self, id: str) -> None:
-        """Takes a plan out of the bin. Raises NotFound."""
+        """Move a plan out of the bin; raises NotFound if the bin does not have it."""
         self._move(self._deleted_path(id), self._path(id), id)
 
     def destroy(self, id: str) -> None:
-        """Deletes a plan in the bin for good. Raises NotFound."""
+        """Delete a plan in the bin permanently; raises NotFound if the bin does not have it."""
         path = self._deleted_path(id)
         _require_file(path, id)
-        for other in (path, *_beside(path)):
+        for other in (path, *_companion_files(path)):
             other.unlink(missing_ok=True)
 
     def _move(self, source: Path, target: Path, id: str) -> None:
         _require_file(source, id)
         try:
-            for other in _beside(source):
+            for other in _companion_files(source):
                 other.replace(target.parent / other.name)
             source.replace(target)
             sync_folder(source.parent)
@@ -117,26 +127,28 @@ class PlanFolder(Closing):
         except OSError as error:
             raise Unavailable(f"mission {id} can't be moved: {error.strerror}") from error
 
-    def _listed(self, folder: Path, opened: Mapping[str, PlanSummary]) -> list[PlanSummary]:
+    def _summaries(self, folder: Path, open_plans: Mapping[str, PlanSummary]) -> list[PlanSummary]:
         paths = {*_files(folder)}
-        for gone in [p for p in self._known if p.parent == folder and p not in paths]:
-            del self._known[gone]
-        summaries = (opened.get(path.stem) or self._summary(path) for path in paths)
-        found = [summary for summary in summaries if summary is not None]
-        return sorted(found, key=lambda s: (s.changed is not None, s.changed, s.id), reverse=True)
+        for removed in [p for p in self._cache if p.parent == folder and p not in paths]:
+            del self._cache[removed]
+        summaries = (open_plans.get(path.stem) or self._summary(path) for path in paths)
+        existing = [summary for summary in summaries if summary is not None]
+        return sorted(
+            existing, key=lambda s: (s.changed is not None, s.changed, s.id), reverse=True
+        )
 
     def _summary(self, path: Path) -> PlanSummary | None:
-        """None: it has gone meanwhile."""
+        """Return the summary, or None if the file was removed in the meantime."""
         try:
             status = path.lstat()
             state = (status.st_mtime_ns, status.st_size, status.st_ino)
-            known = self._known.get(path)
-            if known is None or known.state != state:
-                known = _Known(state, read_outline(path))
-                self._known[path] = known
+            cached = self._cache.get(path)
+            if cached is None or cached.state != state:
+                cached = _CachedSummary(state, read_outline(path))
+                self._cache[path] = cached
         except (FileNotFoundError, NotFound):
             return None
-        return known.summary
+        return cached.summary
 
     def _free_id(self) -> str:
         while True:
@@ -145,14 +157,14 @@ class PlanFolder(Closing):
                 return id
 
     def _path(self, id: str) -> Path:
-        return self.path / (_checked(id) + _SUFFIX)
+        return self.path / (_require_id(id) + _SUFFIX)
 
     def _deleted_path(self, id: str) -> Path:
-        return self.path / _BIN / (_checked(id) + _SUFFIX)
+        return self.path / _BIN / (_require_id(id) + _SUFFIX)
 
 
-def summary_of(document: PlanDocument) -> PlanSummary:
-    """What a list shows of a plan."""
+def summarize(document: PlanDocument) -> PlanSummary:
+    """Return the summary of a plan for lists."""
     return PlanSummary(
         id=document.id,
         name=document.name,
@@ -166,21 +178,21 @@ def summary_of(document: PlanDocument) -> PlanSummary:
 def _files(folder: Path) -> Iterator[Path]:
     with os.scandir(folder) as entries:
         for entry in entries:
-            named = re.fullmatch(PLAN_ID + re.escape(_SUFFIX), entry.name)
-            if named and _is_own(entry):
+            has_plan_name = re.fullmatch(PLAN_ID + re.escape(_SUFFIX), entry.name)
+            if has_plan_name and _is_regular_file(entry):
                 yield folder / entry.name
 
 
-def _is_own(entry: os.DirEntry[str]) -> bool:
-    """Whether it is a file that is still there, and no link to one."""
+def _is_regular_file(entry: os.DirEntry[str]) -> bool:
+    """Return True if the entry still exists and is a file, not a link to one."""
     try:
         return stat.S_ISREG(entry.stat(follow_symlinks=False).st_mode)
     except FileNotFoundError:
         return False
 
 
-def _beside(path: Path) -> list[Path]:
-    """What belongs to a plan's file besides itself."""
+def _companion_files(path: Path) -> list[Path]:
+    """Return the files that belong to a plan's file, such as its previous and damaged states."""
     return [other for other in path.parent.glob(f"{path.name}.*") if os.path.isfile(other)]
 
 
@@ -189,7 +201,7 @@ def _require_file(path: Path, id: str) -> None:
         raise NotFound(f"there is no mission {id} here")
 
 
-def _checked(id: str) -> str:
+def _require_id(id: str) -> str:
     if not re.fullmatch(PLAN_ID, id):
         raise NotFound(f"there is no mission {id[:40]!r} here")
     return id

@@ -1,7 +1,7 @@
-"""The file of one plan: a line with the plan as it was once, and a line for each record since.
+"""File of one mission plan: a line with an earlier state, and one line for each later record.
 
-A record that has been written and synced survives the process and the machine. From time to time
-the file is written anew with fewer records; the one before is kept beside it.
+A record that was written and synced survives a crash of the process and of the machine. From time
+to time the file is rewritten with fewer records; the previous file is stored next to it.
 """
 
 import os
@@ -34,20 +34,20 @@ from argo_planner.service.core.plan import MissionPlan
 from argo_planner.service.core.refusals import PlanTooLarge
 
 VERSION = 1
-"""of the file's format"""
+"""version of the file's format"""
 MAX_BYTES = 1_000_000_000
 MOST_RECORDS = 400
-"""after which the file is written anew"""
-MOST_GROWN = 16_000_000
-"""bytes of records after which it is, too, or as many as its first line has where that is more"""
+"""number of lines after which the file is rewritten"""
+MAX_GROWTH = 16_000_000
+"""bytes of records after which the file is rewritten; the size of the first line, if larger"""
 KEPT_RECORDS = 100
-"""revisions that can still be undone then; fewer, where they have more than half of those bytes"""
+"""revisions that a rewritten file has; fewer if they exceed half of `MAX_GROWTH`"""
 _FLAGS = os.O_RDWR | os.O_APPEND | os.O_CLOEXEC | os.O_NOFOLLOW
 _RECORD: TypeAdapter[PlanRecord] = TypeAdapter(PlanRecord)
 
 
 class PlanBase(Model):
-    """The first line: the plan as it was before the records that follow."""
+    """First line of the file: the state of the plan before the records that follow."""
 
     format: Literal["argo plan"] = "argo plan"
     version: Literal[1] = 1
@@ -63,137 +63,141 @@ class PlanBase(Model):
 
 @dataclass(frozen=True)
 class Recovery:
-    """What was lost of a damaged file."""
+    """Recovery of a damaged file: what was lost, and where the damaged file is."""
 
     message: str
-    kept_as: str
-    """name of the damaged file, beside the plan's"""
+    damaged_name: str
+    """name of the damaged file, in the folder of the plan's file"""
 
 
 @dataclass(frozen=True)
 class PlanExtent:
-    """How large a file is."""
+    """Size of a plan's file."""
 
     first: int
-    """bytes of its first line"""
+    """size of the first line in bytes"""
     size: int
-    """bytes"""
+    """size of the file in bytes"""
     lines: int
 
     @property
     def has_grown(self) -> bool:
-        """Whether it is time to write it anew."""
+        """True if the file is to be rewritten."""
         grown = self.size - self.first
-        return self.lines > MOST_RECORDS or grown > max(MOST_GROWN, self.first)
+        return self.lines > MOST_RECORDS or grown > max(MAX_GROWTH, self.first)
 
 
 class PlanFile(Closing):
-    """An open file of a plan. Holds the file and the plan as it is on disk; one thread at a time
-    may use it."""
+    """Open file of a mission plan. Owns the file, and holds the plan's state on disk.
+
+    Only one thread at a time may use it.
+    """
 
     def __init__(self, path: Path, file: int, document: PlanDocument, extent: PlanExtent) -> None:
         self.path = path
         self.document = document
         self.recovery: Recovery | None = None
-        """what was lost when it was opened, if anything was"""
+        """what was lost when the file was opened; None: nothing"""
         self._file = file
         self._extent = extent
 
     def append(self, document: PlanDocument, record: PlanRecord) -> None:
-        """Writes a record, after which the plan is the document. When this returns, it is on disk.
+        """Write a record; `document` is the plan's state after it. On return it is on disk.
 
-        Raises Unavailable if it can't be written, PlanTooLarge if it could not be opened again; the
-        file is as it was then.
+        Raises Unavailable if the record can't be written, PlanTooLarge if the file would be too
+        large to be opened again. After an error the file has the same content as before.
         """
         data = record.model_dump(mode="json")
         line = checked_line({"n": self._extent.lines} | data)
         if self._extent.size + len(line) > MAX_BYTES:
-            self._write_anew()
+            self._rewrite()
             line = checked_line({"n": self._extent.lines} | data)
         extent = self._extent
         if extent.size + len(line) > MAX_BYTES:
             raise PlanTooLarge(
-                f"the mission's file would have more than {MAX_BYTES // 1_000_000} MB: drop some "
-                "of its versions, or go on with a copy"
+                f"the mission's file would have more than {MAX_BYTES // 1_000_000} MB: delete some "
+                "of its versions, or continue with a copy"
             )
         try:
             write_all(self._file, line)
             os.fdatasync(self._file)
         except OSError as error:
             cut_off(self._file, extent.size)
-            raise _unwritten(self.path, error) from error
+            raise _write_error(self.path, error) from error
         self._extent = PlanExtent(extent.first, extent.size + len(line), extent.lines + 1)
         self.document = document
         if self._extent.has_grown:
-            self._write_anew()
+            self._rewrite()
 
     def close(self) -> None:
         os.close(self._file)
 
-    def _write_anew(self) -> None:
-        """Writes the plan with its last revisions; the file before stays beside it."""
+    def _rewrite(self) -> None:
+        """Rewrite the file with the plan's last revisions; keep the previous file next to it."""
         try:
-            written = _written(self.path, self.document, KEPT_RECORDS)
+            written = _write_plan(self.path, self.document, KEPT_RECORDS)
         except Unavailable:
-            return  # all is in the file that there is
+            return  # the present file is complete
         os.close(self._file)
         self._file, self._extent = written
 
 
 def create_plan_file(path: Path, document: PlanDocument) -> PlanFile:
-    """A new file with the plan. Raises Unavailable if it can't be written."""
-    file, extent = _written(path, document, 0)
+    """Create a file with the plan; raises Unavailable if it can't be written."""
+    file, extent = _write_plan(path, document, 0)
     return PlanFile(path, file, document, extent)
 
 
 def open_plan_file(path: Path) -> PlanFile:
-    """The file of a plan, ready for more. What was not written to its end is cut off. Of a damaged
-    one the last good state is opened, and `recovery` says what was lost; the damaged file is kept.
+    """Open the file of a plan for appending.
+
+    A last line that was not written completely is cut off. If the file is damaged, its last valid
+    state is opened, `recovery` states what was lost, and the damaged file is stored next to it.
 
     Raises:
-        NotFound: there is no such file.
-        Invalid: nothing of it can be read.
-        Unavailable: it can't be opened or written.
+        NotFound: There is no such file.
+        Invalid: Nothing in it can be read, or another version of Argo has written it.
+        Unavailable: It can't be opened or written.
     """
-    content = plan_content(path)
-    read = _read(content)
-    earlier = earlier_file(path)
-    if read is None and os.path.exists(earlier):
-        before = _read(plan_content(earlier))
-        if before is not None:
-            lost = "its first line is damaged: this is how the mission was some time before"
-            return _recovered(path, before, lost)
-    if read is None:
+    content = read_plan_bytes(path)
+    parsed = _parse(content)
+    previous = previous_file(path)
+    if parsed is None and os.path.exists(previous):
+        parsed_previous = _parse(read_plan_bytes(previous))
+        if parsed_previous is not None:
+            lost = "its first line is damaged: this is an earlier state of the mission"
+            return _recover(path, parsed_previous, lost)
+    if parsed is None:
         raise Invalid(
-            f"{path.name}: is damaged from its first line on, and nothing of it can be read: "
-            "take it from a copy"
+            f"{path.name}: is damaged from its first line on, and nothing in it can be read: "
+            "restore it from a copy"
         )
-    if read.lost:
+    if parsed.lost:
         lost = (
-            f"{read.lost} of {read.lost + read.extent.lines} lines are damaged or follow a damaged "
-            f"one: this is the mission at revision {read.document.plan.revision}"
+            f"{parsed.lost} of {parsed.lost + parsed.extent.lines} lines are damaged or follow a "
+            f"damaged one: this is the mission at revision {parsed.document.plan.revision}"
         )
-        return _recovered(path, read, lost)
+        return _recover(path, parsed, lost)
     file = _open(path)
-    if read.extent.size < len(content):
-        os.ftruncate(file, read.extent.size)  # what nobody was told was written
+    if parsed.extent.size < len(content):
+        os.ftruncate(file, parsed.extent.size)  # an incomplete line, which was never acknowledged
         os.fsync(file)
-    return PlanFile(path, file, read.document, read.extent)
+    return PlanFile(path, file, parsed.document, parsed.extent)
 
 
 @dataclass(frozen=True)
-class _Read:
+class _ParsedFile:
     document: PlanDocument
     extent: PlanExtent
-    """as far as it is good"""
+    """extent of the valid part"""
     lost: int
-    """lines, which were whole once"""
+    """complete lines that are damaged or follow a damaged one"""
 
 
-def _read(content: bytes) -> _Read | None:
-    """The plan in a file as far as it is good; None if its first line is not."""
-    whole = content.split(b"\n")[:-1]  # what is behind the last of them was torn off
-    base = base_object(whole[0]) if whole else None
+def _parse(content: bytes) -> _ParsedFile | None:
+    """Return the plan in the valid part of a file, or None if its first line is damaged."""
+    lines = content.split(b"\n")[:-1]  # the part after the last line break is incomplete
+    base = parse_first_line(lines[0]) if lines else None
     if base is None:
         return None
     base.pop("n", None)
@@ -201,32 +205,34 @@ def _read(content: bytes) -> _Read | None:
         document = _document(PlanBase.model_validate(base))
     except ValidationError:
         return None
-    first = size = len(whole[0]) + 1
-    for number, line in enumerate(whole[1:], start=1):
-        following = _following(document, line, number)
-        if following is None:
-            return _Read(document, PlanExtent(first, size, number), len(whole) - number)
-        document = following
+    first = size = len(lines[0]) + 1
+    for number, line in enumerate(lines[1:], start=1):
+        next_document = _apply_line(document, line, number)
+        if next_document is None:
+            return _ParsedFile(document, PlanExtent(first, size, number), len(lines) - number)
+        document = next_document
         size += len(line) + 1
-    return _Read(document, PlanExtent(first, size, len(whole)), 0)
+    return _ParsedFile(document, PlanExtent(first, size, len(lines)), 0)
 
 
-def base_object(line: bytes) -> dict[str, Any] | None:
-    """What the first line of a plan's file has; None if it is none. Raises Invalid if another
-    version of Argo has written it."""
+def parse_first_line(line: bytes) -> dict[str, Any] | None:
+    """Return the fields of the first line of a plan's file, or None if it is damaged.
+
+    Raises Invalid if the line has another version of the format.
+    """
     base = checked_object(line)
     if base is None or base.get("format") != "argo plan":
         return None
     if base.get("version") != VERSION:
         raise Invalid(
-            f"the plan has version {base.get('version')} of its format, and this Argo reads "
-            f"{VERSION}: open it with the Argo that wrote it"
+            f"the mission's file has format version {base.get('version')}, but this Argo reads "
+            f"version {VERSION}: open it with the Argo that wrote it"
         )
     return base
 
 
-def _following(document: PlanDocument, line: bytes, number: int) -> PlanDocument | None:
-    """The document after the record in a line; None if there is no such record."""
+def _apply_line(document: PlanDocument, line: bytes, number: int) -> PlanDocument | None:
+    """Return the document after the record in a line, or None if the line has no valid record."""
     data = checked_object(line)
     if data is None or data.pop("n", None) != number:
         return None
@@ -241,44 +247,46 @@ def _document(base: PlanBase) -> PlanDocument:
     return PlanDocument(base.id, base.name, base.created, base.changed, plan, base.versions)
 
 
-def _recovered(path: Path, read: _Read, lost: str) -> PlanFile:
-    """The file with what is good of it, the damaged one kept beside it."""
-    aside = next(
+def _recover(path: Path, parsed: _ParsedFile, lost: str) -> PlanFile:
+    """Rewrite a damaged file with its valid part; the damaged file is stored next to it."""
+    damaged = next(
         name
         for k in range(1, 10_000)
         if not os.path.lexists(name := path.with_name(f"{path.name}.damaged-{k}"))
     )
     try:
-        os.link(path, aside, follow_symlinks=False)
+        os.link(path, damaged, follow_symlinks=False)
     except OSError as error:
-        raise _unwritten(path, error) from error
-    kept = len(read.document.plan.history)
-    file, extent = _written(path, read.document, kept, keep_before=False)
-    opened = PlanFile(path, file, read.document, extent)
-    opened.recovery = Recovery(f"{lost}; the damaged file is kept as {aside.name}", aside.name)
+        raise _write_error(path, error) from error
+    count = len(parsed.document.plan.history)
+    file, extent = _write_plan(path, parsed.document, count, keep_previous=False)
+    opened = PlanFile(path, file, parsed.document, extent)
+    opened.recovery = Recovery(f"{lost}; the damaged file is now {damaged.name}", damaged.name)
     return opened
 
 
-def _written(
-    path: Path, document: PlanDocument, records: int, keep_before: bool = True
+def _write_plan(
+    path: Path, document: PlanDocument, records: int, keep_previous: bool = True
 ) -> tuple[int, PlanExtent]:
-    """Writes the whole file, with the last revisions as records, under another name, then gives it
-    its own. Returns the open file, and how large it is."""
+    """Write the whole file, with at most `records` last revisions as records.
+
+    Writes under another name and renames the file at the end. Returns the open file and its extent.
+    """
     plan = document.plan
-    made = _last_made(plan, records)
-    begins = plan.plan_before(made[0].revision.number) if made else plan
+    revisions = _last_revisions(plan, records)
+    start = plan.plan_before(revisions[0].revision.number) if revisions else plan
     base = PlanBase.model_construct(
         id=document.id,
         name=document.name,
         created=document.created,
         changed=document.changed,
-        revision=begins.revision,
-        mission=begins.mission,
+        revision=start.revision,
+        mission=start.mission,
         versions=document.versions,
     )
     lines = [
         checked_line({"n": number} | record.model_dump(mode="json"))
-        for number, record in enumerate((base, *made))
+        for number, record in enumerate((base, *revisions))
     ]
     content = b"".join(lines)
     draft = path.with_name(f"{path.name}.new")
@@ -286,37 +294,37 @@ def _written(
         draft.unlink(missing_ok=True)
         file = os.open(draft, os.O_CREAT | os.O_EXCL | _FLAGS, 0o600)
     except OSError as error:
-        raise _unwritten(path, error) from error
+        raise _write_error(path, error) from error
     try:
         write_all(file, content)
         os.fsync(file)
-        if keep_before and os.path.exists(path):
-            earlier_file(path).unlink(missing_ok=True)
-            os.link(path, earlier_file(path), follow_symlinks=False)
+        if keep_previous and os.path.exists(path):
+            previous_file(path).unlink(missing_ok=True)
+            os.link(path, previous_file(path), follow_symlinks=False)
         draft.replace(path)
         sync_folder(path.parent)
     except OSError as error:
         os.close(file)
         draft.unlink(missing_ok=True)
-        raise _unwritten(path, error) from error
+        raise _write_error(path, error) from error
     return file, PlanExtent(len(lines[0]), len(content), len(lines))
 
 
-def _last_made(plan: MissionPlan, most: int) -> list[RevisionMade]:
-    """The last revisions as records: at most so many, and not too large together."""
-    found: list[RevisionMade] = []
+def _last_revisions(plan: MissionPlan, most: int) -> list[RevisionMade]:
+    """Return the last revisions as records: at most `most`, and half of `MAX_GROWTH` together."""
+    records: list[RevisionMade] = []
     size = 0
     for revision in reversed(plan.history[-most:] if most else ()):
-        made = RevisionMade.model_construct(revision=revision)
-        size += len(made.model_dump_json())
-        if found and size > MOST_GROWN // 2:
+        record = RevisionMade.model_construct(revision=revision)
+        size += len(record.model_dump_json())
+        if records and size > MAX_GROWTH // 2:
             break
-        found.append(made)
-    return found[::-1]
+        records.append(record)
+    return records[::-1]
 
 
-def earlier_file(path: Path) -> Path:
-    """Where the file is kept that a plan's file took the place of."""
+def previous_file(path: Path) -> Path:
+    """Return the path of the file that a plan's file has replaced."""
     return path.with_name(f"{path.name}.before")
 
 
@@ -329,12 +337,17 @@ def _open(path: Path, flags: int = _FLAGS) -> int:
         raise Unavailable(f"{path.name}: can't be opened: {error.strerror}") from error
 
 
-def plan_content(path: Path) -> bytes:
-    """The bytes of a plan's file. Raises NotFound, Unavailable, Invalid if it is too large."""
+def read_plan_bytes(path: Path) -> bytes:
+    """Return the bytes of a plan's file.
+
+    Raises NotFound, Unavailable, or Invalid if it is too large.
+    """
     file = _open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW)
     try:
         if os.fstat(file).st_size > MAX_BYTES:
-            raise Invalid(f"{path.name}: is larger than {MAX_BYTES // 1_000_000} MB: no plan is")
+            raise Invalid(
+                f"{path.name}: is larger than {MAX_BYTES // 1_000_000} MB, the limit for a mission"
+            )
         parts = []
         while part := os.read(file, 1 << 20):
             parts.append(part)
@@ -345,8 +358,8 @@ def plan_content(path: Path) -> bytes:
     return b"".join(parts)
 
 
-def _unwritten(path: Path, error: OSError) -> Unavailable:
+def _write_error(path: Path, error: OSError) -> Unavailable:
     return Unavailable(
-        f"{path.name}: can't be written: {error.strerror}; nothing was changed. Make room, or "
-        "choose another folder"
+        f"{path.name}: can't be written: {error.strerror}; nothing was changed. Free disk "
+        "space, or choose another folder"
     )

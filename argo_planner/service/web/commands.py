@@ -21,7 +21,7 @@ from argo_planner.service.core.commands import (
 from argo_planner.service.jobs.analysis import AnalysisFound
 from argo_planner.service.rooms.messages import CommandDone
 from argo_planner.service.rooms.room import PlanRoom
-from argo_planner.service.storage.notes import keep_notes
+from argo_planner.service.storage.import_notes import store_import_notes
 from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.missions import sound
 from argo_planner.service.web.problems import documented
@@ -82,7 +82,7 @@ async def write_script(
     command = ReplacePlan.model_construct(id=given.id, mission=imported.mission, about="a script")
     answer = await carried_out(room, command, visitor.author, made_on)
     revision = room.document.plan.revision
-    await asyncio.to_thread(keep_notes, service.folder, id, revision, imported.diagnostics)
+    await asyncio.to_thread(store_import_notes, service.folder, id, revision, imported.diagnostics)
     return answer
 
 

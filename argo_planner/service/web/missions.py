@@ -23,8 +23,12 @@ from argo_planner.service.core.commands import Revision
 from argo_planner.service.core.document import PlanDocument
 from argo_planner.service.core.plan_limits import require_within_limits
 from argo_planner.service.rooms.messages import PlanState
-from argo_planner.service.storage.folder import summary_of
-from argo_planner.service.storage.notes import drop_notes, keep_notes, read_notes
+from argo_planner.service.storage.folder import summarize
+from argo_planner.service.storage.import_notes import (
+    delete_import_notes,
+    load_import_notes,
+    store_import_notes,
+)
 from argo_planner.service.storage.outline import PlanSummary
 from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.requests import (
@@ -160,7 +164,7 @@ async def rename_mission(
     """Gives a mission another name."""
     room = await service.rooms.open(id)
     await room.rename(given.name, visitor.author)
-    return said(summary_of(room.document))
+    return said(summarize(room.document))
 
 
 @router.post(
@@ -206,7 +210,7 @@ async def list_bin(service: Service, _: Viewer) -> Response:
 async def restore_mission(service: Service, _: Planner, id: PlanId) -> Response:
     """Takes a mission out of the bin."""
     room = await service.rooms.restore(id)
-    return said(summary_of(room.document), location=f"/api/missions/{id}")
+    return said(summarize(room.document), location=f"/api/missions/{id}")
 
 
 @router.delete("/bin/{id}", operation_id="destroy_mission", status_code=204)
@@ -214,7 +218,7 @@ async def destroy_mission(service: Service, _: Planner, id: PlanId) -> Response:
     """Deletes a mission in the bin for good, with its evaluations."""
     await service.rooms.destroy(id)
     await service.evaluations.forget_all_of(id)
-    drop_notes(service.folder, id)
+    delete_import_notes(service.folder, id)
     return Response(status_code=204)
 
 
@@ -266,7 +270,7 @@ async def read_import_notes(service: Service, _: Viewer, id: PlanId) -> Response
     """Return the notes of the import of the mission, or of the last script put in its place: words
     that were healed, taken for something else, or have no effect."""
     await service.rooms.open(id)
-    revision, notes = read_notes(service.folder, id)
+    revision, notes = load_import_notes(service.folder, id)
     return said(ImportNotes(revision=revision, notes=notes))
 
 
@@ -299,9 +303,9 @@ async def _create(
     document = room.document
     if notes:
         revision = document.plan.revision
-        await asyncio.to_thread(keep_notes, service.folder, document.id, revision, notes)
+        await asyncio.to_thread(store_import_notes, service.folder, document.id, revision, notes)
     return said(
-        summary_of(document),
+        summarize(document),
         201,
         revision=document.plan.revision,
         location=f"/api/missions/{document.id}",

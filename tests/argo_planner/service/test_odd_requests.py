@@ -240,7 +240,7 @@ def test_an_order_of_what_is_not_there_is_refused_at_once(service, plan, require
 
 
 def test_a_file_of_few_large_records_does_not_grow_without_end(service, plan, monkeypatch) -> None:
-    monkeypatch.setattr(plan_file, "MOST_GROWN", 100_000)
+    monkeypatch.setattr(plan_file, "MAX_GROWTH", 100_000)
     monkeypatch.setattr(plan_file, "KEPT_RECORDS", 5)
     path = service.folder / f"{plan}.plan"
     sizes = []

@@ -1,4 +1,4 @@
-"""Plans on disk: what was written stays, whatever happens to the file or the process."""
+"""Mission plans on disk: written changes survive damage of the file and a killed process."""
 
 import os
 import random
@@ -34,17 +34,17 @@ AT = datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC)
 NUMBERS = count(1)
 
 
-def ids() -> str:
+def next_id() -> str:
     return f"{next(NUMBERS):012x}"
 
 
 @pytest.fixture
 def folder(tmp_path):
-    with PlanFolder(tmp_path / "plans", ids) as opened:
+    with PlanFolder(tmp_path / "plans", next_id) as opened:
         yield opened
 
 
-def carry_out(file: PlanFile, command: EditPlan | UndoEdit) -> None:
+def execute(file: PlanFile, command: EditPlan | UndoEdit) -> None:
     document = file.document
     plan = document.plan.execute(command, "ann", document.plan.revision, AT)
     file.append(*document.with_plan(plan))
@@ -52,21 +52,21 @@ def carry_out(file: PlanFile, command: EditPlan | UndoEdit) -> None:
 
 def edit(file: PlanFile, id: str, velocity: float) -> None:
     change = edits.ChangeTask(name="a", velocity=velocity)
-    carry_out(file, EditPlan(id=id, edits=(change,)))
+    execute(file, EditPlan(id=id, edits=(change,)))
 
 
-def filled(folder: PlanFolder, revisions: int = 6) -> tuple[str, PlanDocument]:
+def create_plan(folder: PlanFolder, revisions: int = 6) -> tuple[str, PlanDocument]:
     with folder.create("Round", mission("a", "b"), AT) as file:
         for k in range(revisions):
             edit(file, f"c{k}", 0.1 + k / 1000)
         return file.document.id, file.document
 
 
-def path_of(folder: PlanFolder, id: str) -> Path:
+def plan_path(folder: PlanFolder, id: str) -> Path:
     return folder.path / f"{id}.plan"
 
 
-def test_what_was_written_is_there_again(folder):
+def test_a_written_plan_is_read_back(folder):
     with folder.create("Round", mission("a", "b"), AT) as file:
         edit(file, "c1", 0.2)
         document = file.document
@@ -74,7 +74,7 @@ def test_what_was_written_is_there_again(folder):
         document = file.document
         file.append(document.apply(r := document.make_version_record("first", "ann", AT)), r)
         edit(file, "c2", 0.3)
-        carry_out(file, UndoEdit(id="u"))
+        execute(file, UndoEdit(id="u"))
         written = file.document
     with folder.open(written.id) as again:
         assert again.document == written
@@ -84,13 +84,13 @@ def test_what_was_written_is_there_again(folder):
             again.document.version(2)
         with pytest.raises(Conflict, match="already"):
             again.document.make_version_record("first", "bob", AT)
-    (summary,) = folder.plans()
+    (summary,) = folder.list_plans()
     assert (summary.name, summary.revision, summary.tasks) == ("Tour", 4, 2)
 
 
-def test_the_end_of_a_line_that_was_not_written_is_cut_off(folder):
-    id, document = filled(folder)
-    path = path_of(folder, id)
+def test_an_incomplete_last_line_is_cut_off(folder):
+    id, document = create_plan(folder)
+    path = plan_path(folder, id)
     content = path.read_bytes()
     last = content.rindex(b"\n", 0, -1) + 1
     for length in {*random.Random(1).sample(range(last + 1, len(content)), 20)}:
@@ -102,9 +102,9 @@ def test_the_end_of_a_line_that_was_not_written_is_cut_off(folder):
             assert file.document == document
 
 
-def test_of_a_damaged_file_the_last_good_state_is_opened(folder):
-    id, document = filled(folder)
-    path = path_of(folder, id)
+def test_the_last_valid_state_of_a_damaged_file_is_opened(folder):
+    id, document = create_plan(folder)
+    path = plan_path(folder, id)
     content = path.read_bytes()
     ends = [k + 1 for k, byte in enumerate(content) if byte == ord("\n")]
     rng = random.Random(2)
@@ -119,15 +119,15 @@ def test_of_a_damaged_file_the_last_good_state_is_opened(folder):
             assert file.document.plan.history == document.plan.history[: line - 1]
             assert file.recovery is not None
             assert f"revision {line}" in file.recovery.message
-            kept = path.with_name(file.recovery.kept_as)
+            kept = path.with_name(file.recovery.damaged_name)
             assert kept.read_bytes() == damaged
         with folder.open(id) as file:
             assert file.recovery is None
 
 
-def test_with_a_damaged_first_line_the_file_before_is_opened(folder):
-    id, _ = filled(folder, MOST_RECORDS + 3)
-    path = path_of(folder, id)
+def test_the_previous_file_is_opened_if_the_first_line_is_damaged(folder):
+    id, _ = create_plan(folder, MOST_RECORDS + 3)
+    path = plan_path(folder, id)
     content = path.read_bytes()
     path.write_bytes(b"x" + content[1:])
     with folder.open(id) as file:
@@ -139,14 +139,14 @@ def test_with_a_damaged_first_line_the_file_before_is_opened(folder):
         other.unlink()
     with pytest.raises(Invalid, match="from its first line on"):
         folder.open(id)
-    (summary,) = folder.plans()
+    (summary,) = folder.list_plans()
     assert summary.problem is not None
     assert "damaged" in summary.problem
 
 
-def test_a_file_is_written_anew_and_its_last_revisions_can_be_undone(folder):
-    id, document = filled(folder, MOST_RECORDS + 1)
-    lines = path_of(folder, id).read_bytes().count(b"\n")
+def test_the_last_revisions_of_a_rewritten_file_can_be_undone(folder):
+    id, document = create_plan(folder, MOST_RECORDS + 1)
+    lines = plan_path(folder, id).read_bytes().count(b"\n")
     assert lines < MOST_RECORDS
     with folder.open(id) as file:
         plan = file.document.plan
@@ -158,11 +158,11 @@ def test_a_file_is_written_anew_and_its_last_revisions_can_be_undone(folder):
         assert undone.mission == document.plan.missions[-1]
 
 
-def test_plans_are_deleted_to_a_bin_and_come_back(folder):
-    id, document = filled(folder)
+def test_plans_are_moved_to_the_bin_and_restored(folder):
+    id, document = create_plan(folder)
     folder.delete(id)
-    assert folder.plans() == []
-    assert [plan.id for plan in folder.deleted()] == [id]
+    assert folder.list_plans() == []
+    assert [plan.id for plan in folder.list_deleted()] == [id]
     with pytest.raises(NotFound, match="no mission"):
         folder.open(id)
     folder.restore(id)
@@ -170,17 +170,17 @@ def test_plans_are_deleted_to_a_bin_and_come_back(folder):
         assert file.document == document
     folder.delete(id)
     folder.destroy(id)
-    assert folder.deleted() == []
+    assert folder.list_deleted() == []
     with pytest.raises(NotFound):
         folder.restore(id)
 
 
-def test_nothing_outside_of_the_folder_is_opened(folder, tmp_path):
-    id, _ = filled(folder)
+def test_no_file_outside_the_folder_is_opened(folder, tmp_path):
+    id, _ = create_plan(folder)
     elsewhere = tmp_path / "elsewhere.plan"
-    path_of(folder, id).rename(elsewhere)
-    path_of(folder, id).symlink_to(elsewhere)
-    assert folder.plans() == []
+    plan_path(folder, id).rename(elsewhere)
+    plan_path(folder, id).symlink_to(elsewhere)
+    assert folder.list_plans() == []
     for wrong in (id, "../elsewhere", "..", "", "a" * 12 + "/", "A" * 12, "\0" * 12):
         for act in (folder.open, folder.delete, folder.restore, folder.destroy):
             with pytest.raises(NotFound):
@@ -188,18 +188,18 @@ def test_nothing_outside_of_the_folder_is_opened(folder, tmp_path):
     assert elsewhere.exists()
 
 
-def test_one_service_at_a_time_has_a_folder(folder):
+def test_only_one_service_at_a_time_uses_a_folder(folder):
     with pytest.raises(Conflict, match="another service"):
-        PlanFolder(folder.path, ids)
+        PlanFolder(folder.path, next_id)
 
 
-def test_names_are_texts_that_can_be_seen(folder):
+def test_names_are_texts_with_visible_characters(folder):
     for name in ("", "  ", "x" * 201, "a\0b", "a\u202eb", "\ud800"):
         with pytest.raises(Invalid):
             folder.create(name, Mission(tasks=()), AT)
     for name in ("../x", "<img src=x onerror=alert(1)>", "גשר", "数", "."):
         folder.create(name, Mission(tasks=()), AT).close()
-    assert {plan.name for plan in folder.plans()} == {
+    assert {plan.name for plan in folder.list_plans()} == {
         "../x", "<img src=x onerror=alert(1)>", "גשר", "数", ".",
     }  # fmt: skip
 
@@ -207,7 +207,7 @@ def test_names_are_texts_that_can_be_seen(folder):
 def test_the_newest_plans_come_first(folder):
     for k in (2, 1, 3):
         folder.create(str(k), Mission(tasks=()), AT + timedelta(hours=k)).close()
-    assert [plan.name for plan in folder.plans()] == ["3", "2", "1"]
+    assert [plan.name for plan in folder.list_plans()] == ["3", "2", "1"]
 
 
 WRITER = textwrap.dedent(
@@ -227,7 +227,7 @@ WRITER = textwrap.dedent(
 
 
 @pytest.mark.long
-def test_what_was_acknowledged_survives_a_kill(folder):
+def test_acknowledged_changes_survive_a_kill(folder):
     with folder.create("Round", mission("a", "b"), AT) as file:
         path = file.path
     rng = random.Random(3)
@@ -255,20 +255,20 @@ def test_what_was_acknowledged_survives_a_kill(folder):
             )
 
 
-def write_much(file: PlanFile, k: int, characters: int) -> None:
+def add_large_revision(file: PlanFile, k: int, characters: int) -> None:
     change = edits.SetHeader(anomaly_specification=f"{k}" + "x" * characters)
-    carry_out(file, EditPlan(id=f"m{k}", edits=(change,)))
+    execute(file, EditPlan(id=f"m{k}", edits=(change,)))
 
 
 def test_a_file_of_few_large_records_stays_small_however_often_it_is_opened(folder, monkeypatch):
-    monkeypatch.setattr(plan_file, "MOST_GROWN", 100_000)
+    monkeypatch.setattr(plan_file, "MAX_GROWTH", 100_000)
     with folder.create("Round", mission("a", "b"), AT) as file:
         id = file.document.id
     sizes = []
     for k in range(60):
         with folder.open(id) as file:
-            write_much(file, k, 9_000)
-        sizes.append(path_of(folder, id).stat().st_size)
+            add_large_revision(file, k, 9_000)
+        sizes.append(plan_path(folder, id).stat().st_size)
     assert max(sizes) < 150_000
     assert sum(later < size for size, later in pairwise(sizes)) < 20
     with folder.open(id) as file:
@@ -277,38 +277,38 @@ def test_a_file_of_few_large_records_stays_small_however_often_it_is_opened(fold
         assert plan.execute(UndoEdit(id="u"), "ann", 61, AT).mission == plan.missions[-1]
 
 
-def test_what_could_not_be_opened_again_is_not_written(folder, monkeypatch):
+def test_a_change_that_would_make_the_file_too_large_is_refused(folder, monkeypatch):
     monkeypatch.setattr(plan_file, "MAX_BYTES", 50_000)
     with folder.create("Round", mission("a", "b"), AT) as file:
         id = file.document.id
         for k in range(2):
-            write_much(file, k, 9_000)
+            add_large_revision(file, k, 9_000)
         written = file.document
-        with pytest.raises(PlanTooLarge, match="drop some of its versions"):
-            write_much(file, 4, 19_900)
+        with pytest.raises(PlanTooLarge, match="delete some of its versions"):
+            add_large_revision(file, 4, 19_900)
     with folder.open(id) as file:
         assert file.document == written
 
 
-def test_a_plan_of_another_version_of_the_format_is_listed_as_such(folder):
-    id, _ = filled(folder)
-    path = path_of(folder, id)
+def test_a_plan_of_another_format_version_is_listed_with_the_problem(folder):
+    id, _ = create_plan(folder)
+    path = plan_path(folder, id)
     base = checked_object(path.read_bytes().split(b"\n")[0])
     assert base is not None
     path.write_bytes(checked_line(base | {"version": 99}))
-    (summary,) = folder.plans()
+    (summary,) = folder.list_plans()
     assert summary.problem is not None
     assert "version 99" in summary.problem
     with pytest.raises(Invalid, match="version 99"):
         folder.open(id)
 
 
-def test_plans_that_come_and_go_while_they_are_listed(folder):
-    ids = [filled(folder, 1)[0] for _ in range(20)]
-    over = threading.Event()
+def test_plans_are_moved_while_they_are_listed(folder):
+    ids = [create_plan(folder, 1)[0] for _ in range(20)]
+    finished = threading.Event()
 
     def move() -> None:
-        while not over.is_set():
+        while not finished.is_set():
             for id in ids:
                 folder.delete(id)
             for id in ids:
@@ -318,8 +318,8 @@ def test_plans_that_come_and_go_while_they_are_listed(folder):
         moving = thread.submit(move)
         try:
             for _ in range(300):
-                assert not [plan.problem for plan in folder.plans() if plan.problem]
-                folder.deleted()
+                assert not [plan.problem for plan in folder.list_plans() if plan.problem]
+                folder.list_deleted()
         finally:
-            over.set()
+            finished.set()
         moving.result()

@@ -1,5 +1,7 @@
-"""What imports had to say, kept beside the plans. They are worth little without their plan, and a
-plan is worth the same without them: what can't be read or written is left out."""
+"""Notes of imports, stored next to the mission plans.
+
+A plan does not depend on its notes: notes that can't be read or written are left out.
+"""
 
 import logging
 from contextlib import suppress
@@ -20,8 +22,10 @@ class _Notes(Model):
     notes: tuple[Diagnostic, ...] = ()
 
 
-def keep_notes(folder: Path, plan: str, revision: int, notes: tuple[Diagnostic, ...]) -> None:
-    """Keeps what an import said that made a revision of a plan, in place of what was kept."""
+def store_import_notes(
+    folder: Path, plan: str, revision: int, notes: tuple[Diagnostic, ...]
+) -> None:
+    """Store the notes of the import that made a revision of a plan; replaces earlier notes."""
     path = _path(folder, plan)
     try:
         path.parent.mkdir(exist_ok=True)
@@ -31,17 +35,17 @@ def keep_notes(folder: Path, plan: str, revision: int, notes: tuple[Diagnostic, 
         _log.warning("%s: can't be written: %s", path, error.strerror)
 
 
-def read_notes(folder: Path, plan: str) -> tuple[int, tuple[Diagnostic, ...]]:
-    """The revision that the last import made, and what it said; 0 where nothing is known."""
+def load_import_notes(folder: Path, plan: str) -> tuple[int, tuple[Diagnostic, ...]]:
+    """Return the revision that the last import made and its notes; 0 and () if there are none."""
     try:
-        kept = _Notes.model_validate_json(_path(folder, plan).read_bytes())
+        stored = _Notes.model_validate_json(_path(folder, plan).read_bytes())
     except (OSError, ValidationError):
         return 0, ()
-    return kept.revision, kept.notes
+    return stored.revision, stored.notes
 
 
-def drop_notes(folder: Path, plan: str) -> None:
-    """The plan is gone for good."""
+def delete_import_notes(folder: Path, plan: str) -> None:
+    """Delete the notes of a plan, if there are any."""
     with suppress(OSError):
         _path(folder, plan).unlink()
 

@@ -148,7 +148,7 @@ def without_cause(record: RunRecord, site: Site) -> tuple[str, ...]:
     said = [
         f"{a.t:g} s: {a.kind} ({a.source}): {a.detail}"
         for k, a in enumerate(record.anomalies)
-        if not (_was_over(record, k) if a.over else causes_of(a, record.faults, site))
+        if not (_was_over(record, k) if a.is_end else causes_of(a, record.faults, site))
     ]
     said += _told_again(record, site)
     if not any(isinstance(fault, _OBSTACLES) for fault in record.faults):
@@ -252,7 +252,7 @@ def _told_again(record: RunRecord, site: Site) -> list[str]:
     """Findings of the robot itself, more than there were faults to lead to them."""
     said = []
     for source in sorted(_TOLD_ONCE):
-        own = [a for a in record.anomalies if a.source == source and not a.over]
+        own = [a for a in record.anomalies if a.source == source and not a.is_end]
         for k, anomaly in enumerate(own):
             begun = {c.start_time for a in own[: k + 1] for c in causes_of(a, record.faults, site)}
             if k >= len(begun) > 0:

@@ -1,4 +1,4 @@
-"""What has to be closed can be used as a context that closes it, and is not copied."""
+"""Base classes of objects that must be closed, and of objects that can't be copied."""
 
 from abc import ABC, abstractmethod
 from types import TracebackType
@@ -8,14 +8,14 @@ from argo_compiler.base.errors import Invalid
 
 
 class CopyRefused(Invalid, TypeError):
-    """A copy or pickle was asked for of what there can be only one of."""
+    """Raised when a simulator or an open file is copied or pickled."""
 
 
 class NonCopyable:
-    """There is one of it only: a copy would hold the same simulator or file."""
+    """Object that can't be copied: a copy would hold the same simulator or file."""
 
     def __reduce_ex__(self, protocol: SupportsIndex) -> NoReturn:
-        """Raises CopyRefused: two that hold the same would move and close each other's."""
+        """Raise CopyRefused: two objects with one simulator would disturb each other."""
         raise CopyRefused(
             f"a {type(self).__name__} can't be copied or pickled, as the copy would hold the same "
             "simulator or file and disturb it: make another one of the same arguments"
@@ -23,11 +23,11 @@ class NonCopyable:
 
 
 class Closing(NonCopyable, ABC):
-    """Closes itself where its context ends."""
+    """Context that closes itself at its end."""
 
     @abstractmethod
     def close(self) -> None:
-        """Gives back what it holds; it is of no use afterwards."""
+        """Release the simulator or file; the object can't be used afterwards."""
 
     def __enter__(self) -> Self:
         return self

@@ -1,6 +1,6 @@
-"""How missions, machines and records are shown in notebooks: as a table, a diagram, a report.
+"""Display of missions, machines and records in notebooks: as a table, a diagram, a report.
 
-In IPython and Jupyter `import argo_env` is enough; elsewhere nothing is imported for it.
+In IPython and Jupyter `import argo_env` is sufficient; elsewhere nothing is imported for it.
 """
 
 import sys
@@ -17,14 +17,14 @@ _HEIGHT = 640  # px of a report
 
 
 def mission_html(mission: "Mission") -> str:
-    """The tasks of a mission, one a line, and what its sheet says."""
-    said = [mission.designation or "Mission", f"{len(mission.tasks)} tasks"]
+    """Return a table of a mission's tasks, with the name and the limits of the mission above it."""
+    title, limits = mission.designation or "Mission", [f"{len(mission.tasks)} tasks"]
     if mission.max_duration is not None:
-        said.append(f"at most {mission.max_duration:g} s")
+        limits.append(f"at most {mission.max_duration:g} s")
     head = "".join(f"<th>{name}</th>" for name in ("task", "action", "of", "group", "then"))
     lines = "".join(f"<tr>{_cells(task)}</tr>" for task in mission.tasks)
     return (
-        f"<p><b>{escape(said[0])}</b>, {escape(', '.join(said[1:]))}</p>"
+        f"<p><b>{escape(title)}</b>, {escape(', '.join(limits))}</p>"
         f"<table><thead><tr>{head}</tr></thead><tbody>{lines}</tbody></table>"
     )
 
@@ -39,7 +39,7 @@ def _cells(task: "Task") -> str:
 
 
 def machine_html(machine: "Hfsm") -> str:
-    """The diagram of a machine; of one that is too large to be drawn, its Mermaid text."""
+    """Return the diagram of a machine, or its Mermaid text if it is too large to be drawn."""
     from argo_compiler.export import to_mermaid
     from argo_env.report.html import machine_page
     from argo_env.report.machine import drawable
@@ -50,7 +50,7 @@ def machine_html(machine: "Hfsm") -> str:
 
 
 def record_html(record: "RunRecord") -> str:
-    """The report of a run; only how it went if its site can't be opened by its name."""
+    """Return the report of a run, or only its headline if its site can't be opened by name."""
     from argo_compiler.base.errors import ArgoError
     from argo_env.planning.opening import open_site
     from argo_env.report.html import page
@@ -63,26 +63,26 @@ def record_html(record: "RunRecord") -> str:
 
 
 def _framed(page: str) -> str:
-    """A page in a frame of its own, so that its style is its own as well."""
+    """Return a page in a frame, so that its style does not affect the notebook."""
     return (
         f'<iframe srcdoc="{escape(page)}" style="width:100%;height:{_HEIGHT}px;border:0" '
         'sandbox=""></iframe>'
     )
 
 
-_SHOWN: dict[tuple[str, str], Callable[[Any], str]] = {
+_HTML_FUNCTIONS: dict[tuple[str, str], Callable[[Any], str]] = {
     ("argo_compiler.il.mission", "Mission"): mission_html,
     ("argo_compiler.hfsm.model", "Hfsm"): machine_html,
     ("argo_env.run.record", "RunRecord"): record_html,
 }
-"""By module and name of the class, what shows its objects."""
+"""Functions that return the HTML of an object, by the module and name of its class."""
 
 
 def register_with_ipython() -> None:
-    """Lets IPython show them, if this process is a notebook's or IPython's."""
+    """Register the functions with IPython, if this process runs it."""
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython is not None else None
     if shell is not None:
         html = shell.display_formatter.formatters["text/html"]
-        for (module, name), show in _SHOWN.items():
+        for (module, name), show in _HTML_FUNCTIONS.items():
             html.for_type_by_name(module, name, show)

@@ -6,17 +6,20 @@ import numpy as np
 
 
 def generator(seed: int, *purpose: str | int) -> np.random.Generator:
-    """The generator for a purpose, such as `generator(7, "gas sensor")`.
+    """Return the random generator for a purpose, such as `generator(7, "gas sensor")`.
 
-    Streams of different purposes are independent, so that one more draw for one of them changes
-    nothing for the others.
+    Streams of different purposes are independent: a further draw from one does not change the
+    others.
     """
     key = [zlib.crc32(str(part).encode()) for part in purpose]
     return np.random.default_rng([seed, *key])
 
 
 def draw(rng: np.random.Generator, low: float, high: float, decimals: int) -> float:
-    """A number from low to high with so many decimals, or with more where the range needs them."""
+    """Draw a number from `low` to `high`, rounded to `decimals` places.
+
+    It has more decimals if no number with so few lies in the range.
+    """
     drawn = float(rng.uniform(low, high))
     rounded = (round(drawn, digits) for digits in range(decimals, 17))
     return next((value for value in rounded if low <= value <= high), drawn)

@@ -1,4 +1,4 @@
-"""Processes that work for another one."""
+"""Worker processes: their number, start, and end with the process that started them."""
 
 import errno
 import multiprocessing
@@ -17,30 +17,31 @@ NEEDED_TO_DRIVE = (
     "scipy.sparse.csgraph",
     "scipy.spatial.transform",
 )
-"""modules that a process otherwise loads with its first path, as little else needs them"""
+"""modules that a process otherwise loads with its first path, because little else needs them"""
 _ATTEMPTS = 5
-"""to begin a process"""
+"""maximum number of attempts to start a process"""
 _PAUSE = 0.1  # s between two attempts
-_PERIOD = 1.0  # s between two looks whether the parent is there
+_PERIOD = 1.0  # s between two checks that the parent exists
 
 
 def usable_processors() -> int:
-    """Return how many processors this process may use; PYTHON_CPU_COUNT says it as it does to
-    Python 3.13."""
-    said = os.environ.get("PYTHON_CPU_COUNT", "")
-    if said.isdecimal() and int(said):
-        return int(said)
+    """Return the number of processors that this process may use.
+
+    PYTHON_CPU_COUNT overrides it, as in Python 3.13.
+    """
+    override = os.environ.get("PYTHON_CPU_COUNT", "")
+    if override.isdecimal() and int(override):
+        return int(override)
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
 
 
 class _Process(ForkServerProcess):
-    """A process that begins even if the one that it is forked from is killed meanwhile: that one is
-    begun again."""
+    """Process that starts even if the fork server is killed meanwhile: that one is restarted."""
 
     def start(self) -> None:
-        """Begin the process. Raises OSError if it can't."""
+        """Start the process. Raises OSError if that fails."""
         for attempts_left in reversed(range(_ATTEMPTS)):
             try:
                 super().start()
@@ -49,7 +50,7 @@ class _Process(ForkServerProcess):
                 if not attempts_left:
                     why = "the process that it would be forked from has ended"
                     raise ChildProcessError(errno.ECHILD, why) from error
-                time.sleep(_PAUSE)  # it may not be known yet that it has ended
+                time.sleep(_PAUSE)  # the end of the fork server may not be known yet
 
 
 class _Context(ForkServerContext):
@@ -57,11 +58,11 @@ class _Context(ForkServerContext):
 
 
 def context_with(*modules: str) -> ForkServerContext:
-    """Return a context in which each process is forked from one that has loaded these modules and
-    what driving needs, so that it begins at once rather than after seconds.
+    """Return a context whose processes start at once, because their modules are loaded already.
 
-    That one is begun with the first of them, does nothing else, and ends with this process, which
-    has one of this kind only.
+    Each process is forked from a fork server that has loaded `modules` and what driving needs. The
+    fork server starts with the first process, does nothing else, and ends with this process, which
+    has only one of this kind.
     """
     context = _Context()
     context.set_forkserver_preload([*modules, *NEEDED_TO_DRIVE])
@@ -69,15 +70,15 @@ def context_with(*modules: str) -> ForkServerContext:
 
 
 def end_with_parent(parent: int | None = None) -> None:
-    """Leave interruptions to the process that began this one, and end with it, even if it is
-    killed.
+    """Ignore SIGINT, and end this process when its parent ends, even if the parent is killed.
 
-    `parent`: its id, where it is not `multiprocessing` that began this one.
+    Args:
+        parent: process id of the parent, if `multiprocessing` did not start this process.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    begun_by = multiprocessing.parent_process()
-    if begun_by is not None and begun_by.sentinel is not None:
-        end: Callable[[], object] = partial(wait, [begun_by.sentinel])
+    known_parent = multiprocessing.parent_process()
+    if known_parent is not None and known_parent.sentinel is not None:
+        end: Callable[[], object] = partial(wait, [known_parent.sentinel])
     elif parent is not None:
         end = partial(_wait_for, parent)
     else:

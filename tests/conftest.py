@@ -1,4 +1,4 @@
-"""What the whole suite shares. Import it as `from tests.conftest import examples`."""
+"""Set-up and helpers of the whole suite. Import them as `from tests.conftest import examples`."""
 
 import atexit
 import gc
@@ -53,11 +53,11 @@ if "ARGO_CACHE_DIR" not in os.environ:
 
 
 def examples(full: int) -> int:
-    """Return how many random examples, kills or other repetitions a test makes.
+    """Return the number of random examples, kills or other repetitions of a test.
 
     The suite makes a quarter of `full`, the same ones each time. `make test-campaigns` makes all
-    of them, and a campaign of one property as many as ARGO_EXAMPLES says; both make others each
-    time.
+    of them, and a campaign of one property as many as ARGO_EXAMPLES states; both make different
+    ones each time.
     """
     if EXAMPLES is None:
         return -(-full // 4)
@@ -70,7 +70,7 @@ def seeds(full: int) -> range:
 
 
 def sample(items: Iterable[_T], each: int = 4) -> Iterable[_T]:
-    """Return one of `each` so many items in the suite, and all of them in a campaign."""
+    """Return every `each`-th item in the suite, and all items in a campaign."""
     return islice(items, 0, None, None if EXAMPLES else each)
 
 
@@ -94,11 +94,11 @@ _SHARED = {
 
 
 def work_unit(test: str) -> str:
-    """Return the name of the unit that a test belongs to: one worker runs it, in its order.
+    """Return the name of a test's unit: the tests of a unit run in their order on one worker.
 
-    A unit is a file, the files that share a fixture, or the tests of the page: one browser works
-    at a time. So fixtures are made once, and what a test leaves behind meets the same others each
-    time.
+    A unit is a file, the files that share a fixture, or the tests of the page: only one browser
+    runs at a time. So fixtures are made once, and side effects of a test meet the same other tests
+    in each run.
     """
     file = test.split("::", 1)[0]
     return "the page" if file.startswith("tests/e2e/page/") else _SHARED.get(file, file)
@@ -126,14 +126,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Leave what is loaded by now out of all later searches for garbage, a tenth of the time."""
+    """Exclude all present objects from garbage collection, which saves a tenth of the time."""
     gc.collect()
     gc.freeze()
 
 
 @pytest.hookimpl(trylast=True)  # after tests were deselected
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put the units that take longest first, so that no worker waits for another's last."""
+    """Sort the units by time, longest first, so that no worker waits long for the last one."""
     recorded = json.loads(_DURATIONS.read_text(encoding="utf-8"))
     parts: dict[str, set[bool]] = defaultdict(set)
     for item in items:
@@ -147,7 +147,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 class _DurationRecorder:
-    """A plugin that adds up how long the tests of each unit take, and writes it at the end."""
+    """Plugin that adds up the durations of each unit's tests, and writes them at the end."""
 
     def __init__(self) -> None:
         self._seconds: dict[str, list[float]] = defaultdict(lambda: [0.0, 0.0])

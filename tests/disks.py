@@ -1,4 +1,4 @@
-"""Disks so small that they are full at once."""
+"""Small disks, to test what happens when a disk is full."""
 
 import subprocess
 from collections.abc import Iterator
@@ -11,9 +11,9 @@ import pytest
 
 @contextmanager
 def small_disk(size: int) -> Iterator[Path]:
-    """A folder on a disk of its own, of so many bytes; the system takes whole pages of them.
+    """Yield a folder on a disk of its own with `size` bytes, rounded up to whole pages.
 
-    It is mounted for a process alone, which Linux lets all users do unless its owner forbids it.
+    It is mounted for one process only, which Linux allows all users by default.
     """
     with TemporaryDirectory() as folder:
         mount = f"mount -t tmpfs -o size={size} tmpfs {folder} && echo mounted && exec cat"
@@ -37,7 +37,7 @@ def small_disk(size: int) -> Iterator[Path]:
 
 
 def fill(folder: Path, leave: int = 0) -> Path:
-    """Fills the disk but for so many bytes with a file, and returns its path."""
+    """Fill the disk with a file, except for `leave` bytes, and return the file's path."""
     filler = folder / "filler"
     with filler.open("wb", buffering=0) as file:
         try:

@@ -1,4 +1,4 @@
-"""Preparation of a process that many others are forked from: for tests of what those do."""
+"""Preparation of a process from which tests fork many others."""
 
 from importlib import import_module
 
@@ -19,11 +19,11 @@ LOADED_LATE = (
 
 
 def load_late_modules() -> None:
-    """Load what the forked processes would each load for themselves."""
+    """Load the modules that each forked process would otherwise load itself."""
     for module in LOADED_LATE:
         import_module(module)
 
 
 def draw_small_overviews() -> None:
-    """Let reports have a small picture of the site, which is most of what they take."""
+    """Make the site's pictures in reports small: drawing them takes most of a report's time."""
     overview.SIZE, overview._FINER, overview._SHADOW_MAP = (400, 300), 1, 200

@@ -1,4 +1,4 @@
-"""Random parts of missions: conditions, tasks with ways in all directions, groups in groups."""
+"""Random parts of missions: conditions, tasks with transitions to any task, nested groups."""
 
 from hypothesis import assume
 from hypothesis import strategies as st
@@ -28,14 +28,14 @@ HERE = Pose(x=0, y=0, z=0)
 
 
 def assume_sound(mission):
-    """Return the mission, if it has no errors; otherwise another example is taken."""
+    """Return the mission, or reject the example if the mission has errors."""
     assume(not has_errors(check(mission)))
     return mission
 
 
 @st.composite
 def task_names(draw, least=1, most=9):
-    """M and a number for tasks that measure, W and a number for waypoints."""
+    """Draw names of tasks: M and a number to measure, W and a number for a waypoint."""
     kinds = draw(st.lists(st.booleans(), min_size=least, max_size=most))
     return [f"{'M' if measures else 'W'}{i}" for i, measures in enumerate(kinds)]
 
@@ -55,7 +55,7 @@ def conditions(draw):
 
 @st.composite
 def conditions_of_readings(draw, ages=True):
-    """Of all types: comparisons, and what else a reading may be; without `ages`, of any age."""
+    """Draw a condition of any type; without `ages`, one that ignores the age of the reading."""
     types = [t for t in ConditionType if ages or t is not ConditionType.STALE]
     type = draw(st.sampled_from([*types, ConditionType.LESS, ConditionType.GREATER]))
     if type.compares:
@@ -74,7 +74,7 @@ def conditions_of_readings(draw, ages=True):
 
 @st.composite
 def wait_rules(draw, events=(EventKind.ALL_CLEAR,)):
-    """For a time or none, or until something, mostly with a limit."""
+    """Draw the rule of a WAIT: for a time, perhaps 0, or until something occurs, mostly limited."""
     until = draw(st.sampled_from(["time", "event", "conditions", "either"]))
     if until == "time":
         return WaitRule(duration=draw(st.sampled_from([0, 0, 1, 2, 3, 5])))
@@ -88,7 +88,7 @@ def wait_rules(draw, events=(EventKind.ALL_CLEAR,)):
 
 @st.composite
 def windows(draw, names, late=12):
-    """Hard ones with a place to go on at or none, and soft ones; `late` is about the last time."""
+    """Draw a hard window, perhaps with a `missed_target`, or a soft one, up to about 2 `late` s."""
     earliest = draw(st.one_of(st.just(0), st.integers(0, late)))
     latest = draw(st.sampled_from([None, *(earliest + s for s in (1, 2, 4, late))]))
     hard = latest is not None and draw(st.sampled_from([True, True, False]))
@@ -100,8 +100,10 @@ def windows(draw, names, late=12):
 
 @st.composite
 def transitions(draw, names, index, held=conditions, most=3):
-    """Ways from the task of that index to any other, each with conditions that `held` draws, and
-    mostly one without to the task that follows."""
+    """Draw transitions from the task with this index to any others, with conditions from `held`.
+
+    In most cases there is also an unconditional transition to the next task.
+    """
     ways = [
         Transition(target=draw(st.sampled_from(names)), conditions=tuple(both))
         for both in draw(st.lists(st.lists(held(), min_size=1, max_size=2), max_size=most))
@@ -117,7 +119,7 @@ def transitions(draw, names, index, held=conditions, most=3):
 
 @st.composite
 def tasks_named(draw, name, names, index, failures=True):
-    """With `failures`, tasks have retries and policies."""
+    """Draw a task of this name; with `failures`, it may have retries and a failure policy."""
     measures = name.startswith("M")
     policies = [OnFailure.CONTINUE, OnFailure.CONTINUE, *OnFailure]
     return Task(
@@ -133,7 +135,7 @@ def tasks_named(draw, name, names, index, failures=True):
 
 @st.composite
 def starts(draw, names):
-    """A START with a way to any task or none, or no START at all; a list."""
+    """Draw a list of no or one START, perhaps with a transition to any task."""
     if not draw(st.booleans()):
         return []
     ways = tuple(Transition(target=w) for w in draw(st.lists(st.sampled_from(names), max_size=1)))
@@ -142,7 +144,7 @@ def starts(draw, names):
 
 @st.composite
 def reactions_to(draw, event, responses, untils, limits, priorities, afterwards, shelter=HERE):
-    """Reactions of which each field is drawn from what is given, where it has an effect."""
+    """Draw reactions; each field that has an effect is drawn from the arguments."""
     response = draw(st.sampled_from(responses))
     until = draw(st.sampled_from(untils))
     drives = response in (Response.RETURN, Response.SAFE_AREA)
@@ -161,8 +163,10 @@ def reactions_to(draw, event, responses, untils, limits, priorities, afterwards,
 
 
 def nested(ranges, own):
-    """Yield those of the ranges that lie in each other or apart, the outer ones first, each after
-    the path of its name, whose last part `own` gives by the range and its place among them."""
+    """Yield the nested or disjoint ranges, outer ones first, each after the path of its name.
+
+    `own` returns the last part of the path, from the range and its index.
+    """
     kept, around, paths = [], [], set()
     for first, last in map(sorted, ranges):
         if not any(f < first <= e < last or first < f <= last < e for f, e in kept):
@@ -180,9 +184,9 @@ def nested(ranges, own):
 
 @st.composite
 def groups_over(draw, names, interruptions=True, plans=False, until=None):
-    """Groups over some of the tasks, in each other or apart.
+    """Draw nested or disjoint groups over some of the tasks.
 
-    With `plans`, rounds may be due at times; `until` draws the conditions for no other round.
+    With `plans`, rounds may be due at times; `until` draws the conditions that end the rounds.
     """
     ends = st.integers(0, len(names) - 1)
     ranges = draw(st.lists(st.tuples(ends, ends), max_size=5))

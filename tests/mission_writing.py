@@ -1,4 +1,4 @@
-"""Short ways to write the parts of a mission, and a mission apart from where it was read."""
+"""Short functions to write the parts of a mission, and to compare missions without spans."""
 
 from argo_compiler.base.catalog import CheckpointInfo, CheckpointKind, Interval
 from argo_compiler.base.model import Pose
@@ -39,24 +39,24 @@ def start(name, *ways, **fields):
 def measure(name, *ways, **fields):
     """Return a task that measures the checkpoint of its own name, unless another one is given.
 
-    A way is the name of the next task, or a whole transition.
+    A transition is given as the name of the next task, or as a `Transition`.
     """
     return _task(name, ways, {"action": Action.MEASURE, "object_id": name}, fields)
 
 
 def drive(name, *ways, **fields):
-    """Return a WAYPOINT, at the origin if nothing else is said."""
+    """Return a WAYPOINT, by default at the origin."""
     return _task(name, ways, {"action": Action.WAYPOINT, "pose": Pose(x=0, y=0, z=0)}, fields)
 
 
 def wait(name, *ways, **fields):
-    """Return a WAIT; those of the fields that a wait rule has are its rule."""
+    """Return a WAIT; fields of `WaitRule` among the arguments become its rule."""
     rule = {key: fields.pop(key) for key in WaitRule.model_fields if key in fields}
     return _task(name, ways, {"action": Action.WAIT, "wait": WaitRule(**rule)}, fields)
 
 
 def checkpoint(number, low, high, normal_low=None, normal_high=None):
-    """Return a valve with its range, all of which is normal if nothing is said."""
+    """Return a valve with its range, all of which is nominal by default."""
     normal_low = low if normal_low is None else normal_low
     normal_high = high if normal_high is None else normal_high
     return CheckpointInfo(
@@ -71,7 +71,7 @@ def checkpoint(number, low, high, normal_low=None, normal_high=None):
 
 
 def unplaced(mission: Mission) -> Mission:
-    """Return the mission without the places in its source."""
+    """Return the mission without the spans of its source."""
     return mission.model_copy(
         update={
             name: tuple(part.model_copy(update={"source": None}) for part in getattr(mission, name))

@@ -1,6 +1,6 @@
 """Missions in which every field of the language takes every kind of value, sensible or not.
 
-Made from the models themselves, so that a new field is among them without being named here.
+The strategies are made from the models, so that they include every new field.
 """
 
 import operator
@@ -22,8 +22,10 @@ TEXTS = st.text(st.characters(exclude_categories=["Cs"]), max_size=6)
 
 
 def carried_missions() -> st.SearchStrategy[Mission]:
-    """Those that ROS messages say in whole: what was left out is not in them, and velocities are
-    those of the way on."""
+    """Draw missions that ROS messages represent completely.
+
+    The messages have no tasks that were left out, and their velocities apply to the next drive.
+    """
     return missions().map(_carried)
 
 
@@ -39,7 +41,7 @@ def _carried(mission: Mission) -> Mission:
 
 
 def missions() -> st.SearchStrategy[Mission]:
-    """Missions of the right shape; few of them make sense. Integers have up to 64 bits."""
+    """Draw missions of the right structure; few of them make sense. Integers have up to 64 bits."""
     return _models(Mission)
 
 
@@ -74,7 +76,7 @@ def _values(annotation: Any, limits: tuple[Any, ...]) -> st.SearchStrategy[Any]:
 
 
 def _limited(values: st.SearchStrategy[Any], limit: Any) -> st.SearchStrategy[Any]:
-    """Those of the values that keep to the limit; Hypothesis does not draw numbers beyond it."""
+    """Restrict a strategy to values within the limit; Hypothesis draws no numbers beyond it."""
     match limit:
         case annotated_types.Ge(least):
             return values.filter(partial(operator.le, least))

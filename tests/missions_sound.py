@@ -1,4 +1,4 @@
-"""Missions that `check` finds no error in, with every field of the language.
+"""Missions without errors of `check`, with every field of the language.
 
 Plain values (the ones a person would write) are as likely as odd ones, for what is left unsaid in a
 script has to be tried as often as what is said.
@@ -50,7 +50,7 @@ yaws = st.one_of(st.sampled_from([0.0, 1.5707963267948966, -3.141592653589793]),
 
 
 def poses(catalog: Catalog) -> st.SearchStrategy[Pose]:
-    """Poses of the site, and any others."""
+    """Draw a pose of the site, or any other."""
     named = [*(p.pose for p in catalog.places), *(a.dock for a in catalog.areas)]
     return st.sampled_from(named) | st.builds(Pose, x=floats, y=floats, z=floats, yaw=yaws)
 
@@ -76,7 +76,7 @@ def conditions(draw: st.DrawFn, catalog: Catalog) -> Condition:
 
 @st.composite
 def sound_missions(draw: st.DrawFn, catalog: Catalog, most: int = 7) -> Mission:
-    """A mission of up to `most` tasks and START, on the catalogue's site."""
+    """Draw a mission of up to `most` tasks and START, on the catalogue's site."""
     drafts = draw(st.lists(_drafts(catalog), min_size=1, max_size=most))
     if draw(st.booleans()):
         floor = draw(st.sampled_from(catalog.floors))
@@ -123,7 +123,7 @@ def sound_missions(draw: st.DrawFn, catalog: Catalog, most: int = 7) -> Mission:
 
 @st.composite
 def _drafts(draw: st.DrawFn, catalog: Catalog) -> Task:
-    """A task without its name and ways."""
+    """Draw a task without its name and transitions."""
     measures = draw(st.booleans())
     plain = draw(st.booleans())
     checkpoint = draw(st.sampled_from(catalog.checkpoints))
@@ -156,7 +156,7 @@ def _drafts(draw: st.DrawFn, catalog: Catalog) -> Task:
 
 
 def _names(draw: st.DrawFn, drafts: list[Task]) -> list[str]:
-    """Names as scripts give them or of one's own, each once."""
+    """Draw distinct names, as scripts make them or any others."""
     own = texts.filter(lambda name: name and name not in RESERVED_NAMES)
     names: list[str] = []
     for draft in drafts:
@@ -208,7 +208,7 @@ def _starts(draw: st.DrawFn, catalog: Catalog, names: list[str]) -> Task:
 
 @st.composite
 def _groups(draw: st.DrawFn, names: list[str], drafts: list[Task], catalog: Catalog) -> list[Group]:
-    """Ranges that lie in each other or apart, named by their nesting."""
+    """Draw groups over nested or disjoint ranges, named by their nesting."""
     ends = st.integers(0, len(names) - 1)
     patrols = {floor.patrol: floor.number for floor in catalog.floors}
     length = len(catalog.floors[0].patrol)
@@ -239,7 +239,7 @@ def _groups(draw: st.DrawFn, names: list[str], drafts: list[Task], catalog: Cata
 
 
 def _inner(names: list[str], i: int, groups: list[Group]) -> str:
-    """The name of the innermost group around the task."""
+    """Return the name of the innermost group around the task."""
     return max(
         (g.name for g in groups if names.index(g.start) <= i <= names.index(g.end)),
         key=lambda name: name.count("/"),
@@ -248,7 +248,7 @@ def _inner(names: list[str], i: int, groups: list[Group]) -> str:
 
 
 def _covered(names: list[str], i: int, groups: list[Group]) -> bool:
-    """Whether the place before the task lies within a group."""
+    """Return True if the position before the task is inside a group."""
     return any(names.index(g.start) < i <= names.index(g.end) for g in groups)
 
 

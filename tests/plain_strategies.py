@@ -1,4 +1,4 @@
-"""What stands in for `hypothesis.strategies` in a campaign: the same words, drawn plainly.
+"""Replacement of `hypothesis.strategies` in campaigns: the same names, with simple draws.
 
 Most of the time of a random mission is Hypothesis's own, which keeps what it needs for making an
 example smaller. A campaign draws anew from the number of the example instead.
@@ -8,7 +8,7 @@ import random
 
 
 class Strategy:
-    """Draws a value from a generator of random numbers."""
+    """Function that draws a value from a random generator."""
 
     def __init__(self, draw):
         self.draw = draw
@@ -84,5 +84,5 @@ def composite(make):
 
 
 def example(strategy, number):
-    """The example of that number."""
+    """Return the example with this number."""
     return strategy.draw(random.Random(number))

@@ -1,4 +1,4 @@
-"""Python in a process of its own."""
+"""Python in a separate process."""
 
 import subprocess
 import sys
@@ -9,9 +9,9 @@ ROOT = Path(__file__).parents[1]
 
 
 def run_python(*arguments: object, **options: Any) -> subprocess.CompletedProcess[str]:
-    """Runs Python with arguments to its end, which is a good one, in the project's folder.
+    """Run Python with arguments in the project's folder, and require that it succeeds.
 
-    Options are those of `subprocess.run`.
+    `options` are those of `subprocess.run`; `check=False` accepts a failure.
     """
     usual = {"cwd": ROOT, "capture_output": True, "text": True, "timeout": 300, "check": True}
     return subprocess.run([sys.executable, *map(str, arguments)], **(usual | options))

@@ -12,7 +12,7 @@ _EXPORTED = ROOT / "argo_compiler" / "export" / "flexbe_states"
 
 @cache
 def trees() -> dict[Path, ast.Module]:
-    """Return the tree of each module by its path in the repository, parsed at the first call."""
+    """Return the syntax tree of each module by its path in the repository."""
     return {
         path.relative_to(ROOT): ast.parse(path.read_text(encoding="utf-8"))
         for package in PACKAGES

@@ -1,4 +1,4 @@
-"""What README and docs show works as it stands there: Python runs, YAML is accepted."""
+"""The snippets of README and docs work unchanged: Python runs, YAML is accepted."""
 
 import re
 from pathlib import Path
@@ -18,7 +18,7 @@ ROOT = Path(__file__).parents[1]
 
 
 def snippets(language):
-    """Those of a language, by page."""
+    """Return the snippets of a language by page."""
     fence = re.compile(rf"^```{language}\n(.*?)^```", re.M | re.S)
     pages = (ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")))
     found = {p.relative_to(ROOT).as_posix(): fence.findall(p.read_text("utf-8")) for p in pages}
@@ -31,7 +31,7 @@ PYTHON, YAML = snippets("python"), snippets("yaml")
 @pytest.mark.parametrize("page", PYTHON)
 @pytest.mark.long
 def test_snippets_run(page, monkeypatch):
-    """Those of a page one after the other, from the project's folder."""
+    """The snippets of a page run one after the other, in the project's folder."""
     monkeypatch.chdir(ROOT)
     names = {"__name__": "snippet"}
     for number, snippet in enumerate(PYTHON[page], start=1):
@@ -54,7 +54,7 @@ READERS = {
 
 @pytest.mark.parametrize("page", YAML)
 def test_yaml_snippets_are_accepted(page):
-    """Those of a page as one file."""
+    """The snippets of a page are read as one file."""
     READERS[page]("".join(YAML[page]), page)
 
 

@@ -1,5 +1,6 @@
-"""What packages give by name before anything of them is imported: `argo_compiler` and `argo_env`,
-which are the front doors, and others that are made in the same way.
+"""Names that packages offer before their modules are imported.
+
+`argo_compiler` and `argo_env` are the front doors; other packages are made in the same way.
 """
 
 import ast
@@ -20,7 +21,7 @@ LAZY = sorted(
 
 
 def imported_for_type_checkers(package: str) -> dict[str, str]:
-    """The module that type checkers and editors are told each name comes from."""
+    """Return the module of each name, as type checkers and editors see it."""
     path = ROOT.joinpath(*package.split("."), "__init__.py")
     tree = ast.parse(path.read_text(encoding="utf-8"))
     (told,) = (

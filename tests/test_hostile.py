@@ -1,4 +1,4 @@
-"""Input far larger than any mission: memory and time stay bounded, and the answer is an answer.
+"""Input far larger than any mission needs bounded memory and time, and gets a proper answer.
 
 Each case runs in a process of its own whose memory and processor time the system limits.
 """
@@ -51,7 +51,7 @@ def read_within_limits(path: Path, answers: Connection) -> None:
 
 
 def answer(path: Path, content: str) -> str:
-    """Write a file with this content; return what a process answers that reads it within limits."""
+    """Write a file with this content, and return the answer of a limited process that reads it."""
     path.write_text(content, encoding="utf-8")
     answers, sending = PROCESSES.Pipe(duplex=False)
     process = PROCESSES.Process(target=read_within_limits, args=(path, sending))
@@ -67,7 +67,7 @@ def answer(path: Path, content: str) -> str:
 
 
 def nested(depth: int) -> Json:
-    """Groups in groups: the one of depth i goes from the first task to the i-th last one."""
+    """Return nested groups: the group of depth i reaches from the first task to the i-th last."""
     groups = [
         {
             "name": "/".join(["g"] * (i + 1)),

@@ -1,4 +1,4 @@
-"""The rules of docs/language.md and the tests that carry them."""
+"""Each rule of docs/language.md has a test that names it."""
 
 import ast
 import re
@@ -8,7 +8,7 @@ ROOT = Path(__file__).parents[1]
 
 
 def carried(path):
-    """The ids in the markers `pytest.mark.rule(...)` of a test file."""
+    """Yield the ids in the markers `pytest.mark.rule(...)` of a test file."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Call) and ast.unparse(node.func) == "pytest.mark.rule":
             yield from (ast.literal_eval(argument) for argument in node.args)

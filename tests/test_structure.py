@@ -1,4 +1,4 @@
-"""How the packages hang together: one direction of imports, no circles, one home for each name."""
+"""Structure of the packages: one direction of imports, no circles, one module for each name."""
 
 import ast
 import re
@@ -28,13 +28,13 @@ def dotted(path):
 
 @cache
 def trees():
-    """The syntax tree of each module, by its dotted name; made when the first test asks."""
+    """Return the syntax tree of each module by its dotted name."""
     return {dotted(path): tree for path, tree in source.trees().items()}
 
 
 @cache
 def nodes_of(module):
-    """All nodes of a module's syntax tree."""
+    """Return all nodes of a module's syntax tree."""
     return tuple(ast.walk(trees()[module]))
 
 
@@ -47,7 +47,7 @@ PACKAGES = {
 
 @cache
 def imports_of(module):
-    """The modules of the project that a module imports, wherever in it."""
+    """Return the modules of the project that a module imports anywhere."""
     found = set()
     for node in nodes_of(module):
         if isinstance(node, ast.ImportFrom):
@@ -61,7 +61,7 @@ def imports_of(module):
 
 
 def room_of(module):
-    """The folder that a module lies in; one that lies loose in a package's root is its own."""
+    """Return the folder of a module; a module in the root of a package is its own folder."""
     if module in PACKAGES:
         return module
     folder = module.rpartition(".")[0]
@@ -97,7 +97,7 @@ def test_folders_import_each_other_in_no_circle():
 
 
 def test_files_import_each_other_in_no_circle():
-    """Nor do they late, or for type checkers; a package's `__init__` is a file like any other."""
+    """Late imports and those for type checkers count, and so does a package's `__init__`."""
     require_no_circle({module: imports_of(module) for module in trees()})
 
 
@@ -105,7 +105,7 @@ COMPREHENSIONS = ast.ListComp | ast.SetComp | ast.DictComp | ast.GeneratorExp
 
 
 def run_by(node):
-    """What is below a node, without what is in functions, classes and comprehensions."""
+    """Yield the nodes below a node, except those in functions, classes and comprehensions."""
     for child in ast.iter_child_nodes(node):
         yield child
         if not isinstance(child, ast.FunctionDef | ast.ClassDef | ast.Lambda | COMPREHENSIONS):
@@ -113,7 +113,7 @@ def run_by(node):
 
 
 def bound_in(package):
-    """The names that a package has or offers, each with the module that it may be."""
+    """Return the names that a package defines or offers, each with the module it may be."""
     for node in run_by(trees()[package]):
         if isinstance(node, ast.ImportFrom):
             yield from ((a.asname or a.name, f"{node.module}.{a.name}") for a in node.names)
@@ -154,7 +154,7 @@ for dotted in sys.argv[1:]:
 
 @pytest.mark.long
 def test_each_module_is_found_where_its_name_says():
-    """By `import a.b.c as x`, whatever of the project has been imported before."""
+    """`import a.b.c as x` works, whichever modules have been imported before."""
     modules = sorted(module for module in trees() if not module.endswith(".__main__"))
     said = run_python("-c", IMPORTS, *modules, check=False)
     assert (said.returncode, said.stdout) == (0, ""), said.stderr
@@ -172,7 +172,7 @@ def test_the_checkers_of_witnesses_share_no_code_with_the_analysis():
 
 @cache
 def imported_into(module):
-    """The names that a module has from other modules of the project."""
+    """Yield the names that a module imports from other modules of the project."""
     return {
         alias.name
         for node in nodes_of(module)
@@ -184,7 +184,7 @@ def imported_into(module):
 
 @pytest.mark.parametrize("package", KNOWS)
 def test_names_are_imported_from_their_home_or_from_the_package_that_offers_them(package):
-    """A module of that package has them from their home."""
+    """A module of that package itself imports them from their own module."""
     strays = [
         f"{module} imports {alias.name} from {node.module}, which has it from elsewhere"
         for module in trees()
@@ -219,7 +219,7 @@ def test_each_public_class_has_a_name_of_its_own():
 
 
 def is_script(module):
-    """Whether a module is there to be run, and not to be imported."""
+    """Return True if a module is a script, which is run and not imported."""
     return module.endswith(".__main__") or any(
         isinstance(node, ast.If) and "__name__" in ast.unparse(node.test)
         for node in trees()[module].body
@@ -227,7 +227,7 @@ def is_script(module):
 
 
 def test_libraries_do_not_print():
-    """Nor do the use cases; what a person sees is printed by commands, the terminal and scripts."""
+    """Use cases don't print either: commands, the terminal and scripts print for people."""
     prints = {
         module
         for module in trees()
@@ -267,7 +267,7 @@ OPTION = re.compile(r"(^|[\s(`])--[a-z]|`argo ")
 
 
 def test_messages_of_the_libraries_name_the_thing_and_no_option():
-    """The command line adds its own words; scripts of the libraries are command lines."""
+    """The command line adds options to messages; scripts of the libraries are command lines."""
     for module in trees():
         library = module.startswith(("argo_compiler", "argo_env", "argo_planner.use_cases"))
         if not library or is_script(module):
@@ -290,7 +290,7 @@ def test_messages_of_the_libraries_name_the_thing_and_no_option():
 
 @pytest.mark.parametrize("package", KNOWS)
 def test_what_goes_wrong_is_of_a_kind(package):
-    """`ArgoError` is what all kinds are; by itself it tells a program nothing."""
+    """`ArgoError` is the base class; a program can't react to it alone."""
     bare = [
         f"{module}, line {node.lineno}"
         for module in trees()
@@ -312,7 +312,7 @@ SHIPPED = {
 
 
 def test_paths_of_users_are_asked_for_by_what_never_raises():
-    """Unlike `os.path`, a `Path` raises where a folder can't be read or links go round."""
+    """Unlike `os.path`, a `Path` raises if a folder can't be read or links form a circle."""
     asking = {
         module
         for module in trees()

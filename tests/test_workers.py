@@ -1,4 +1,4 @@
-"""Which worker runs which tests: what the suite's speed and its order hang on."""
+"""Distribution of tests to workers, which decides the suite's speed and order."""
 
 import os
 from collections import defaultdict

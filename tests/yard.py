@@ -1,4 +1,4 @@
-"""A yard: a site and missions that are loaded and run in a second or two."""
+"""The yard: a small site and missions, loaded and run in a second or two."""
 
 from contextlib import contextmanager
 from itertools import pairwise
@@ -71,25 +71,25 @@ AWAY_FROM_THE_EDGE = [{"number": 1, "dock": [2.05, 2.05, 0]}]
 
 
 def site_of(**changes):
-    """The yard's site, or what it is with other fields."""
+    """Return the yard's site, with `changes` of its fields."""
     return make_site(SiteSpec.model_validate(SITE | changes))
 
 
 def write_site(path, **changes):
-    """Writes the yard's site into a file, or what it is with other fields; the path as a text."""
+    """Write the yard's site, with `changes`, to a file, and return the path as text."""
     path.write_text(yaml.safe_dump(SITE | changes), encoding="utf-8")
     return str(path)
 
 
 def write_yard(folder, **missions):
-    """Writes into a folder what a command needs: the site as `yard.yaml`, and missions by name."""
+    """Write the site as `yard.yaml`, and missions by name, to a folder."""
     write_site(folder / "yard.yaml")
     for name, plan in missions.items():
         write_mission(plan, folder / f"{name}.json")
 
 
 def gauged(low, high):
-    """The yard's site with gauges whose nominal range that is."""
+    """Return the yard's site with gauges of this nominal range."""
     (floor,) = SITE["floors"]
     checkpoints = [c | {"nominal": {"low": low, "high": high}} for c in floor["checkpoints"]]
     return site_of(floors=[floor | {"checkpoints": checkpoints}])
@@ -110,7 +110,7 @@ def waypoint(name, x, y, **fields):
 
 
 def in_order(*tasks):
-    """The tasks one after the other, where they have no transitions of their own."""
+    """Return the tasks linked in order, where they have no transitions of their own."""
     linked = [
         a if a.transitions else a.model_copy(update={"transitions": (Transition(target=b.name),)})
         for a, b in pairwise(tasks)
@@ -119,18 +119,18 @@ def in_order(*tasks):
 
 
 def from_place(pose, *tasks, **fields):
-    """A mission of the tasks in order, from a place."""
+    """Return a mission of the tasks in order that starts at a pose."""
     start = Task(name="START", action=Action.START, pose=pose)
     return Mission(tasks=in_order(start, *tasks), **fields)
 
 
 def mission(*tasks, **fields):
-    """A mission of the tasks in order, from the dock of the yard."""
+    """Return a mission of the tasks in order that starts in the dock of the yard."""
     return from_place(Pose(x=1.05, y=1.05, z=0.02), *tasks, site="yard", **fields)
 
 
 def shelter(x, y):
-    """A reaction to gas: to wait at a safe place until it has gone, and then to go on."""
+    """Return a reaction to gas: wait at a safe place for ALL_CLEAR, then resume."""
     return Reaction(
         event=EventKind.GAS_LEAK,
         response=Response.SAFE_AREA,
@@ -141,7 +141,7 @@ def shelter(x, y):
 
 
 class GlidingDrive:
-    """Follows paths at the planned speeds, without a world below it."""
+    """Drive that follows paths at the planned speeds, without a world below it."""
 
     name = "gliding"
     time_step = 0.1
@@ -181,7 +181,7 @@ class GlidingDrive:
 
 
 class EmptyWorld:
-    """A world in which nothing is ever touched. Keeps what the arm was told."""
+    """World without contacts. Stores the commands of the arm."""
 
     def __init__(self):
         self.arm = []
@@ -194,7 +194,7 @@ class EmptyWorld:
 
 
 class Oracle:
-    """Reads checkpoint k as k plus 1.5, from wherever it is asked."""
+    """Sensor that reads checkpoint k as k plus 1.5, from any pose."""
 
     name = "oracle"
 
@@ -206,12 +206,12 @@ class Oracle:
 
 
 def fast_setup(navigator, values=None):
-    """All that a mission is carried out with, without physics."""
+    """Return a run setup without physics."""
     return RunSetup(EmptyWorld(), navigator, GlidingDrive(navigator.robot), Oracle(values))
 
 
 class Entries(Observer):
-    """Keeps the entries of a run."""
+    """Observer that stores the entries of a run."""
 
     def __init__(self):
         self.all = []
@@ -221,7 +221,7 @@ class Entries(Observer):
 
 
 class Watching(Observer):
-    """Calls a function with the time and the task after each step, another with what is sensed."""
+    """Observer that calls `observe` with time and task after each step, `announce` with news."""
 
     def __init__(self, observe=None, announce=None):
         self._observe, self._announce = observe, announce
@@ -236,19 +236,19 @@ class Watching(Observer):
 
 
 def opened(navigator):
-    """The navigator's site as an opened one."""
+    """Return the navigator's site as an `OpenedSite`."""
     return OpenedSite.of_navigator(navigator)
 
 
 def simulated(plan, navigator, *, observers=(), journal=None, gui=False, pace=None, **fields):
-    """The record of a whole run of the plan on the navigator's site; `fields` of its spec."""
+    """Run a mission on the navigator's site, with `fields` of the spec, and return the record."""
     site = opened(navigator)
     spec = RunSpec(mission=plan, site=site.reference, **fields)
     return simulate(spec, site, observers=observers, journal=journal, gui=gui, pace=pace)
 
 
 def run_with(plan, setup, *, observers=(), journal=None, interrupted=lambda: False, **fields):
-    """The record of a run with such a setup: of all of it, or from where a journal ends."""
+    """Run a mission with a setup, from the start or the end of a journal; return the record."""
     spec = RunSpec(mission=plan, site=setup.navigator.site.name, **fields)
     past = journal.entries if journal else ()
     if journal:
@@ -260,18 +260,18 @@ def run_with(plan, setup, *, observers=(), journal=None, interrupted=lambda: Fal
 
 
 def run(navigator, plan, *events, values=None):
-    """The record of a run without physics that is told of these events at their times."""
+    """Run a mission without physics, with events at their times, and return the record."""
     return run_with(plan, fast_setup(navigator, values), events=logged_events(*events))
 
 
 def simulation_of(spec, site, **arguments):
-    """A simulation of the spec's mission."""
+    """Return a simulation of the spec's mission."""
     return Simulation(make_machine(spec.mission, spec.beginning), site, spec, **arguments)
 
 
 @contextmanager
 def journaled(path, spec, site, **arguments):
-    """A simulation that a journal is kept of; where there is one already, from where that ends."""
+    """Yield a simulation with a journal; an existing journal is continued from its end."""
     known = path.exists()
     with (
         open_journal(path)
@@ -284,7 +284,7 @@ def journaled(path, spec, site, **arguments):
 
 
 def record_of(mission, **fields):
-    """The record of a run on UMAD that never took place, and in which nothing else happened."""
+    """Return an invented record of a run on UMAD, empty except for `fields`."""
     nothing = dict.fromkeys(("diagnostics", "tasks", "readings", "contacts", "trace", "path"), ())
     made_with = {"site": "umad", "robot": "tracker", "drive": "kinematic", "sensor": "ideal"}
     usual = {"mission": mission, "hfsm": lower(mission), "seed": 0}
@@ -296,19 +296,19 @@ def faults_of(*data):
 
 
 def cut(journal, share=0.5, to=None):
-    """Leaves so much of a journal as a process that was killed; `to` is where to, if elsewhere."""
+    """Truncate a journal to a share of its lines, in place or into the file `to`."""
     lines = journal.read_bytes().splitlines(keepends=True)
     (to or journal).write_bytes(b"".join(lines[: max(2, round(share * len(lines)))]))
 
 
 def cut_after(journal, entries):
-    """Leaves so many entries of a journal."""
+    """Truncate a journal after a number of entries."""
     lines = journal.read_bytes().splitlines(keepends=True)
     journal.write_bytes(b"".join(lines[: 1 + entries]))
 
 
 def resumed(path, navigator, **options):
-    """The record of a run that goes on from where its journal ends."""
+    """Resume a run from its journal, and return the record."""
     with open_journal(path) as journal:
         return resume(journal, opened(navigator), **options)
 
@@ -328,7 +328,7 @@ def to_rest(simulation):
 
 
 def take_over(simulation, after=0):
-    """A person takes over, after so many steps; the robot comes to rest."""
+    """Take the robot over after some steps, and wait until it has stopped."""
     steps(simulation, after)
     simulation.handle(TakeOver())
     to_rest(simulation)

@@ -108,7 +108,6 @@ def _explain(
     The search for them ends with the remaining time; returns () if that is too short for any
     result. Adds a reason to the search that states how good the explanation is.
     """
-
     longest_check = 0.0
 
     def remaining() -> float:

@@ -46,8 +46,8 @@ def from_isar(data: Any, source_name: str, catalog: Catalog | None = None) -> Im
     """Return the mission of a definition, with a MEASURE for each image, in the same order.
 
     The tag of the equipment names the checkpoint: it is the checkpoint's number, or its name if a
-    catalogue is given. The robot's pose is imported, although Argo chooses its own; the target
-    point is not, as the site has it.
+    catalogue is given. The robot's pose is imported, and the robot measures from it; the target
+    point is not imported, as the site has it.
 
     Raises DiagnosticError with a diagnostic for each part that Argo can't execute.
     """

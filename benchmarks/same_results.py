@@ -28,8 +28,10 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator, Sequence
+from importlib.util import find_spec
 from itertools import zip_longest
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
 UMAD = ROOT / "scenarios" / "umad"
@@ -41,12 +43,16 @@ EXPORTS = ("scxml", "btcpp", "flexbe", "ros", "isar", "mermaid", "dot")
 
 def records(drive: str) -> Iterator[tuple[str, bytes]]:
     """The name of each run with a drive, and its record."""
-    from argo_compiler.hfsm import Resume
-    from argo_env.faults.loading import read_faults
     from argo_env.planning import open_site
     from argo_env.run.session import simulate
-    from argo_env.run.spec import RunSpec, logged_events
+    from argo_env.run.spec import RunSpec
     from argo_planner.use_cases.importing import Upload, import_mission
+
+    # Older checkouts have other names: `argo_env.faults.reading`, and no `logged_events`.
+    is_new = find_spec("argo_env.faults.loading") is not None
+    faults_module = "argo_env.faults.loading" if is_new else "argo_env.faults.reading"
+    read_faults = importlib.import_module(faults_module).read_faults
+    resume: Any = (300.0, {"kind": "resume"})
 
     site = open_site("umad").prepare()
 
@@ -73,7 +79,7 @@ def records(drive: str) -> Iterator[tuple[str, bytes]]:
                 sensor=sensor,
                 seed=seed,
                 faults=faults,
-                events=logged_events((300.0, Resume())),
+                events=(resume,),
             )
             record = simulate(spec, site)
             said = f"{len(record.contacts)} contacts, {len(record.anomalies)} anomalies"

@@ -29,10 +29,10 @@ class _Command(TyperCommand):
         except typer.BadParameter as error:
             from pydantic import ValidationError
 
-            from argo_env.files.yaml_messages import message_of
+            from argo_env.files.yaml_messages import error_message
 
             if isinstance(error.__cause__, ValidationError):
-                error.message = message_of(error.__cause__.errors(include_url=False)[0], ())
+                error.message = error_message(error.__cause__.errors(include_url=False)[0], ())
             raise
 
 

@@ -285,7 +285,7 @@ class TravelTimes:
         places = [place for place in self._places if place is not None]
         self._times = np.full((len(self._places), len(self._places)), np.inf)
         self._times[np.ix_(known, known)] = navigator.travel_times(places)
-        self._from_everywhere = navigator.parts.made(
+        self._from_everywhere = navigator.parts.load_or_make(
             "travel-times", lambda: {"times": navigator.travel_times_to(places)}
         )["times"]
 

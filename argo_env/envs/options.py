@@ -12,7 +12,7 @@ from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Model
 from argo_compiler.files.fields import field_hint
 from argo_compiler.files.json_places import format_path
-from argo_env.files.yaml_messages import message_of, path_in_data
+from argo_env.files.yaml_messages import error_message, path_in_data
 
 Options = TypeVar("Options", bound=Model)
 
@@ -92,7 +92,7 @@ def _said(model: type[Model], error: ErrorDetails, data: Any) -> str:
         return f"{place}: it has no `kind`"
     if error["type"] == "union_tag_invalid":
         return f"{place}: no kind `{context['tag']}`, only {context['expected_tags']}"
-    return f"{place}: {message_of(error, path)}"
+    return f"{place}: {error_message(error, path)}"
 
 
 def _meant(model: type[Model], errors: list[ErrorDetails]) -> Iterator[ErrorDetails]:
@@ -114,7 +114,7 @@ def _meant(model: type[Model], errors: list[ErrorDetails]) -> Iterator[ErrorDeta
             continue
         # No type fits: "has to be a whole number, or a list".
         both = found[0].copy()
-        said = [message_of(e, e["loc"]) for e in found]
+        said = [error_message(e, e["loc"]) for e in found]
         both["type"] = "choice"
         both["msg"] = ", or ".join([said[0], *(s.rpartition("has to be ")[2] for s in said[1:])])
         yield both

@@ -17,7 +17,7 @@ from argo_env.evaluation.rates import should_stop
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
 from argo_env.evaluation.store import RowStore, read_rows
-from argo_env.files.folders import make_folder, writing
+from argo_env.files.folders import make_folder, reporting_write_errors
 
 PLAN = "evaluation.json"
 FAILING = "failing"
@@ -101,7 +101,7 @@ def write_file(path: Path, text: str) -> Path:
 
     Raises Unavailable if the file can't be written.
     """
-    with writing(path):
+    with reporting_write_errors(path):
         write_atomically(path, text)
     return path
 

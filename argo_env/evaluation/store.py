@@ -29,8 +29,8 @@ from argo_env.evaluation.row import RunRow
 from argo_env.files.checked_lines import (
     checked_line,
     checked_object,
-    cut_off,
     sync_folder,
+    truncate_if_possible,
     write_all,
 )
 from argo_env.files.folders import check_folder, make_folder
@@ -89,7 +89,7 @@ class RowStore(Closing):
         try:
             write_all(self._file, line)
         except OSError as error:
-            cut_off(self._file, self._size)
+            truncate_if_possible(self._file, self._size)
             raise Unavailable(f"{self.folder / LOG}: {error.strerror}") from error
         self._size += len(line)
         self._rows[row.key] = row

@@ -13,7 +13,7 @@ from argo_compiler.base.model import Model
 from argo_compiler.files.json_places import JsonPath
 from argo_compiler.files.loading import decode_text, read_bytes, require_size
 from argo_env.faults.kinds import AnyFault, FaultFile, find_site_errors
-from argo_env.files.yaml_file import parse_yaml, placed
+from argo_env.files.yaml_file import error_at_paths, parse_yaml
 from argo_env.seeding import generator
 from argo_env.site import Site
 
@@ -37,7 +37,7 @@ class FaultText:
         """
         if errors := find_site_errors(self.faults, site, seed):
             places: dict[JsonPath, str] = {("faults", k): error for k, error in errors.items()}
-            raise placed(self.text, self.source_name, "faults.not-on-site", places)
+            raise error_at_paths(self.text, self.source_name, "faults.not-on-site", places)
 
 
 def read_faults(path: Path) -> tuple[AnyFault, ...]:

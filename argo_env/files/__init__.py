@@ -1,1 +1,1 @@
-"""Files: the data that Argo ships, YAML read with errors in place, folders for results."""
+"""Files: data that Argo ships, YAML parsing with error locations, disk cache, result folders."""

@@ -1,5 +1,7 @@
-"""A cache on disk of what takes long to find: a folder for each site with its robot, and small ones
-for the descriptions of robots."""
+"""Cache on disk of results that take long to compute.
+
+It has a folder for each site with its robot, and a small one for each description of a robot.
+"""
 
 import hashlib
 import logging
@@ -11,22 +13,22 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from argo_env.files.parts import NOWHERE, Parts
+from argo_env.files.parts import NO_CACHE, Parts
 
 VARIABLE = "ARGO_CACHE_DIR"
-"""The environment variable that names another folder."""
-MOST = 2 * 1024**3
-"""bytes that the cache may take; what was not used for longest makes room"""
-_MOST_FILES = 50_000
+"""environment variable that names the folder to use instead of the default one"""
+MAX_SIZE = 2 * 1024**3
+"""bytes that the cache may take; the least recently used entries are removed first"""
+_MAX_FILES = 50_000
 SITES, ROBOTS = "sites", "robots"
-"""what is kept, each in a folder of that name"""
-_NAME = re.compile("[0-9a-f]{32}")  # of an entry: what else lies there is not Argo's
+"""the kinds of entries; each kind has a folder of that name"""
+_NAME = re.compile("[0-9a-f]{32}")  # of an entry; other files in the folder are not Argo's
 _log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
 class Contents:
-    """What is in the cache."""
+    """Number and size of the entries in the cache."""
 
     sites: int
     files: int
@@ -35,18 +37,21 @@ class Contents:
 
 
 def cache_folder() -> Path:
-    """Where the cache is: the folder that ARGO_CACHE_DIR names, or the user's own for caches."""
+    """Return the folder that ARGO_CACHE_DIR names, or else Argo's folder in the user's cache."""
     chosen = os.environ.get(VARIABLE)
     if chosen:
         return Path(chosen)
-    # Slow to import, and rarely needed twice.
+    # Imported here because it is slow to import and often not needed.
     from platformdirs import user_cache_path
 
     return user_cache_path("argo", appauthor=False)
 
 
-def entry(content: Iterable[str], kind: str = SITES) -> Parts:
-    """Return the parts that belong to what `content` says, all that they depend on."""
+def entry_for(content: Iterable[str], kind: str = SITES) -> Parts:
+    """Return the entry whose key is a hash of `content`: all texts that its parts depend on.
+
+    The entry is marked as used now. If there is no usable cache folder, the entry stores nothing.
+    """
     sink = hashlib.blake2b(digest_size=16)
     for piece in content:
         sink.update(f"{len(piece)} ".encode() + piece.encode())
@@ -54,34 +59,40 @@ def entry(content: Iterable[str], kind: str = SITES) -> Parts:
     try:
         folder = cache_folder() / kind / key
         with suppress(FileNotFoundError):
-            os.utime(folder)  # used now
-    except (OSError, RuntimeError, ValueError) as error:  # no home, not mine, no name of a file
+            os.utime(folder)  # for `evict`
+    except (
+        OSError,
+        RuntimeError,
+        ValueError,
+    ) as error:  # no home, forbidden, invalid name
         _log.debug("the cache can't be used: %s", error)
-        return NOWHERE
+        return NO_CACHE
     return Parts(folder, key)
 
 
-def make_room(most: int = MOST, files: int = _MOST_FILES) -> None:
-    """Take away the entries that were not used for longest, until the others take at most `most`
-    bytes in `files` files."""
-    kept, count = 0, 0
-    for _, folder in sorted(((_used(f), f) for f in _entries()), reverse=True):
+def evict(max_size: int = MAX_SIZE, max_files: int = _MAX_FILES) -> None:
+    """Remove the least recently used entries until the cache is within its limits.
+
+    The remaining entries take at most `max_size` bytes in at most `max_files` files.
+    """
+    size, count = 0, 0
+    for _, folder in sorted(((_last_used(f), f) for f in _entries()), reverse=True):
         sizes = _sizes(folder)
-        kept, count = kept + sum(sizes), count + len(sizes)
-        if kept > most or count > files:
+        size, count = size + sum(sizes), count + len(sizes)
+        if size > max_size or count > max_files:
             shutil.rmtree(folder, ignore_errors=True)
 
 
 def contents() -> Contents:
-    """Return what is in the cache now."""
+    """Return the number and size of the entries that are in the cache now."""
     entries = _entries()
     sizes = [_sizes(folder) for folder in entries]
     sites = sum(folder.parent.name == SITES for folder in entries)
     return Contents(sites, sum(map(len, sizes)), sum(map(sum, sizes)))
 
 
-def flaw() -> str | None:
-    """Why nothing can be kept in the cache; None if it can."""
+def write_problem() -> str | None:
+    """Return the reason why the cache can't be written to, or None if it can."""
     from tempfile import TemporaryFile
 
     try:
@@ -94,21 +105,21 @@ def flaw() -> str | None:
     return None
 
 
-def empty() -> None:
-    """Takes all entries away; whoever uses them just then makes them anew."""
+def clear() -> None:
+    """Remove all entries; a process that needs one again computes it anew."""
     for folder in _entries():
         shutil.rmtree(folder, ignore_errors=True)
 
 
 def _entries() -> list[Path]:
     try:
-        found = [path for kind in (SITES, ROBOTS) for path in (cache_folder() / kind).glob("*")]
-        return [path for path in found if _NAME.fullmatch(path.name)]
+        paths = [path for kind in (SITES, ROBOTS) for path in (cache_folder() / kind).glob("*")]
+        return [path for path in paths if _NAME.fullmatch(path.name)]
     except (OSError, RuntimeError, ValueError):
         return []
 
 
-def _used(folder: Path) -> float:
+def _last_used(folder: Path) -> float:
     try:
         return folder.stat().st_mtime
     except OSError:

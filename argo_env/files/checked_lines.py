@@ -1,6 +1,7 @@
-"""Files of lines with checksums, which a process that is killed leaves whole but for the last one.
+"""Files of lines with checksums; if the process is killed, only the last line can be damaged.
 
-Each line is a checksum and an object as JSON. What has been written and synced stays.
+Each line is a checksum and an object as JSON. Lines that have been written and synced are never
+lost.
 """
 
 import json
@@ -12,13 +13,16 @@ from typing import Any
 
 
 def checked_line(data: Mapping[str, Any]) -> bytes:
-    """The object as a line with its checksum and line end."""
+    """Return the object as a line with its checksum and line end."""
     payload = json.dumps(data, ensure_ascii=False, separators=(",", ":")).encode()
     return b"%08x %s\n" % (zlib.crc32(payload), payload)
 
 
 def checked_object(line: bytes) -> dict[str, Any] | None:
-    """The object in a line without its line end; None if the checksum does not fit."""
+    """Return the object in a line, which is given without its line end.
+
+    Returns None if the checksum does not match or the line holds no JSON object.
+    """
     checksum, _, payload = line.partition(b" ")
     if checksum != b"%08x" % zlib.crc32(payload):
         return None
@@ -30,14 +34,16 @@ def checked_object(line: bytes) -> dict[str, Any] | None:
 
 
 def write_all(file: int, data: bytes) -> None:
-    """Writes to an open file. Raises OSError; a part may have been written then."""
+    """Write all data to an open file; an OSError may leave a part of the data written."""
     while data:
         data = data[os.write(file, data) :]
 
 
-def cut_off(file: int, size: int) -> None:
-    """Takes back what was written of a line beyond the size (bytes), if the disk lets us; else it
-    is a torn one."""
+def truncate_if_possible(file: int, size: int) -> None:
+    """Truncate the file to the size (bytes), to remove a line that was written in part.
+
+    If the disk refuses, the damaged line stays, and its checksum does not match.
+    """
     try:
         os.ftruncate(file, size)
     except OSError:
@@ -45,7 +51,7 @@ def cut_off(file: int, size: int) -> None:
 
 
 def sync_folder(folder: Path) -> None:
-    """So that the names of the files in it are on disk as well. Raises OSError."""
+    """Sync the folder, so that the names of its files are on disk as well. Raises OSError."""
     file = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(file)

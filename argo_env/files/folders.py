@@ -1,4 +1,4 @@
-"""Folders that results are written to."""
+"""Checks and errors for the folders and files that results are written to."""
 
 import errno
 import os
@@ -10,20 +10,28 @@ from argo_compiler.base.errors import Conflict, Unavailable
 
 
 def check_folder(path: Path) -> None:
-    """Raises ArgoError if it is no folder and can't be made one. To be called before long work."""
+    """Check that the path is a folder or that one can be made there, before long work begins.
+
+    Raises:
+        Conflict: the path, or the nearest existing path above it, is a file.
+        Unavailable: the folder does not exist, and the one above it can't be written to.
+    """
     above = path.absolute()
     while not os.path.lexists(above):
         above = above.parent
     if not os.path.isdir(above):
-        file = "is" if above == path.absolute() else f"can't be made a folder: {above} is"
-        raise Conflict(f"{path}: {file} a file, and a folder is asked for; choose another")
+        problem = "is" if above == path.absolute() else f"can't be made a folder: {above} is"
+        raise Conflict(f"{path}: {problem} a file, but a folder is needed; choose another path")
     if not (os.path.isdir(path) or os.access(above, os.W_OK | os.X_OK)):
         raise Unavailable(f"{path}: can't be made a folder: {os.strerror(errno.EACCES)}")
 
 
 def make_folder(path: Path) -> None:
-    """Makes the folder, so that no work is lost for want of a place for its results. Raises
-    ArgoError if that is impossible."""
+    """Make the folder and its parents if they do not exist.
+
+    To be called before long work, so that its results can be written. Raises Unavailable if the
+    folder can't be made.
+    """
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -31,14 +39,17 @@ def make_folder(path: Path) -> None:
 
 
 @contextmanager
-def writing(place: Path, what: str = "", way_out: str = "") -> Iterator[None]:
-    """Raises Unavailable for what goes wrong while `what`, such as `the film`, is written there."""
+def reporting_write_errors(path: Path, content: str = "", remedy: str = "") -> Iterator[None]:
+    """Raise Unavailable for an OSError in the body, which writes to `path`.
+
+    The message names `content`, such as `the film`, and ends with the `remedy`.
+    """
     try:
         yield
     except OSError as error:
-        what = f"{what} " if what else ""
-        raise Unavailable(f"{place}: {what}can't be written: {error.strerror}{way_out}") from error
+        subject = f"{content} " if content else ""
+        raise Unavailable(f"{path}: {subject}can't be written: {error.strerror}{remedy}") from error
 
 
-ANOTHER_PLACE = "; choose another place"
-"""a way out"""
+CHOOSE_ANOTHER_PLACE = "; choose another place"
+"""a remedy for `reporting_write_errors`"""

@@ -1,8 +1,9 @@
-"""Arrays and texts that took long to find, kept on disk in files that are whole or not there.
+"""Parts of an entry of the disk cache: arrays and texts that take long to compute.
 
-Each file ends with a checksum of what it belongs to and of all before. Arrays are in one of NumPy's
-files, uncompressed, and the checksum is its comment. NumPy is imported for arrays only: a command
-that finds its texts starts without it.
+A file is written atomically. It ends with a checksum of the entry's key, the file's name and all
+bytes before the checksum. Arrays are in an uncompressed `.npz` file of NumPy, whose ZIP comment is
+the checksum. NumPy is imported for arrays only: a command that needs only cached texts starts
+without it.
 """
 
 import io
@@ -20,72 +21,75 @@ if TYPE_CHECKING:
 Arrays: TypeAlias = "dict[str, NDArray[Any]]"
 
 _CHECKSUM = 8  # bytes
-_AT_ONCE = 1 << 18  # bytes
+_CHUNK = 1 << 18  # bytes
 _Read = TypeVar("_Read")
 _log = logging.getLogger(__name__)
 
 
 class Parts:
-    """Named arrays in a folder. Of what can't be read it is as if it were not there, and what can't
-    be written is not kept: a cache is never the reason why something fails.
+    """Named arrays and texts in a folder on disk.
 
-    Any number of processes may read and write at the same time.
+    A part that can't be read counts as missing, and a part that can't be written is not stored: a
+    cache is never the reason why something fails. Any number of processes may read and write at the
+    same time.
     """
 
     def __init__(self, folder: Path | None, key: str) -> None:
-        """`key` says what the parts belong to; a file of another key is not read. Without a folder
-        nothing is kept."""
+        """Open the folder, or none: without a folder nothing is stored.
+
+        The `key` identifies the data that the parts belong to; a file of another key is not read.
+        """
         self._folder = folder
         self._key = key
 
-    def made(self, name: str, make: "Callable[[], Mapping[str, NDArray[Any]]]") -> Arrays:
-        """The part of that name; `make` makes it if it is not there, and then it is kept."""
-        found = self.find(name)
-        if found is None:
-            found = dict(make())
-            self.keep(name, found)
-        return found
+    def load_or_make(self, name: str, make: "Callable[[], Mapping[str, NDArray[Any]]]") -> Arrays:
+        """Return the arrays of a part; if it is missing, `make` makes it, and it is stored."""
+        arrays = self.load(name)
+        if arrays is None:
+            arrays = dict(make())
+            self.store(name, arrays)
+        return arrays
 
-    def find(self, name: str) -> "Arrays | None":
-        """The arrays of a part, which must not be written to; None if it is not there whole."""
-        return self._find(f"{name}.npz", _read_arrays)
+    def load(self, name: str) -> "Arrays | None":
+        """Return the arrays of a part, which are read-only; None if it is missing or damaged."""
+        return self._load(f"{name}.npz", _read_arrays)
 
-    def keep(self, name: str, arrays: "Mapping[str, NDArray[Any]]") -> None:
-        """Writes arrays as a part."""
+    def store(self, name: str, arrays: "Mapping[str, NDArray[Any]]") -> None:
+        """Write arrays as a part."""
         if self._folder is not None:
-            self._keep(self._folder, f"{name}.npz", _npz(arrays))
+            self._store(self._folder, f"{name}.npz", _npz(arrays))
 
-    def find_text(self, name: str) -> str | None:
-        """The text of a part; None if it is not there whole."""
-        return self._find(f"{name}.txt", _read_text)
+    def load_text(self, name: str) -> str | None:
+        """Return the text of a part, or None if it is missing or damaged."""
+        return self._load(f"{name}.txt", _read_text)
 
-    def keep_text(self, name: str, text: str) -> None:
-        """Writes a text as a part."""
+    def store_text(self, name: str, text: str) -> None:
+        """Write a text as a part."""
         if self._folder is not None:
-            self._keep(self._folder, f"{name}.txt", text.encode())
+            self._store(self._folder, f"{name}.txt", text.encode())
 
-    def _find(self, file_name: str, read: Callable[[BinaryIO], _Read]) -> _Read | None:
+    def _load(self, file_name: str, read: Callable[[BinaryIO], _Read]) -> _Read | None:
         if self._folder is None:
             return None
         path = self._folder / file_name
         try:
             with path.open("rb", buffering=0) as file:
-                if _is_whole(file, self._part(file_name)):
+                if _is_intact(file, self._identity(file_name)):
                     return read(file)
         except FileNotFoundError:
             return None
         except OSError as error:
             _log.debug("%s: can't be read: %s", path, error)
             return None
-        _log.warning("%s: is damaged or does not belong there, and is made anew", path)
+        _log.warning("%s: is damaged or belongs to other data, and is made anew", path)
         return None
 
-    def _keep(self, folder: Path, file_name: str, content: bytes | memoryview) -> None:
-        """Writes a file in one go, so that no reader ever sees half of it."""
+    def _store(self, folder: Path, file_name: str, content: bytes | memoryview) -> None:
+        """Write a file atomically, so that no reader ever sees half of it."""
         from tempfile import NamedTemporaryFile
 
         path, draft = folder / file_name, None
-        checksum = zlib.crc32(content, zlib.crc32(self._part(file_name)))
+        checksum = zlib.crc32(content, zlib.crc32(self._identity(file_name)))
         try:
             folder.mkdir(parents=True, exist_ok=True)
             with NamedTemporaryFile(dir=folder, prefix=".", delete=False) as file:
@@ -93,37 +97,37 @@ class Parts:
                 file.write(content)
                 file.write(_digits(checksum))
             os.replace(draft, path)
-        except OSError as error:  # read-only, full, taken away meanwhile
-            _log.debug("%s: can't be kept: %s", path, error)
+        except OSError as error:  # read-only, full, removed in the meantime
+            _log.debug("%s: can't be stored: %s", path, error)
             if draft is not None:
                 with suppress(OSError):
                     os.unlink(draft)
 
-    def _part(self, file_name: str) -> bytes:
+    def _identity(self, file_name: str) -> bytes:
         return f"{self._key} {file_name}".encode()
 
 
-NOWHERE = Parts(None, "")
-"""Keeps nothing."""
+NO_CACHE = Parts(None, "")
+"""parts that are never stored"""
 
 
 def _npz(arrays: "Mapping[str, NDArray[Any]]") -> memoryview:
-    """Return the content of a file of arrays, but for the comment that follows it."""
+    """Return the content of an `.npz` file that announces a comment, without the comment itself."""
     import numpy as np
 
     plain = {label: np.ascontiguousarray(array) for label, array in arrays.items()}
     sink = io.BytesIO()
-    np.savez(sink, **plain)  # type: ignore[arg-type]  # one could be called `allow_pickle`
+    np.savez(sink, **plain)  # type: ignore[arg-type]  # an array could be named `allow_pickle`
     content = sink.getbuffer()
     content[-2:] = _CHECKSUM.to_bytes(2, "little")  # the length of the comment
     return content
 
 
-def _is_whole(file: BinaryIO, part: bytes) -> bool:
-    """Return whether all in the file is as it was written for this part."""
-    check, left = zlib.crc32(part), os.fstat(file.fileno()).st_size - _CHECKSUM
-    while left > 0 and (piece := file.read(min(left, _AT_ONCE))):
-        check, left = zlib.crc32(piece, check), left - len(piece)
+def _is_intact(file: BinaryIO, identity: bytes) -> bool:
+    """Return whether the file's checksum fits its content and the identity of the part."""
+    check, remaining = zlib.crc32(identity), os.fstat(file.fileno()).st_size - _CHECKSUM
+    while remaining > 0 and (chunk := file.read(min(remaining, _CHUNK))):
+        check, remaining = zlib.crc32(chunk, check), remaining - len(chunk)
     return file.read() == _digits(check)
 
 
@@ -131,8 +135,8 @@ def _read_arrays(file: BinaryIO) -> Arrays:
     import numpy as np
 
     file.seek(0)
-    with np.load(file, allow_pickle=False) as found:
-        arrays = dict(found)
+    with np.load(file, allow_pickle=False) as archive:
+        arrays = dict(archive)
     for array in arrays.values():
         array.flags.writeable = False
     return arrays

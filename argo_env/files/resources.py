@@ -1,4 +1,4 @@
-"""Where the data that Argo ships lies: beside the packages in a checkout, else inside them."""
+"""Folders of the data that Argo ships: beside the packages in a checkout, else inside them."""
 
 from pathlib import Path
 
@@ -12,10 +12,10 @@ def _root(folder: str) -> Path:
 
 
 def scenarios() -> Path:
-    """The folder with one folder for each site."""
+    """Return the folder that has one folder for each site."""
     return _root("scenarios")
 
 
 def urdf() -> Path:
-    """The folder with the models of robots and checkpoints."""
+    """Return the folder with the models of robots and checkpoints."""
     return _root("urdf")

@@ -1,4 +1,4 @@
-"""Reads a model from the text of a YAML file, with errors that say where the file is wrong."""
+"""Parser of YAML files into pydantic models, with diagnostics that locate each error."""
 
 from collections.abc import Hashable, Iterator, Mapping
 from typing import Any, NamedTuple, TypeVar
@@ -10,7 +10,7 @@ from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span, with_excerpts
 from argo_compiler.files.fields import field_hint
 from argo_compiler.files.json_places import JsonPath, format_path
-from argo_env.files.yaml_messages import message_of, path_in_data
+from argo_env.files.yaml_messages import error_message, path_in_data
 
 MAX_FINDINGS = 20
 
@@ -18,7 +18,7 @@ ModelT = TypeVar("ModelT", bound=Model)
 
 
 class _Flaw(NamedTuple):
-    """What is wrong, what to do about it, and where."""
+    """Error in a YAML file: its message, remedy and location."""
 
     message: str
     hint: str | None
@@ -27,7 +27,7 @@ class _Flaw(NamedTuple):
 
 
 class NotYamlError(Exception):
-    """The text is no YAML; holds what is wrong."""
+    """Raised when the text is not YAML; holds the error."""
 
     def __init__(self, flaw: _Flaw) -> None:
         super().__init__(flaw.message)
@@ -44,11 +44,20 @@ def parse_yaml(
     wrong_field: str,
     no_field: Mapping[str, str] | None = None,
 ) -> ModelT:
-    """The model in the text of a YAML file, which messages call `source_name`. `things` names what
-    it holds, such as `sites`; the next three are the codes of diagnostics. `no_field` has hints for
-    fields that only some things have.
+    """Return the model that the text of a YAML file describes.
 
-    Raises DiagnosticError, with all that was found, if it is no such thing.
+    Args:
+        text: content of the file.
+        source_name: name of the file in messages.
+        model: class of the result.
+        things: plural noun for what such files describe, as in `sites`.
+        not_yaml: code of the diagnostic for a text that is not YAML.
+        duplicate_key: code of the diagnostic for a key that occurs twice in one mapping.
+        wrong_field: code of the diagnostics for values that the model rejects.
+        no_field: hints for fields that only some kinds have, by the field's name.
+
+    Raises:
+        DiagnosticError: the text describes no such model; it holds all errors.
     """
     try:
         tree, repeated, data = _compose(text)
@@ -56,31 +65,37 @@ def parse_yaml(
         raise _error(source_name, text, [_diagnostic(not_yaml, error.flaw)]) from None
     diagnostics = [_diagnostic(duplicate_key, flaw) for flaw in repeated]
     try:
-        found = model.model_validate(data)
+        parsed = model.model_validate(data)
     except ValidationError as error:
         for flaw in _wrong_fields(error, model, things, no_field or {}, tree, data):
             diagnostics.append(_diagnostic(wrong_field, flaw))
     if diagnostics:
         raise _error(source_name, text, diagnostics)
-    return found
+    return parsed
 
 
-def placed(
-    text: str, source_name: str, code: str, found: Mapping[JsonPath, str]
+def error_at_paths(
+    text: str, source_name: str, code: str, messages: Mapping[JsonPath, str]
 ) -> DiagnosticError:
-    """What was found wrong, with all of the file known, at these places of a YAML file's text."""
+    """Return the error with these messages, each located at its path in a YAML file's text.
+
+    It is for errors that are found after the whole file has been parsed.
+    """
     tree, _, _ = _compose(text)
-    flaws = [_Flaw(said, None, format_path(at), _place(tree, at)) for at, said in found.items()]
+    flaws = [
+        _Flaw(message, None, format_path(path), _span_at(tree, path))
+        for path, message in messages.items()
+    ]
     return _error(source_name, text, [_diagnostic(code, flaw) for flaw in flaws])
 
 
 def _compose(text: str) -> tuple[yaml.Node | None, list[_Flaw], Any]:
-    """The tree of a YAML text, which knows the places, its duplicate keys, and the data in it."""
+    """Return a YAML text's tree, which knows the spans, its duplicate keys, and its data."""
     try:
         loader = yaml.SafeLoader(text)
         try:
             tree = loader.get_single_node()
-            # Now: constructing the data merges mappings in the tree.
+            # Before the data is constructed, which merges mappings in the tree.
             repeated = [*_duplicate_keys(tree)]
             return tree, repeated, None if tree is None else loader.construct_document(tree)
         finally:
@@ -123,9 +138,9 @@ def _wrong_fields(
     faulty = {fault["loc"][:end] for fault in faults for end in range(len(fault["loc"]))}
     for fault in faults:
         if fault["type"] == "too_short" and fault["loc"] in faulty:
-            continue  # of what is in it nothing was left
+            continue  # it is too short only because its items are wrong
         path = fault.get("ctx", {}).get("path") or path_in_data(fault["loc"], data)
-        message, hint = message_of(fault, path), _beginning(model, fault["loc"])
+        message, hint = error_message(fault, path), _list_hint(model, fault["loc"])
         unknown = fault["type"] == "extra_forbidden"
         if unknown:
             message, hint = f"{things} have no such field", field_hint(model, fault["loc"])
@@ -140,19 +155,19 @@ def _wrong_fields(
         subject = format_path(path)
         whole = "the file" if fault["type"] == "model_type" else f"the {things.removesuffix('s')}"
         yield _Flaw(f"{subject or whole}: {message}", hint, subject or None,
-                    _place(tree, path, key=unknown))  # fmt: skip
+                    _span_at(tree, path, key=unknown))  # fmt: skip
 
 
-def _beginning(model: type[Model], path: JsonPath) -> str | None:
-    """How a file begins that holds one list and nothing else, if that is what is wrong."""
+def _list_hint(model: type[Model], path: JsonPath) -> str | None:
+    """Return the hint how to begin a file that holds only one list, if the error is there."""
     names = list(model.model_fields)
     if len(names) == 1 and path in {(), (names[0],)}:
         return f"begin with `{names[0]}:` and a list below it"
     return None
 
 
-def _place(tree: yaml.Node | None, path: JsonPath, key: bool = False) -> Span | None:
-    """Where the value at a path begins, or its key, or the longest part of the path that exists."""
+def _span_at(tree: yaml.Node | None, path: JsonPath, key: bool = False) -> Span | None:
+    """Return the span of the value at a path, or of its key, or of the longest existing prefix."""
     if key and isinstance(mapping := _node(tree, path[:-1]), yaml.MappingNode):
         named = next((k for k, _ in mapping.value if k.value == path[-1]), None)
         if named is not None:
@@ -164,14 +179,14 @@ def _place(tree: yaml.Node | None, path: JsonPath, key: bool = False) -> Span | 
 def _node(tree: yaml.Node | None, path: JsonPath) -> yaml.Node | None:
     node = tree
     for step in path:
-        inside: yaml.Node | None = None
+        child: yaml.Node | None = None
         if isinstance(node, yaml.MappingNode):
-            inside = next((v for k, v in reversed(node.value) if k.value == step), None)
+            child = next((v for k, v in reversed(node.value) if k.value == step), None)
         elif isinstance(node, yaml.SequenceNode) and isinstance(step, int):
-            inside = node.value[step] if step < len(node.value) else None
-        if inside is None:
+            child = node.value[step] if step < len(node.value) else None
+        if child is None:
             break
-        node = inside
+        node = child
     return node
 
 
@@ -182,23 +197,23 @@ def _span(node: yaml.Node) -> Span:
 
 
 def _duplicate_keys(tree: yaml.Node | None) -> Iterator[_Flaw]:
-    """Keys that stand twice in one mapping, of which YAML readers silently drop one."""
-    ahead: list[Any] = [tree]
+    """Yield an error for each key that a mapping has twice; YAML parsers silently drop one."""
+    pending: list[Any] = [tree]
     seen: set[int] = set()  # aliases lead to the same node again
-    while ahead:
-        node = ahead.pop()
+    while pending:
+        node = pending.pop()
         if id(node) in seen:
             continue
         seen.add(id(node))
         if isinstance(node, yaml.SequenceNode):
-            ahead += node.value
+            pending += node.value
         elif isinstance(node, yaml.MappingNode):
-            first: dict[Hashable, Span] = {}
+            spans: dict[Hashable, Span] = {}
             for key, value in node.value:
-                ahead.append(value)
+                pending.append(value)
                 if isinstance(key, yaml.ScalarNode) and key.value != "<<":
                     span = _span(key)
-                    before = first.setdefault(key.value, span)
-                    if before is not span:
-                        message = f"`{key.value}` stands here again; it was given at line "
-                        yield _Flaw(f"{message}{before.line}", "remove one of the two", None, span)
+                    first = spans.setdefault(key.value, span)
+                    if first is not span:
+                        message = f"`{key.value}` is given twice; it was first given at line "
+                        yield _Flaw(f"{message}{first.line}", "remove one of the two", None, span)

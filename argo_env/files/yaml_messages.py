@@ -1,4 +1,4 @@
-"""What is wrong with a value of a YAML file or of options, in plain words, and where."""
+"""Messages in plain words for pydantic's validation errors in YAML files and options."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -31,11 +31,11 @@ _HAS_TO_BE = {
     "too_short": "a list of at least {min_length}",
     "too_long": "a list of at most {max_length}",
 }
-"""By pydantic's types of errors, with what is in their context."""
+"""the required value, by pydantic's type of error; the error's context fills the placeholders"""
 
 
-def message_of(error: ErrorDetails, path: JsonPath) -> str:
-    """What is wrong with the value at a path of the file."""
+def error_message(error: ErrorDetails, path: JsonPath) -> str:
+    """Return the message for an error in the value at a path of the file."""
     name, kind = _name(path), error["type"]
     if kind == "missing":
         return f"{name} is missing"
@@ -45,20 +45,23 @@ def message_of(error: ErrorDetails, path: JsonPath) -> str:
 
 
 def _name(path: JsonPath) -> str:
-    """The last name of a path, with the numbers after it."""
+    """Return the last name of a path with the indices after it, or `it` if there is none."""
     names = [k for k, step in enumerate(path) if isinstance(step, str)]
     return f"`{format_path(path[names[-1] :])}`" if names else "it"
 
 
 def path_in_data(path: JsonPath, data: Any) -> JsonPath:
-    """The path without the kinds of things that a choice was made among, which pydantic adds."""
-    found: list[int | str] = []
+    """Return pydantic's path of an error without the discriminator values that it adds for unions.
+
+    What remains is the path in the data. The discriminator is the field `kind`.
+    """
+    steps: list[int | str] = []
     for step in path:
         if isinstance(data, Mapping) and step not in data and data.get("kind") == step:
             continue
-        found.append(step)
+        steps.append(step)
         try:
             data = data[step]
         except (KeyError, IndexError, TypeError):
             data = None
-    return tuple(found)
+    return tuple(steps)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid, Unreachable
 from argo_compiler.base.model import Pose
-from argo_env.files.parts import NOWHERE, Parts
+from argo_env.files.parts import NO_CACHE, Parts
 from argo_env.navigation.closed_areas import Blockage, close, closed_cells, turns_over
 from argo_env.navigation.graphs import against, search
 from argo_env.navigation.lattice import (
@@ -75,7 +75,7 @@ class Navigator:
     the paths that it planned last."""
 
     def __init__(
-        self, site: Site, robot: RobotSpec, parts: Parts = NOWHERE, remembered: int = 0
+        self, site: Site, robot: RobotSpec, parts: Parts = NO_CACHE, remembered: int = 0
     ) -> None:
         """What takes long to find is looked up in `parts`, and kept there. The last `remembered`
         paths are not planned again."""
@@ -112,10 +112,10 @@ class Navigator:
         """Takes over what a navigator of the same site and robot has found."""
         if "surface" in other.__dict__:
             self.surface = other.surface
-            self.parts.keep("surface", surface_arrays(self.surface))
+            self.parts.store("surface", surface_arrays(self.surface))
         if "lattice" in other.__dict__:
             self.lattice = other.lattice
-            self.parts.keep("lattice", lattice_arrays(self.lattice))
+            self.parts.store("lattice", lattice_arrays(self.lattice))
 
     def prepare(self) -> None:
         """Finds out now what all queries share, so that no later call takes the time for it."""
@@ -125,7 +125,7 @@ class Navigator:
     def surface(self) -> Surface:
         """All walkable cells of the site."""
         grid = Grid.over(self.site.spec.ground)
-        arrays = self.parts.made(
+        arrays = self.parts.load_or_make(
             "surface",
             lambda: surface_arrays(
                 find_surface(
@@ -141,7 +141,7 @@ class Navigator:
 
         Raises ArgoError if the robot can't stand in a docking station, or not all are connected.
         """
-        arrays = self.parts.made("lattice", lambda: lattice_arrays(self._build_lattice()))
+        arrays = self.parts.load_or_make("lattice", lambda: lattice_arrays(self._build_lattice()))
         return lattice_of(self.surface, self.robot, arrays)
 
     def _build_lattice(self) -> Lattice:
@@ -263,7 +263,7 @@ class Navigator:
 
     @cached_property
     def _from_first_dock(self) -> NDArray[np.float64]:
-        arrays = self.parts.made(
+        arrays = self.parts.load_or_make(
             "first-dock",
             lambda: {"costs": self._routes.costs_from(self.state_at(self._first_dock))},
         )

@@ -18,7 +18,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env.files.parts import NOWHERE, Arrays, Parts
+from argo_env.files.parts import NO_CACHE, Arrays, Parts
 from argo_env.navigation.graphs import Graph, Trees, against, costs_of, part_of, search
 from argo_env.navigation.lattice import Lattice
 
@@ -40,7 +40,7 @@ class Landmarks:
     ahead: Graph
     back: Graph
     places: NDArray[np.float64]
-    parts: Parts = NOWHERE
+    parts: Parts = NO_CACHE
     name: str = ""
     """of the part with their ways"""
 
@@ -82,7 +82,7 @@ class Landmarks:
     def _distances(self) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """The costs (s) from all states to each landmark, and from each landmark to all states,
         shape (landmarks, n)."""
-        ways = self.parts.made(self.name, self._find_distances)
+        ways = self.parts.load_or_make(self.name, self._find_distances)
         return ways["onto"], ways["away"]
 
     def _find_distances(self) -> dict[str, NDArray[np.float32]]:
@@ -128,7 +128,7 @@ class Region:
     entries: NDArray[np.int64]
     exits: NDArray[np.int64]
     landmarks: Landmarks
-    parts: Parts = NOWHERE
+    parts: Parts = NO_CACHE
     name: str = ""
     """of what is kept of it in `parts`"""
 
@@ -152,7 +152,7 @@ class Region:
             costs, following = search(graph, sources)
             return {"costs": costs, "following": following}
 
-        trees = self.parts.made(f"{self.name}-{kind}", find)
+        trees = self.parts.load_or_make(f"{self.name}-{kind}", find)
         return trees["costs"], trees["following"]
 
 
@@ -195,7 +195,7 @@ class Partition:
     crossings: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]
 
 
-def make_partition(lattice: Lattice, cuts: Sequence[float], parts: Parts = NOWHERE) -> Partition:
+def make_partition(lattice: Lattice, cuts: Sequence[float], parts: Parts = NO_CACHE) -> Partition:
     """The partition of the lattice at the heights `cuts` (m). What takes long to find of its
     regions is kept in `parts`."""
     region = np.searchsorted(np.array(cuts), lattice.surface.z[lattice.cell])

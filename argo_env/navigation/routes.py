@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.base.stages import stage, stage_items
-from argo_env.files.parts import NOWHERE, Arrays, Parts
+from argo_env.files.parts import NO_CACHE, Arrays, Parts
 from argo_env.navigation.graphs import Graph, Trees, graph_of, graph_of_moves, search
 from argo_env.navigation.lattice import Lattice
 from argo_env.navigation.regions import Partition, Region, walk
@@ -170,7 +170,7 @@ class _Crossing:
 class Routes:
     """Finds the cheapest ways from state to state of a lattice. Keeps the ways between portals."""
 
-    def __init__(self, lattice: Lattice, partition: Partition, parts: Parts = NOWHERE) -> None:
+    def __init__(self, lattice: Lattice, partition: Partition, parts: Parts = NO_CACHE) -> None:
         self.partition = partition
         self._parts = parts
         self._lattice = lattice
@@ -319,7 +319,7 @@ class Routes:
     @cached_property
     def _portals(self) -> Portals:
         return Portals(
-            **self._parts.made(
+            **self._parts.load_or_make(
                 "portals", lambda: portals_arrays(find_portals(self._lattice, self.partition))
             )
         )

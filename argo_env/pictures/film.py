@@ -21,7 +21,7 @@ from PIL import GifImagePlugin, Image
 from argo_compiler.base.errors import Invalid, Unavailable, located
 from argo_compiler.base.extras import install_line
 from argo_compiler.files.atomic_write import atomic_draft, check_writable
-from argo_env.files.folders import ANOTHER_PLACE, writing
+from argo_env.files.folders import CHOOSE_ANOTHER_PLACE, reporting_write_errors
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.caption import add_caption, add_verdict
 from argo_env.pictures.chase import ChaseCamera
@@ -271,7 +271,10 @@ def write_film(
     count = math.ceil(motion.end / (speed * frame_time) - 1e-9) + 1
     times = [min(k * speed * frame_time, motion.end) for k in range(count)]
     times += [motion.end] * (round(VERDICT_TIME / frame_time) - 1)
-    with writing(file, "the film", ANOTHER_PLACE), atomic_draft(file) as draft:
+    with (
+        reporting_write_errors(file, "the film", CHOOSE_ANOTHER_PLACE),
+        atomic_draft(file) as draft,
+    ):
         with Scene(site, robot) as scene:
             shots = [*shots_of(motion, scene, times, (width, height), frame_time)]
             spread = _spread(times) if is_gif else []

@@ -21,7 +21,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from argo_compiler.files.atomic_write import write_atomically
 from argo_env.files import cache
-from argo_env.files.folders import ANOTHER_PLACE, writing
+from argo_env.files.folders import CHOOSE_ANOTHER_PLACE, reporting_write_errors
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.light import compose, depth_shading, shade, shadowed, sun_camera
 from argo_env.pictures.motion import RecordedMotion, check_site
@@ -63,7 +63,7 @@ def still_view(site: Site, robot: RobotSpec, camera: Camera, sun: Camera) -> Lit
             "dark": shadowed(camera, seen.depth, sun, lit.depth),
         }
 
-    found = cache.entry(said).made("overview", rendered)
+    found = cache.entry_for(said).load_or_make("overview", rendered)
     view = CameraView(found["colours"], found["depth"].astype(np.float64))
     return LitView(view, found["lit_depth"].astype(np.float64), found["dark"])
 
@@ -143,7 +143,7 @@ def write_overview(record: RunRecord, site: Site, robot: RobotSpec, file: Path) 
     _draw_markers(image, record, site, motion, camera)
     content = io.BytesIO()
     image.resize(SIZE, Image.Resampling.LANCZOS).save(content, "png")
-    with writing(file, "the picture", ANOTHER_PLACE):
+    with reporting_write_errors(file, "the picture", CHOOSE_ANOTHER_PLACE):
         write_atomically(file, content.getvalue())
 
 

@@ -14,7 +14,7 @@ from argo_compiler.il import Action, Task
 from argo_compiler.reorder.mission_problem import MissionProblem
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.problem import Tour
-from argo_env.files.folders import ANOTHER_PLACE, writing
+from argo_env.files.folders import CHOOSE_ANOTHER_PLACE, reporting_write_errors
 from argo_env.formatting import clock
 from argo_env.navigation import Navigator
 from argo_env.pictures.drawing.floors import plans_of
@@ -81,7 +81,7 @@ def write_route(
         content = io.BytesIO()
         Image.fromarray(image).save(content, "png")
         pictures[_name(plan.number)] = content.getvalue()
-    with writing(folder, "the pictures", ANOTHER_PLACE):
+    with reporting_write_errors(folder, "the pictures", CHOOSE_ANOTHER_PLACE):
         write_folder(folder, pictures)
     return [folder / name for name in pictures]
 

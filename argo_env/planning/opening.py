@@ -16,7 +16,7 @@ from argo_compiler.base.errors import Conflict, Invalid
 from argo_compiler.base.stages import stage
 from argo_compiler.files.loading import read_text
 from argo_env.files import cache
-from argo_env.files.parts import NOWHERE, Parts
+from argo_env.files.parts import NO_CACHE, Parts
 from argo_env.planning.catalog import kept_catalog, make_catalog
 from argo_env.planning.code import digest_of_code
 from argo_env.robot.spec import RobotSpec, checked_robot, load_robot
@@ -43,7 +43,7 @@ class OpenedSite:
     """
 
     def __init__(
-        self, reference: str | None, site: Site, robot: RobotSpec, parts: Parts = NOWHERE
+        self, reference: str | None, site: Site, robot: RobotSpec, parts: Parts = NO_CACHE
     ) -> None:
         """What takes long to find is looked up in `parts`, and kept there."""
         self._reference = reference
@@ -190,8 +190,8 @@ def _open(
             _slots.popitem(last=False)
     with slot.lock:
         if slot.opened is None:
-            parts = cache.entry((digest_of_code(), text, robot.model_dump_json()))
-            known = parts.find_text("site")
+            parts = cache.entry_for((digest_of_code(), text, robot.model_dump_json()))
+            known = parts.load_text("site")
             _log.info("the site is %s", "made" if known is None else "taken from the cache on disk")
             if known is None:
                 with stage(f"making the site {reference or ''}".rstrip()):
@@ -206,9 +206,9 @@ def _keep(
     reference: str | None, robot: RobotSpec, parts: Parts, made: "Site | Navigator"
 ) -> OpenedSite:
     """A new site, with what its making has found, kept on disk."""
-    cache.make_room()
+    cache.evict()
     site = made if isinstance(made, Site) else made.site
-    parts.keep_text("site", site.spec.model_dump_json())
+    parts.store_text("site", site.spec.model_dump_json())
     opened = OpenedSite(reference, site, robot, parts)
     if not isinstance(made, Site):
         opened.navigator.take_over(made)

@@ -25,14 +25,14 @@ def patrol(navigator: "Navigator", floor: int) -> tuple[Pose, ...]:
     found = kept_patrol(navigator.parts, floor)
     if found is None:
         corners = _corners(navigator, floor)
-        navigator.parts.keep_text(_part(floor), json.dumps(corners))
+        navigator.parts.store_text(_part(floor), json.dumps(corners))
         found = _round(corners)
     return found
 
 
 def kept_patrol(parts: Parts, floor: int) -> tuple[Pose, ...] | None:
     """The same as it is kept in `parts`; None if it is not."""
-    corners = parts.find_text(_part(floor))
+    corners = parts.load_text(_part(floor))
     return None if corners is None else _round(json.loads(corners))
 
 

@@ -33,14 +33,14 @@ def kept_way(parts: Parts, asked: object, plan: Callable[[], Path]) -> Way:
     question = json.dumps(asked)
     digest = hashlib.blake2b(question.encode(), digest_size=8).digest()
     name = f"way-{int.from_bytes(digest) % _PLACES:04x}"
-    found, _, answer = (parts.find_text(name) or "").partition("\n")
+    found, _, answer = (parts.load_text(name) or "").partition("\n")
     if found == question:
         return _to_way(json.loads(answer))
     try:
         way: Way = plan()
     except ArgoError as error:
         way = NoPath(str(error))
-    parts.keep_text(name, f"{question}\n{json.dumps(_to_data(way))}")
+    parts.store_text(name, f"{question}\n{json.dumps(_to_data(way))}")
     return way
 
 

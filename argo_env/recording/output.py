@@ -6,7 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from argo_compiler.base.errors import Unavailable
-from argo_env.files.folders import ANOTHER_PLACE, writing
+from argo_env.files.folders import CHOOSE_ANOTHER_PLACE, reporting_write_errors
 
 VERSION = "2"
 """of what a recording of Argo's holds"""
@@ -35,7 +35,7 @@ class RecordingFile:
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        with writing(path, "the recording", ANOTHER_PLACE):
+        with reporting_write_errors(path, "the recording", CHOOSE_ANOTHER_PLACE):
             self._file = path.open("wb", buffering=0)
         self._size = 0
         self._kept = 0

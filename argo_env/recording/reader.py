@@ -19,7 +19,7 @@ from pydantic import ValidationError
 from argo_compiler.base.errors import Invalid, NotFound, Remedy
 from argo_compiler.files.json_places import format_path
 from argo_compiler.files.loading import FileError, FileProblem, read_bytes
-from argo_env.files.yaml_messages import message_of
+from argo_env.files.yaml_messages import error_message
 from argo_env.recording.files import require_libraries
 from argo_env.recording.output import MAGIC, VERSION
 from argo_env.run.record import Reading, RunRecord, TaskRun
@@ -204,7 +204,7 @@ def decode_recording(content: bytes, name: str) -> Recording:
         )
     except ValidationError as error:
         fault = error.errors(include_url=False)[0]
-        place, said = format_path(fault["loc"]), message_of(fault, fault["loc"])
+        place, said = format_path(fault["loc"]), error_message(fault, fault["loc"])
         _refuse(name, f"does not fit this Argo: {place}: {said}")
 
 

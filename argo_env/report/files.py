@@ -5,7 +5,7 @@ from pathlib import Path
 
 from argo_compiler.base.errors import Conflict
 from argo_compiler.files.atomic_write import write_folder
-from argo_env.files.folders import writing
+from argo_env.files.folders import reporting_write_errors
 from argo_env.report.html import page
 from argo_env.run.record import RunRecord
 from argo_env.site import Site
@@ -26,7 +26,7 @@ def write_report(record: RunRecord, site: Site, folder: Path) -> Path:
             f"the record is of a run on site `{record.site}`, not on `{site.name}`: load that site"
         )
     contents = {RECORD: to_json(record).encode(), PAGE: page(record, site).encode()}
-    with writing(folder, "the report", "; choose another folder"):
+    with reporting_write_errors(folder, "the report", "; choose another folder"):
         write_folder(folder, contents)
     return folder / PAGE
 

@@ -239,15 +239,15 @@ def load_robot(name: str = "tracker") -> RobotSpec:
 @lru_cache(maxsize=16)  # each time that a site is opened
 def _described(kind: type[_Described], path: Path, text: str) -> _Described:
     """Return what the text of a file describes. The fields that it sets are kept on disk."""
-    parts = cache.entry([text], cache.ROBOTS)
-    known = parts.find_text("fields")
+    parts = cache.entry_for([text], cache.ROBOTS)
+    known = parts.load_text("fields")
     try:
         if known is not None:
             return kind.model_validate_json(known)
         described = kind.model_validate(_read_yaml(path, text))
     except ValidationError as error:
         raise Invalid(f"{path}: {error}") from error
-    parts.keep_text("fields", described.model_dump_json(exclude_unset=True))
+    parts.store_text("fields", described.model_dump_json(exclude_unset=True))
     return described
 
 

@@ -22,11 +22,11 @@ from argo_env.closing import Closing
 from argo_env.files.checked_lines import (
     checked_line,
     checked_object,
-    cut_off,
     sync_folder,
+    truncate_if_possible,
     write_all,
 )
-from argo_env.files.yaml_messages import message_of
+from argo_env.files.yaml_messages import error_message
 from argo_env.planning.opening import OpenedSite
 from argo_env.run.log import Entry
 from argo_env.run.observer import Observer
@@ -91,7 +91,7 @@ class Journal(Observer, Closing):
             if entry.is_essential:
                 os.fsync(self._file)
         except OSError as error:
-            cut_off(self._file, self._size)
+            truncate_if_possible(self._file, self._size)
             raise Unavailable(
                 f"{self.path}: the journal can't be written any further: {error.strerror}; what "
                 "was written stays, and the run can be resumed from there",
@@ -275,7 +275,7 @@ def _model(cls: type[ModelT], data: dict[str, object], path: Path, number: int) 
     except ValidationError as error:
         fault = error.errors(include_url=False)[0]
         field = ".".join(str(part) for part in fault["loc"])
-        _refuse(path, f"line {number + 1}, {field}: {message_of(fault, fault['loc'])}")
+        _refuse(path, f"line {number + 1}, {field}: {error_message(fault, fault['loc'])}")
 
 
 def _line(number: int, model: Model) -> bytes:

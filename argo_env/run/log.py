@@ -30,7 +30,7 @@ from argo_compiler.hfsm import (
 from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import EventKind, Task
 from argo_env.faults.kinds import AnyFault
-from argo_env.files.yaml_messages import message_of
+from argo_env.files.yaml_messages import error_message
 from argo_env.robot.pose import BodyPose, Place
 from argo_env.run.record import (
     DIGITS,
@@ -91,7 +91,7 @@ class LoggedEvent(Model):
             return cls.model_validate({"kind": kind, **asdict(event)})
         except ValidationError as error:
             fault = error.errors(include_url=False)[0]
-            raise Invalid(f"{event!r}: {message_of(fault, fault['loc'])}") from None
+            raise Invalid(f"{event!r}: {error_message(fault, fault['loc'])}") from None
 
     def to_event(self) -> Event:
         """Return the event for the machine. Raises ValueError if fields are missing or too many."""

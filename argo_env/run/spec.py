@@ -12,7 +12,7 @@ from argo_compiler.files.json_places import format_path
 from argo_compiler.hfsm import Event
 from argo_compiler.il import Mission
 from argo_env.faults.kinds import AnyFault
-from argo_env.files.yaml_messages import message_of
+from argo_env.files.yaml_messages import error_message
 from argo_env.run.initial_state import InitialState
 from argo_env.run.log import LoggedEvent, require_event_time, require_external
 from argo_env.run.record import Reordering
@@ -166,7 +166,7 @@ def validate_spec(spec: RunSpec) -> RunSpec:
 def _invalid(name: str, error: ValidationError) -> Invalid:
     fault = error.errors(include_url=False)[0]
     place = format_path(fault["loc"])
-    message = message_of(fault, fault["loc"])
+    message = error_message(fault, fault["loc"])
     return Invalid(f"{name}: {place + ': ' if place else ''}{message}")
 
 

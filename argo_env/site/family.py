@@ -8,7 +8,7 @@ from pydantic import Field, ValidationError, field_validator
 
 from argo_compiler.base.errors import Invalid
 from argo_compiler.base.model import Model
-from argo_env.files.yaml_messages import message_of
+from argo_env.files.yaml_messages import error_message
 
 PREFIX = "generated:"
 TEST_SEEDS = 1_000_000
@@ -89,7 +89,7 @@ def parse_family(text: str) -> Family:
         return Family.model_validate(given)
     except ValidationError as error:
         fault = error.errors(include_url=False)[0]
-        raise _error(text, message_of(fault, fault["loc"])) from None
+        raise _error(text, error_message(fault, fault["loc"])) from None
 
 
 def _size(text: str) -> tuple[int, int]:

@@ -38,8 +38,8 @@ def show_health(
 
 def _empty() -> None:
     """Raises Unavailable if anything is left, or there is no such folder to be had."""
-    before, why = cache.contents().size, cache.flaw()
-    cache.empty()
+    before, why = cache.contents().size, cache.write_problem()
+    cache.clear()
     if why is not None or cache.contents().files:
         raise Unavailable(
             f"{cache.cache_folder()}: the cache can't be emptied: {why or 'some of it is left'}; "

@@ -15,7 +15,7 @@ from argo_compiler.files.mission_file import write_mission
 from argo_compiler.reorder.requirements import MissionPart, Requirements
 from argo_compiler.route.robust_spread import CAUTIOUS, SIMULATED
 from argo_env.files.folders import make_folder
-from argo_env.files.yaml_messages import message_of
+from argo_env.files.yaml_messages import error_message
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_planner.terminal.certificate_lines import show_certificate
 from argo_planner.terminal.files import check_outputs, read_upload, require_mission_output
@@ -188,7 +188,7 @@ def _checked(name: str, option: str, value: object) -> Requirements:
         return Requirements.model_validate({name: value})
     except ValidationError as error:
         fault = error.errors(include_url=False)[0]
-        raise Invalid(f"--{name} {option}: {message_of(fault, ())}") from None
+        raise Invalid(f"--{name} {option}: {error_message(fault, ())}") from None
 
 
 def _sequence(option: str) -> tuple[MissionPart, ...]:

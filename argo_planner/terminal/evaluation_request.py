@@ -10,7 +10,7 @@ from argo_compiler.base.errors import Invalid
 from argo_compiler.files.loading import read_bytes
 from argo_env.evaluation.case import AS_WRITTEN, NO_FAULTS
 from argo_env.evaluation.file import MAX_BYTES, EvaluationFile, MissionEntry, decode_evaluation
-from argo_env.files.yaml_messages import message_of
+from argo_env.files.yaml_messages import error_message
 from argo_planner.terminal.options import dashed, given_options
 
 _YAML = (".yaml", ".yml")
@@ -94,4 +94,4 @@ def _validated(data: Mapping[str, object]) -> EvaluationFile:
         fault = error.errors(include_url=False)[0]
         field = str(fault["loc"][0]) if fault["loc"] else ""
         option = _OPTIONS.get(field, dashed(field))
-        raise Invalid(f"{option}: {message_of(fault, fault['loc'])}") from None
+        raise Invalid(f"{option}: {error_message(fault, fault['loc'])}") from None

@@ -84,8 +84,8 @@ def examine() -> Examination:
             folder=str(cache.cache_folder()),
             entries=kept.sites,
             size=kept.size,
-            limit=cache.MOST,
-            flaw=cache.flaw(),
+            limit=cache.MAX_SIZE,
+            flaw=cache.write_problem(),
         ),
         extras=tuple(
             Extra(

@@ -263,7 +263,7 @@ SAID = {
     "run s.txt --faults shadow9.yaml": "has no floor 9; there are: 1 to 6",
     "run s.txt --faults nan.yaml": "`rate` has to be a finite number",
     "run s.txt --faults percent.yaml": "`charge` has to be at most 1",
-    "run s.txt --faults twice.yaml": "`at` stands here again; it was given at line 3",
+    "run s.txt --faults twice.yaml": "`at` is given twice; it was first given at line 3",
     "run s.txt --faults indent.yaml": "indent.yaml:3:7: error: is not YAML",
     "run s.txt --faults kindless.yaml": "it has no `kind`",
     "run s.txt --faults bare.yaml": "begin with `faults:`",
@@ -316,7 +316,7 @@ SAID = {
     "replay cut.mcap --render new.gif": "cut.mcap: has no record of the run",
     # places for results
     "run s.txt --report out": "out/report.json: is there already",
-    "run s.txt --report out/report.html --force": "out/report.html: is a file, and a folder",
+    "run s.txt --report out/report.html --force": "out/report.html: is a file, but a folder",
     "run s.txt --report new --drive car": "no drive `car`; there are: route, kinematic, tracked",
     "run s.txt -report new": "no option -report; is --report meant?",
     "run s.txt --render run": "a film is an .mp4 or a .gif",
@@ -326,7 +326,7 @@ SAID = {
     "format s.txt -o s.txt --force": "s.txt is the input as well",
     "import s.txt -o folder/ --force": "folder: is a folder",
     "import s.txt -o m.json/n.json": "m.json is a file, not a folder",
-    "export m.json --to ros2-bag -o s.txt --force": "s.txt: is a file, and a folder is asked for",
+    "export m.json --to ros2-bag -o s.txt --force": "s.txt: is a file, but a folder is needed",
     "sites darmstadt -o taken.yaml": "taken.yaml: is there already",
     # names with blanks, typographic quotation marks and dashes
     "run my mission.txt": "unexpected extra argument(s) (mission.txt)",

@@ -19,8 +19,8 @@ from argo_compiler.files.atomic_write import write_atomically
 from argo_env.files.checked_lines import (
     checked_line,
     checked_object,
-    cut_off,
     sync_folder,
+    truncate_if_possible,
     write_all,
 )
 from argo_env.run.journal import open_journal
@@ -63,7 +63,7 @@ class RequestFile:
                     write_all(file, lines)
                     os.fsync(file)
                 except OSError:
-                    cut_off(file, size)
+                    truncate_if_possible(file, size)
                     raise
             finally:
                 os.close(file)

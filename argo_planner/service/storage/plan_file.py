@@ -20,8 +20,8 @@ from argo_env.closing import Closing
 from argo_env.files.checked_lines import (
     checked_line,
     checked_object,
-    cut_off,
     sync_folder,
+    truncate_if_possible,
     write_all,
 )
 from argo_planner.service.core.document import (
@@ -122,7 +122,7 @@ class PlanFile(Closing):
             write_all(self._file, line)
             os.fdatasync(self._file)
         except OSError as error:
-            cut_off(self._file, extent.size)
+            truncate_if_possible(self._file, extent.size)
             raise _write_error(self.path, error) from error
         self._extent = PlanExtent(extent.first, extent.size + len(line), extent.lines + 1)
         self.document = document

@@ -69,7 +69,7 @@ def floor_mesh(site: OpenedSite, floor: int, detail: Detail = Detail.FULL) -> by
         made = _floor(storeys(site.site)[floor], f"floor {floor}", detail)
         return {"glb": np.frombuffer(made, np.uint8)}
 
-    return site.parts.made(name, make)["glb"].tobytes()
+    return site.parts.load_or_make(name, make)["glb"].tobytes()
 
 
 def robot_mesh(site: OpenedSite) -> bytes:

@@ -163,7 +163,7 @@ def _codes(site: OpenedSite, obstacles: tuple[Obstacle, ...]) -> NDArray[np.uint
     def make() -> dict[str, NDArray[np.uint8]]:
         return {"codes": _codes_without_obstacles(site.navigator)}
 
-    codes = site.parts.made(f"standing-{_FORM}", make)["codes"]
+    codes = site.parts.load_or_make(f"standing-{_FORM}", make)["codes"]
     navigator = with_obstacles(site, obstacles).navigator
     lattice = navigator.lattice
     found = codes.copy()

@@ -199,11 +199,11 @@ def test_an_entry_of_another_site_is_not_taken(yard_file, tmp_path, folder):
 
 def test_a_part_of_another_name_is_not_taken(tmp_path):
     parts = Parts(tmp_path, "key")
-    parts.keep_text("one", "a text")
-    assert parts.find_text("one") == "a text"
+    parts.store_text("one", "a text")
+    assert parts.load_text("one") == "a text"
     shutil.copy(tmp_path / "one.txt", tmp_path / "two.txt")
-    assert parts.find_text("two") is None
-    assert Parts(tmp_path, "another key").find_text("one") is None
+    assert parts.load_text("two") is None
+    assert Parts(tmp_path, "another key").load_text("one") is None
 
 
 PRINT_FOUND = """
@@ -235,10 +235,10 @@ def test_a_reader_beside_a_writer_sees_all_or_nothing(tmp_path):
     parts = Parts(tmp_path, "key")
     texts = [letter * 200_000 for letter in "ab"]
     with ThreadPoolExecutor(2) as pool:
-        writing = pool.submit(lambda: [parts.keep_text("x", t) for _ in range(100) for t in texts])
+        writing = pool.submit(lambda: [parts.store_text("x", t) for _ in range(100) for t in texts])
         seen = set()
         while not writing.done():
-            seen.add(parts.find_text("x"))
+            seen.add(parts.load_text("x"))
     assert seen <= {None, *texts}
 
 
@@ -263,10 +263,10 @@ def test_a_folder_that_can_not_be_used_breaks_nothing(yard_file, tmp_path, monke
     anew = found(Navigator(load_site(yard_file), load_robot()))
     monkeypatch.setattr(cache, "cache_folder", lambda: tmp_path / where)
     assert found(open_site(yard_file).navigator) == anew
-    assert cache.flaw()
+    assert cache.write_problem()
     assert cache.contents() == cache.Contents(0, 0, 0)
-    cache.empty()
-    cache.make_room()
+    cache.clear()
+    cache.evict()
 
 
 def test_a_full_disk_breaks_nothing(yard_file, folder, monkeypatch):
@@ -290,9 +290,9 @@ def test_the_cache_is_bounded_and_what_was_used_last_stays(yard_file, tmp_path, 
     (folder / "sites" / "notes.txt").write_text("mine", encoding="utf-8")
     every = cache.contents()
     assert every.sites == 4
-    cache.make_room(most=every.size // 2 + 10_000)  # what is kept of robots is small
+    cache.evict(max_size=every.size // 2 + 10_000)  # what is kept of robots is small
     assert set((folder / "sites").glob("?" * 32)) == set(entries[2:])
-    cache.make_room(files=0)
+    cache.evict(max_files=0)
     assert cache.contents().files == 0
     assert (folder / "sites" / "notes.txt").exists()
 

@@ -61,3 +61,22 @@ def test_yaml_snippets_are_accepted(page):
 def test_the_distribution_of_faults_is_accepted():
     (text,) = snippets("yml")["docs/evaluating.md"]
     assert len(decode_distribution(text.encode(), "docs/evaluating.md").chances) == 2
+
+
+GENERATED = {"docs/diagnostics.md", "docs/script.md"}
+MAX_WIDTH = 120
+"""characters of a line"""
+
+
+def test_lines_of_pages_are_short():
+    """Generated tables and code are as wide as what they show."""
+    pages = (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md"))
+    code = re.compile(r"^ *```.*?^ *```", re.M | re.S)
+    long_lines = [
+        f"{name}: {line}"
+        for name, page in ((page.relative_to(ROOT).as_posix(), page) for page in pages)
+        if name not in GENERATED
+        for line in code.sub("", page.read_text("utf-8")).splitlines()
+        if len(line) > MAX_WIDTH
+    ]
+    assert not long_lines

@@ -6,7 +6,8 @@ after each possible drive to the first member, and the possible locations of the
 
 An order that ends earlier, with less energy and at fewer possible locations, is never worse for
 the rest of the route, with one exception: inside a round with a duration. There an earlier end may
-lead to one more repetition. So orders are dropped by dominance only outside of such rounds.
+lead to one more repetition. So inside such rounds an order is dropped only for one that takes the
+same time.
 """
 
 from collections.abc import Callable

@@ -6,6 +6,7 @@
     python -m benchmarks.same_results ../before --only protocol_2    # or of these names
     python -m benchmarks.same_results --write digests.txt            # the digests of this checkout,
     python -m benchmarks.same_results digests.txt                    # to compare with later
+    python -m benchmarks.same_results ../before --without-prose      # after a change of words
 
 `plans`, `routes` and `journals` run the commands of `argo` as a user would: they read, check,
 explain, compile and export scripts and missions, search for routes, and keep and continue runs.
@@ -16,6 +17,9 @@ actions in Drive-v0, and compares all that it returns, and its states.
 
 Each checkout computes in a process of its own, which prints a digest of each result. The command
 names each result that differs, and then fails.
+
+With `--without-prose`, texts of several words do not count in JSON, and of all other texts only
+the numbers count. So keys, values, ids and structure are compared.
 """
 
 import argparse
@@ -186,7 +190,7 @@ def journal_cases() -> Iterator[Case]:
             yield f"{name}, {drive}", (run, ("CUT", "report/run.journal"), again)
 
 
-def command_results(group: str, only: str) -> Iterator[tuple[str, bytes]]:
+def command_results(group: str, only: str, with_prose: bool) -> Iterator[tuple[str, bytes]]:
     """Yield the name of each case of commands that has `only` in it, and all that it printed and
     wrote."""
     all_cases = {"plans": plan_cases, "routes": route_cases, "journals": journal_cases}[group]()
@@ -207,7 +211,10 @@ def command_results(group: str, only: str) -> Iterator[tuple[str, bytes]]:
             content = repr(statuses).encode()
             for path in sorted(set(place.rglob("*")) - known):
                 if path.is_file():
-                    content += f"\n{path.relative_to(place)}\n".encode() + _timeless(path, folder)
+                    written = _timeless(path, folder)
+                    if not with_prose:
+                        written = _without_prose(path.suffix, written)
+                    content += f"\n{path.relative_to(place)}\n".encode() + written
             shutil.rmtree(place)
             yield f"{group}: {case}, exit statuses {statuses}", content
 
@@ -273,11 +280,25 @@ def _timeless(path: Path, folder: Path) -> bytes:
     return content
 
 
-def digests(only: str, groups: Sequence[str]) -> None:
+_PROSE = re.compile(rb'"(?:[^"\\]|\\.)* (?:[^"\\]|\\.)*"(?!:)')
+"""a JSON text with a blank in it that is not a key"""
+
+
+def _without_prose(suffix: str, content: bytes) -> bytes:
+    """Return what is left of the content of a file without prose, as `--without-prose` says."""
+    if suffix in (".json", ".journal"):
+        content = re.sub(rb"(?m)^[0-9a-f]{8} ", b"CHECKSUM ", content)
+        return _PROSE.sub(b'"PROSE"', content)
+    if suffix == ".png":
+        return content
+    return b" ".join(re.findall(rb"\d+(?:\.\d+)?", content))
+
+
+def digests(only: str, groups: Sequence[str], with_prose: bool) -> None:
     """Print a line for each result that has `only` in its name: its digest, and its name."""
     for group in groups:
         results = (
-            command_results(group, only)
+            command_results(group, only, with_prose)
             if group in COMMANDS
             else episodes()
             if group == "drive"
@@ -286,15 +307,20 @@ def digests(only: str, groups: Sequence[str]) -> None:
         for name, content in results:
             if only not in name:
                 continue
+            if not with_prose and group not in (*COMMANDS, "drive"):
+                content = _without_prose(".json", content)
             print(hashlib.sha256(content).hexdigest()[:16], name, flush=True)
             if folder := os.environ.get("SAME_RESULTS_KEEP"):
                 (Path(folder) / re.sub(r"\W+", "_", name)).write_bytes(content)
 
 
-def computed(root: Path, only: str, groups: Sequence[str], cache: str) -> list[str]:
+def computed(
+    root: Path, only: str, groups: Sequence[str], cache: str, with_prose: bool
+) -> list[str]:
     """Return the lines of the digests with the code of a checkout, and show them as they come."""
     environment = os.environ | {"PYTHONPATH": str(root), "ARGO_CACHE_DIR": cache}
-    command = (sys.executable, __file__, "--digests", only, *groups)
+    prose = "prose" if with_prose else ""
+    command = (sys.executable, __file__, "--digests", only, prose, *groups)
     lines = []
     with subprocess.Popen(
         command, cwd=root, env=environment, stdout=subprocess.PIPE, text=True
@@ -321,7 +347,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument(
         "--write", action="store_true", help="write this checkout's digests to the file instead"
     )
+    parser.add_argument(
+        "--without-prose", action="store_true", help="compare keys, values and numbers, not texts"
+    )
     options = parser.parse_args(arguments)
+    with_prose = not options.without_prose
     groups = options.groups or list(GROUPS)
     if unknown := set(groups) - set(GROUPS):
         parser.error(f"there is no {sorted(unknown)[0]}; there are: {', '.join(GROUPS)}")
@@ -330,10 +360,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
         parser.error(f"{before} is neither a checkout nor a file of digests")
     with tempfile.TemporaryDirectory() as old_cache, tempfile.TemporaryDirectory() as new_cache:
         if options.write:
-            before.write_text("\n".join(computed(ROOT, options.only, groups, new_cache)) + "\n")
+            before.write_text(
+                "\n".join(computed(ROOT, options.only, groups, new_cache, with_prose)) + "\n"
+            )
             return
         if before.is_dir():
-            old = computed(before, options.only, groups, old_cache)
+            old = computed(before, options.only, groups, old_cache, with_prose)
         else:
             kept = before.read_text().splitlines()
             old = [
@@ -341,7 +373,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
                 for line in kept
                 if line[17:].split(":", 1)[0] in groups and options.only in line[17:]
             ]
-        new = computed(ROOT, options.only, groups, new_cache)
+        new = computed(ROOT, options.only, groups, new_cache, with_prose)
     different = [f"before {a}\n today {b}" for a, b in zip_longest(old, new) if a != b]
     print("\n".join(different) or "all are the same")
     raise SystemExit(bool(different))
@@ -349,6 +381,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--digests"]:
-        digests(sys.argv[2], sys.argv[3:])
+        digests(sys.argv[2], sys.argv[4:], bool(sys.argv[3]))
     else:
         main()

@@ -1,1 +1,1 @@
-"""A robot that is somewhere else, told what to do and heard over a link."""
+"""Remote robot, which receives orders and sends reports over a link."""

@@ -1,4 +1,4 @@
-"""What Argo and a robot that is somewhere else tell each other. Times are s of the UNIX clock."""
+"""Messages between Argo and a remote robot. Times are in s of the UNIX clock."""
 
 from typing import Annotated, Any, Literal
 
@@ -9,98 +9,104 @@ from argo_compiler.il import EventKind, Task
 
 
 class StartOrder(Model):
-    """Carry out the action of a task. An id that is known already is not begun again: if that
-    action has ended, its end is told once more."""
+    """Order to execute the action of a task.
+
+    An action whose id the robot knows already is not started again; if it has ended, the robot
+    reports its end once more.
+    """
 
     type: Literal["start"] = "start"
     id: str
-    """of the action; none is given twice"""
+    """unique id of the action"""
     task: Task
     not_before: float | None = None
-    """s, before which the robot does not begin at the place, but stands there"""
+    """s; until then, the robot waits at the pose before it begins"""
 
 
 class CancelOrder(Model):
-    """Stop the action, clean up, and tell its end. Means nothing to a robot that does not do it."""
+    """Order to stop the action, clean up and report its end.
+
+    It has no effect if the action is not under way.
+    """
 
     type: Literal["cancel"] = "cancel"
     id: str
 
 
 class RobotState(Model):
-    """How the robot stands now. Told several times a second; the newest one counts."""
+    """Report of the robot's current state, sent several times a second; the newest one counts."""
 
     type: Literal["state"] = "state"
     pose: Pose
-    """of its origin, on the ground between its tracks"""
+    """pose of the robot's origin, on the ground between its tracks"""
     pitch: float = 0.0
     """rad, positive with the front down"""
     charge: float | None = Field(default=None, ge=0, le=1)
-    """of the battery; None: not known"""
+    """charge of the battery, 0 to 1; None if not known"""
     charging: bool = False
     action: str | None = None
-    """the id of the action that is under way"""
+    """id of the action that is under way"""
     known: tuple[str, ...] = ()
-    """the ids of the actions that it has not forgotten, those that have ended among them"""
+    """ids of the actions that the robot still remembers, including ended ones"""
 
 
 class EndReport(Model):
-    """An action has ended."""
+    """Report that an action has ended."""
 
     type: Literal["ended"] = "ended"
     id: str
     outcome: Literal["done", "failed", "stopped"]
-    """`stopped`: it was cancelled, and has cleaned up"""
+    """`stopped`: the action was cancelled, and the robot has cleaned up"""
     value: float | None = None
-    """what a MEASURE has read, in the checkpoint's unit"""
+    """value that a MEASURE has read, in the checkpoint's unit"""
     distance: float | None = Field(default=None, ge=0)
-    """m that it was read from; None: not known"""
+    """distance in m from which the value was read; None if not known"""
     confidence: float = Field(default=1.0, ge=0, le=1)
     unreadable: bool = False
-    """`failed`: whether it looked at the checkpoint, and could not read a value"""
+    """`failed`: true if the robot looked at the checkpoint but could not read a value"""
     reason: str = ""
-    """`failed`: why, for people"""
+    """`failed`: the reason, as a text for people"""
 
 
 class FoundReport(Model):
-    """The robot has noticed something."""
+    """Report of an event that the robot has noticed."""
 
     type: Literal["found"] = "found"
     event: EventKind
     detail: str = ""
     place: tuple[float, float, float] | None = None
-    """m; None: not known"""
+    """x, y and z of the event in m; None if not known"""
 
 
 Order = Annotated[StartOrder | CancelOrder, Field(discriminator="type")]
-"""what Argo tells the robot"""
+"""message from Argo to the robot"""
 Report = Annotated[RobotState | EndReport | FoundReport, Field(discriminator="type")]
-"""what the robot tells Argo"""
+"""message from the robot to Argo"""
 
 ORDERS: TypeAdapter[StartOrder | CancelOrder] = TypeAdapter(Order)
 REPORTS: TypeAdapter[RobotState | EndReport | FoundReport] = TypeAdapter(Report)
 
 
 class Envelope(Model):
-    """One message on the link, in either direction."""
+    """Unit that the link carries, in either direction: a message or only an acknowledgement."""
 
     sender: str
-    """the session of who sends it: a word that a process takes when it begins, and no other has"""
+    """session of the sender: a word that its process chose when it started, unlike any other"""
     to: str | None = None
-    """the session that it is meant for; None: the other one was not heard yet"""
+    """session of the receiver; None if nothing was received from it yet"""
     sent: int = Field(ge=1)
-    """counts the envelopes of the session"""
+    """number of the envelope, among all that the session has sent"""
     number: int | None = Field(default=None, ge=1)
-    """counts what is repeated until it is acknowledged, from 1 for each session that it is meant
-    for; None: it is not"""
+    """number of a message that is repeated until it is acknowledged, from 1 for each receiving
+    session; None if the envelope is not repeated"""
     heard: int = Field(default=0, ge=0)
-    """the last number that was taken from that session, in order"""
+    """last `number` that was received in order from the session `to`"""
     body: dict[str, Any] | None = None
-    """an order or a report; None: it only acknowledges"""
+    """an order or a report; None if the envelope only acknowledges"""
 
 
 def message_schemas() -> dict[str, Any]:
-    """The JSON schemas: of the envelope, and of its body in both directions."""
+    """Return the JSON schemas of the envelope, and of its body in both directions."""
     return {
         "envelope": Envelope.model_json_schema(),
         "order": ORDERS.json_schema(),

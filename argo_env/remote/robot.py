@@ -1,5 +1,7 @@
-"""A robot that is somewhere else, as the run's own: its actions, what it reports, and what stands
-in a setup for its parts."""
+"""Remote robot with the interface that a run needs: its actions, its reports, its battery.
+
+A run setup also gets placeholders for the drive and the sensor, which are not simulated here.
+"""
 
 import logging
 import math
@@ -38,8 +40,8 @@ from argo_env.world.without_physics import WorldWithoutPhysics
 _log = logging.getLogger(__name__)
 
 
-class ToldDrive:
-    """Is where the robot told that it is. Nobody here can move it but by an order."""
+class RemoteDrive:
+    """Placeholder for the drive; holds the last reported pose. Only orders move the robot."""
 
     name = "remote"
     failure: str | None = None
@@ -50,7 +52,7 @@ class ToldDrive:
         self.pose = pose
 
     def place(self, pose: BodyPose) -> None:
-        """A robot that is somewhere else stays where it is."""
+        """No-op: a remote robot stays where it is."""
 
     def begin(self, path: Path, velocity: float | None) -> NoReturn:
         raise NotImplementedError("a remote robot plans its own paths")
@@ -59,11 +61,11 @@ class ToldDrive:
         return DriveStatus.ARRIVED
 
     def halt(self) -> None:
-        """Orders do that."""
+        """No-op: orders stop the robot."""
 
 
-class ToldSensor:
-    """Reads nothing here: the robot tells what it reads."""
+class RemoteSensor:
+    """Placeholder for the sensor: the robot reports its readings itself."""
 
     name = "remote"
 
@@ -71,8 +73,8 @@ class ToldSensor:
         raise MeasurementError("a remote robot reads checkpoints itself")
 
 
-class ToldPower:
-    """The battery, as the robot told."""
+class RemotePower:
+    """Battery; holds the charge that the robot reported last."""
 
     charge: float | None = None
     charging = False
@@ -82,8 +84,8 @@ class ToldPower:
         return self.charge is not None and self.charge <= 0.0
 
 
-def anomaly_of(report: FoundReport, site: Site, pose: BodyPose, now: float) -> Anomaly:
-    """What the robot has noticed, at time `now` (s) and `pose`."""
+def make_anomaly(report: FoundReport, site: Site, pose: BodyPose, now: float) -> Anomaly:
+    """Return the anomaly of a report that arrived at time `now` (s), with the robot at `pose`."""
     here = (round(pose.x, DIGITS), round(pose.y, DIGITS), round(pose.z, DIGITS))
     place = report.place
     return Anomaly(
@@ -97,15 +99,18 @@ def anomaly_of(report: FoundReport, site: Site, pose: BodyPose, now: float) -> A
     )
 
 
-def reading_of(
+def make_reading(
     task: Task, ended: EndReport, site: Site, pose: BodyPose, now: float
 ) -> Reading | None:
-    """What was measured, at time `now` (s) and `pose`; None: nothing was. A distance that the robot
-    did not tell is that from its origin."""
+    """Return the reading of a task that ended at time `now` (s), with the robot at `pose`.
+
+    Returns None if nothing was measured. If the robot did not report the distance, the reading has
+    the distance from the robot's origin to the checkpoint.
+    """
     if ended.outcome != "done" or ended.value is None or task.object_id is None:
         return None
     checkpoint = site.measured_by(task.object_id)
-    away = math.dist(checkpoint.position, (pose.x, pose.y, pose.z))
+    from_origin = math.dist(checkpoint.position, (pose.x, pose.y, pose.z))
     return Reading(
         checkpoint=checkpoint.id,
         name=checkpoint.name,
@@ -117,13 +122,13 @@ def reading_of(
         unit=checkpoint.unit,
         nominal=checkpoint.nominal,
         normal=checkpoint.nominal.contains(ended.value),
-        distance=round(away if ended.distance is None else ended.distance, DIGITS),
+        distance=round(from_origin if ended.distance is None else ended.distance, DIGITS),
         confidence=round(ended.confidence, DIGITS),
     )
 
 
 class RemoteAction:
-    """Holds what was ordered, and whether it is to be cancelled."""
+    """Action that the robot was ordered to execute; holds the reason if it is cancelled."""
 
     path: Path | None = None
     arrival_path: Path | None = None
@@ -133,18 +138,25 @@ class RemoteAction:
         id: str,
         command: StartAction,
         started: float,
-        way: tuple[float, float],
+        distances: tuple[float, float],
         cancel: Callable[[], None],
     ) -> None:
-        """Its id for the robot; then when (s) and after what way (m driven, m upwards) it was
-        ordered, and what orders the robot to stop it."""
+        """Initialize the action.
+
+        Args:
+            id: id of the action in the messages to the robot.
+            command: command of the state machine.
+            started: time of the run in s when the action was started.
+            distances: distances in m, driven and climbed, from the run's start to the action's.
+            cancel: function that orders the robot to stop the action.
+        """
         self.id = id
         self._command = command
         self._started = started
-        self._way = way
+        self._distances = distances
         self._order_to_cancel = cancel
         self.cancelled: str | None = None
-        """why it is to be cancelled, if it is"""
+        """reason of the cancellation; None if it was not requested"""
         self._interrupted = False
 
     @property
@@ -152,26 +164,26 @@ class RemoteAction:
         return self._command.task
 
     def cancel(self, reason: str, interrupted: bool) -> None:
-        """Orders the robot to stop; its report is awaited."""
+        """Order the robot to stop; the action ends with the robot's report."""
         if self.cancelled is None:
             self.cancelled, self._interrupted = reason, interrupted
             self._order_to_cancel()
 
     def detour(self, setup: RunSetup) -> None:
-        """The robot finds its way itself."""
+        """No-op: the robot plans its own paths."""
 
-    def end(self, report: EndReport, abnormal: bool) -> ActionEnd:
-        """What the machine is told of the end that the robot reported."""
+    def to_action_end(self, report: EndReport, abnormal: bool) -> ActionEnd:
+        """Return the event for the state machine of the end that the robot reported."""
         name, id = self.task.name, self._command.id or None
         if report.outcome == "done":
             return ActionSucceeded(name, report.value, abnormal, id)
         if report.outcome == "stopped" and self.cancelled is not None:
             return ActionStopped(name, id)
-        reason = report.reason or f"the robot reported that it has {report.outcome}"
+        reason = report.reason or f"the robot reported that the action has {report.outcome}"
         return ActionFailed(name, reason, report.unreadable, id)
 
     def to_task_run(self, end: ActionEnd, now: float, distance: float, climbed: float) -> TaskRun:
-        """The action as it goes into the record."""
+        """Return the entry for the record of the action, which ended at `now` (s)."""
         reason = end.reason if isinstance(end, ActionFailed) else None
         outcome = "done"
         if not isinstance(end, ActionSucceeded):
@@ -186,21 +198,21 @@ class RemoteAction:
             end=now,
             outcome=outcome,
             reason=reason,
-            distance=round(distance - self._way[0], DIGITS),
-            climbed=round(climbed - self._way[1], DIGITS),
+            distance=round(distance - self._distances[0], DIGITS),
+            climbed=round(climbed - self._distances[1], DIGITS),
         )
 
 
 SILENCE = 2.0
-"""s after which a robot of which nothing was heard counts as silent"""
+"""s without a message after which the robot counts as silent"""
 
 
 class RemoteRobot:
-    """Orders actions over a channel, and tells the run what the robot reports. A step lasts as long
-    as it does on the clock.
+    """Robot that gets its orders over a channel, and whose reports are passed to the run.
 
-    While nothing is heard nothing is claimed: the action goes on, the pose is the last that was
-    told, and `silent_since` says since when.
+    It holds the last reported state and the action that is under way. A step takes as long as on
+    the clock. While nothing is received, nothing is assumed: the action continues, the pose is the
+    last one that was reported, and `silent_since` is set.
     """
 
     def __init__(
@@ -214,46 +226,50 @@ class RemoteRobot:
         time_step: float = 0.1,
         patience: float = 10.0,
     ) -> None:
-        """`run` is a word for this run that no other one has, and the same when it goes on from its
-        journal; the clock gives UNIX time (s).
+        """Wait until the robot has reported its pose.
 
-        Raises Unavailable if the robot does not tell within its `patience` (s) where it is.
+        `run` is a word that identifies this run; it must be the same when the run is resumed from
+        its journal. The clock returns UNIX time (s). Raises Unavailable if the robot does not
+        report its pose within `patience` (s).
         """
         self._channel, self._run, self._clock, self._sleep = channel, run, clock, sleep
         site, robot = navigator.site, navigator.robot
-        self._drive = ToldDrive(time_step, BodyPose(0.0, 0.0, 0.0, 0.0))
+        self._drive = RemoteDrive(time_step, BodyPose(0.0, 0.0, 0.0, 0.0))
         self.setup = RunSetup(
-            WorldWithoutPhysics(site, robot), navigator, self._drive, ToldSensor()
+            WorldWithoutPhysics(site, robot), navigator, self._drive, RemoteSensor()
         )
         self.odometry = Odometry(site)
-        self.supply = ToldPower()
-        self._offset = 0.0  # of the clock from the run's time
+        self.supply = RemotePower()
+        self._offset = 0.0  # s, the clock's time minus the run's time
         self._action: RemoteAction | None = None
         self._order: StartOrder | None = None
-        """that of the action, until it is given"""
-        self._restarts = 0  # of the robot, before the action was ordered
-        self._strays: set[str] = set()
+        """start order of the action, until it is sent"""
+        self._restarts = 0  # restarts of the robot when the action was ordered
+        self._cancelled_strays: set[str] = set()
         self._await_state(patience)
 
     @property
     def silent_since(self) -> float | None:
-        """s of the run, since when nothing was heard; None: it is heard."""
-        heard = self._channel.heard_at
-        assert heard is not None
-        return heard - self._offset if self._clock() - heard > SILENCE else None
+        """Time of the run in s since when nothing was received; None if the robot is connected."""
+        received = self._channel.last_received_at
+        assert received is not None
+        return received - self._offset if self._clock() - received > SILENCE else None
 
     def place(self, pose: BodyPose, now: float) -> None:  # noqa: ARG002
-        """The run begins or goes on at `now` (s); the robot stands where it does."""
+        """Set the run's time to `now` (s) as it starts or continues; the robot does not move."""
         self._offset = self._clock() - now
 
-    def settle(self, limit: float) -> bool:
-        """Waits until the robot has acknowledged all orders, `limit` s at most; whether it has. To
-        be called when a run has ended: until then the robot may not know it."""
+    def wait_acknowledged(self, limit: float) -> bool:
+        """Wait at most `limit` s until the robot has acknowledged all orders.
+
+        Returns True if it has. To be called when a run has ended, because the robot may not have
+        received the last orders yet.
+        """
         until = self._clock() + limit
         while self._channel.pending and self._clock() < until:
             self._sleep(self._drive.time_step)
             self._channel.flush()
-            self._channel.take()
+            self._channel.receive()
         return not self._channel.pending
 
     def apply_initial_state(self, initial: InitialState) -> None:
@@ -263,30 +279,33 @@ class RemoteRobot:
         self.odometry.restore(last)
 
     def restore_anomalies(self, reported: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
-        """The robot remembers itself."""
+        """No-op: the robot remembers by itself what it has reported."""
 
     def update_faults(self, now: float) -> None:
-        """What goes wrong is real."""
+        """No-op: faults are not simulated."""
 
     def avoid(self, blockages: Sequence[Blockage]) -> None:
         self.setup = replace(self.setup, navigator=self.setup.navigator.avoiding(blockages))
 
     def start(self, command: StartAction, now: float, arrival_path: Path | None) -> RobotAction:  # noqa: ARG002
-        """Orders an action. One of the same run and id that the robot knows already goes on."""
-        # What a person asks for has no number, and a time of its own.
+        """Prepare the order of an action, which the next `advance` sends.
+
+        An action of the same run and id that the robot knows already continues.
+        """
+        # An action by hand has no id, but no two start at the same time.
         id = f"{self._run}/{command.id}" if command.id else f"{self._run}/by hand at {now:g} s"
-        way = (self.odometry.distance, self.odometry.climbed)
-        begins = command.not_before
-        begins = None if begins is None else begins + self._offset
-        self._action = RemoteAction(id, command, now, way, self._cancel)
-        self._order = StartOrder(id=id, task=command.task, not_before=begins)
+        distances = (self.odometry.distance, self.odometry.climbed)
+        not_before = command.not_before
+        not_before = None if not_before is None else not_before + self._offset
+        self._action = RemoteAction(id, command, now, distances, self._cancel)
+        self._order = StartOrder(id=id, task=command.task, not_before=not_before)
         return self._action
 
     def advance(self, step: int, now: float, action: RobotAction | None) -> Sensed:  # noqa: ARG002
-        """Waits until `now` on the clock, and takes what the robot has reported."""
+        """Wait until the clock reaches the run's time `now`, and process the robot's reports."""
         own = self._action if action else None
         if own and self._order:
-            # Not before: what a journal leads through is not ordered again.
+            # Not sent in `start`: actions that are replayed from a journal are not ordered again.
             self._restarts = self._channel.restarts
             self._channel.post(self._order)
             self._order = None
@@ -296,93 +315,99 @@ class RemoteRobot:
         self._channel.flush()
         site, ended = self.setup.navigator.site, None
         found: list[Anomaly] = []
-        before = self._drive.pose
-        for body in self._channel.take():
+        last_pose = self._drive.pose
+        for body in self._channel.receive():
             match self._read(body, own):
                 case RobotState() as state:
-                    self._stands(state)
-                    self._stop_strays(state, own)
-                    ended = ended or self._lost(state, own)
+                    self._update_state(state)
+                    self._cancel_stray(state, own)
+                    ended = ended or self._forgotten_end(state, own)
                 case EndReport() as report if own and report.id == own.id:
                     ended = report
                 case FoundReport() as report if report.event is not EventKind.TIME_UP:
-                    found.append(anomaly_of(report, site, self._drive.pose, now))
-        self.odometry.add_motion(before, self._drive.pose, (), now)
+                    found.append(make_anomaly(report, site, self._drive.pose, now))
+        self.odometry.add_motion(last_pose, self._drive.pose, (), now)
         if own is None or ended is None:
             return Sensed(found=tuple(found))
-        reading = reading_of(own.task, ended, site, self._drive.pose, now)
+        reading = make_reading(own.task, ended, site, self._drive.pose, now)
         if reading and not reading.normal:
             found.append(located_anomaly(reading, site))
         self._action = None
-        end = own.end(ended, reading is not None and not reading.normal)
+        end = own.to_action_end(ended, reading is not None and not reading.normal)
         return Sensed(end, reading, tuple(found))
 
     def state(self) -> dict[str, Any]:
-        pose, way = self._drive.pose, self.odometry
+        pose, odometry = self._drive.pose, self.odometry
         return {
             "pose": (pose.x, pose.y, pose.z, pose.yaw, pose.pitch),
-            "distance": way.distance,
-            "climbed": way.climbed,
+            "distance": odometry.distance,
+            "climbed": odometry.climbed,
             "charge": self.supply.charge,
         }
 
     def clear_reported(self) -> None:
-        """Contacts and mishaps are not reported."""
+        """No-op: a remote robot reports no contacts or mishaps."""
 
     def _await_state(self, patience: float) -> None:
         until = self._clock() + patience
         while self._clock() < until:
             self._channel.flush()
-            for body in self._channel.take():
+            for body in self._channel.receive():
                 if isinstance(state := self._read(body, None), RobotState):
-                    self._stands(state)
+                    self._update_state(state)
                     return
             self._sleep(self._drive.time_step)
         raise Unavailable(
-            f"the robot has not told within {patience:g} s where it is: look whether it is on and "
+            f"the robot has not reported its pose within {patience:g} s: check that it is on and "
             "connected"
         )
 
     def _read(
         self, body: dict[str, Any], own: RemoteAction | None
     ) -> RobotState | EndReport | FoundReport | None:
-        """The report; an end that makes no sense is a failure, anything else is passed over."""
+        """Return the report in a message's body.
+
+        An invalid report of the end of the action `own` is replaced by a failure. Returns None for
+        any other invalid report.
+        """
         try:
             return REPORTS.validate_python(body)
         except ValidationError as error:
             why = error.errors()[0]["msg"]
-            _log.warning("the robot reports what makes no sense: %s", why)
+            _log.warning("the robot sent an invalid report: %s", why)
         if own is None or body.get("type") != "ended" or body.get("id") != own.id:
             return None
-        reason = f"the robot reported an end that makes no sense: {why}"
+        reason = f"the robot sent an invalid report of the action's end: {why}"
         return EndReport(id=own.id, outcome="failed", reason=reason)
 
-    def _stands(self, state: RobotState) -> None:
-        at = state.pose
-        self._drive.pose = BodyPose(at.x, at.y, at.z, at.yaw, state.pitch)
+    def _update_state(self, state: RobotState) -> None:
+        pose = state.pose
+        self._drive.pose = BodyPose(pose.x, pose.y, pose.z, pose.yaw, state.pitch)
         self.supply.charge, self.supply.charging = state.charge, state.charging
 
-    def _stop_strays(self, state: RobotState, own: RemoteAction | None) -> None:
-        """Stops an action of this run that nobody awaits any more, as one by hand from before Argo
-        itself began anew."""
+    def _cancel_stray(self, state: RobotState, own: RemoteAction | None) -> None:
+        """Cancel an action of this run that is under way but not awaited.
+
+        An example is an action by hand that was started before Argo itself restarted.
+        """
         id = state.action
         if id is None or not id.startswith(f"{self._run}/") or (own and own.id == id):
             return
-        if id not in self._strays:
-            self._strays.add(id)
+        if id not in self._cancelled_strays:
+            self._cancelled_strays.add(id)
             self._channel.post(CancelOrder(id=id))
 
     def _cancel(self) -> None:
-        """Orders the action to be stopped, once it has been ordered."""
+        """Order the robot to stop the action, unless its start was not sent yet."""
         if self._action and self._order is None:
             self._channel.post(CancelOrder(id=self._action.id))
-            self._channel.flush()  # as it may be the last that the run does
+            self._channel.flush()  # in case the run ends now
 
-    def _lost(self, state: RobotState, own: RemoteAction | None) -> EndReport | None:
-        """The end of an action that a robot which began anew has forgotten."""
+    def _forgotten_end(self, state: RobotState, own: RemoteAction | None) -> EndReport | None:
+        """Return a failure if the robot has restarted and does not know the action `own`."""
         if own is None or self._channel.restarts == self._restarts or own.id in state.known:
             return None
         if any(order.get("id") == own.id for order in self._channel.pending):
-            return None  # it is told anew
-        reason = "the robot began anew, and knows nothing of the action any more"
+            return None  # the start order is sent again
+        reason = "the robot has restarted and does not know the action any more"
         return EndReport(id=own.id, outcome="failed", reason=reason)

@@ -117,7 +117,7 @@ class _Segments:
                     if driver.following is not None:
                         driver, simulation = self._exchange(driver, simulation, stack)
             driver.tell_state()
-            if self._robot is not None and not self._robot.settle(SETTLED):
+            if self._robot is not None and not self._robot.wait_acknowledged(SETTLED):
                 unheard = "the robot has not acknowledged yet that the run is over"
                 self._pipe.tell(
                     StateTold(state=driver.state().model_copy(update={"problem": unheard}))

@@ -1,4 +1,4 @@
-"""A robot somewhere else, the link to it, and the clock of both."""
+"""Fakes: a remote robot, the link to it, and the clock of both ends."""
 
 from collections import Counter
 
@@ -7,7 +7,7 @@ from argo_env.remote.messages import ORDERS, CancelOrder, EndReport, RobotState,
 
 
 class Wires:
-    """Two ends, between which texts get lost, come twice, or do not come at all while `broken`."""
+    """A link between two ends: texts get lost or arrive twice, and none arrive while `broken`."""
 
     def __init__(self, random, loss=0.0):
         self._random, self._loss = random, loss
@@ -42,7 +42,7 @@ class WiresEnd:
 
 
 class Time:
-    """A clock that goes on while somebody sleeps; the `others` live then."""
+    """A clock that moves only while a caller sleeps; then each of the `others` makes a step."""
 
     def __init__(self):
         self.now = 1_000_000.0
@@ -58,7 +58,7 @@ class Time:
 
 
 class FakeRobot:
-    """Takes `TICKS` for each action, and is at the task's pose then. Can be killed."""
+    """A robot that takes `TICKS` steps for each action, and then is at the task's pose."""
 
     TICKS = 12
 
@@ -67,7 +67,7 @@ class FakeRobot:
         self._values = values or {}
         self._session = 0
         self.ended = {}
-        """reports by id: on its disk"""
+        """reports of ends by action id, as if stored on the robot's disk"""
         self.begun = Counter()
         self.finished = Counter()
         self.stopped = []
@@ -77,7 +77,7 @@ class FakeRobot:
         self.boot()
 
     def boot(self, forget=False):
-        """The process begins (anew)."""
+        """Start the robot's process, or restart it; `forget` also clears its disk."""
         self._session += 1
         self._channel = Channel(self._wires.end(1), f"robot {self._session}", self._time)
         self.doing, self.dead = None, False
@@ -87,7 +87,7 @@ class FakeRobot:
     def live(self):
         if self.dead:
             return
-        for body in self._channel.take():
+        for body in self._channel.receive():
             match ORDERS.validate_python(body):
                 case StartOrder() as order:
                     self._start(order)
@@ -101,7 +101,7 @@ class FakeRobot:
                 self._finish(order)
         known = (*self.ended, *((self.doing[0].id,) if self.doing else ()))
         action = self.doing[0].id if self.doing else None
-        self._channel.tell(RobotState(pose=self.pose, charge=0.5, action=action, known=known))
+        self._channel.send_once(RobotState(pose=self.pose, charge=0.5, action=action, known=known))
         self._channel.flush()
 
     def _start(self, order):

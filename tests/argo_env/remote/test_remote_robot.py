@@ -1,4 +1,4 @@
-"""A mission on a robot that is somewhere else, and loses its connection now and then."""
+"""Missions on a remote robot that loses its connection now and then."""
 
 from random import Random
 
@@ -32,7 +32,7 @@ NAMES = ["MEASURE 1", "A", "MEASURE 2", "B"]
 
 
 class Yard:
-    """A robot in the yard, and Argo far from it."""
+    """A remote robot in the yard, the link to it, and Argo's side of the link."""
 
     def __init__(self, yard, seed=0, loss=0.0, values=None):
         self.navigator = yard
@@ -58,7 +58,7 @@ def there(yard):
 
 @pytest.fixture
 def simulation(there, site):
-    """Yield a run of the plan on the robot that is there."""
+    """Yield a run of the mission on the remote robot."""
     with simulation_of(SPEC, site, robot=there.remote()) as simulation:
         yield simulation
 
@@ -67,7 +67,7 @@ def done(record):
     return [t.task for t in record.tasks if t.outcome == "done"]
 
 
-def test_a_mission_is_carried_out(yard, site):
+def test_a_mission_is_executed(yard, site):
     there = Yard(yard, values={"2": 9.0})
     with simulation_of(SPEC, site, robot=there.remote()) as simulation:
         record = simulation.run()
@@ -94,14 +94,14 @@ def test_nothing_is_lost_and_nothing_is_done_twice(yard, site, seed, loss):
 
 
 class TestConnection:
-    def test_nothing_is_claimed_while_it_is_lost(self, there, simulation):
+    def test_nothing_is_assumed_without_a_connection(self, there, simulation):
         steps(simulation, 5)
         assert simulation.silent_since is None
         there.wires.broken = True
         before = simulation.record().tasks
         at = simulation.now
         steps(simulation, 100)
-        assert there.robot.finished  # there, and nobody here can know it
+        assert there.robot.finished  # Argo can't know this yet
         assert simulation.record().tasks == before
         assert simulation.task.name == "MEASURE 1"
         assert simulation.silent_since == pytest.approx(at, abs=0.2)
@@ -126,35 +126,35 @@ class TestConnection:
         assert record.result.outcome is Outcome.CANCELLED
         assert there.robot.stopped == ["run 1/1"]
 
-    def test_a_robot_that_is_not_there(self, yard):
+    def test_an_unreachable_robot_is_an_error(self, yard):
         there = Yard(yard)
         there.wires.broken = True
-        with pytest.raises(Unavailable, match="has not told within 10 s"):
+        with pytest.raises(Unavailable, match="has not reported its pose within 10 s"):
             there.remote()
 
     @pytest.mark.parametrize("broken", [False, True])
-    def test_a_run_that_ends_tells_the_robot(self, yard, site, broken):
+    def test_a_run_that_ends_stops_the_robot(self, yard, site, broken):
         there = Yard(yard)
         remote = there.remote()
         with simulation_of(SPEC, site, robot=remote) as simulation:
             steps(simulation, 5)
             there.wires.broken = broken
             simulation.handle(StopRun())
-            assert remote.settle(2.0) is not broken
+            assert remote.wait_acknowledged(2.0) is not broken
         assert there.robot.stopped == ([] if broken else ["run 1/1"])
 
 
-class TestRobotThatBeganAnew:
+class TestRestartedRobot:
     @pytest.mark.parametrize("forget", [False, True])
-    def test_an_action_that_it_does_not_know_has_failed(self, there, simulation, forget):
+    def test_an_action_that_it_does_not_know_fails(self, there, simulation, forget):
         steps(simulation, 5)
         there.robot.boot(forget)
         record = simulation.run()
         assert record.tasks[0].outcome == "failed"
-        assert "began anew" in record.tasks[0].reason
+        assert "the robot has restarted" in record.tasks[0].reason
         assert done(record) == NAMES[1:]
 
-    def test_what_it_had_ended_is_told_again(self, there, simulation):
+    def test_ends_that_it_reports_again_count(self, there, simulation):
         steps(simulation, 5)
         there.wires.broken = True
         steps(simulation, 20)
@@ -167,10 +167,10 @@ class TestRobotThatBeganAnew:
         assert set(there.robot.begun.values()) == {1}
 
 
-class TestArgoThatBeganAnew:
+class TestRestartedArgo:
     @pytest.mark.parametrize("at", [3, 12, 14, 16, 20, 30])
-    def test_an_action_goes_on(self, yard, site, tmp_path, at):
-        """The robot went on meanwhile: what it has done is not done again."""
+    def test_an_action_continues(self, yard, site, tmp_path, at):
+        """The robot continued while Argo was not running; no action is executed twice."""
         there, path = Yard(yard), tmp_path / "run.journal"
         with journaled(path, SPEC, site, robot=there.remote()) as simulation:
             steps(simulation, at)
@@ -182,7 +182,7 @@ class TestArgoThatBeganAnew:
         assert set(there.robot.begun.values()) == {1}
         assert len(record.resumed) == 1
 
-    def test_what_was_under_way_by_hand_is_stopped(self, yard, site, tmp_path):
+    def test_an_action_by_hand_is_stopped(self, yard, site, tmp_path):
         there, path = Yard(yard), tmp_path / "run.journal"
         with journaled(path, SPEC, site, robot=there.remote()) as simulation:
             take_over(simulation, after=3)
@@ -206,7 +206,7 @@ class TestArgoThatBeganAnew:
 
 
 class TestReports:
-    def test_what_the_robot_finds_is_told(self, there, simulation):
+    def test_what_the_robot_finds_is_recorded(self, there, simulation):
         steps(simulation, 3)
         there.robot._channel.post(FoundReport(event=EventKind.GAS_LEAK, detail="840 ppm"))
         there.robot._channel.post(FoundReport(event=EventKind.TIME_UP))
@@ -215,20 +215,20 @@ class TestReports:
         assert (found.kind, found.detail, found.source) == ("gas_leak", "840 ppm", "robot")
 
     @pytest.mark.parametrize("text", ["", "[]", "nonsense", '{"sender": 1}', "\0", "9" * 5000])
-    def test_what_is_no_message_changes_nothing(self, there, simulation, text):
+    def test_invalid_messages_are_ignored(self, there, simulation, text):
         steps(simulation, 3)
         there.wires.carry(1, text)
         assert done(simulation.run()) == NAMES
 
-    def test_an_end_that_makes_no_sense_is_a_failure(self, there, simulation):
+    def test_an_invalid_end_is_a_failure(self, there, simulation):
         steps(simulation, 3)
         there.robot._channel.post(EndReport.model_construct(id="run 1/1", outcome="perhaps"))
         steps(simulation, 3)
         (run,) = simulation.record().tasks
         assert (run.task, run.outcome) == ("MEASURE 1", "failed")
-        assert "makes no sense" in run.reason
+        assert "invalid report of the action's end" in run.reason
 
-    def test_the_schemas_tell_each_message(self):
+    def test_the_schemas_describe_each_message(self):
         schemas = message_schemas()
         assert {"start", "cancel"} == set(schemas["order"]["discriminator"]["mapping"])
         assert {"state", "ended", "found"} == set(schemas["report"]["discriminator"]["mapping"])

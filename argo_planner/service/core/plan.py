@@ -68,7 +68,7 @@ class MissionPlan:
             raise StaleRevision(made_on, self.revision, self.since(made_on))
 
     def revision_for(self, command: PlanCommand | ReplaceFrom, author: str) -> Revision | None:
-        """Return the revision that the command has made, or None if it was not executed yet.
+        """Return the revision that the command has made, or None if the history has none.
 
         Raises CommandIdTaken if another command has used its id.
         """

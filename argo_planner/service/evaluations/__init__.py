@@ -1,1 +1,1 @@
-"""The evaluations of missions: begun, kept on disk, gone on with, their runs replayed."""
+"""Evaluations of missions: starting, storing and resuming them, and replaying their runs."""

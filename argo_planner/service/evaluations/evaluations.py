@@ -1,5 +1,7 @@
-"""The evaluations of a service: begun, gone on with, replayed; kept on disk in a folder each, with
-what was asked, its rows and its report."""
+"""Evaluations of a service: starting, resuming and deleting them, and replaying their runs.
+
+Each evaluation has a folder on disk with its request, its rows and its report.
+"""
 
 import asyncio
 import logging
@@ -18,101 +20,103 @@ from argo_compiler.files.atomic_write import write_atomically
 from argo_compiler.files.loading import FileError, read_bytes
 from argo_env.evaluation.folder import REPORT
 from argo_env.files.folders import make_folder
-from argo_planner.service.evaluations.replay import ReplayedRun, ReplayOrder, replay_run
+from argo_planner.service.evaluations.replay import ReplayedRun, ReplayRequest, replay_run
 from argo_planner.service.jobs.evaluation import (
-    EvaluationOrder,
-    cut_short,
+    EvaluationSpec,
     evaluate_mission,
-    report_so_far,
+    read_partial_results,
+    write_partial_report,
 )
 from argo_planner.service.jobs.job import JOB_ID, EvaluationJob, Job, JobState
 from argo_planner.service.jobs.jobs import Jobs
-from argo_planner.service.processes.work import JobProcess
+from argo_planner.service.processes.job_process import JobProcess
 
 MOST_REPLAYED = 2
-"""runs that are made again at once"""
+"""runs that are replayed at the same time"""
 LONGEST_REPLAY = 120.0
-"""s of wall time"""
+"""longest time of a replay, in s of wall time"""
 _log = logging.getLogger(__name__)
-_KEPT = "job.json"
+_JOB_FILE = "job.json"
 _MAX_BYTES = 100_000_000
 
 
-class KeptEvaluation(Model):
-    """An evaluation as it is kept: what was ordered, and how it stood when that last changed."""
+class StoredEvaluation(Model):
+    """Evaluation as stored on disk: what it depends on, and its last stored job state."""
 
-    order: EvaluationOrder
+    order: EvaluationSpec
     job: EvaluationJob
 
 
 class EvaluationFolder:
-    """The folder of all evaluations."""
+    """Folder of all evaluations."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
 
     def path(self, id: str) -> Path:
-        """The folder of one of them."""
+        """Return the folder of one evaluation."""
         return self._path / id
 
-    def keep(self, kept: KeptEvaluation) -> None:
-        """Writes down how one stands. Raises Unavailable."""
-        folder = self.path(kept.job.id)
+    def store(self, evaluation: StoredEvaluation) -> None:
+        """Store the state of an evaluation; raises Unavailable if it can't be written."""
+        folder = self.path(evaluation.job.id)
         make_folder(folder)
-        write_atomically(folder / _KEPT, kept.model_dump_json().encode())
+        write_atomically(folder / _JOB_FILE, evaluation.model_dump_json().encode())
 
-    def all(self) -> list[KeptEvaluation]:
-        """The evaluations, the oldest first. One that was under way has been interrupted."""
-        found = []
+    def load_all(self) -> list[StoredEvaluation]:
+        """Return all evaluations, the oldest first; a running one is returned as interrupted."""
+        evaluations = []
         names = os.listdir(self._path) if os.path.isdir(self._path) else []
         for name in names:
             if re.fullmatch(JOB_ID, name) and not os.path.islink(self.path(name)):
                 try:
-                    found.append(self._read(name))
+                    evaluations.append(self._read(name))
                 except (FileError, ValidationError) as error:
-                    _log.warning("%s: can't be read, and is left out: %s", self.path(name), error)
-        return sorted(found, key=lambda kept: kept.job.begun)
+                    _log.warning("%s: can't be read and is ignored: %s", self.path(name), error)
+        return sorted(evaluations, key=lambda evaluation: evaluation.job.begun)
 
-    def cut_short(self, job: EvaluationJob) -> EvaluationJob:
-        """An evaluation that was ended before its time, with how it stands by the rows that are
-        kept, as far as they can be read."""
+    def with_stored_rows(self, job: EvaluationJob) -> EvaluationJob:
+        """Return an evaluation that was ended early, with the standing that its stored rows give.
+
+        Returns it unchanged if there are no rows or they can't be read.
+        """
         try:
-            found = cut_short(self.path(job.id))
+            partial_results = read_partial_results(self.path(job.id))
         except ArgoError as error:
             _log.warning("evaluation %s: its rows can't be read: %s", job.id, error)
             return job
-        return job if found is None else job.heard(found[0])
+        return job if partial_results is None else job.with_progress(partial_results[0])
 
-    def forget(self, id: str) -> None:
-        """Deletes one of them. Raises Unavailable where that can't be done."""
+    def delete(self, id: str) -> None:
+        """Delete an evaluation; raises Unavailable if that fails."""
         try:
             shutil.rmtree(self.path(id))
         except OSError as error:
             raise Unavailable(f"{self.path(id)}: can't be deleted: {error.strerror}") from error
 
-    def kept(self, id: str) -> KeptEvaluation:
-        """What is kept of one of them. Raises NotFound if that can't be read."""
+    def load(self, id: str) -> StoredEvaluation:
+        """Return a stored evaluation; raises NotFound if it can't be read."""
         try:
             return self._read(id)
         except (FileError, ValidationError):
-            raise NotFound(f"what is kept of evaluation {id} is gone, or damaged") from None
+            raise NotFound(f"the files of evaluation {id} are missing or damaged") from None
 
-    def report(self, id: str) -> bytes:
-        """The report of an evaluation. Raises NotFound if there is none yet."""
+    def read_report(self, id: str) -> bytes:
+        """Return the report of an evaluation; raises NotFound if there is none yet."""
         return read_bytes(self.path(id) / REPORT, "report", _MAX_BYTES)
 
-    def _read(self, id: str) -> KeptEvaluation:
-        content = read_bytes(self.path(id) / _KEPT, "evaluation", _MAX_BYTES)
-        kept = KeptEvaluation.model_validate_json(content)
-        if kept.job.state is not JobState.RUNNING:
-            return kept
+    def _read(self, id: str) -> StoredEvaluation:
+        content = read_bytes(self.path(id) / _JOB_FILE, "evaluation", _MAX_BYTES)
+        evaluation = StoredEvaluation.model_validate_json(content)
+        if evaluation.job.state is not JobState.RUNNING:
+            return evaluation
         why = "the service ended before all was run"
-        job = kept.job.model_copy(update={"state": JobState.INTERRUPTED, "problem": why})
-        return kept.model_copy(update={"job": self.cut_short(job)})
+        job = evaluation.job.model_copy(update={"state": JobState.INTERRUPTED, "problem": why})
+        return evaluation.model_copy(update={"job": self.with_stored_rows(job)})
 
 
 class Evaluations:
-    """The evaluations of a service, kept in a folder each."""
+    """Evaluations of a service, each one stored in its own folder."""
 
     def __init__(
         self, path: Path, jobs: Jobs, new_id: Callable[[], str], clock: Callable[[], datetime]
@@ -122,145 +126,156 @@ class Evaluations:
         self._new_id = new_id
         self._clock = clock
         self._turn = asyncio.Lock()
-        """held while one begins, goes on or is deleted, and while it is kept how one has ended, so
-        that this does not change one that goes on already"""
+        """held while an evaluation is started, resumed or deleted, and while the end of one is
+        stored, so that this can't overwrite the state of an evaluation that was resumed"""
         self._replays = asyncio.Semaphore(MOST_REPLAYED)
 
     async def open(self) -> None:
-        """Finds those of before."""
-        kept = await asyncio.to_thread(self._folder.all)
-        self._jobs.add_past(one.job for one in kept)
+        """Load the stored evaluations."""
+        stored = await asyncio.to_thread(self._folder.load_all)
+        self._jobs.add_past(evaluation.job for evaluation in stored)
 
     async def start(
-        self, plan: str, revision: int, order: EvaluationOrder, author: str
+        self, plan: str, revision: int, spec: EvaluationSpec, author: str
     ) -> EvaluationJob:
-        """Begins an evaluation. Raises Conflict if one is under way, Unavailable if it can't be
-        kept."""
+        """Start an evaluation.
+
+        Raises Conflict if another one is running, Unavailable if it can't be stored.
+        """
         async with self._turn:
-            self._require_free()
+            self._require_none_running()
             job = EvaluationJob(
                 id=self._new_id(),
                 mission=plan,
                 revision=revision,
                 author=author,
                 begun=self._clock(),
-                name=order.name,
-                asked=order.asked,
+                name=spec.name,
+                asked=spec.asked,
             )
-            return await self._begin(KeptEvaluation(order=order, job=job))
+            return await self._start_job(StoredEvaluation(order=spec, job=job))
 
-    async def go_on(self, id: str) -> EvaluationJob:
-        """Goes on with one that was interrupted or cancelled: what has been run is not run again.
-        Raises NotFound, Conflict if it can't go on."""
+    async def resume(self, id: str) -> EvaluationJob:
+        """Resume an evaluation that was interrupted or cancelled; its stored runs are not repeated.
+
+        Raises NotFound, or Conflict if it can't be resumed.
+        """
         async with self._turn:
-            job = self.of(id)
+            job = self.find(id)
             if job.state not in (JobState.INTERRUPTED, JobState.CANCELLED):
-                raise Conflict(f"evaluation {id} can't go on: it is {job.state}")
-            self._require_free()
-            kept = await asyncio.to_thread(self._folder.kept, id)
+                raise Conflict(f"evaluation {id} can't be resumed: it is {job.state}")
+            self._require_none_running()
+            stored = await asyncio.to_thread(self._folder.load, id)
             job = job.model_copy(update={"state": JobState.RUNNING, "problem": None})
-            return await self._begin(KeptEvaluation(order=kept.order, job=job))
+            return await self._start_job(StoredEvaluation(order=stored.order, job=job))
 
-    def of(self, id: str) -> EvaluationJob:
-        """Raises NotFound if there is no such job, or it is no evaluation."""
+    def find(self, id: str) -> EvaluationJob:
+        """Return an evaluation; raises NotFound if there is no such job or it is no evaluation."""
         job = self._jobs.job(id)
         if not isinstance(job, EvaluationJob):
             raise NotFound(f"job {id} is no evaluation")
         return job
 
-    async def end_of(self, plan: str) -> None:
-        """Ends the evaluation of a mission that is no more, if one is under way."""
+    async def cancel_for_mission(self, plan: str) -> None:
+        """Cancel the running evaluation of a mission, if there is one."""
         for job in self._jobs.running(EvaluationJob):
             if job.mission == plan:
                 await self._jobs.cancel(job.id)
 
-    async def forget(self, id: str) -> None:
-        """Deletes an evaluation that is over, with all its rows. Raises NotFound, Conflict if it is
-        under way."""
-        async with self._turn:
-            job = self.of(id)
-            if job.state is JobState.RUNNING:
-                raise Conflict(f"evaluation {id} is under way: end it first")
-            self._jobs.forget(id)
-            await asyncio.to_thread(self._folder.forget, id)
+    async def delete(self, id: str) -> None:
+        """Delete an evaluation that has ended, with all its rows.
 
-    async def forget_all_of(self, plan: str) -> None:
-        """Deletes the evaluations of a mission that is gone for good."""
-        await self.end_of(plan)
+        Raises NotFound, Conflict if it is running, or Unavailable if it can't be deleted.
+        """
+        async with self._turn:
+            job = self.find(id)
+            if job.state is JobState.RUNNING:
+                raise Conflict(f"evaluation {id} is running: cancel it first")
+            self._jobs.discard(id)
+            await asyncio.to_thread(self._folder.delete, id)
+
+    async def delete_for_mission(self, plan: str) -> None:
+        """Delete all evaluations of a mission; a running one is cancelled first."""
+        await self.cancel_for_mission(plan)
         for job in self._jobs.all():
             if isinstance(job, EvaluationJob) and job.mission == plan:
-                await self.forget(job.id)
+                await self.delete(job.id)
 
     async def report(self, id: str) -> bytes:
-        """The report, as a page; of an evaluation that was cut short, of what there is. Raises
-        NotFound if there is none yet."""
-        job = self.of(id)
-        if job.state is JobState.RUNNING:  # that of before it went on says less
-            raise NotFound(f"evaluation {id} has no report yet: it is under way")
+        """Return the report, as a page; after an early end, the report of the stored runs.
+
+        Raises NotFound if there is none yet.
+        """
+        job = self.find(id)
+        if job.state is JobState.RUNNING:  # an earlier report would lack the new runs
+            raise NotFound(f"evaluation {id} has no report yet: it is running")
         if job.state in (JobState.CANCELLED, JobState.INTERRUPTED):
-            work = JobProcess(report_so_far, self._folder.path(id))
+            work = JobProcess(write_partial_report, self._folder.path(id))
             try:
                 await work.result(lambda _: None)
             finally:
                 await work.end()
         try:
-            return await asyncio.to_thread(self._folder.report, id)
+            return await asyncio.to_thread(self._folder.read_report, id)
         except NotFound:
             raise NotFound(
-                f"evaluation {id} has no report: it is {job.state}, and the report is made when "
-                "all has been run"
+                f"evaluation {id} has no report: it is {job.state}, and the report is written "
+                "when all runs are complete"
             ) from None
 
     async def replay(self, id: str, key: str) -> ReplayedRun:
-        """One of its runs, made once more. Raises NotFound if there is no such run, Unavailable if
-        that takes too long."""
-        job = self.of(id)
-        kept = await asyncio.to_thread(self._folder.kept, id)
-        order = ReplayOrder(
+        """Execute a run of an evaluation again.
+
+        Raises NotFound if there is no such run, Unavailable if it takes too long.
+        """
+        job = self.find(id)
+        stored = await asyncio.to_thread(self._folder.load, id)
+        request = ReplayRequest(
             key=key,
             plan=job.mission,
             revision=job.revision,
             by=job.author,
             begun=job.begun,
-            evaluation=kept.order,
+            evaluation=stored.order,
         )
         async with self._replays:
-            work = JobProcess(replay_run, order, self._folder.path(id))
+            work = JobProcess(replay_run, request, self._folder.path(id))
             try:
                 async with asyncio.timeout(LONGEST_REPLAY):
                     return await work.result(lambda _: None)
             except TimeoutError:
                 raise Unavailable(
-                    f"the run takes longer than {LONGEST_REPLAY:.0f} s to make again here: the "
-                    "report of the evaluation has a command that makes it on the machine of the "
-                    "service"
+                    f"the replay of the run takes longer than {LONGEST_REPLAY:.0f} s: the report "
+                    "of the evaluation has a command that replays it on the machine of the service"
                 ) from None
             finally:
                 await work.end()
 
-    def _require_free(self) -> None:
+    def _require_none_running(self) -> None:
         for job in self._jobs.running(EvaluationJob):
             assert isinstance(job, EvaluationJob)
             raise Conflict(
-                f"mission {job.name!r} is being evaluated, begun by {job.author}: wait for it, or "
-                "end it"
+                f"{job.author} has started an evaluation of mission {job.name!r}: wait for it, or "
+                "cancel it"
             )
 
-    async def _begin(self, kept: KeptEvaluation) -> EvaluationJob:
-        await asyncio.to_thread(self._folder.keep, kept)
-        work = JobProcess(evaluate_mission, kept.order, self._folder.path(kept.job.id), parent=True)
+    async def _start_job(self, evaluation: StoredEvaluation) -> EvaluationJob:
+        await asyncio.to_thread(self._folder.store, evaluation)
+        work = JobProcess(
+            evaluate_mission, evaluation.order, self._folder.path(evaluation.job.id), parent=True
+        )
 
-        async def ended(job: Job) -> None:
+        async def on_end(job: Job) -> None:
             assert isinstance(job, EvaluationJob)
             async with self._turn:
                 if job.state in (JobState.CANCELLED, JobState.INTERRUPTED):
-                    job = await asyncio.to_thread(self._folder.cut_short, job)
-                    self._jobs.tell_anew(job)
+                    job = await asyncio.to_thread(self._folder.with_stored_rows, job)
+                    self._jobs.update(job)
                 try:
-                    now = KeptEvaluation(order=kept.order, job=job)
-                    await asyncio.to_thread(self._folder.keep, now)
+                    ended = StoredEvaluation(order=evaluation.order, job=job)
+                    await asyncio.to_thread(self._folder.store, ended)
                 except ArgoError as error:
-                    _log.error("evaluation %s: how it ended is not kept: %s", job.id, error)
+                    _log.error("evaluation %s: its end can't be stored: %s", job.id, error)
 
-        self._jobs.begin(kept.job, work, ended)
-        return kept.job
+        self._jobs.start(evaluation.job, work, on_end)
+        return evaluation.job

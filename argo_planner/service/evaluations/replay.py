@@ -1,4 +1,4 @@
-"""Runs of an evaluation, made once more to be looked at: equal specs give equal runs."""
+"""Replays of an evaluation's runs: a run with the same spec gives the same result."""
 
 from datetime import datetime
 from pathlib import Path
@@ -11,33 +11,33 @@ from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
 from argo_env.run.observer import Observer
 from argo_env.run.session import simulate
-from argo_planner.service.jobs.evaluation import EvaluationOrder
-from argo_planner.service.processes.work import Tell
+from argo_planner.service.jobs.evaluation import EvaluationSpec
+from argo_planner.service.processes.job_process import ReportProgress
 from argo_planner.service.runs.state import RunState, RunStatus
 
 
 class ReplayedRun(Model):
-    """A run of an evaluation as it went."""
+    """Run of an evaluation with all its entries."""
 
     state: RunState
-    """how it stood at its end; its `id` is the key of the run"""
+    """state at the end of the run; its `id` is the key of the run"""
     entries: tuple[Entry, ...]
 
 
-class ReplayOrder(Model):
-    """Which run is to be made again, and of what it was one."""
+class ReplayRequest(Model):
+    """Request to replay a run, with the evaluation that it belongs to."""
 
     key: str
     plan: str
-    """id of the mission"""
+    """id of the mission plan"""
     revision: int
     by: str
     begun: datetime
-    evaluation: EvaluationOrder
+    evaluation: EvaluationSpec
 
 
-class _Entries(Observer):
-    """Keeps all that happens."""
+class _EntryCollector(Observer):
+    """Observer that collects all entries of a run."""
 
     def __init__(self) -> None:
         self.entries: list[Entry] = []
@@ -46,28 +46,28 @@ class _Entries(Observer):
         self.entries.append(entry)
 
 
-def replay_run(order: ReplayOrder, folder: Path, tell: Tell) -> ReplayedRun:  # noqa: ARG001
-    """Makes a run of the evaluation in the folder once more.
+def replay_run(request: ReplayRequest, folder: Path, report: ReportProgress) -> ReplayedRun:  # noqa: ARG001
+    """Execute a run of the evaluation in the folder again.
 
-    Raises NotFound if it has no such run, ArgoError as the run does.
+    Raises NotFound if the evaluation has no such run, or the errors of the run.
     """
     plan = read_plan(folder)
-    row = next((row for row in read_rows(folder) if row.key == order.key), None)
+    row = next((row for row in read_rows(folder) if row.key == request.key), None)
     if plan is None or row is None:
-        raise NotFound(f"the evaluation has no run {order.key[:40]!r}")
+        raise NotFound(f"the evaluation has no run {request.key[:40]!r}")
     case = next(k for k, case in enumerate(plan.cases) if case.faults == row.faults)
     spec = plan.run(case, row.seed).spec
-    seen = _Entries()
-    record = simulate(spec, order.evaluation.opened(), observers=(seen,))
+    collector = _EntryCollector()
+    record = simulate(spec, request.evaluation.open_site(), observers=(collector,))
     last = record.path[-1] if record.path else None
     readings = {reading.checkpoint: reading for reading in record.readings}
     state = RunState(
-        id=order.key,
-        plan=order.plan,
-        revision=order.revision,
-        name=order.evaluation.name,
-        by=order.by,
-        begun=order.begun,
+        id=request.key,
+        plan=request.plan,
+        revision=request.revision,
+        name=request.evaluation.name,
+        by=request.by,
+        begun=request.begun,
         status=RunStatus.ENDED,
         drive=spec.drive,
         sensor=spec.sensor,
@@ -77,7 +77,7 @@ def replay_run(order: ReplayOrder, folder: Path, tell: Tell) -> ReplayedRun:  # 
         max_duration=record.result.max_duration,
         readings=tuple(readings.values()),
         charge=None if last is None else last.charge,
-        entries=len(seen.entries),
+        entries=len(collector.entries),
         headline=record.headline,
     )
-    return ReplayedRun(state=state, entries=tuple(seen.entries))
+    return ReplayedRun(state=state, entries=tuple(collector.entries))

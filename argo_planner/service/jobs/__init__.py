@@ -1,1 +1,1 @@
-"""What takes long, in processes of its own: the analysis of missions, the search for orders."""
+"""Long computations in separate processes: analyses, searches for orders, and evaluations."""

@@ -1,4 +1,4 @@
-"""The analysis of a mission over all its paths, in a process of its own."""
+"""Analysis of a mission over all its execution paths, in a separate process."""
 
 import asyncio
 import os
@@ -21,45 +21,45 @@ from argo_planner.use_cases.checking import MOST_PLACES
 
 
 class AnalysisFound(Model):
-    """What the analysis of a revision has found."""
+    """Result of the analysis of a revision."""
 
     revision: int
     analysis: Analysis | None = None
-    """without the witnesses; None: there is none, and `problem` says why"""
+    """analysis without its witnesses; None: `problem` states why there is none"""
     problem: str | None = None
 
 
 class Analyst:
-    """Analyses missions of one site. Holds a process, which opens the site once."""
+    """Analyst of missions on one site. Owns a process, which opens the site once."""
 
     def __init__(self, site: OpenedSite) -> None:
         self._site = site.reference
-        self._pool = _pool()
+        self._pool = _make_pool()
 
     async def analyse(self, mission: Mission, revision: int) -> AnalysisFound:
-        """The analysis of a mission, and of which revision it is."""
-        for _ in range(2):  # once more in a new process
+        """Return the analysis of a mission, with the number of its revision."""
+        for _ in range(2):  # the second time in a new process
             pool = self._pool
             try:
-                # The first process begins when its modules are loaded, which takes seconds.
-                job = await asyncio.to_thread(pool.submit, _analysed, self._site, mission, revision)
+                # The first process starts after its modules are loaded, which takes seconds.
+                job = await asyncio.to_thread(pool.submit, _analyse, self._site, mission, revision)
                 return await asyncio.wrap_future(job)
             except BrokenProcessPool:
-                problem = "the process that analyses it has died"
+                problem = "the analysis process has died"
                 pool.shutdown(wait=False)
-                if pool is self._pool:  # another analysis may have replaced it meanwhile
-                    self._pool = _pool()
+                if pool is self._pool:  # unless another analysis has replaced it
+                    self._pool = _make_pool()
             except OSError as error:
-                problem = f"the process that analyses it can't begin: {error.strerror}"
+                problem = f"the analysis process can't start: {error.strerror}"
         return AnalysisFound(revision=revision, problem=problem)
 
     def close(self) -> None:
-        """Ends the process, whatever it does."""
+        """End the process at once."""
         self._pool.shutdown(wait=True, kill_workers=True)
 
 
-def _pool() -> ProcessPoolExecutor:
-    # The pool of Python 3.11 may take a job while it breaks, and never end it: loky's does not.
+def _make_pool() -> ProcessPoolExecutor:
+    # A pool of Python 3.11 that breaks may accept a job and never end it; loky's pool does not.
     context = LokyContext()
     context.Process = CONTEXT.Process
     return ProcessPoolExecutor(
@@ -67,18 +67,18 @@ def _pool() -> ProcessPoolExecutor:
     )
 
 
-def _analysed(reference: str, mission: Mission, revision: int) -> AnalysisFound:
+def _analyse(reference: str, mission: Mission, revision: int) -> AnalysisFound:
     try:
         site = open_site(reference)
         if has_errors(check(mission, site.catalog)):
             return AnalysisFound(revision=revision, problem="the mission has errors")
-        places = len({task.pose for task in mission.tasks if task.pose is not None})
-        travel = None if places > MOST_PLACES else site.travel
-        found = analyse(mission, site.catalog, travel)
+        poses = len({task.pose for task in mission.tasks if task.pose is not None})
+        travel = None if poses > MOST_PLACES else site.travel
+        analysis = analyse(mission, site.catalog, travel)
         unseen = tuple(unseen_from_poses(mission, site))
     except ArgoError as error:
         return AnalysisFound(revision=revision, problem=str(error))
-    told = found.model_copy(
-        update={"witnesses": None, "diagnostics": (*found.diagnostics, *unseen)}
+    without_witnesses = analysis.model_copy(
+        update={"witnesses": None, "diagnostics": (*analysis.diagnostics, *unseen)}
     )
-    return AnalysisFound(revision=revision, analysis=told)
+    return AnalysisFound(revision=revision, analysis=without_witnesses)

@@ -1,4 +1,4 @@
-"""The evaluation of a mission: it is run in many worlds, in processes of its own."""
+"""Evaluation of a mission: its runs in many worlds, in separate processes."""
 
 import hashlib
 import os
@@ -28,40 +28,40 @@ from argo_env.faults.kinds import AnyFault
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.run.drives_and_sensors import IDEAL, ROUTE
 from argo_env.worker_processes import context_with
-from argo_planner.service.jobs.standing import EvaluationStanding, RunCount
-from argo_planner.service.processes.work import Tell
+from argo_planner.service.jobs.evaluation_status import EvaluationStanding, RunCount
+from argo_planner.service.processes.job_process import ReportProgress
 from argo_planner.service.world.obstacles import Obstacle, with_obstacles
 
 MOST_WORLDS = 10_000
 MOST_RUNS = 100_000
-_PERIOD = 0.25  # s between two times that it is told how it stands
-_NICE = 10  # the service, and the run of the robot, go first
-_LONGEST_RUN = 600.0  # s of wall time, after which a run counts as died
+_PERIOD = 0.25  # s between two reports of the progress
+_NICE = 10  # the service and the robot's run have priority
+_LONGEST_RUN = 600.0  # s of wall time; a longer run counts as one whose process has died
 
 
 class EvaluationAsked(Model):
-    """In which worlds a mission is to be run, and how."""
+    """Request for an evaluation: the worlds in which a mission is to be run, and the run setup."""
 
     drive: str = Field(default=ROUTE, max_length=40)
     sensor: str = Field(default=IDEAL, max_length=40)
     worlds: int = Field(default=100, ge=1, le=MOST_WORLDS)
-    """how many; in each one all is run"""
+    """number of worlds; each case is run in each world"""
     first_seed: int = Field(default=0, ge=0, le=2**31)
-    """the worlds are those of this seed and of the next ones"""
+    """seed of the first world; the others have the seeds that follow"""
     without_faults: bool = True
-    """whether it is run also where nothing goes wrong"""
+    """whether the mission is also run without faults"""
     faults: tuple[AnyFault, ...] = Field(default=(), max_length=50)
-    """each goes wrong by itself, in runs of its own"""
+    """faults, each one alone in its own runs"""
     variation: Variation = NO_VARIATION
-    """what differs from world to world"""
+    """quantities that differ from world to world"""
     require: tuple[str, ...] = Field(default=(), max_length=5)
-    """what must hold, such as `success >= 0.98`; it stops when that is decided"""
+    """requirements such as `success >= 0.98`; the evaluation stops when they are decided"""
     width: float | None = Field(default=None, gt=0, lt=1)
-    """it stops when the interval of the rate is no wider than this"""
+    """width of the rate's interval, 0 to 1, at which the evaluation stops; None: no such limit"""
 
     @field_validator("require")
     @classmethod
-    def _understood(cls, require: tuple[str, ...]) -> tuple[str, ...]:
+    def _check_requirements(cls, require: tuple[str, ...]) -> tuple[str, ...]:
         for text in require:
             try:
                 parse_requirement(text)
@@ -70,36 +70,36 @@ class EvaluationAsked(Model):
         return require
 
     @model_validator(mode="after")
-    def _runs(self) -> "EvaluationAsked":
+    def _check_runs(self) -> "EvaluationAsked":
         cases = len(self.faults) + self.without_faults
         if cases == 0:
-            raise ValueError("nothing is to be run: give faults, or let it run without faults")
+            raise ValueError("nothing is to be run: add faults, or allow runs without faults")
         if cases * self.worlds > MOST_RUNS:
             raise ValueError(f"{cases * self.worlds} runs are too many: at most {MOST_RUNS}")
         return self
 
 
-class EvaluationOrder(Model):
-    """A mission that is to be evaluated, and where."""
+class EvaluationSpec(Model):
+    """All data that an evaluation depends on: the mission, the site, and the request."""
 
     name: str
-    """of the mission, for people"""
+    """name of the mission, for people"""
     mission: Mission
     site: str
-    """what opens it"""
+    """reference that opens the site"""
     obstacles: tuple[Obstacle, ...] = ()
-    """that stand on the site"""
+    """obstacles on the site"""
     asked: EvaluationAsked
 
-    def opened(self) -> OpenedSite:
-        """The site with its obstacles. Raises ArgoError."""
-        return _opened(self.site, self.obstacles)
+    def open_site(self) -> OpenedSite:
+        """Open the site with its obstacles; raises ArgoError if that fails."""
+        return _open_with_obstacles(self.site, self.obstacles)
 
-    def plan(self, site: OpenedSite) -> EvaluationPlan:
-        """All that is to be run. Raises ArgoError for what can't be run on the site."""
+    def make_plan(self, site: OpenedSite) -> EvaluationPlan:
+        """Return the plan of all runs; raises ArgoError if something can't be run on the site."""
         asked = self.asked
         sets: dict[str, Sequence[AnyFault]] = {NO_FAULTS: ()} if asked.without_faults else {}
-        sets.update(_named(asked.faults))
+        sets.update(_fault_sets(asked.faults))
         evaluation = Evaluation(
             {self.name: self.mission},
             site,
@@ -114,60 +114,64 @@ class EvaluationOrder(Model):
         )
         if not self.obstacles:
             return evaluation.plan
-        # Runs among other obstacles are other runs, and known by other keys.
-        said = "".join(obstacle.model_dump_json() for obstacle in self.obstacles)
-        among = hashlib.sha256(said.encode()).hexdigest()
+        # Runs with other obstacles are different runs and need different keys.
+        content = "".join(obstacle.model_dump_json() for obstacle in self.obstacles)
+        obstacles_digest = hashlib.sha256(content.encode()).hexdigest()
         cases = tuple(
-            case.model_copy(update={"digest": f"{case.digest} {among}"})
+            case.model_copy(update={"digest": f"{case.digest} {obstacles_digest}"})
             for case in evaluation.plan.cases
         )
         added = ", ".join(obstacle.name or obstacle.id for obstacle in self.obstacles)
         return evaluation.plan.with_changes(cases=cases, added=f"obstacles: {added}")
 
 
-def evaluate_mission(order: EvaluationOrder, folder: Path, tell: Tell) -> EvaluationStanding:
-    """Makes all runs that are not in the folder yet and tells how it stands; at the end the folder
-    has the rows, the report, and what each run that failed is made again from.
+def evaluate_mission(
+    spec: EvaluationSpec, folder: Path, report: ReportProgress
+) -> EvaluationStanding:
+    """Execute all runs that are not in the folder yet, and report the progress.
 
-    Raises ArgoError if something can't be run at all, or the folder can't be written.
+    At the end, the folder has the rows, the report and, without obstacles, the specs of the failed
+    runs. Raises ArgoError if something can't be run at all, or the folder can't be written.
     """
     from argo_env.evaluation.report.page import write_evaluation_report  # matplotlib
 
     os.nice(_NICE)
-    # Who ends this process leaves semaphores behind: loky's helper clears them away, and need not
-    # say so.
+    # If this process is killed, its semaphores remain: loky's helper removes them. Its warning
+    # about them is not needed.
     os.environ["PYTHONWARNINGS"] = "ignore:resource_tracker:UserWarning"
-    plan = order.plan(order.opened())
-    write_plan(folder, plan, digest_contents(order.model_dump_json().encode()))
-    standing = RunCount(plan)
-    call = partial(_carried_out, order.site, order.obstacles)
-    # Forked from a process that has loaded less than the one of the service.
+    plan = spec.make_plan(spec.open_site())
+    write_plan(folder, plan, digest_contents(spec.model_dump_json().encode()))
+    count = RunCount(plan)
+    call = partial(_execute_run, spec.site, spec.obstacles)
+    # Workers are forked from a process that has loaded fewer modules than the service.
     workers = make_backend(context=context_with(__name__))
     with RowStore(folder) as store:
         try:
-            evaluating = EvaluationRunner(plan, workers, store, limit=_LONGEST_RUN, call=call)
-            told, before = -_PERIOD, len(store.rows)
-            for row in evaluating.rows_as_completed():
-                standing.add(row)
-                # What was known before is counted before anything is told.
-                known = evaluating.progress.completed_runs >= before
-                if known and time.monotonic() - told >= _PERIOD:
-                    tell(standing.under_way(evaluating.progress))
-                    told = time.monotonic()
+            runner = EvaluationRunner(plan, workers, store, limit=_LONGEST_RUN, call=call)
+            last_report, stored = -_PERIOD, len(store.rows)
+            for row in runner.rows_as_completed():
+                count.add(row)
+                # Stored rows are counted before the first report.
+                stored_counted = runner.progress.completed_runs >= stored
+                if stored_counted and time.monotonic() - last_report >= _PERIOD:
+                    report(count.interim_standing(runner.progress))
+                    last_report = time.monotonic()
         finally:
             workers.close()
-    results = evaluating.results
-    final = standing.ended(results)
-    tell(final)
-    if not order.obstacles:
+    results = runner.results
+    final = count.final_standing(results)
+    report(final)
+    if not spec.obstacles:
         write_failing_specs(folder, results)
     write_evaluation_report(folder, results)
     return final
 
 
-def cut_short(folder: Path) -> tuple[EvaluationStanding, EvaluationResults] | None:
-    """How the evaluation in a folder stands that was ended before its time, and what came of it; of
-    one of which there are no rows, None. Raises ArgoError where they can't be read."""
+def read_partial_results(folder: Path) -> tuple[EvaluationStanding, EvaluationResults] | None:
+    """Return the standing and the results of an evaluation in a folder that was ended early.
+
+    Returns None if it has no rows. Raises ArgoError if they can't be read.
+    """
     plan = read_plan(folder)
     try:
         rows = read_rows(folder)
@@ -176,35 +180,39 @@ def cut_short(folder: Path) -> tuple[EvaluationStanding, EvaluationResults] | No
     if plan is None or not rows:
         return None
     count, results = RunCount(plan), EvaluationResults.from_partial_rows(plan, rows)
-    places = {seed: k for k, seed in enumerate(plan.seeds)}
-    for row in sorted(rows, key=lambda row: (places[row.seed], plan.case_index(row) or 0)):
+    positions = {seed: k for k, seed in enumerate(plan.seeds)}
+    for row in sorted(rows, key=lambda row: (positions[row.seed], plan.case_index(row) or 0)):
         count.add(row)
-    return count.ended(results), results
+    return count.final_standing(results), results
 
 
-def report_so_far(folder: Path, tell: Tell) -> None:  # noqa: ARG001
-    """Writes the report of an evaluation that was ended before its time. Raises NotFound if no run
-    of it has ended."""
+def write_partial_report(folder: Path, report: ReportProgress) -> None:  # noqa: ARG001
+    """Write the report of an evaluation that was ended early.
+
+    Raises NotFound if none of its runs has ended.
+    """
     from argo_env.evaluation.report.page import write_evaluation_report
 
-    found = cut_short(folder)
-    if found is None:
+    partial_results = read_partial_results(folder)
+    if partial_results is None:
         raise NotFound("no run of the evaluation has ended yet: there is nothing to report")
-    write_evaluation_report(folder, found[1])
+    write_evaluation_report(folder, partial_results[1])
 
 
-def _carried_out(site: str, obstacles: tuple[Obstacle, ...], order: WorkOrder) -> RunRow:
-    """One run, in a worker."""
-    return execute_run(order, _opened(site, obstacles))
+def _execute_run(site: str, obstacles: tuple[Obstacle, ...], order: WorkOrder) -> RunRow:
+    """Execute one run in a worker."""
+    return execute_run(order, _open_with_obstacles(site, obstacles))
 
 
-def _opened(site: str, obstacles: tuple[Obstacle, ...]) -> OpenedSite:
+def _open_with_obstacles(site: str, obstacles: tuple[Obstacle, ...]) -> OpenedSite:
     return with_obstacles(open_site(site), obstacles)
 
 
-def _named(faults: Sequence[AnyFault]) -> Iterator[tuple[str, Sequence[AnyFault]]]:
-    """Sets of one fault each, which are called by their kinds, and numbered where one is there
-    more than once."""
+def _fault_sets(faults: Sequence[AnyFault]) -> Iterator[tuple[str, Sequence[AnyFault]]]:
+    """Yield a named set of one fault for each fault.
+
+    The name is the fault's kind, with a number if the kind occurs more than once.
+    """
     kinds = Counter(fault.kind for fault in faults)
     seen: Counter[str] = Counter()
     for fault in faults:

@@ -1,4 +1,4 @@
-"""Jobs as the service tells of them."""
+"""State of jobs, as the service sends it to clients."""
 
 from datetime import datetime
 from enum import StrEnum
@@ -8,92 +8,92 @@ from pydantic import Discriminator
 
 from argo_compiler.base.model import Model
 from argo_planner.service.jobs.evaluation import EvaluationAsked
-from argo_planner.service.jobs.order import OrderFound, OrderProgress
-from argo_planner.service.jobs.standing import EvaluationStanding
+from argo_planner.service.jobs.evaluation_status import EvaluationStanding
+from argo_planner.service.jobs.order_search import OrderFound, OrderProgress
 
 JOB_ID = r"[0-9a-f]{12}"
-"""what a job's id looks like"""
+"""regular expression for the id of a job"""
 MOST_PROGRESS = 1_000
-"""steps of a search that are kept of a job"""
+"""progress reports that are stored for a search"""
 
 
 class JobState(StrEnum):
-    """How far a job is."""
+    """State of a job."""
 
     RUNNING = "running"
     DONE = "done"
     FAILED = "failed"
     CANCELLED = "cancelled"
     INTERRUPTED = "interrupted"
-    """its process has died, or that of the service; an evaluation can go on from its rows"""
+    """its process or the service has died; an evaluation can continue from its rows"""
 
 
 class _Job(Model):
-    """What all jobs have."""
+    """Fields that all jobs have."""
 
     id: str
     mission: str
-    """id of the mission"""
+    """id of the mission plan"""
     revision: int
-    """that it was begun on"""
+    """revision that the job was started on"""
     author: str
     begun: datetime
     state: JobState = JobState.RUNNING
     problem: str | None = None
-    """why it failed or was interrupted"""
+    """why the job failed or was interrupted; None: it did not"""
 
 
 class OrderJob(_Job):
-    """The search for the best order of a mission."""
+    """Search for the best order of a mission."""
 
     kind: Literal["order"] = "order"
     progress: tuple[OrderProgress, ...] = ()
     found: OrderFound | None = None
 
-    def heard(self, progress: OrderProgress) -> "OrderJob":
-        """It has come further."""
+    def with_progress(self, progress: OrderProgress) -> "OrderJob":
+        """Return the job with one more progress report, of which it stores a limited number."""
         if len(self.progress) == MOST_PROGRESS:
             return self
         return self.model_copy(update={"progress": (*self.progress, progress)})
 
-    def done(self, found: OrderFound) -> "OrderJob":
-        """It has come to its end."""
+    def with_result(self, found: OrderFound) -> "OrderJob":
+        """Return the job with its result, as done."""
         return self.model_copy(update={"state": JobState.DONE, "found": found})
 
-    def told(self) -> "OrderJob":
-        """As those hear who have the mission open: without the mission in its new order."""
+    def for_members(self) -> "OrderJob":
+        """Return the job as the members of the room get it: without the reordered mission."""
         found = self.found and self.found.model_copy(update={"mission": None})
         return self.model_copy(update={"found": found})
 
     def summary(self) -> "OrderJob":
-        """Without what came of it."""
+        """Return the job without its result."""
         return self.model_copy(update={"found": None})
 
 
 class EvaluationJob(_Job):
-    """The evaluation of a mission in many worlds."""
+    """Evaluation of a mission in many worlds."""
 
     kind: Literal["evaluation"] = "evaluation"
     name: str = ""
-    """of the mission when it was begun"""
+    """name of the mission when the job was started"""
     asked: EvaluationAsked
     standing: EvaluationStanding | None = None
-    """None: no run has ended yet"""
+    """progress and interim results; None: no run has ended yet"""
 
-    def heard(self, standing: EvaluationStanding) -> "EvaluationJob":
-        """It has come further."""
+    def with_progress(self, standing: EvaluationStanding) -> "EvaluationJob":
+        """Return the job with a newer standing."""
         return self.model_copy(update={"standing": standing})
 
-    def done(self, standing: EvaluationStanding) -> "EvaluationJob":
-        """It has come to its end."""
+    def with_result(self, standing: EvaluationStanding) -> "EvaluationJob":
+        """Return the job with its final standing, as done."""
         return self.model_copy(update={"state": JobState.DONE, "standing": standing})
 
-    def told(self) -> "EvaluationJob":
-        """As those hear who have the mission open."""
+    def for_members(self) -> "EvaluationJob":
+        """Return the job as the members of the room get it: complete."""
         return self
 
     def summary(self) -> "EvaluationJob":
-        """Without what came of it."""
+        """Return the job without its result."""
         return self.model_copy(update={"standing": None})
 
 

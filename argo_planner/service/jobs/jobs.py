@@ -1,4 +1,4 @@
-"""The jobs of a service: begun, watched, cancelled."""
+"""Jobs of a service: starting, watching and cancelling them."""
 
 import asyncio
 from collections.abc import Awaitable, Callable, Iterable
@@ -8,115 +8,117 @@ from typing import Any
 
 from argo_compiler.base.errors import ArgoError, Conflict, NotFound, Unavailable
 from argo_planner.service.jobs.job import EvaluationJob, Job, JobState
-from argo_planner.service.processes.work import JobProcess
+from argo_planner.service.processes.job_process import JobProcess
 
-MOST_KEPT = 200
+MOST_JOBS = 200
+"""stored jobs; beyond this number ended jobs are discarded, the oldest first"""
 
-Ended = Callable[[Job], Awaitable[None]]
+OnEnd = Callable[[Job], Awaitable[None]]
+"""function that is called with a job after it has ended"""
 
 
-async def _nothing(_: Job) -> None:
-    """Nobody has to know that it has ended."""
+async def _do_nothing(_: Job) -> None:
+    """Do nothing, as the default of `OnEnd`."""
 
 
 @dataclass(frozen=True)
-class _UnderWay:
+class _RunningJob:
     work: JobProcess[Any]
     watching: asyncio.Task[None]
-    ended: Ended
+    on_end: OnEnd
 
 
 class Jobs:
-    """The jobs of a service. Holds their processes."""
+    """Jobs of a service, running and ended. Owns the processes of the running ones."""
 
-    def __init__(self, tell: Callable[[Job], None]) -> None:
-        """`tell` hears of each change of a job."""
-        self._tell = tell
+    def __init__(self, on_change: Callable[[Job], None]) -> None:
+        """Create an empty collection; `on_change` is called with each job that changes."""
+        self._on_change = on_change
         self._jobs: dict[str, Job] = {}
-        self._under_way: dict[str, _UnderWay] = {}
+        self._running: dict[str, _RunningJob] = {}
 
     def add_past(self, jobs: Iterable[Job]) -> None:
-        """Jobs of before, the oldest first."""
+        """Add ended jobs of an earlier service process, the oldest first."""
         self._jobs.update((job.id, job) for job in jobs)
-        self._forget()
+        self._evict()
 
     def all(self) -> tuple[Job, ...]:
-        """The jobs that are known, the newest ones first."""
+        """Return the stored jobs, the newest ones first."""
         return tuple(sorted(self._jobs.values(), key=lambda job: job.begun, reverse=True))
 
     def job(self, id: str) -> Job:
-        """Raises NotFound."""
+        """Return the job with that id; raises NotFound if there is none."""
         if id not in self._jobs:
             raise NotFound(f"there is no job {id[:40]!r}")
         return self._jobs[id]
 
     def running(self, kind: type[Job]) -> list[Job]:
-        """Those of a kind that are under way."""
-        jobs = (self._jobs[id] for id in self._under_way)
+        """Return the running jobs of a kind."""
+        jobs = (self._jobs[id] for id in self._running)
         return [job for job in jobs if isinstance(job, kind)]
 
-    def begin(self, job: Job, work: JobProcess[Any], ended: Ended = _nothing) -> Job:
-        """From now on the work is watched; `ended` is told when it has ended, however."""
+    def start(self, job: Job, work: JobProcess[Any], on_end: OnEnd = _do_nothing) -> Job:
+        """Start the work of a job; `on_end` is called when it has ended for any reason."""
         task = asyncio.get_running_loop().create_task(self._watch(job.id, work))
-        self._under_way[job.id] = _UnderWay(work, task, ended)
-        return self._keep(job)
+        self._running[job.id] = _RunningJob(work, task, on_end)
+        return self._store(job)
 
     async def cancel(self, id: str) -> Job:
-        """Ends a job. Raises NotFound, Conflict if it is over."""
+        """End a job; raises NotFound, or Conflict if it has already ended."""
         job = self.job(id)
-        under_way = self._under_way.pop(id, None)
-        if under_way is None:
-            raise Conflict(f"job {id} is over: it is {job.state}")
-        under_way.watching.cancel()
-        await under_way.work.end()
-        job = self._keep(job.model_copy(update={"state": JobState.CANCELLED}))
-        await under_way.ended(job)
+        running = self._running.pop(id, None)
+        if running is None:
+            raise Conflict(f"job {id} has already ended: it is {job.state}")
+        running.watching.cancel()
+        await running.work.end()
+        job = self._store(job.model_copy(update={"state": JobState.CANCELLED}))
+        await running.on_end(job)
         return self._jobs.get(id, job)
 
-    def tell_anew(self, job: Job) -> None:
-        """More is known of a job that has ended."""
+    def update(self, job: Job) -> None:
+        """Replace the stored state of a job that has ended, unless it was discarded."""
         if job.id in self._jobs:
-            self._keep(job)
+            self._store(job)
 
-    def forget(self, id: str) -> None:
-        """A job that is over is not known any more."""
+    def discard(self, id: str) -> None:
+        """Remove an ended job."""
         self._jobs.pop(id, None)
 
     async def close(self) -> None:
-        """Ends all jobs."""
-        under_way, self._under_way = [*self._under_way.values()], {}
-        for one in under_way:
-            one.watching.cancel()
-            await one.work.end()
+        """End all running jobs."""
+        all_running, self._running = [*self._running.values()], {}
+        for running in all_running:
+            running.watching.cancel()
+            await running.work.end()
             with suppress(asyncio.CancelledError):
-                await one.watching
+                await running.watching
 
     async def _watch(self, id: str, work: JobProcess[Any]) -> None:
-        def heard(progress: Any) -> None:
-            if id in self._under_way:
-                self._keep(self._jobs[id].heard(progress))
+        def on_progress(progress: Any) -> None:
+            if id in self._running:
+                self._store(self._jobs[id].with_progress(progress))
 
         try:
-            found = await work.result(heard)
-            job = self.job(id).done(found)
+            result = await work.result(on_progress)
+            job = self.job(id).with_result(result)
         except ArgoError as error:
             job = self.job(id)
             resumable = isinstance(job, EvaluationJob) and isinstance(error, Unavailable)
             state = JobState.INTERRUPTED if resumable else JobState.FAILED
             job = job.model_copy(update={"state": state, "problem": str(error)})
         await work.end()
-        under_way = self._under_way.pop(id, None)
-        if under_way is not None:
-            self._keep(job)
-            await under_way.ended(job)
+        running = self._running.pop(id, None)
+        if running is not None:
+            self._store(job)
+            await running.on_end(job)
 
-    def _keep(self, job: Job) -> Job:
+    def _store(self, job: Job) -> Job:
         self._jobs[job.id] = job
-        self._forget()
-        self._tell(job)
+        self._evict()
+        self._on_change(job)
         return job
 
-    def _forget(self) -> None:
-        over = [id for id in self._jobs if id not in self._under_way]
-        for id in over[: max(0, len(self._jobs) - MOST_KEPT)]:
+    def _evict(self) -> None:
+        ended = [id for id in self._jobs if id not in self._running]
+        for id in ended[: max(0, len(self._jobs) - MOST_JOBS)]:
             del self._jobs[id]

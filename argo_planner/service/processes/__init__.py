@@ -1,1 +1,1 @@
-"""Work in processes of its own, which end with the service."""
+"""Jobs in separate processes, which end with the service."""

@@ -217,7 +217,7 @@ class PlanRoom:
 
     def publish_job(self, job: Job) -> None:
         """Send the state of a job to all members."""
-        text = JobTold.model_construct(job=job.told()).model_dump_json()
+        text = JobTold.model_construct(job=job.for_members()).model_dump_json()
         for _, mailbox in self._members.values():
             mailbox.post_newest(job.id, text)
 

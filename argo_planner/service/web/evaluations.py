@@ -5,7 +5,7 @@ from typing import Annotated
 from fastapi import Path, Response
 
 from argo_planner.service.evaluations.replay import ReplayedRun
-from argo_planner.service.jobs.evaluation import EvaluationAsked, EvaluationOrder
+from argo_planner.service.jobs.evaluation import EvaluationAsked, EvaluationSpec
 from argo_planner.service.jobs.job import EvaluationJob
 from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.jobs import JobId
@@ -47,15 +47,15 @@ async def evaluate_mission(
     way."""
     document = await sound_plan(service, id, made_on)
     plan = document.plan
-    order = EvaluationOrder(
+    spec = EvaluationSpec(
         name=document.name,
         mission=plan.mission,
         site=service.site.reference,
         obstacles=service.obstacles.present.obstacles,
         asked=asked,
     )
-    order.plan(service.site)  # what can't be run is refused at once
-    job = await service.evaluations.start(id, plan.revision, order, visitor.author)
+    spec.make_plan(service.site)  # what can't be run is refused at once
+    job = await service.evaluations.start(id, plan.revision, spec, visitor.author)
     return said(job, 202, location=f"/api/jobs/{job.id}")
 
 
@@ -68,13 +68,13 @@ async def evaluate_mission(
 async def go_on_with_evaluation(service: Service, _: Planner, id: JobId) -> Response:
     """Goes on with an evaluation that was cancelled or interrupted: what has been run is not run
     again."""
-    return said(await service.evaluations.go_on(id), 202)
+    return said(await service.evaluations.resume(id), 202)
 
 
 @router.delete("/evaluations/{id}", operation_id="forget_evaluation", status_code=204)
 async def forget_evaluation(service: Service, _: Planner, id: JobId) -> Response:
     """Deletes an evaluation that is over, with all its rows; 409 while it is under way."""
-    await service.evaluations.forget(id)
+    await service.evaluations.delete(id)
     return Response(status_code=204)
 
 

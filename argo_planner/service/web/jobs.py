@@ -106,7 +106,7 @@ async def accept_order(
 ) -> Response:
     """Puts the mission into the order that was found, as a command that can be undone; 412 where
     the mission has changed since the search began."""
-    job, mission = service.orders.ordered(id)
+    job, mission = service.orders.find_result(id)
     room = await service.rooms.open(job.mission)
     command = ReplacePlan.model_construct(
         id=accepted.id, mission=mission, about="a suggested order"
@@ -121,6 +121,6 @@ async def accept_order(
 @router.get("/jobs/{id}/preview", operation_id="preview_job", response_model=PreviewedMission)
 async def preview_job(service: Service, _: Viewer, id: JobId) -> Response:
     """The ways of the mission in the order that a search has found; 409 until there is one."""
-    mission = service.orders.ordered(id)[1]
+    mission = service.orders.find_result(id)[1]
     obstacles = service.obstacles.present.obstacles
     return said(await service.on_site(preview_mission, service.site, mission, obstacles))

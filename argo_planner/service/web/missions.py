@@ -196,7 +196,7 @@ async def duplicate_mission(
 async def delete_mission(service: Service, _: Planner, id: PlanId) -> Response:
     """Moves a mission to the bin; an evaluation of it that is under way ends."""
     await service.rooms.delete(id)
-    await service.evaluations.end_of(id)
+    await service.evaluations.cancel_for_mission(id)
     return Response(status_code=204)
 
 
@@ -217,7 +217,7 @@ async def restore_mission(service: Service, _: Planner, id: PlanId) -> Response:
 async def destroy_mission(service: Service, _: Planner, id: PlanId) -> Response:
     """Deletes a mission in the bin for good, with its evaluations."""
     await service.rooms.destroy(id)
-    await service.evaluations.forget_all_of(id)
+    await service.evaluations.delete_for_mission(id)
     delete_import_notes(service.folder, id)
     return Response(status_code=204)
 

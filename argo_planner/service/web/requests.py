@@ -18,7 +18,7 @@ from argo_compiler.base.model import Model
 from argo_env.planning.opening import OpenedSite
 from argo_planner.service.evaluations.evaluations import Evaluations
 from argo_planner.service.jobs.jobs import Jobs
-from argo_planner.service.jobs.orders import Orders
+from argo_planner.service.jobs.order_searches import OrderSearches
 from argo_planner.service.rooms.rooms import PlanRooms
 from argo_planner.service.runs.host import RunHost
 from argo_planner.service.storage.folder import PLAN_ID
@@ -43,7 +43,7 @@ class PlanningService:
     folder: FilePath
     rooms: PlanRooms
     jobs: Jobs
-    orders: Orders
+    orders: OrderSearches
     evaluations: Evaluations
     runs: RunHost
     obstacles: KeptObstacles

@@ -18,7 +18,7 @@ from argo_planner.service.evaluations.evaluations import Evaluations
 from argo_planner.service.jobs.analysis import Analyst
 from argo_planner.service.jobs.job import Job
 from argo_planner.service.jobs.jobs import Jobs
-from argo_planner.service.jobs.orders import Orders
+from argo_planner.service.jobs.order_searches import OrderSearches
 from argo_planner.service.rooms.rooms import PlanRooms
 from argo_planner.service.runs.host import AfterRestart, RunHost
 from argo_planner.service.storage.folder import PlanFolder
@@ -69,7 +69,7 @@ def opened_service(
 
             new_id = partial(secrets.token_hex, 6)
             jobs = Jobs(tell)
-            orders = Orders(site.reference, jobs, new_id, _now)
+            orders = OrderSearches(site.reference, jobs, new_id, _now)
             evaluations = Evaluations(plans.path / "evaluations", jobs, new_id, _now)
             runs = RunHost(plans.path / "runs", after_restart, _now, foxglove)
             obstacles = KeptObstacles(plans.path)

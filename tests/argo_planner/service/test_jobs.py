@@ -1,4 +1,4 @@
-"""The best order as a job: watched, accepted as one command, cancelled."""
+"""Searches for the best order as jobs: watched, accepted as one command, cancelled."""
 
 import json
 import time
@@ -19,40 +19,40 @@ SCRIPT = (
 )
 
 
-def imported(service: Served) -> str:
+def import_script(service: Served) -> str:
     return service.imported(SCRIPT, start_area=1)
 
 
-def begin(service: Served, id: str, time_limit: float = 5) -> str:
+def start_search(service: Served, id: str, time_limit: float = 5) -> str:
     answer = service.client.post(f"/api/missions/{id}/orders", json={"time_limit": time_limit})
     return begun(answer, 202, "/api/jobs")["id"]
 
 
-def until(service: Served, job: str, holds: Callable[[dict], bool]) -> dict:
+def wait_until(service: Served, job: str, condition: Callable[[dict], bool]) -> dict:
     while True:
         read = service.client.get(f"/api/jobs/{job}").json()
-        if holds(read):
+        if condition(read):
             return read
         assert read["state"] == "running", read
         time.sleep(0.05)
 
 
-def over(service: Served, job: str) -> dict:
-    return until(service, job, lambda read: read["state"] != "running")
+def wait_for_end(service: Served, job: str) -> dict:
+    return wait_until(service, job, lambda read: read["state"] != "running")
 
 
 def test_an_order_is_found_watched_accepted_and_undone(service: Served, site: OpenedSite) -> None:
-    id = imported(service)
+    id = import_script(service)
     before = service.mission(id)
     page = service.follow(id)
-    job = begin(service, id)
+    job = start_search(service, id)
     states = []
     while "done" not in states:
         message = json.loads(page.recv(timeout=60))
         if message["kind"] == "job":
             states.append(message["job"]["state"])
             assert message["job"]["id"] == job
-    done = over(service, job)
+    done = wait_for_end(service, job)
     found = done["found"]
     same = suggest_order(
         ImportedMission(Mission.model_validate(before), "m", (), ()), site, time_limit=5
@@ -73,23 +73,23 @@ def test_an_order_is_found_watched_accepted_and_undone(service: Served, site: Op
 
 
 def test_an_order_of_an_earlier_revision_is_not_accepted(service: Served) -> None:
-    id = imported(service)
-    job = begin(service, id)
-    over(service, job)
+    id = import_script(service)
+    job = start_search(service, id)
+    wait_for_end(service, job)
     early = service.post(f"/api/jobs/{job}/accept", 5, id="o")
     assert "made on revision 5" in problem(early, 412, "stale-revision")["detail"]
     edit = {"kind": "set_header", "designation": "other"}
     assert service.command(id, 1, edit).status_code == 200
     for revision in (1, 2, "*"):
         stale = service.post(f"/api/jobs/{job}/accept", revision, id="o")
-        told = problem(stale, 412, "stale-revision")
-        assert told["newest"] == 2
-        assert [made["number"] for made in told["since"]] == [2]
+        error = problem(stale, 412, "stale-revision")
+        assert error["newest"] == 2
+        assert [made["number"] for made in error["since"]] == [2]
 
 
 def test_a_search_is_cancelled(service: Served) -> None:
-    id = imported(service)
-    jobs = [begin(service, id, 600), begin(service, id, 600)]
+    id = import_script(service)
+    jobs = [start_search(service, id, 600), start_search(service, id, 600)]
     problem(service.client.post(f"/api/missions/{id}/orders", json={}), 409, "conflict")
     for job in jobs:
         cancelled = service.client.delete(f"/api/jobs/{job}")
@@ -97,14 +97,14 @@ def test_a_search_is_cancelled(service: Served) -> None:
             assert cancelled.json()["state"] == "cancelled"
         problem(service.client.delete(f"/api/jobs/{job}"), 409, "conflict")
         assert service.client.get(f"/api/jobs/{job}").json()["state"] in ("cancelled", "done")
-    assert over(service, begin(service, id))["state"] == "done"
+    assert wait_for_end(service, start_search(service, id))["state"] == "done"
 
 
-def test_what_can_not_be_ordered_says_why(service: Served) -> None:
+def test_a_mission_that_can_not_be_ordered_gets_a_reason(service: Served) -> None:
     empty = service.create()
     problem(service.client.post(f"/api/missions/{empty}/orders", json={}), 422, "invalid")
-    id = imported(service)
-    asked = {"requirements": {"before": [["MEASURE 14", "nobody"]]}}
-    refused = service.client.post(f"/api/missions/{id}/orders", json=asked)
+    id = import_script(service)
+    requirements = {"requirements": {"before": [["MEASURE 14", "nobody"]]}}
+    refused = service.client.post(f"/api/missions/{id}/orders", json=requirements)
     assert "nobody" in problem(refused, 422, "invalid")["detail"]
     problem(service.client.get("/api/jobs/000000000000"), 404, "not-found")

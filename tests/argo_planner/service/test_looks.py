@@ -4,7 +4,7 @@ import pytest
 
 from tests.argo_planner.service.served import Served
 from tests.argo_planner.service.test_http import problem
-from tests.argo_planner.service.test_jobs import begin, imported, over
+from tests.argo_planner.service.test_jobs import import_script, start_search, wait_for_end
 from tests.argo_planner.service.test_runs import start, wait
 
 NEAR = (
@@ -14,9 +14,9 @@ NEAR = (
 
 
 def test_a_suggested_order_is_looked_at(service: Served) -> None:
-    id = imported(service)
-    job = begin(service, id)
-    found = over(service, job)["found"]
+    id = import_script(service)
+    job = start_search(service, id)
+    found = wait_for_end(service, job)["found"]
     preview = service.client.get(f"/api/jobs/{job}/preview").json()
     after = [task["name"] for task in found["mission"]["tasks"] if task["action"] != "START"]
     driven = [way["target"] for way in preview["ways"] if way["kind"] == "default"]

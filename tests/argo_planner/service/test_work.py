@@ -1,4 +1,4 @@
-"""Work in processes of their own: begun beside all else, ended at any moment."""
+"""Jobs in separate processes: started without blocking, and ended at any time."""
 
 import asyncio
 import errno
@@ -14,34 +14,34 @@ from argo_env.planning.opening import OpenedSite
 from argo_env.worker_processes import NEEDED_TO_DRIVE
 from argo_planner.service.jobs.analysis import AnalysisFound, Analyst
 from argo_planner.service.processes.context import CONTEXT, LOADED
-from argo_planner.service.processes.work import JobProcess, Tell
+from argo_planner.service.processes.job_process import JobProcess, ReportProgress
 
 
-def double(number: int, tell: Tell) -> int:
-    tell("half of it")
+def double(number: int, report: ReportProgress) -> int:
+    report("half of it")
     return 2 * number
 
 
-def never(_: Tell) -> None:
+def never(_: ReportProgress) -> None:
     threading.Event().wait()
 
 
 @pytest.fixture
 def slow_start(monkeypatch: pytest.MonkeyPatch) -> threading.Event:
-    """An event, before which no process begins."""
-    begun, start = threading.Event(), CONTEXT.Process.start
+    """Event that must be set before any process starts."""
+    may_start, start = threading.Event(), CONTEXT.Process.start
 
     def wait_and_start(process: object) -> None:
-        assert begun.wait(30)
+        assert may_start.wait(30)
         start(process)  # type: ignore[arg-type]
 
     monkeypatch.setattr(CONTEXT.Process, "start", wait_and_start)
-    return begun
+    return may_start
 
 
 @pytest.fixture
 def no_start(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No process begins."""
+    """No process can start."""
 
     def refuse(_: object) -> None:
         raise ChildProcessError(errno.ECHILD, "too little memory")
@@ -55,10 +55,10 @@ async def ticks(times: int) -> int:
     return times
 
 
-def test_the_result_and_how_far_it_is() -> None:
-    heard: list[str] = []
-    assert asyncio.run(JobProcess[int](double, 21).result(heard.append)) == 42
-    assert heard == ["half of it"]
+def test_work_returns_its_result_and_reports_progress() -> None:
+    progress: list[str] = []
+    assert asyncio.run(JobProcess[int](double, 21).result(progress.append)) == 42
+    assert progress == ["half of it"]
 
 
 async def work(_: OpenedSite) -> object:
@@ -74,7 +74,7 @@ async def analysis(site: OpenedSite) -> AnalysisFound:
 
 
 @pytest.mark.parametrize("begin", [work, analysis])
-def test_nobody_waits_while_a_process_begins(
+def test_nothing_else_waits_while_a_process_starts(
     begin: Callable[[OpenedSite], Coroutine[None, None, object]],
     site: OpenedSite,
     slow_start: threading.Event,
@@ -89,7 +89,7 @@ def test_nobody_waits_while_a_process_begins(
     asyncio.run(beside())
 
 
-def test_work_is_ended_while_it_begins_and_while_it_goes_on(slow_start: threading.Event) -> None:
+def test_work_is_ended_while_it_starts_and_while_it_runs(slow_start: threading.Event) -> None:
     async def end(at_once: bool) -> None:
         endless = JobProcess[None](never)
         task = asyncio.ensure_future(endless.result(lambda _: None))
@@ -109,23 +109,22 @@ def test_work_is_ended_while_it_begins_and_while_it_goes_on(slow_start: threadin
         asyncio.run(end(at_once))
 
 
-def test_work_that_nobody_awaits_is_ended_before_it_has_begun() -> None:
+def test_work_that_nobody_awaits_is_ended_before_it_has_started() -> None:
     endless = JobProcess[None](never)
     asyncio.run(endless.end())
     assert endless._process.pid is None
 
 
 @pytest.mark.usefixtures("no_start")
-def test_a_process_that_can_not_begin_is_said_to(site: OpenedSite) -> None:
-    with pytest.raises(Unavailable, match="can't begin: too little memory; try again"):
+def test_a_process_that_can_not_start_is_reported(site: OpenedSite) -> None:
+    with pytest.raises(Unavailable, match="can't start: too little memory; try again"):
         asyncio.run(work(site))
     assert (
-        asyncio.run(analysis(site)).problem
-        == "the process that analyses it can't begin: too little memory"
+        asyncio.run(analysis(site)).problem == "the analysis process can't start: too little memory"
     )
 
 
-def test_missions_are_analysed_again_whose_process_is_killed(site: OpenedSite) -> None:
+def test_missions_are_analysed_again_after_their_process_is_killed(site: OpenedSite) -> None:
     async def killed() -> None:
         analyst = Analyst(site)
         try:
@@ -140,7 +139,7 @@ def test_missions_are_analysed_again_whose_process_is_killed(site: OpenedSite) -
     asyncio.run(killed())
 
 
-def test_missions_that_are_sent_while_the_process_dies_are_analysed_again(site: OpenedSite) -> None:
+def test_missions_sent_while_the_process_dies_are_analysed_again(site: OpenedSite) -> None:
     async def killed() -> None:
         analyst = Analyst(site)
         try:
@@ -158,6 +157,6 @@ def test_missions_that_are_sent_while_the_process_dies_are_analysed_again(site: 
 
 
 @pytest.mark.parametrize("module", [*LOADED, *NEEDED_TO_DRIVE])
-def test_what_processes_have_loaded_is_there(module: str) -> None:
-    """A name that is wrong would only cost time."""
+def test_the_modules_that_processes_load_exist(module: str) -> None:
+    """A wrong name would raise no error: processes would only start more slowly."""
     assert find_spec(module)

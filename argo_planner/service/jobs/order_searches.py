@@ -1,4 +1,4 @@
-"""The searches for orders of a service."""
+"""Searches of a service for the best orders of missions."""
 
 from collections.abc import Callable
 from datetime import datetime
@@ -8,19 +8,20 @@ from argo_compiler.il import Mission
 from argo_compiler.reorder.requirements import Requirements
 from argo_planner.service.jobs.job import OrderJob
 from argo_planner.service.jobs.jobs import Jobs
-from argo_planner.service.jobs.order import search_order
-from argo_planner.service.processes.work import JobProcess
+from argo_planner.service.jobs.order_search import search_order
+from argo_planner.service.processes.job_process import JobProcess
 
 MOST_SEARCHES = 2
+"""searches that run at the same time"""
 
 
-class Orders:
-    """Searches for the best order of missions on a site."""
+class OrderSearches:
+    """Searches for the best orders of missions on one site, as jobs."""
 
     def __init__(
         self, site: str, jobs: Jobs, new_id: Callable[[], str], clock: Callable[[], datetime]
     ) -> None:
-        """`site` is what opens it."""
+        """Create a collection of searches on the site that the reference `site` opens."""
         self._site = site
         self._jobs = jobs
         self._new_id = new_id
@@ -35,22 +36,25 @@ class Orders:
         time_limit: float,
         author: str,
     ) -> OrderJob:
-        """Begins a search of at most the time (s). Raises Conflict if too many are under way."""
+        """Start a search of at most `time_limit` s; raises Conflict if too many are running."""
         if len(self._jobs.running(OrderJob)) >= MOST_SEARCHES:
             raise Conflict(
-                f"{MOST_SEARCHES} searches are under way: wait for one of them, or cancel it"
+                f"{MOST_SEARCHES} searches are running: wait for one of them, or cancel it"
             )
         job = OrderJob(
             id=self._new_id(), mission=plan, revision=revision, author=author, begun=self._clock()
         )
-        self._jobs.begin(
+        self._jobs.start(
             job, JobProcess(search_order, self._site, mission, requirements, time_limit)
         )
         return job
 
-    def ordered(self, id: str) -> tuple[OrderJob, Mission]:
-        """Return a search, and the mission in the order that it has found. Raises NotFound if there
-        is no such job or it is no search, Conflict if it has found none."""
+    def find_result(self, id: str) -> tuple[OrderJob, Mission]:
+        """Return a search and the mission in the order that it has found.
+
+        Raises NotFound if there is no such job or it is no search, Conflict if it has found no
+        order.
+        """
         job = self._jobs.job(id)
         if not isinstance(job, OrderJob):
             raise NotFound(f"job {id} is no search for an order")

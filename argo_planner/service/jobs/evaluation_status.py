@@ -1,4 +1,4 @@
-"""How far the evaluation of a mission is, and what it says by then: for those who watch."""
+"""Progress and interim results of a mission's evaluation, for clients."""
 
 from collections import Counter
 from statistics import median
@@ -11,12 +11,12 @@ from argo_env.evaluation.row import RunOutcome, RunRow
 from argo_env.evaluation.runner import EvaluationProgress
 
 MOST_FAILING = 100
-"""runs that are told one by one; all are among the rows"""
+"""failed runs that are listed one by one; the rows have all of them"""
 _MOST_POINTS = 200
 
 
 class TimesTold(Model):
-    """How long the runs took that were a success (s)."""
+    """Durations of the successful runs, in s."""
 
     least: float
     median: float
@@ -24,18 +24,18 @@ class TimesTold(Model):
 
 
 class RateTold(Model):
-    """A rate of success, 0 to 1, with an interval of 95 %."""
+    """Success rate, 0 to 1, with a 95 % interval."""
 
     runs: int
-    """that count: those that could be carried out"""
+    """number of counted runs: those that could be executed"""
     value: float | None
-    """None: there are none"""
+    """share of successful runs; None: no run counts"""
     low: float
     high: float
     method: IntervalMethod
 
     @staticmethod
-    def of(rate: PlanRate) -> "RateTold":
+    def from_rate(rate: PlanRate) -> "RateTold":
         return RateTold(
             runs=rate.runs,
             value=rate.value if rate.runs else None,
@@ -46,7 +46,7 @@ class RateTold(Model):
 
 
 class FaultsTold(Model):
-    """The runs in which the same went wrong."""
+    """Runs with the same faults."""
 
     name: str
     rate: RateTold
@@ -54,7 +54,7 @@ class FaultsTold(Model):
 
 
 class FailedRun(Model):
-    """A run that was no success; it can be replayed by its key."""
+    """Failed run, which can be replayed by its key."""
 
     key: str
     seed: int
@@ -62,52 +62,53 @@ class FailedRun(Model):
     outcome: RunOutcome
     reason: str
     task: str | None
-    """at which it failed first, or which was the last one"""
+    """first task that failed, or the last task if none did"""
     duration: float | None
-    """s"""
+    """duration of the run in s"""
 
 
 class RequirementTold(Model):
-    """What is shown of something that was required."""
+    """Verdict on a requirement."""
 
     requirement: str
     verdict: Decision
     low: float
     high: float
-    """of the share, whenever one stops"""
+    """bounds of the share, 0 to 1, valid at any stopping time"""
     worlds: int
+    """number of worlds that count"""
 
 
 class EvaluationStanding(Model):
-    """How far an evaluation is."""
+    """Progress and results of an evaluation."""
 
     done: int
-    """runs that have ended"""
+    """number of runs that have ended"""
     most: int
-    """runs that there are at most; once all that it takes have been made, those"""
+    """largest possible number of runs; at the end of the evaluation, the number of its runs"""
     planned: int
-    """runs that were asked for: it may stop before, as soon as a requirement is decided"""
+    """number of requested runs; the evaluation may stop earlier, when a requirement is decided"""
     remaining: float | None
-    """s that it takes at most, if it goes on as fast; None: not known yet"""
+    """longest remaining time in s at the present speed; None: not known yet, or not running"""
     rate: RateTold
-    """of all runs; while they come, by an interval that claims nothing. Of an evaluation that was
-    cut short that of the first worlds of which no run is missing"""
+    """success rate of all runs; during the evaluation its interval is only approximate. After an
+    early end it covers only the worlds before the first one with a missing run"""
     curve: tuple[RateTold, ...]
-    """the rate as it was after some of the runs, in their order"""
+    """success rates after some of the runs, in the order of the runs"""
     outcomes: dict[RunOutcome, int]
     by_faults: tuple[FaultsTold, ...]
     times: TimesTold | None
-    """None: no run was a success yet"""
+    """durations of the successful runs; None: no run was successful yet"""
     failing: tuple[FailedRun, ...]
-    """the first of them"""
+    """the first failed runs"""
     more_failing: int
-    """how many more there are"""
+    """number of further failed runs"""
     requirements: tuple[RequirementTold, ...] = ()
-    """once all has been run"""
+    """verdicts on the requirements; empty while the evaluation is running"""
 
 
 class RunCount:
-    """Counts the runs of an evaluation of one plan as they come."""
+    """Counters of an evaluation's runs, updated with each run that ends."""
 
     def __init__(self, evaluation: EvaluationPlan) -> None:
         self._evaluation = evaluation
@@ -117,10 +118,10 @@ class RunCount:
         self._failing: list[FailedRun] = []
         self._failed = 0
         self._curve: list[RateTold] = []
-        self._every = 1
+        self._every = 1  # runs between two points of the curve
 
     def add(self, row: RunRow) -> None:
-        """One more run has ended."""
+        """Count one more run."""
         self._outcomes[row.outcome] += 1
         faults = self._evaluation.faults_for(row.faults, row.seed)
         self._by_faults.setdefault(faults, Counter())[row.outcome] += 1
@@ -141,24 +142,24 @@ class RunCount:
                     )
                 )
         if self._outcomes.total() % self._every == 0:
-            self._curve.append(RateTold.of(quick_rate(self._outcomes)))
+            self._curve.append(RateTold.from_rate(quick_rate(self._outcomes)))
             if len(self._curve) > _MOST_POINTS:
                 self._curve, self._every = self._curve[1::2], 2 * self._every
 
-    def under_way(self, progress: EvaluationProgress) -> EvaluationStanding:
-        """How it stands while more runs come."""
-        return self._told(progress.max_runs, progress.remaining, None)
+    def interim_standing(self, progress: EvaluationProgress) -> EvaluationStanding:
+        """Return the standing while the evaluation is running."""
+        return self._standing(progress.max_runs, progress.remaining, None)
 
-    def ended(self, results: EvaluationResults) -> EvaluationStanding:
-        """How it stands at its end, with these results, or where it was cut short."""
+    def final_standing(self, results: EvaluationResults) -> EvaluationStanding:
+        """Return the standing after the end of the evaluation, regular or early."""
         most = self._planned if results.cut_short else self._outcomes.total()
-        return self._told(most, None, results)
+        return self._standing(most, None, results)
 
     @property
     def _planned(self) -> int:
         return len(self._evaluation.seeds) * len(self._evaluation.cases)
 
-    def _told(
+    def _standing(
         self, most: int, remaining: float | None, results: EvaluationResults | None
     ) -> EvaluationStanding:
         rate = quick_rate(self._outcomes)
@@ -168,9 +169,9 @@ class RunCount:
             (plan,) = results.plan.plans
             rate = results.rate(plan)
             for group in results.by_faults(plan):
-                found, lost = group.rate, group.outcomes.total() - group.rate.runs
+                interval, lost = group.rate, group.outcomes.total() - group.rate.runs
                 groups[group.name] = PlanRate(
-                    found.value, found.low, found.high, found.runs, lost, group.method
+                    interval.value, interval.low, interval.high, interval.runs, lost, group.method
                 )
             requirements = tuple(
                 RequirementTold.model_validate(verdict, from_attributes=True)
@@ -181,11 +182,13 @@ class RunCount:
             most=most,
             planned=self._planned,
             remaining=remaining,
-            rate=RateTold.of(rate),
+            rate=RateTold.from_rate(rate),
             curve=tuple(self._curve),
             outcomes=dict(self._outcomes),
             by_faults=tuple(
-                FaultsTold(name=name, rate=RateTold.of(group), outcomes=self._by_faults[name])
+                FaultsTold(
+                    name=name, rate=RateTold.from_rate(group), outcomes=self._by_faults[name]
+                )
                 for name, group in groups.items()
             ),
             times=self._times(),

@@ -1,0 +1,102 @@
+"""Job in a separate process, which reports its progress and can be ended at any time.
+
+The process ends with the service, even if the service is killed.
+"""
+
+import asyncio
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from multiprocessing.connection import Connection
+from threading import Lock
+from typing import Any, Generic, TypeVar
+
+from argo_compiler.base.errors import ArgoError, Unavailable
+from argo_env.worker_processes import end_with_parent
+from argo_planner.service.processes.context import CONTEXT
+
+Result = TypeVar("Result")
+ReportProgress = Callable[[Any], None]
+"""function that the work calls with its progress"""
+
+
+class JobProcess(Generic[Result]):
+    """Function call in a separate process, which is started when the result is awaited."""
+
+    def __init__(self, work: Callable[..., Result], *arguments: Any, parent: bool = False) -> None:
+        """Prepare the call `work(*arguments, report)`, in which everything can be pickled.
+
+        Args:
+            work: The function; its last argument is a `ReportProgress`.
+            arguments: Its other arguments.
+            parent: True if the work starts processes of its own. These then have to end by
+                themselves after the work has ended.
+        """
+        self._receiver, self._sender = CONTEXT.Pipe(duplex=False)
+        self._process = CONTEXT.Process(target=_run_work, args=(self._sender, work, arguments))
+        self._process.daemon = not parent
+        self._turn = Lock()
+        """held while the process is started or ended"""
+        self._ended = False
+
+    async def result(self, on_progress: ReportProgress) -> Result:
+        """Start the process and return the work's result; calls `on_progress` with its progress.
+
+        Raises the ArgoError that the work has raised, or Unavailable if its process can't start or
+        has died.
+        """
+        loop = asyncio.get_running_loop()
+        thread = ThreadPoolExecutor(1)
+        try:
+            await loop.run_in_executor(thread, self._start)
+            while True:
+                try:
+                    kind, content = await loop.run_in_executor(thread, self._receiver.recv)
+                except (EOFError, OSError):
+                    raise Unavailable("the process of this job has died: try again") from None
+                match kind:
+                    case "told":
+                        on_progress(content)
+                    case "raised":
+                        raise content
+                    case _:
+                        result: Result = content
+                        return result
+        finally:
+            thread.shutdown(wait=False)
+
+    def _start(self) -> None:
+        # The first process starts after its modules are loaded, which takes seconds.
+        with self._turn:
+            try:
+                if not self._ended:
+                    self._process.start()
+            except OSError as error:
+                why = f"the process of this job can't start: {error.strerror}"
+                raise Unavailable(f"{why}; try again") from error
+            finally:
+                self._sender.close()
+
+    async def end(self) -> None:
+        """End the process at once, or prevent its start."""
+        await asyncio.to_thread(self._end)
+
+    def _end(self) -> None:
+        with self._turn:
+            self._ended = True
+            if self._process.pid is not None:
+                self._process.kill()
+                self._process.join()
+
+
+def _run_work(pipe: Connection, work: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
+    end_with_parent()
+
+    def report(progress: Any) -> None:
+        pipe.send(("told", progress))
+
+    try:
+        result = work(*arguments, report)
+    except ArgoError as error:
+        pipe.send(("raised", error))
+    else:
+        pipe.send(("done", result))

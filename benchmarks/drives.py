@@ -145,7 +145,7 @@ def timed_motions(
 def drive_along(drive: TellingDrive, path: Path) -> list[TimedDrive]:
     """The motions of a path, each with the time that it took, to a step; RuntimeError if the drive
     fails. The last one takes until the robot is at rest."""
-    drive.begin(path, None)
+    drive.follow(path, None)
     found: list[TimedDrive] = []
     steps, begun, status = 0, 0, DriveStatus.MOVING
     while status is DriveStatus.MOVING:

@@ -57,7 +57,7 @@ def _lap(drive: TrackedDrive, path: Path) -> tuple[float, float]:
     """Drive a path; return the simulated seconds and those of the processor."""
     start = path.start
     drive.place(BodyPose(start.x, start.y, start.z, start.yaw))
-    drive.begin(path, None)
+    drive.follow(path, None)
     begun, steps = time.process_time(), 0
     while drive.step() is DriveStatus.MOVING:
         steps += 1

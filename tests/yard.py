@@ -157,7 +157,7 @@ class GlidingDrive:
     def place(self, pose):
         self.pose, self._left = pose, []
 
-    def begin(self, path, velocity):
+    def follow(self, path, velocity):
         self._left, self._elapsed, self._velocity = list(path.motions), 0.0, velocity
         self.velocities.append(velocity)
 

@@ -1,1 +1,1 @@
-"""What moves the robot: the drives, their timetable, battery and powertrain."""
+"""Drives, which move the robot, with their timetable, battery and powertrain."""

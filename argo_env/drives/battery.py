@@ -1,6 +1,6 @@
-"""The battery: what the robot draws, what is left, and the voltage that tells.
+"""Battery of the robot: the power drawn, the charge left, and the charge estimated from voltage.
 
-How many watts the robot draws on the level, on stairs and for its sensors is in the robot's own
+The power that the robot draws on the level, on stairs and for its sensors is in the robot's own
 file (`power` in `urdf/robot/tracker.yaml`).
 """
 
@@ -23,89 +23,95 @@ of the robot that Argo's is modelled after."""
 _CHARGES, _VOLTAGES = ([point[k] for point in _CURVE] for k in (0, 1))
 RESISTANCE = 0.05  # ohm, assumed
 ESTIMATE_ERROR = 0.005
-"""by how much the estimated charge is off at most, as volts are measured to 10 mV"""
-_MOVING = 0.02  # m/s or rad/s from where on the robot moves, and does not only settle
-_ON_STAIRS = math.radians(8.0)  # of pitch
+"""greatest error of the estimated charge, as volts are measured to 10 mV"""
+_MOVING = 0.02  # m/s or rad/s, above which the robot moves and does not only settle
+_ON_STAIRS = math.radians(8.0)  # pitch, above which the robot is on stairs
 
 
 class Battery:
-    """The robot's battery. Holds what is left; faults change its capacity and charge."""
+    """Battery of the robot.
+
+    It holds its capacity, the remaining energy and the load; faults change capacity and charge.
+    """
 
     def __init__(self, robot: RobotSpec) -> None:
         self.capacity = robot.battery
-        """Wh"""
-        self._left = self.capacity
+        """energy of the full battery in Wh"""
+        self._remaining = self.capacity
         self._load = 0.0
 
     @property
     def charge(self) -> float:
-        """The share of its capacity that is left, 0 to 1."""
-        return self._left / self.capacity
+        """Remaining share of the capacity, 0 to 1."""
+        return self._remaining / self.capacity
 
     @charge.setter
     def charge(self, share: float) -> None:
-        self._left = share * self.capacity
+        self._remaining = share * self.capacity
 
     @property
-    def empty(self) -> bool:
-        return self._left <= 0.0
+    def is_empty(self) -> bool:
+        return self._remaining <= 0.0
 
     def wear(self, share: float) -> None:
-        """Reduces the capacity to that share of what it is; the charge stays the same share."""
+        """Reduce the capacity to this share of it; the charge stays the same share."""
         charge = self.charge
         self.capacity *= share
         self.charge = charge
 
     def use(self, watts: float, seconds: float) -> None:
-        """Draws power from it, or with less than 0 W charges it."""
+        """Draw power for some seconds, or charge the battery if `watts` is less than 0."""
         self._load = watts
-        self._left = min(max(self._left - watts * seconds / 3600.0, 0.0), self.capacity)
+        self._remaining = min(max(self._remaining - watts * seconds / 3600.0, 0.0), self.capacity)
 
-    def steps_until(self, estimate: float, watts: float, seconds: float, most: int) -> int:
-        """After how many steps (s) with such a load (W) the charge that is estimated is that much,
-        0 to 1, for the first time; `most` if that is not before. None of them is made."""
-        other = copy(self)
-        for count in range(most):
-            if estimated_charge(other.voltage, other.current) >= estimate:
+    def steps_until(self, estimate: float, watts: float, seconds: float, limit: int) -> int:
+        """Return the number of steps after which the estimated charge first reaches `estimate`.
+
+        Each step takes `seconds` with a load of `watts`; `estimate` is 0 to 1. Returns `limit` if
+        the charge does not reach it in fewer steps. The battery itself does not change.
+        """
+        simulated = copy(self)
+        for count in range(limit):
+            if estimated_charge(simulated.voltage, simulated.current) >= estimate:
                 return count
-            other.use(watts, seconds)
-        return most
+            simulated.use(watts, seconds)
+        return limit
 
     @property
     def state(self) -> tuple[float, float]:
-        """Wh that are left, and the load (W)."""
-        return self._left, self._load
+        """Remaining energy (Wh) and load (W)."""
+        return self._remaining, self._load
 
     @state.setter
     def state(self, state: tuple[float, float]) -> None:
-        self._left, self._load = state
+        self._remaining, self._load = state
 
     @property
     def current(self) -> float:
-        """A, as measured; less than 0 while it is charged."""
+        """Measured current in A; less than 0 while the battery is charged."""
         return self._load / _open_circuit(self.charge)
 
     @property
     def voltage(self) -> float:
-        """V, as measured to 10 mV under the present load."""
+        """Voltage in V, as measured to 10 mV under the present load."""
         return round(_open_circuit(self.charge) - RESISTANCE * self.current, 2)
 
 
 def estimated_charge(voltage: float, current: float) -> float:
-    """The charge, 0 to 1, that the measured voltage (V) and current (A) speak for."""
+    """Return the charge, 0 to 1, that the measured voltage (V) and current (A) indicate."""
     rest = voltage + RESISTANCE * current
     k = min(max(bisect_left(_VOLTAGES, rest), 1), len(_CURVE) - 1)
     (s0, v0), (s1, v1) = _CURVE[k - 1], _CURVE[k]
     return min(max(s0 + (rest - v0) / (v1 - v0) * (s1 - s0), 0.0), 1.0)
 
 
-def load(
+def electric_load(
     power: PowerSpec, before: BodyPose, after: BodyPose, seconds: float, measuring: bool
 ) -> float:
-    """What the robot draws (W) on its way between two poses within some seconds."""
-    way = math.dist((before.x, before.y, before.z), (after.x, after.y, after.z))
+    """Return the power (W) that the robot draws to move between two poses in some seconds."""
+    distance = math.dist((before.x, before.y, before.z), (after.x, after.y, after.z))
     least = _MOVING * seconds
-    if way > least:
+    if distance > least:
         if abs(after.pitch) > _ON_STAIRS:
             return power.climbing if after.z > before.z else power.descending
         return power.driving
@@ -114,16 +120,18 @@ def load(
     return power.measuring if measuring else power.standing
 
 
-def loads_of_steps(
+def electric_loads(
     power: PowerSpec,
-    ways: NDArray[np.float64],
-    places: NDArray[np.float64],
+    distances: NDArray[np.float64],
+    poses: NDArray[np.float64],
     seconds: float,
     measuring: bool,
 ) -> NDArray[np.float64]:
-    """The same, to the last bit, for each of n steps: ways (m) have the shape (n,), places, as of
-    poses without roll, (n + 1, 5)."""
-    before, after = places[:-1], places[1:]
+    """Return the power (W) for each of n steps, equal to `electric_load` to the last bit.
+
+    `distances` (m) have the shape (n,); `poses`, which have no roll, the shape (n + 1, 5).
+    """
+    before, after = poses[:-1], poses[1:]
     least = _MOVING * seconds
     climbs = after[:, 2] > before[:, 2]
     steep = np.abs(after[:, 4]) > _ON_STAIRS
@@ -131,10 +139,11 @@ def loads_of_steps(
     turned = np.abs(np.fmod(after[:, 3] - before[:, 3], math.tau))
     turns = np.minimum(turned, math.tau - turned) > least
     stands = power.measuring if measuring else power.standing
-    return np.where(ways > least, moves, np.where(turns, power.turning, stands))
+    return np.where(distances > least, moves, np.where(turns, power.turning, stands))
 
 
 def _open_circuit(charge: float) -> float:
+    """Return the open-circuit voltage (V) at a charge, 0 to 1."""
     k = min(max(bisect_left(_CHARGES, charge), 1), len(_CURVE) - 1)
     (s0, v0), (s1, v1) = _CURVE[k - 1], _CURVE[k]
     return v0 + (charge - s0) / (s1 - s0) * (v1 - v0)

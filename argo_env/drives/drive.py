@@ -1,4 +1,4 @@
-"""The protocol of drives, which move the robot along a path, its flippers raised or flat."""
+"""Protocol of drives, which move the robot along a path, and the angles of its flippers."""
 
 import math
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from argo_env.robot.pose import BodyPose
 
 
 class DriveStatus(StrEnum):
-    """How a drive stands after a step."""
+    """Status of a drive after a step."""
 
     MOVING = "moving"
     ARRIVED = "arrived"
@@ -19,7 +19,7 @@ class DriveStatus(StrEnum):
 
 
 class Trouble(StrEnum):
-    """What can go wrong on the way."""
+    """Kind of fault of the drive while the robot follows a path."""
 
     SLIPPING = "slipping"
     STUCK = "stuck"
@@ -28,7 +28,7 @@ class Trouble(StrEnum):
 
 @dataclass(frozen=True)
 class Incident:
-    """Something that went wrong, and where."""
+    """Fault of the drive that occurred, with details and the robot's pose."""
 
     trouble: Trouble
     detail: str
@@ -36,7 +36,10 @@ class Incident:
 
 
 class Drive(Protocol):
-    """Moves the robot. A drive may compute poses, or forces that make the world move it."""
+    """Protocol of a drive, which moves the robot along paths.
+
+    A drive may compute poses, or forces that make the world move the robot.
+    """
 
     name: str
     time_step: float
@@ -44,41 +47,45 @@ class Drive(Protocol):
 
     @property
     def pose(self) -> BodyPose:
-        """Where the robot is now."""
+        """Present pose of the robot."""
         ...
 
     @property
     def failure(self) -> str | None:
-        """After FAILED: what happened, in words."""
+        """Description of what happened, after FAILED."""
         ...
 
     @property
     def incidents(self) -> Sequence[Incident]:
-        """What went wrong since the robot was placed, whether it went on or not."""
+        """Faults since the robot was placed, whether or not the robot could continue."""
         ...
 
     def place(self, pose: BodyPose) -> None:
-        """Puts the robot there, at rest."""
+        """Place the robot at the pose, at rest."""
         ...
 
-    def begin(self, path: Path, velocity: float | None) -> None:
-        """Sets off along `path`, which begins where the robot is; `velocity` (m/s) is that of the
-        plan on the flat, None the robot's own."""
+    def follow(self, path: Path, velocity: float | None) -> None:
+        """Start to follow `path`, which begins where the robot is.
+
+        `velocity` (m/s) is the planned speed on the flat; None means the robot's own speed.
+        """
         ...
 
     def step(self) -> DriveStatus:
-        """Goes on for one time step."""
+        """Continue for one time step."""
         ...
 
     def halt(self) -> None:
-        """Stops and forgets the path. The steps that follow say MOVING while the robot comes to
-        rest, then ARRIVED."""
+        """Stop, and discard the path.
+
+        The steps that follow return MOVING while the robot comes to rest, then ARRIVED.
+        """
         ...
 
 
 RAISED = math.radians(30.0)
-"""rad, of the flippers, tips up: on the flat"""
+"""angle of the flippers on the flat, in rad, tips up"""
 FLAT = 0.0
-"""rad, of the flippers: on a flight"""
-RATE = math.radians(110.0)
-"""rad/s, of the flippers (public model files of the taurob tracker)"""
+"""angle of the flippers on a flight, in rad"""
+FLIPPER_RATE = math.radians(110.0)
+"""speed of the flippers in rad/s (public model files of the taurob tracker)"""

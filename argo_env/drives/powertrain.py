@@ -1,4 +1,4 @@
-"""The drive with what can stop it: an emergency stop, a dysfunction."""
+"""Drive that an emergency stop or a fault of the drive can stop or slow down."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,51 +6,55 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env.drives.blocked_way import PATIENCE, first_still, has_moved
 from argo_env.drives.drive import Drive, DriveStatus, Incident
-from argo_env.drives.timed_drive import TimedDrive, from_here
+from argo_env.drives.standstill import PATIENCE, first_motionless_step, has_moved
+from argo_env.drives.timed_drive import TimedDrive, path_from_pose
 from argo_env.navigation.path import Path
 from argo_env.robot.pose import BodyPose, Place, Places, place_of
 
-_SLOWEST = 0.02  # share of the speed below which a robot may be taken for a stalled one
+_SLOWEST = 0.02  # share of the speed, below which the drive may be judged to be stalled
 
 
 @dataclass(frozen=True, eq=False)
 class StepsAhead:
-    """The next steps, none of which has been made."""
+    """Predicted next steps, none of which has been made."""
 
-    places: Places
-    """where the robot is after each of them"""
-    made: NDArray[np.int64]
-    """how many steps the drive has made by then, shape (n,)"""
+    poses: Places
+    """pose of the robot after each step, shape (n, 5)"""
+    drive_steps: NDArray[np.int64]
+    """number of steps that the drive itself has made after each step, shape (n,)"""
 
 
 _NO_STEPS = StepsAhead(np.empty((0, 5)), np.empty(0, dtype=np.int64))
 
 
 class Powertrain:
-    """A drive that may be held or slowed. Holds how it stands; faults change that."""
+    """Drive that an emergency stop can hold and a fault can slow down.
 
-    def __init__(self, drive: Drive, usual_share: float = 1.0) -> None:
-        """`usual_share`: of its speed, that the drive makes while nothing is wrong with it."""
+    It holds the drive, its path, and the state of the emergency stop and of the speed; faults
+    change these two.
+    """
+
+    def __init__(self, drive: Drive, usual_speed_share: float = 1.0) -> None:
+        """`usual_speed_share` is the share of its speed that the drive reaches without a fault."""
         self._drive = drive
         self.name = drive.name
         self.time_step = drive.time_step
-        self.pressed = False
-        """whether the emergency stop is pressed: brakes hold the robot where it is"""
-        self.held = 0
-        """steps that the emergency stop has held it"""
-        self.usual_share = usual_share
-        """of its speed that the drive makes while nothing is wrong with it"""
-        self.share = usual_share
-        """of its speed that the drive makes now"""
-        self.way: tuple[Path, float | None] | None = None
-        """the path that it was told to follow, from where it was, and the velocity (m/s) on it;
-        None: to stand"""
+        self.stop_pressed = False
+        """True if the emergency stop is pressed: the brakes hold the robot where it is"""
+        self.held_steps = 0
+        """number of steps in which the emergency stop has held the robot"""
+        self.usual_speed_share = usual_speed_share
+        """share of its speed that the drive reaches without a fault"""
+        self.speed_share = usual_speed_share
+        """share of its speed that the drive reaches now"""
+        self.path_and_velocity: tuple[Path, float | None] | None = None
+        """path to follow, from the robot's pose at its start, and velocity on it in m/s (None for
+        the robot's own speed); the pair is None while the robot is to stand still"""
         self._credit = 0.0
         self._failure: str | None = None
-        self._still = 0.0
-        self._before: BodyPose | None = None
+        self._still_time = 0.0
+        self._last_pose: BodyPose | None = None
 
     @property
     def pose(self) -> BodyPose:
@@ -65,97 +69,101 @@ class Powertrain:
         return self._drive.incidents
 
     def place(self, pose: BodyPose) -> None:
-        """Puts the robot there, at rest."""
-        self.way = None
+        """Place the robot at the pose, at rest."""
+        self.path_and_velocity = None
         self._drive.place(pose)
 
-    def begin(self, path: Path, velocity: float | None) -> None:
-        """Sets off along `path`, when it can."""
-        self.way = from_here(path, self._drive.pose), velocity
-        self._credit, self._still, self._failure = 0.0, 0.0, None
-        self._drive.begin(path, velocity)
+    def follow(self, path: Path, velocity: float | None) -> None:
+        """Start to follow `path` as soon as the robot can move."""
+        self.path_and_velocity = path_from_pose(path, self._drive.pose), velocity
+        self._credit, self._still_time, self._failure = 0.0, 0.0, None
+        self._drive.follow(path, velocity)
 
     def halt(self) -> None:
-        """Stops and forgets the path."""
-        self.way = None
+        """Stop, and discard the path."""
+        self.path_and_velocity = None
         self._drive.halt()
 
     def step(self) -> DriveStatus:
-        """Goes on for one time step; a robot that is slowed makes fewer of the drive's steps."""
-        if self.pressed:
-            self.held += 1
-            return DriveStatus.ARRIVED if self.way is None else DriveStatus.MOVING
-        if self.way is not None:
-            self._credit += self.share
+        """Continue for one time step; a slowed robot makes fewer of the drive's steps."""
+        if self.stop_pressed:
+            self.held_steps += 1
+            return DriveStatus.ARRIVED if self.path_and_velocity is None else DriveStatus.MOVING
+        if self.path_and_velocity is not None:
+            self._credit += self.speed_share
             if self._credit < 1.0 - 1e-9:
-                return self._stalled()
+                return self._check_standstill()
             self._credit -= 1.0
         status = self._drive.step()
         if status is DriveStatus.ARRIVED:
-            self.way = None
-        return self._stalled() if status is DriveStatus.MOVING else status
+            self.path_and_velocity = None
+        return self._check_standstill() if status is DriveStatus.MOVING else status
 
     @property
-    def glides(self) -> bool:
-        """Whether nothing can happen to the robot where it is, so that many steps can be made at
-        once."""
-        return isinstance(self._drive, TimedDrive) and self._drive.glides
+    def can_batch_steps(self) -> bool:
+        """True if nothing can happen to the robot at its pose, so that steps can be batched."""
+        return isinstance(self._drive, TimedDrive) and self._drive.can_batch_steps
 
-    def steps_ahead(self, most: int) -> StepsAhead:
-        """The next steps, as far as the robot is held or surely moves on, and nothing can happen to
-        it: at most so many."""
+    def steps_ahead(self, limit: int) -> StepsAhead:
+        """Predict the next steps, at most `limit`, while nothing can happen to the robot.
+
+        In all of them the emergency stop holds the robot, or the robot surely moves.
+        """
         drive = self._drive
-        if self.way is None or not isinstance(drive, TimedDrive):
+        if self.path_and_velocity is None or not isinstance(drive, TimedDrive):
             return _NO_STEPS
         here = np.array([_place(drive.pose)])
-        if self.pressed:
-            return StepsAhead(here.repeat(most, axis=0), np.zeros(most, dtype=np.int64))
-        if self.share < _SLOWEST or self._before is None:
+        if self.stop_pressed:
+            return StepsAhead(here.repeat(limit, axis=0), np.zeros(limit, dtype=np.int64))
+        if self.speed_share < _SLOWEST or self._last_pose is None:
             return _NO_STEPS
-        made = self._drives_steps(most, drive.steps_left)
-        places = drive.places_ahead(int(made[-1]) if len(made) else 0)
-        made = made[: np.searchsorted(made, first_still(_place(self._before), places))]
+        made = self._count_drive_steps(limit, drive.steps_left)
+        poses = drive.poses_ahead(int(made[-1]) if len(made) else 0)
+        made = made[: np.searchsorted(made, first_motionless_step(_place(self._last_pose), poses))]
         if not self._makes_every_step:
-            places = np.concatenate([here, places])[made]
-        return StepsAhead(places[: len(made)], made)
+            poses = np.concatenate([here, poses])[made]
+        return StepsAhead(poses[: len(made)], made)
 
-    def go_on(self, ahead: StepsAhead, done: int, count: int) -> None:
-        """Makes so many of the steps ahead, after those that were done."""
-        if self.pressed:
-            self.held += count
+    def advance(self, ahead: StepsAhead, passed: int, count: int) -> None:
+        """Make `count` of the predicted steps, after the first `passed` of them were made."""
+        if self.stop_pressed:
+            self.held_steps += count
             return
         drive = self._drive
         assert isinstance(drive, TimedDrive)
-        first = int(ahead.made[done - 1]) if done else 0
-        last = done + count - 1
-        made = int(ahead.made[last])
+        first = int(ahead.drive_steps[passed - 1]) if passed else 0
+        last = passed + count - 1
+        made = int(ahead.drive_steps[last])
         if self._makes_every_step:
-            self._still = 0.0
+            self._still_time = 0.0
         else:
-            before = first
-            for by_then in ahead.made[done : done + count].tolist():
-                self._credit += self.share
-                if by_then > before:
+            previous = first
+            for drive_steps in ahead.drive_steps[passed : passed + count].tolist():
+                self._credit += self.speed_share
+                if drive_steps > previous:
                     self._credit -= 1.0
-                    before, self._still = by_then, 0.0
+                    previous, self._still_time = drive_steps, 0.0
                 else:
-                    self._still += self.time_step
-        drive.go_to(place_of(ahead.places, last), made - first)
+                    self._still_time += self.time_step
+        drive.skip_to(place_of(ahead.poses, last), made - first)
         if made > first:
-            self._before = drive.pose
+            self._last_pose = drive.pose
 
     @property
     def _makes_every_step(self) -> bool:
-        """Whether the drive is not slowed, and makes as many steps as there are."""
-        return self.share == 1.0 and not self._credit
+        """True if the drive is not slowed, and makes a step of its own in each step."""
+        return self.speed_share == 1.0 and not self._credit
 
-    def _drives_steps(self, most: int, left: int) -> NDArray[np.int64]:
-        """How many steps the drive has made after each of the next ones, up to those left."""
+    def _count_drive_steps(self, limit: int, left: int) -> NDArray[np.int64]:
+        """Return the number of the drive's own steps after each of the next steps.
+
+        There are at most `limit` next steps, and at most `left` of the drive's own.
+        """
         if self._makes_every_step:
-            return np.arange(1, min(most, left) + 1)
+            return np.arange(1, min(limit, left) + 1)
         made, counts, credit = 0, [], self._credit
-        for _ in range(most):
-            credit += self.share
+        for _ in range(limit):
+            credit += self.speed_share
             if credit >= 1.0 - 1e-9:
                 credit -= 1.0
                 made += 1
@@ -164,15 +172,15 @@ class Powertrain:
             counts.append(made)
         return np.array(counts, dtype=np.int64)
 
-    def _stalled(self) -> DriveStatus:
-        """MOVING, or FAILED if the robot should have moved for long and has not."""
-        here, before = self._drive.pose, self._before
+    def _check_standstill(self) -> DriveStatus:
+        """Return FAILED if the robot should have moved for PATIENCE s and has not, else MOVING."""
+        here, before = self._drive.pose, self._last_pose
         moved = before is None or has_moved(_place(before), _place(here))
         if moved:
-            self._before, self._still = here, 0.0
-        elif self.way is not None:
-            self._still += self.time_step
-            if self._still >= PATIENCE:
+            self._last_pose, self._still_time = here, 0.0
+        elif self.path_and_velocity is not None:
+            self._still_time += self.time_step
+            if self._still_time >= PATIENCE:
                 self._failure = f"the robot has not moved for {PATIENCE:.0f} s"
                 return DriveStatus.FAILED
         return DriveStatus.MOVING

@@ -1,5 +1,7 @@
-"""Drives that go by a timetable and know no forces: what they share, and the route drive, which
-puts the robot at its place along the path by travel times only."""
+"""Drives that follow a timetable without forces: their base class and the route drive.
+
+The route drive computes the robot's pose along the path from travel times only.
+"""
 
 import math
 from abc import ABC, abstractmethod
@@ -9,17 +11,20 @@ from numpy.typing import NDArray
 
 from argo_compiler.base.model import Pose
 from argo_env.drives.drive import DriveStatus, Incident
-from argo_env.drives.timetable import Timetable, steps
+from argo_env.drives.timetable import Timetable, count_steps
 from argo_env.navigation.path import Motion, Path, wrap
 from argo_env.robot.pose import BodyPose, Place, Places
 from argo_env.robot.spec import RobotSpec
 
-_SAME_PLACE = 1e-3  # m
+_SAME_POSITION = 1e-3  # m
 
 
 class TimedDrive(ABC):
-    """Is where the timetable says, and nothing goes wrong. Holds the pose, the path and the time
-    on it; how the robot stands at a place of the path, the drives that build on it say."""
+    """Base of drives that follow a timetable exactly, without faults.
+
+    It holds the pose, the timetable of the path and the steps made on it. Subclasses compute the
+    robot's pose at a point of the path.
+    """
 
     def __init__(self, robot: RobotSpec, time_step: float) -> None:
         self.time_step = time_step
@@ -41,28 +46,28 @@ class TimedDrive(ABC):
         return ()
 
     def place(self, pose: BodyPose) -> None:
-        """Puts the robot there, at rest."""
+        """Place the robot at the pose, at rest."""
         self.halt()
         self._pose = pose
 
-    def begin(self, path: Path, velocity: float | None) -> None:
-        """Sets off along `path` at `velocity` (m/s) on the flat, or at the robot's own speeds."""
-        self._timetable = Timetable(from_here(path, self._pose), self._robot, velocity)
+    def follow(self, path: Path, velocity: float | None) -> None:
+        """Start to follow `path` at `velocity` (m/s) on the flat, or at the robot's own speeds."""
+        self._timetable = Timetable(path_from_pose(path, self._pose), self._robot, velocity)
         self._steps = 0
 
     def halt(self) -> None:
-        """Stops where it is and forgets the path."""
+        """Stop at the present pose, and discard the path."""
         self._timetable = None
 
     def step(self) -> DriveStatus:
-        """Moves along the path for one time step, over as many motions as that takes."""
+        """Move along the path for one time step, which may span several motions."""
         if self._timetable is None:
             return DriveStatus.ARRIVED
         self._steps += 1
-        arrived = self._steps >= steps(self._timetable.duration, self.time_step)
-        place = self._timetable.at(math.inf if arrived else self._steps * self.time_step)
-        if place is not None:
-            self._pose = self._pose_at(*place)
+        arrived = self._steps >= count_steps(self._timetable.duration, self.time_step)
+        progress = self._timetable.motion_at(math.inf if arrived else self._steps * self.time_step)
+        if progress is not None:
+            self._pose = self._pose_at(*progress)
         if not arrived:
             return DriveStatus.MOVING
         self.halt()
@@ -70,52 +75,58 @@ class TimedDrive(ABC):
 
     @property
     def steps_left(self) -> int:
-        """Time steps before the one with which it arrives; 0 without a path."""
+        """Number of time steps before the one in which the robot arrives; 0 without a path."""
         if self._timetable is None:
             return 0
-        return max(0, steps(self._timetable.duration, self.time_step) - self._steps - 1)
+        return max(0, count_steps(self._timetable.duration, self.time_step) - self._steps - 1)
 
     @property
     @abstractmethod
-    def glides(self) -> bool:
-        """Whether nothing can happen to it where it is, so that many steps can be made at once."""
+    def can_batch_steps(self) -> bool:
+        """True if nothing can happen to the robot at its pose, so that steps can be batched."""
 
     def _times_ahead(self, count: int) -> NDArray[np.float64]:
-        """s on the path after each of the next so many steps."""
+        """Return the time (s) since the start of the path after each of the next `count` steps."""
         steps = np.arange(self._steps + 1, self._steps + count + 1, dtype=np.float64)
         return steps * self.time_step
 
     @abstractmethod
-    def places_ahead(self, count: int) -> Places:
-        """Where it is after each of the next so many steps, at most `steps_left`: what `step` would
-        make of them one by one, to the last bit. Fewer where something can happen to it."""
+    def poses_ahead(self, count: int) -> Places:
+        """Return the poses after each of the next `count` steps, shape (n, 5).
 
-    def go_to(self, place: Place, count: int) -> None:
-        """So many steps have passed, after which it is at `place`."""
+        `count` is at most `steps_left`. The poses equal those that `step` would lead to, to the
+        last bit. There are fewer than `count` if something can happen to the robot on the way.
+        """
+
+    def skip_to(self, pose: Place, count: int) -> None:
+        """Skip `count` steps, and set the robot to the pose after them."""
         self._steps += count
-        self._pose = BodyPose(*place)
+        self._pose = BodyPose(*pose)
 
     @abstractmethod
     def _pose_at(self, motion: Motion, share: float) -> BodyPose:
-        """How the robot stands after `share` of the motion, 0 to 1."""
+        """Return the robot's pose after a share of the motion, 0 to 1."""
 
 
-def from_here(path: Path, pose: BodyPose) -> Path:
-    """The path, with a straight shift to its start if that is beside a robot at `pose`: paths begin
-    where the navigator's lattice has a state, some centimetres from a robot that was stopped, and
-    at most the navigator's SNAP_DISTANCE. No tracked robot could shift sideways."""
+def path_from_pose(path: Path, pose: BodyPose) -> Path:
+    """Return the path, with a straight shift to its start first if the robot's pose is beside it.
+
+    Paths begin at a state of the navigator's lattice. A robot that was stopped may be some
+    centimetres away from it, at most the navigator's SNAP_DISTANCE. A tracked robot could not
+    shift sideways.
+    """
     start = path.start
-    if math.dist((start.x, start.y), (pose.x, pose.y)) < _SAME_PLACE:
+    if math.dist((start.x, start.y), (pose.x, pose.y)) < _SAME_POSITION:
         return path
     here = Pose(x=pose.x, y=pose.y, z=pose.z, yaw=start.yaw)
     return Path(here, (Motion(here, start), *path.motions))
 
 
 class RouteDrive(TimedDrive):
-    """Follows paths by the timetable, without a world below.
+    """Drive that follows paths by the timetable, without a simulated world.
 
-    It takes as long as the kinematic drive, and as the analysis of missions says. Height and pitch
-    are those of the straight motions; whether the robot touches anything, nobody asks.
+    It takes as long as the kinematic drive, and as the analysis of missions states. Height and
+    pitch are those of the straight motions; contacts are not checked.
     """
 
     name = "route"
@@ -124,19 +135,19 @@ class RouteDrive(TimedDrive):
         super().__init__(robot, time_step)
 
     @property
-    def glides(self) -> bool:
+    def can_batch_steps(self) -> bool:
         return True
 
-    def places_ahead(self, count: int) -> Places:
+    def poses_ahead(self, count: int) -> Places:
         assert self._timetable is not None
-        places, first = np.empty((count, 5)), 0
-        for motion, share in self._timetable.stretches(self._times_ahead(count)):
-            rows = places[first : first + len(share)]
+        poses, first = np.empty((count, 5)), 0
+        for motion, share in self._timetable.motions_at(self._times_ahead(count)):
+            rows = poses[first : first + len(share)]
             for column, values in enumerate(motion.along(share)):
                 rows[:, column] = values
             rows[:, 4] = np.where(share < 1.0, self._pitch(motion), 0.0)
             first += len(share)
-        return places
+        return poses
 
     def _pose_at(self, motion: Motion, share: float) -> BodyPose:
         a, b = motion.start, motion.end
@@ -150,7 +161,7 @@ class RouteDrive(TimedDrive):
 
     @staticmethod
     def _pitch(motion: Motion) -> float:
-        """rad, while it is under way on the motion."""
+        """Return the pitch (rad) while the robot is under way on the motion."""
         if not motion.on_stairs:
             return 0.0
         return motion.gear * math.asin((motion.start.z - motion.end.z) / motion.length)

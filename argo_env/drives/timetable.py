@@ -1,4 +1,4 @@
-"""When the robot is where on its path, at the pace that plans count with."""
+"""Timetable of a path: where the robot is at each time, at the speeds that plans assume."""
 
 import math
 from bisect import bisect_right
@@ -13,26 +13,32 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-_ROUNDING = 1e-6  # of a step, left by sums of floats
+_ROUNDING = 1e-6  # of a step: rounding error that sums of floats may have
 
 
 class Timetable:
-    """The times of a path's motions: what the drives that know no forces go by."""
+    """Times of a path's motions, which the drives without forces follow."""
 
     def __init__(self, path: Path, robot: RobotSpec, velocity: float | None = None) -> None:
-        """`velocity` (m/s) is that of the plan on the flat, None the robot's own."""
+        """Compute the times of the path's motions.
+
+        `velocity` (m/s) is the planned speed on the flat; None means the robot's own speed.
+        """
         self._motions = path.motions
         self._durations = [m.duration(robot, velocity) for m in path.motions]
         self._ends = list(accumulate(self._durations))
 
     @property
     def duration(self) -> float:
-        """s."""
+        """Duration of the whole path in s."""
         return self._ends[-1] if self._ends else 0.0
 
-    def at(self, t: float) -> tuple[Motion, float] | None:
-        """The motion under way `t` s after setting off, and the share of it that is done; the last
-        one with 1 from its end on. None if the path has no motion."""
+    def motion_at(self, t: float) -> tuple[Motion, float] | None:
+        """Return the motion under way `t` s after the start, and the share of it that is done.
+
+        After the end of the path this is the last motion, with share 1. Returns None if the path
+        has no motion.
+        """
         if not self._motions:
             return None
         k = bisect_right(self._ends, t)
@@ -40,11 +46,14 @@ class Timetable:
             return self._motions[-1], 1.0
         return self._motions[k], 1.0 - (self._ends[k] - t) / self._durations[k]
 
-    def stretches(
+    def motions_at(
         self, times: "NDArray[np.float64]"
     ) -> Iterator[tuple[Motion, "NDArray[np.float64]"]]:
-        """For times (s), shape (n,), that only grow and are before the end: each motion that is
-        under way at some of them, and the share of it that is done at each."""
+        """Yield each motion under way at some of the times, and the shares of it that are done.
+
+        The times (s), shape (n,), increase and lie before the end of the path. There is one share
+        for each time at which the motion is under way.
+        """
         first = 0
         while first < len(times):
             k = bisect_right(self._ends, times[first])
@@ -53,6 +62,6 @@ class Timetable:
             first = last
 
 
-def steps(seconds: float, time_step: float) -> int:
-    """The number of time steps (s) that a time takes, the last one begun counted whole."""
+def count_steps(seconds: float, time_step: float) -> int:
+    """Return the number of time steps (s) in some seconds, rounded up."""
     return math.ceil(seconds / time_step - _ROUNDING)

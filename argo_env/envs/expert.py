@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from argo_compiler.base.errors import Invalid
 from argo_compiler.base.model import Pose
 from argo_env.drives.tracked.body import FLIPPER_LIMITS
-from argo_env.drives.tracked.flippers import CAREFUL, Flight, Flippers, find_flight
+from argo_env.drives.tracked.flippers import CAREFUL_SPEED, Flight, Flippers, find_flight
 from argo_env.drives.tracked.follower import Follower
 from argo_env.envs.drive import PERIOD, SPEED, TURN_RATE, DriveEnv
 from argo_env.navigation.path import Motion, wrap
@@ -51,7 +51,7 @@ class Expert:
         step = self._follower.step(pose, site.body.velocity)
         flight = self._flight_of(step.motion)
         careful = self._flippers.step(flight, step.motion, pose, PERIOD)
-        speed = max(-CAREFUL, min(CAREFUL, step.speed)) if careful else step.speed
+        speed = max(-CAREFUL_SPEED, min(CAREFUL_SPEED, step.speed)) if careful else step.speed
         rate = 0.0 if self._turned(step.motion, pose) else step.turn_rate
         low, high = FLIPPER_LIMITS
         flipper = 2 * (self._flippers.angle - low) / (high - low) - 1
@@ -78,7 +78,7 @@ class Expert:
             return False
         if motion.turn:
             return math.hypot(pose.x - motion.start.x, pose.y - motion.start.y) > _ASTRAY
-        return abs(self._follower.beside(motion, pose)[0]) > _ASTRAY
+        return abs(self._follower.deviation(motion, pose)[0]) > _ASTRAY
 
     def _flight_of(self, motion: Motion | None) -> Flight | None:
         """The flight that a motion goes over; looked at once."""

@@ -86,7 +86,7 @@ class Inspection(Closing):
     def dead(self) -> bool:
         """Whether the battery is empty."""
         battery = self._simulation.setup.battery
-        return battery is not None and battery.empty
+        return battery is not None and battery.is_empty
 
     @property
     def charge(self) -> float:

@@ -78,10 +78,10 @@ class EmergencyStop(TimedFault):
     kind: Literal["emergency_stop"] = "emergency_stop"
 
     def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
-        targets.drive.pressed = True
+        targets.drive.stop_pressed = True
 
     def revert(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
-        targets.drive.pressed = False
+        targets.drive.stop_pressed = False
 
 
 class SensorDysfunction(TimedFault):
@@ -123,7 +123,7 @@ class DriveDysfunction(TimedFault):
 
     def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.speed is not None
-        targets.drive.share = min(targets.drive.share, self.speed)
+        targets.drive.speed_share = min(targets.drive.speed_share, self.speed)
 
     def revert(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
-        targets.drive.share = targets.drive.usual_share
+        targets.drive.speed_share = targets.drive.usual_speed_share

@@ -10,7 +10,7 @@ from argo_compiler.analysis import Leg, NoPath, RobotPose
 from argo_compiler.base.errors import ArgoError, Unreachable
 from argo_compiler.base.model import Pose
 from argo_compiler.il import MAX_TIME_S, Action, Mission, Task
-from argo_env.drives.timetable import steps
+from argo_env.drives.timetable import count_steps
 from argo_env.files.parts import Parts
 from argo_env.navigation.path import Motion, Path
 from argo_env.planning.start import start_pose
@@ -192,4 +192,4 @@ class SiteTravel:
         }.get(motion.kind, power.driving)
 
     def _stepped(self, seconds: float) -> float:
-        return steps(seconds, self.time_step) * self.time_step
+        return count_steps(seconds, self.time_step) * self.time_step

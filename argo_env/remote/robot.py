@@ -54,7 +54,7 @@ class RemoteDrive:
     def place(self, pose: BodyPose) -> None:
         """No-op: a remote robot stays where it is."""
 
-    def begin(self, path: Path, velocity: float | None) -> NoReturn:
+    def follow(self, path: Path, velocity: float | None) -> NoReturn:
         raise NotImplementedError("a remote robot plans its own paths")
 
     def step(self) -> DriveStatus:

@@ -239,7 +239,7 @@ class SimulatedAction:
         except ArgoError as error:
             return self._failed(str(error))
         self.path = self.arrival_path = path
-        drive.begin(path, self._velocity)
+        drive.follow(path, self._velocity)
         self._phase = self._drive
         return self._drive()
 
@@ -248,7 +248,7 @@ class SimulatedAction:
         assert self.arrival_path is not None
         self._retreated = True
         back_path = way_back(self.arrival_path, _to_pose(self._setup.drive.pose), RETREAT)
-        self._setup.drive.begin(back_path, self._velocity)
+        self._setup.drive.follow(back_path, self._velocity)
         self._phase = self._retreat
         return None
 
@@ -329,7 +329,7 @@ class SimulatedAction:
                 continue
             self._setup.world.move_arm(navigator.robot.arm_stowed)
             self.path = self.arrival_path = path
-            self._setup.drive.begin(path, self._velocity)
+            self._setup.drive.follow(path, self._velocity)
             self._phase = self._drive
             return None
         return self._failed(failure)

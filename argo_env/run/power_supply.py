@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.il.docked import DOCKED_DISTANCE_M, is_at_dock
-from argo_env.drives.battery import Battery, load
+from argo_env.drives.battery import Battery, electric_load
 from argo_env.robot.pose import BodyPose, Places
 from argo_env.robot.spec import RobotSpec
 from argo_env.run.log import Entry
@@ -52,7 +52,7 @@ class PowerSupply:
     @property
     def empty(self) -> bool:
         """True if the battery is empty."""
-        return self._battery is not None and self._battery.empty
+        return self._battery is not None and self._battery.is_empty
 
     def restore(self, entry: Entry) -> None:
         """Restore the charge from an entry."""
@@ -70,7 +70,7 @@ class PowerSupply:
         """Draw the energy of a motion of `seconds`, or charge the battery of a docked robot."""
         if self._battery is None:
             return
-        watts = load(self._power, before, after, seconds, measuring)
+        watts = electric_load(self._power, before, after, seconds, measuring)
         stands = watts in (self._power.standing, self._power.measuring)
         docked = stands and self._docked(after)
         self.charging = docked and self._battery.charge < 1.0

@@ -49,7 +49,7 @@ def standstill_reason(
 
 def is_emergency_stopped(setup: RunSetup) -> bool:
     """Return True if the emergency stop holds the robot."""
-    return isinstance(setup.drive, Powertrain) and setup.drive.pressed
+    return isinstance(setup.drive, Powertrain) and setup.drive.stop_pressed
 
 
 def final_standstill_time(setup: RunSetup, log: RunLog) -> float:

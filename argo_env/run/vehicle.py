@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import StartAction
-from argo_env.drives.battery import loads_of_steps
+from argo_env.drives.battery import electric_loads
 from argo_env.drives.powertrain import Powertrain, StepsAhead
 from argo_env.navigation import Blockage, Path
 from argo_env.navigation.retreat import driven, recent
@@ -56,14 +56,14 @@ class StepBatch:
             not isinstance(setup.drive, Powertrain)
             or odometry.touching
             or setup.drive.pose.roll
-            or not setup.drive.glides
+            or not setup.drive.can_batch_steps
         ):
             return
         pose = setup.drive.pose
         here = np.array([(pose.x, pose.y, pose.z, pose.yaw, pose.pitch)])
         if action and action.is_driving:
             self._ahead = setup.drive.steps_ahead(limit)
-            self._poses = np.concatenate([here, self._ahead.places])
+            self._poses = np.concatenate([here, self._ahead.poses])
             # By math.dist, as in the odometry: NumPy's square root may differ in the last bit.
             points = [*zip(*(self._poses[:, k].tolist() for k in range(3)), strict=True)]
             distances = np.array([*map(math.dist, points[:-1], points[1:])])
@@ -76,7 +76,7 @@ class StepBatch:
         self._climbed = _running_sums(odometry.climbed, rises)
         measuring = action is not None and action.is_measuring
         power, time_step = setup.navigator.robot.power, setup.drive.time_step
-        loads = loads_of_steps(power, distances, self._poses, time_step, measuring)
+        loads = electric_loads(power, distances, self._poses, time_step, measuring)
         self._power = supply.predict(loads, self._poses[1:], time_step)
         self.steps = len(self._power)
 
@@ -99,7 +99,7 @@ class StepBatch:
         count = step - self._passed_steps
         if self._ahead is not None:
             assert isinstance(self._drive, Powertrain)
-            self._drive.go_on(self._ahead, self._passed_steps, count)
+            self._drive.advance(self._ahead, self._passed_steps, count)
         if self._action is not None:
             self._action.skip_steps(count, now)
         self._odometry.distance = float(self._distance[step])
@@ -200,7 +200,7 @@ class Vehicle:
     def can_batch_steps(self) -> bool:
         """True if steps can be made in batches, because nothing can happen to the robot."""
         drive = self.setup.drive
-        return isinstance(drive, Powertrain) and drive.glides
+        return isinstance(drive, Powertrain) and drive.can_batch_steps
 
     def batch_steps(self, action: RobotAction | None, limit: int) -> StepBatch:
         """Return the next steps, at most `limit`, in which the robot only continues `action`."""

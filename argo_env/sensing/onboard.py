@@ -169,14 +169,14 @@ class EmergencyStopWatch:
         self._pressed = False
 
     def restore(self, reported: Sequence[ReportedDetection], now: float) -> None:  # noqa: ARG002
-        self._pressed = bool(reported) and self._drive.pressed
+        self._pressed = bool(reported) and self._drive.stop_pressed
 
     def can_skip(self, lowest: float, highest: float) -> bool:  # noqa: ARG002
         """Return True if the circuit has not changed since the last update."""
-        return self._pressed == self._drive.pressed
+        return self._pressed == self._drive.stop_pressed
 
     def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
-        was_pressed, self._pressed = self._pressed, self._drive.pressed
+        was_pressed, self._pressed = self._pressed, self._drive.stop_pressed
         if self._pressed and not was_pressed:
             return (Detection(EventKind.EMERGENCY_STOP, "someone has pressed the emergency stop"),)
         return ()
@@ -205,7 +205,7 @@ class DriveWatch:
         self._reported = bool(reported)  # until the robot is seen to be fast enough again
 
     def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
-        planned = self._drive.way
+        planned = self._drive.path_and_velocity
         if planned is None:
             return ()
         if planned is not self._planned:
@@ -213,9 +213,9 @@ class DriveWatch:
             self._planned_poses = _sample_poses(*planned, self._robot)
             self._progress.clear()
         self._index = self._nearest(pose)
-        if self._drive.held != self._held:
+        if self._drive.held_steps != self._held:
             # Brakes say nothing about the drive: measure the speed anew, but keep the position.
-            self._held = self._drive.held
+            self._held = self._drive.held_steps
             self._progress.clear()
         self._progress.append((now, self._index * _SAMPLE))
         while now - self._progress[0][0] > WINDOW + 1e-6:

@@ -65,13 +65,13 @@ def test_the_errors_are_against_the_tracked_drive():
 class Telling(RouteDrive):
     """The route drive, with word of which motion is under way."""
 
-    def begin(self, path, velocity):
-        super().begin(path, velocity)
+    def follow(self, path, velocity):
+        super().follow(path, velocity)
         self._table = Timetable(path, self._robot, velocity)
 
     @property
     def motion(self):
-        return self._timetable and self._table.at(self._steps * self.time_step)[0]
+        return self._timetable and self._table.motion_at(self._steps * self.time_step)[0]
 
 
 class Stuck(Telling):

@@ -90,7 +90,7 @@ def test_a_drive_and_its_fit_agree():
     for _ in range(100):
         motion = random_motion(rng, (MotionKind.AHEAD, MotionKind.TURN)[rng.integers(2)])
         drive = RouteDrive(robot, 0.01)
-        drive.begin(Path(motion.start, (motion,)), None)
+        drive.follow(Path(motion.start, (motion,)), None)
         steps = 1
         while drive.step() is DriveStatus.MOVING:
             steps += 1

@@ -63,7 +63,7 @@ def drives(navigator: Navigator, world: World, count: int, duration: float) -> I
         while track[-1][0] < duration:
             here = Pose(x=drive.pose.x, y=drive.pose.y, z=drive.pose.z, yaw=drive.pose.yaw)
             goal = navigator.site.checkpoints[int(rng.integers(len(navigator.site.checkpoints)))]
-            drive.begin(navigator.plan_to_view(here, goal.id), None)
+            drive.follow(navigator.plan_to_view(here, goal.id), None)
             while drive.step() is DriveStatus.MOVING:
                 note()
             for _ in range(round(STANDING / STEP)):

@@ -76,7 +76,7 @@ def run(climb: Climb) -> ClimbOutcome:
     drive.place(
         BodyPose(start.x + x, start.y + y, start.z, start.yaw + TURNED * dice.uniform(-1.0, 1.0))
     )
-    drive.begin(path, None)
+    drive.follow(path, None)
     status, steps, belts, contacts = DriveStatus.MOVING, 0, 0.0, set()
     while status is DriveStatus.MOVING and steps * drive.time_step < LONGEST:
         status = drive.step()

@@ -1,1 +1,1 @@
-"""The tracked robot with masses, forces and belts, and the drive that follows paths with it."""
+"""Tracked robot with masses, forces and belts, and the drive that follows paths with it."""

@@ -1,10 +1,11 @@
 """Traction of belts by contact-surface motion.
 
-A belt is a smooth body that pushes on the ground along its normals only; what its surface would do
-by friction is added as a force at every contact. The idea is that of M. Pecka, K. Zimmermann and
+A belt is a smooth body that pushes on the ground along its normals only; the friction of its
+surface is added as a force at every contact. The idea is that of M. Pecka, K. Zimmermann and
 T. Svoboda, "Fast simulation of vehicles with non-deformable tracks" (IROS 2017), who give contacts
-of a rigid track the belt's surface velocity. There a physics engine's friction solver is told that
-velocity; PyBullet's can't be, so here friction is a force, as elastic and damped grousers make it.
+of a rigid track the belt's surface velocity. There the friction solver of a physics engine gets
+that velocity; PyBullet's solver has no such input, so here friction is a force, as elastic and
+damped grousers make it.
 """
 
 from dataclasses import dataclass, replace
@@ -12,100 +13,115 @@ from math import sqrt
 from typing import Any
 
 Contact = tuple[Any, ...]
-"""One row of PyBullet's `getContactPoints`."""
+"""row of PyBullet's `getContactPoints`"""
 
 Wrench = tuple[float, float, float, float, float, float]
 
-_COLUMNS = 10  # of such a row, up to the force along the normal
-_SMOOTH = 0.05  # of the grip is left on walls and rails, so that the robot does not climb them
-_NOTHING = (0.0,) * 14  # force; its slip along and across, place and square of place along the
-# body; tangent and its moment; place
+_COLUMNS = 10  # of a contact's row, up to the force along the normal
+_SMOOTH = 0.05  # share of the grip on walls and rails, so that the robot does not climb them
+# Sums over contacts, weighted with force: the force itself; slip along and across the belt;
+# position along the body, and its square; tangent and its moment; position.
+_NO_SUMS = (0.0,) * 14
 _BELTS = 4  # left and right track, left and right flipper
-INNER, TRACK_TOP = 0.16, 0.355  # m: tracks lie outside of this and below that, the hull does not
-_CAP = 1.5  # of the weight, up to which contacts stiffen the belts; keeps impacts stable
+INNER, TRACK_TOP = 0.16, 0.355  # m: tracks lie outside of INNER and below TRACK_TOP, the hull not
+_CAP = 1.5  # share of the weight, up to which contacts stiffen the belts; keeps impacts stable
 
 
 @dataclass(frozen=True)
 class Traction:
-    """How belts hold on to what they stand on."""
+    """Traction of belts on the ground: grip, damping and stiffness."""
 
     grip: float = 2.2
     """highest force along the belt over the normal force; over 1, as grousers hook into nosings"""
     side_grip: float = 0.5
-    """the same across the belt: rubber that slides on steel or concrete"""
+    """highest force across the belt over the normal force: rubber slides on steel or concrete"""
     damping: float = 3.9
     """s/m: share of the highest force for each m/s of slip; with the grip above, a product of more
     than 12 s/m is unstable at 240 Hz"""
     stiffness: float = 77.0
-    """1/m: share of the highest force for each m that grousers are bent; so it stands on slopes"""
+    """1/m: share of the highest force for each m that grousers are bent; holds it on slopes"""
 
     def scaled(self, factor: float) -> "Traction":
-        """The same with another grip along and across."""
+        """Return the same traction with its grip, along and across, multiplied by `factor`."""
         return replace(self, grip=factor * self.grip, side_grip=factor * self.side_grip)
 
 
 class Belts:
-    """The forces of all belts of a robot. Holds how far the grousers of each belt are bent.
+    """Forces of all belts of a robot. Holds the bending of the grousers of each belt.
 
     A belt, of a track or of a flipper, slips in three ways: along, across, and by twisting on the
-    spot. The three share its grip, in the direction in which it slips, so that a belt which
-    is twisted slides sideways at the least force, as real ones do.
+    spot. The three share its grip, in the direction in which the belt slips. So a twisted belt
+    slides sideways at the least force, as real belts do.
     """
 
     def __init__(
         self, center: tuple[float, float, float], traction: Traction, weight: float
     ) -> None:
-        """`center` (m) is where the body's centre of mass lies in its frame; `weight` (N) is that
-        of the robot."""
+        """Start with grousers that are not bent.
+
+        `center` (m) is the body's centre of mass in its frame; `weight` (N) is the robot's.
+        """
         self._center = center
         self._traction = traction
         self._cap = _CAP * weight
         self.bends = [0.0] * (3 * _BELTS)
-        """m along, across and by twisting, for each belt"""
+        """bending of the grousers along, across and by twisting in m, for each belt"""
 
     def wrench(
         self,
         contacts: list[Contact],
         walking: int,
         speeds: tuple[float, float],
-        place: tuple[float, float, float],
+        position: tuple[float, float, float],
         axes: tuple[float, ...],
         velocity: tuple[float, float, float],
         spin: tuple[float, float, float],
         dt: float,
     ) -> tuple[Wrench, list[Contact]]:
-        """Force (N) and torque (N m) of all belts about `place` (m), in the world's axes, and the
-        contacts that are none of belts with what one walks on.
+        """Return the wrench of all belts about `position`, and the other contacts.
 
-        `walking` is the link of the ground that one walks on; `speeds` are those of the left and
-        right belts (m/s); `axes` is the body's rotation matrix row by row; `velocity` and `spin`
-        are those of the body at `place`, its centre of mass; `dt` (s) is the time since the last
-        call.
+        The wrench is force (N) and torque (N m) in the world's axes. The other contacts are all
+        except those of belts with the walking surfaces.
+
+        Args:
+            contacts: the robot's contacts, rows of PyBullet's `getContactPoints`
+            walking: the link of the terrain with the walking surfaces
+            speeds: of the left and the right belts (m/s)
+            position: the body's centre of mass (m)
+            axes: the body's rotation matrix row by row
+            velocity: of the body at `position` (m/s)
+            spin: the body's angular velocity (rad/s)
+            dt: the time since the last call (s)
         """
-        sums, total, strange = self._summed(contacts, walking, speeds, place, axes, velocity, spin)
-        return self._joined(sums, total, axes, spin, dt), strange
+        sums, total, other_contacts = self._sum_contacts(
+            contacts, walking, speeds, position, axes, velocity, spin
+        )
+        return self._wrench_from(sums, total, axes, spin, dt), other_contacts
 
-    def _summed(
+    def _sum_contacts(
         self,
         contacts: list[Contact],
         walking: int,
         speeds: tuple[float, float],
-        place: tuple[float, float, float],
+        position: tuple[float, float, float],
         axes: tuple[float, ...],
         velocity: tuple[float, float, float],
         spin: tuple[float, float, float],
     ) -> tuple[list[tuple[float, ...]], float, list[Contact]]:
-        """The sums that `_NOTHING` tells of for each belt, over its contacts; the force (N) of all
-        in the order of the contacts; and the contacts of no belt."""
+        """Return the sums for each belt, the total force (N), and the other contacts.
+
+        The sums are those that `_NO_SUMS` lists, over the contacts of a belt. The total force is
+        summed in the order of the contacts.
+        """
         # Plain floats in local variables: this runs 240 times a simulated second.
-        px, py, pz = place
+        px, py, pz = position
         fx, lx, ux, fy, ly, uy, fz, lz, uz = axes
         vx, vy, vz = velocity
         wx, wy, wz = spin
         _, center_y, center_z = self._center
         left_speed, right_speed = speeds
-        sums: list[tuple[float, ...]] = [_NOTHING] * _BELTS
-        strange = []
+        sums: list[tuple[float, ...]] = [_NO_SUMS] * _BELTS
+        other_contacts = []
         total = 0.0
         for contact in contacts:
             _, _, _, link, other, (x, y, z), _, (nx, ny, nz), _, force = contact[:_COLUMNS]
@@ -120,15 +136,15 @@ class Belts:
             ):
                 belt = 0
             else:
-                strange.append(contact)
+                other_contacts.append(contact)
                 continue
             if other != walking:
-                strange.append(contact)
+                other_contacts.append(contact)
             # The belt runs along its left axis times the normal.
             tx, ty, tz = ly * nz - lz * ny, lz * nx - lx * nz, lx * ny - ly * nx
             length = sqrt(tx * tx + ty * ty + tz * tz)
             if length < 0.01:
-                continue  # a flank, where nothing runs
+                continue  # a flank, along which the belt does not run
             # From here on the tangent is the force times the unit vector.
             if other != walking:
                 force *= _SMOOTH
@@ -159,9 +175,9 @@ class Belts:
                 s13 + force * z,
             )
             total += force
-        return sums, total, strange
+        return sums, total, other_contacts
 
-    def _joined(
+    def _wrench_from(
         self,
         sums: list[tuple[float, ...]],
         total: float,
@@ -169,7 +185,7 @@ class Belts:
         spin: tuple[float, float, float],
         dt: float,
     ) -> Wrench:
-        """The wrench of all belts."""
+        """Return the wrench of all belts from their sums."""
         _, lx, ux, _, ly, uy, _, lz, uz = axes
         wx, wy, wz = spin
         scale = self._cap / total if total > self._cap else 1.0
@@ -195,13 +211,15 @@ class Belts:
     def _push(
         self, belt: int, on: tuple[float, ...], turning: float, dt: float
     ) -> tuple[float, float, float]:
-        """Bends the grousers of a belt by its slip; gives its force along and across over the
-        normal force, and its torque in N m. Grousers that would push harder than the grip allows
-        slide instead."""
+        """Update the bending of a belt's grousers by its slip, and return the push of the belt.
+
+        The push is the force along and across over the normal force, and the torque (N m). Grousers
+        that would push harder than the grip allows slide instead.
+        """
         bends, at = self.bends, 3 * belt
         normal, slip, side, ahead, square = on[:5]
         slip, side, ahead = slip / normal, side / normal, ahead / normal
-        # Contacts at the ends of a belt that lies flat stand for even pressure between them.
+        # The contacts at the ends of a flat belt represent even pressure between them.
         half = sqrt(max(0.0, square / normal - ahead * ahead))
         twist = turning * half
         k, c = self._traction.stiffness, self._traction.damping

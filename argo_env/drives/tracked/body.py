@@ -1,4 +1,4 @@
-"""The robot's body on its tracks: masses, contacts and belts, without any path to follow."""
+"""Body of the robot on its tracks: masses, contacts and belts, without any path to follow."""
 
 import math
 import tempfile
@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from argo_env.drives.drive import RATE
+from argo_env.drives.drive import FLIPPER_RATE
 from argo_env.drives.tracked.belts import Belts, Traction
-from argo_env.drives.tracked.lumped import lumped
-from argo_env.drives.tracked.terrain import Presses, Terrain
+from argo_env.drives.tracked.lumped import lump_links
+from argo_env.drives.tracked.terrain import ContactLog, Terrain
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec, robot_folder
 from argo_env.site.shapes import Vector
@@ -23,26 +23,26 @@ FLIPPER_TORQUE = 150.0  # N m, each (assumption: two flippers can lift one end o
 ACCELERATION = 1.0  # m/s², of the belts
 SWING = 3.0  # rad/s², of the turning rate
 _YAW_GAIN = 4.0  # 1/s: belts that slip in a turn are sped up until the turning rate is met
-_YAW_REACH = 1.5  # the integral may add this much of the turning rate commanded
+_YAW_REACH = 1.5  # share of the commanded turning rate that the integral may add at most
 _ITERATIONS = 6  # of the contact solver
-_DROP = 0.002  # m above the ground at which the robot is put down
-_SETTLING = 60  # steps until it rests
+_DROP = 0.002  # m above the ground, from which the robot is put down
+_SETTLING = 60  # steps until the robot is at rest
 FLIPPERS = ("left_flipper_joint", "right_flipper_joint")
 _FAR = (0.0, 0.0, 1000.0)  # m, where nothing is
 
 
 @dataclass(frozen=True)
 class Snapshot:
-    """A moment of a body, to go back to."""
+    """State of a body at one time, which can be restored."""
 
     state: int
-    """PyBullet's number of it"""
+    """number that PyBullet gave the state"""
     memory: tuple[Any, ...]
 
 
 @dataclass(frozen=True)
 class Command:
-    """What the tracks and flippers are to do."""
+    """Command to the tracks and flippers."""
 
     speed: float = 0.0
     """m/s forwards"""
@@ -53,16 +53,16 @@ class Command:
 
 
 class TrackedBody(Connection):
-    """The robot among the solids of a world. Holds a physics server of its own and the belts.
+    """Body of the robot among the solids of a world. Holds its own physics server and the belts.
 
-    Whoever makes drives closes the world only; the server ends with this object, or when closed.
+    Callers that make drives close the world only; the server ends with this object, or when closed.
 
     The server has the same solids as the world and nothing else that could move, so that steps are
-    cheap and a snapshot is whole. The world is shown the robot's pose after each `advance`.
+    cheap and a snapshot is complete. The world gets the robot's pose after each `advance`.
     """
 
     contact_breaking = 0.003
-    """m; fewer contacts that carry nothing than with PyBullet's 0.02"""
+    """distance in m; gives fewer contacts without a force than PyBullet's 0.02"""
 
     def __init__(
         self,
@@ -73,7 +73,7 @@ class TrackedBody(Connection):
     ) -> None:
         """`mass_scale` multiplies the masses of the robot's model."""
         super().__init__()
-        # Both look for contacts in the same way.
+        # Both servers must find the same contacts.
         world.contact_breaking = self.contact_breaking
         self._world = world
         self._robot = robot
@@ -81,7 +81,7 @@ class TrackedBody(Connection):
         with tempfile.TemporaryDirectory() as folder:
             self._ground = self._load(self._terrain.write(folder), fixed=True)
             model = Path(folder) / "robot.urdf"
-            text = lumped(robot_folder() / robot.urdf, robot.arm_stowed, FLIPPERS, mass_scale)
+            text = lump_links(robot_folder() / robot.urdf, robot.arm_stowed, FLIPPERS, mass_scale)
             model.write_text(text, encoding="utf-8")
             self._body: int = pybullet.loadURDF(
                 str(model),
@@ -94,7 +94,7 @@ class TrackedBody(Connection):
         self._flippers = [joints[name] for name in FLIPPERS]
         self._prepare()
         self.mass = sum(self._dynamics(link)[0] for link in self._names)
-        """kg"""
+        """mass of the robot in kg"""
         offset: Vector = self._dynamics(-1)[3]
         self._belts = Belts(offset, traction or Traction(), self.mass * GRAVITY)
         self._walking = next(k for k, v in self._grounds.items() if v == self._terrain.walking)
@@ -102,19 +102,19 @@ class TrackedBody(Connection):
         self._pivot = self._mean_x()
         self._command = Command()
         self._speed, self._turn, self._push = 0.0, 0.0, 0.0
-        # Those of the last step, kept here since PyBullet does not restore them.
+        # Contacts of the last step, stored here since PyBullet does not restore them.
         self._contacts: list[tuple[Any, ...]] = []
-        self._presses = Presses(self._terrain, self._grounds, self._names)
+        self._contact_log = ContactLog(self._terrain, self._grounds, self._names)
         self._drive_flippers()
         self._home = pybullet.saveState(physicsClientId=self._client)
 
     def reset(self, pose: BodyPose, flipper: float = 0.0) -> None:
-        """Puts the robot down there, at rest, with its arm stowed; forgets all that was."""
+        """Put the robot down at the pose, at rest, its arm stowed; discard the previous state."""
         self._return_to(self._home)
         self._belts.bends = [0.0] * len(self._belts.bends)
         self._speed, self._turn, self._push = 0.0, 0.0, 0.0
         self._contacts = []
-        self._presses.take()
+        self._contact_log.pop()
         for k in self._flippers:
             pybullet.resetJointState(self._body, k, flipper, physicsClientId=self._client)
         self.command(0.0, 0.0, flipper)
@@ -123,40 +123,43 @@ class TrackedBody(Connection):
         self.advance(_SETTLING)
 
     def command(self, speed: float, turn_rate: float, flipper: float) -> None:
-        """Sets what is wanted from now on: m/s forwards, rad/s counter-clockwise, and the angle of
-        the flippers in rad, tips up, within their limits."""
+        """Set the command from now on.
+
+        `speed` is in m/s forwards, `turn_rate` in rad/s counter-clockwise, `flipper` is the angle
+        of the flippers in rad, tips up; the command keeps within the flippers' limits.
+        """
         flipper = min(FLIPPER_LIMITS[1], max(FLIPPER_LIMITS[0], flipper))
         self._command = Command(speed, turn_rate, flipper)
         self._drive_flippers()
 
     def advance(self, steps: int) -> None:
-        """Simulates that many steps of TIME_STEP."""
+        """Simulate some steps of TIME_STEP."""
         client, body = self._client, self._body
         for _ in range(steps):
-            place, turned = pybullet.getBasePositionAndOrientation(body, physicsClientId=client)
+            position, turned = pybullet.getBasePositionAndOrientation(body, physicsClientId=client)
             velocity, spin = pybullet.getBaseVelocity(body, physicsClientId=client)
             axes = pybullet.getMatrixFromQuaternion(turned)
             speeds = self._belt_speeds(spin[0] * axes[2] + spin[1] * axes[5] + spin[2] * axes[8])
-            (fx, fy, fz, tx, ty, tz), strange = self._belts.wrench(
-                self._contacts, self._walking, speeds, place, axes, velocity, spin, TIME_STEP
+            (fx, fy, fz, tx, ty, tz), other_contacts = self._belts.wrench(
+                self._contacts, self._walking, speeds, position, axes, velocity, spin, TIME_STEP
             )
             pybullet.applyExternalForce(
-                body, -1, (fx, fy, fz), place, pybullet.WORLD_FRAME, physicsClientId=client
+                body, -1, (fx, fy, fz), position, pybullet.WORLD_FRAME, physicsClientId=client
             )
             pybullet.applyExternalTorque(
                 body, -1, (tx, ty, tz), pybullet.WORLD_FRAME, physicsClientId=client
             )
-            if strange:
-                self._presses.note(strange, self._origin(place, axes), axes)
+            if other_contacts:
+                self._contact_log.add(other_contacts, self._origin(position, axes), axes)
             self._simulate()
             self._contacts = pybullet.getContactPoints(bodyA=body, physicsClientId=client)
         self._show()
 
     @property
     def pose(self) -> BodyPose:
-        place, axes = self._frame()
+        position, axes = self._frame()
         return BodyPose(
-            *place,
+            *position,
             math.atan2(axes[3], axes[0]),
             math.atan2(-axes[6], math.hypot(axes[0], axes[3])),
             math.atan2(axes[7], axes[8]),
@@ -164,18 +167,20 @@ class TrackedBody(Connection):
 
     @property
     def pivot(self) -> float:
-        """m along the robot's x axis: what it turns about when it turns in place, which is below
-        its centre of mass."""
+        """Position in m on the robot's x axis of the point about which the robot turns in place.
+
+        It is below the robot's centre of mass.
+        """
         return self._pivot
 
     @property
     def roll(self) -> float:
-        """rad, positive with the left side up."""
+        """Roll of the robot in rad, positive with the left side up."""
         return self.pose.roll
 
     @property
     def velocity(self) -> tuple[float, float]:
-        """m/s along the robot's x axis, and rad/s about its z axis."""
+        """Velocity in m/s along the robot's x axis, and in rad/s about its z axis."""
         velocity, spin = pybullet.getBaseVelocity(self._body, physicsClientId=self._client)
         _, axes = self._frame()
         ahead = sum(velocity[k] * axes[3 * k] for k in range(3))
@@ -183,48 +188,48 @@ class TrackedBody(Connection):
 
     @property
     def flipper(self) -> float:
-        """rad, the mean of both; tips up."""
+        """Mean angle of both flippers in rad, tips up."""
         states = pybullet.getJointStates(self._body, self._flippers, physicsClientId=self._client)
         return float(states[0][0] + states[1][0]) / 2
 
     @property
     def belt_speeds(self) -> tuple[float, float]:
-        """m/s of the left and the right belts."""
+        """Speeds of the left and the right belts in m/s."""
         half = self._robot.track_gauge / 2 * (self._turn + self._push)
         return self._speed - half, self._speed + half
 
     def touches(self) -> tuple[Touch, ...]:
-        """Where the robot has pressed against what it must not since the last call."""
-        return self._presses.take()
+        """Return the contacts with what the robot must not touch since the last call."""
+        return self._contact_log.pop()
 
     def snapshot(self) -> Snapshot:
-        """The present moment; `release` it when it is of no use any more.
+        """Return the present state; call `release` when it is no longer needed.
 
-        PyBullet does not restore what it remembers of contacts, so it is made to forget that here
-        too: what follows a snapshot is the same as what follows when it is restored.
+        PyBullet does not restore its cache of contacts. So this method clears that cache, too: the
+        simulation continues after a snapshot exactly as after its restoration.
         """
         state = pybullet.saveState(physicsClientId=self._client)
         self._return_to(state)
         memory = (
             self._command, self._speed, self._turn, self._push,
-            tuple(self._belts.bends), tuple(self._contacts), self._presses.memory(),
+            tuple(self._belts.bends), tuple(self._contacts), self._contact_log.state(),
         )  # fmt: skip
         return Snapshot(state, memory)
 
     def restore(self, snapshot: Snapshot) -> None:
-        """Goes back to a moment; all that follows is as it was then, bit by bit."""
+        """Restore a state; the simulation then repeats itself bit by bit."""
         self._return_to(snapshot.state)
         (
-            self._command, self._speed, self._turn, self._push, bends, contacts, pressed
+            self._command, self._speed, self._turn, self._push, bends, contacts, touches
         ) = snapshot.memory  # fmt: skip
         self._belts.bends, self._contacts = list(bends), list(contacts)
-        self._presses.remember(pressed)
-        # PyBullet keeps no targets of motors.
+        self._contact_log.restore(touches)
+        # PyBullet does not restore the targets of motors.
         self._drive_flippers()
         self._show()
 
     def release(self, snapshot: Snapshot) -> None:
-        """Gives the memory of a snapshot back."""
+        """Release the memory of a snapshot."""
         pybullet.removeState(snapshot.state, physicsClientId=self._client)
 
     def _prepare(self) -> None:
@@ -238,7 +243,7 @@ class TrackedBody(Connection):
             physicsClientId=client,
         )
         for link in self._names:
-            # Belts push along normals only; what they drag with is added as a force.
+            # Belts push along normals only; their traction is added as a force.
             pybullet.changeDynamics(
                 self._body,
                 link,
@@ -251,14 +256,14 @@ class TrackedBody(Connection):
         self._place(self._body, _FAR, (0.0, 0.0, 0.0))
 
     def _return_to(self, state: int) -> None:
-        """Restores a state of PyBullet's, without anything that it remembers of contacts."""
+        """Restore a state of PyBullet with an empty cache of contacts."""
         self._place(self._body, _FAR, (0.0, 0.0, 0.0))
         self._detect()
         pybullet.restoreState(state, physicsClientId=self._client)
         self._drive_flippers()
 
     def _mean_x(self) -> float:
-        """Where the robot's centre of mass is along its x axis, in m; read where it is level."""
+        """Return the x coordinate (m) of the centre of mass; the robot must be level at `_FAR`."""
         total = self._dynamics(-1)[0] * self._center[0]
         for link in self._flippers:
             state = pybullet.getLinkState(self._body, link, physicsClientId=self._client)
@@ -273,12 +278,12 @@ class TrackedBody(Connection):
                 pybullet.POSITION_CONTROL,
                 targetPosition=self._command.flipper,
                 force=FLIPPER_TORQUE,
-                maxVelocity=RATE,
+                maxVelocity=FLIPPER_RATE,
                 physicsClientId=self._client,
             )
 
     def _belt_speeds(self, yaw_rate: float) -> tuple[float, float]:
-        """Moves the belts' speeds on by one step, m/s left and right."""
+        """Update the speeds of the belts by one step; return them in m/s, left and right."""
         wanted = self._command
         most = ACCELERATION * TIME_STEP
         self._speed += min(most, max(-most, wanted.speed - self._speed))
@@ -291,16 +296,16 @@ class TrackedBody(Connection):
         return self._speed - half, self._speed + half
 
     def _frame(self) -> tuple[Vector, tuple[float, ...]]:
-        """Where the base's frame is (m), and its rotation matrix row by row."""
-        place, turned = pybullet.getBasePositionAndOrientation(
+        """Return the origin of the base's frame (m), and its rotation matrix row by row."""
+        position, turned = pybullet.getBasePositionAndOrientation(
             self._body, physicsClientId=self._client
         )
         axes = pybullet.getMatrixFromQuaternion(turned)
-        return self._origin(place, axes), axes
+        return self._origin(position, axes), axes
 
-    def _origin(self, place: Vector, m: tuple[float, ...]) -> Vector:
-        """Where the base's frame is (m), with its centre of mass at `place`."""
-        (x, y, z), (a, b, c) = place, self._center
+    def _origin(self, position: Vector, m: tuple[float, ...]) -> Vector:
+        """Return the origin of the base's frame (m), with its centre of mass at `position`."""
+        (x, y, z), (a, b, c) = position, self._center
         return (
             x - m[0] * a - m[1] * b - m[2] * c,
             y - m[3] * a - m[4] * b - m[5] * c,

@@ -1,7 +1,8 @@
-"""The tracked drive: the robot follows its path by its tracks, with masses and forces.
+"""Tracked drive: the robot follows its path on its tracks, with masses and forces.
 
-That it slips, is stuck or tips over shows in what it commands and how it moves; it gets free again
-by backing off, turning straight, and going on with the flippers at another angle.
+The drive compares commands and motion to detect that the robot slips, is stuck or tips over. A
+stuck robot gets free by backing off, turning straight, and continuing with the flippers at another
+angle.
 """
 
 import math
@@ -12,7 +13,7 @@ from argo_env.closing import NonCopyable
 from argo_env.drives.drive import DriveStatus, Incident, Trouble
 from argo_env.drives.tracked.belts import Traction
 from argo_env.drives.tracked.body import TIME_STEP, TrackedBody
-from argo_env.drives.tracked.flippers import CAREFUL, Flight, Flippers, find_flight
+from argo_env.drives.tracked.flippers import CAREFUL_SPEED, Flight, Flippers, find_flight
 from argo_env.drives.tracked.follower import Follower
 from argo_env.navigation.path import Motion, Path, wrap
 from argo_env.robot.pose import BodyPose
@@ -20,19 +21,19 @@ from argo_env.robot.spec import RobotSpec
 from argo_env.world.world import Touch, World
 
 ATTEMPTS = 3
-GOING_ON = 3.0  # s for which the flippers keep the other angle
+ANGLE_DURATION = 3.0  # s for which the flippers keep the angle of a recovery after it
 _ANGLES = tuple(math.radians(a) for a in (30.0, -10.0, 45.0))  # of the flippers, attempt by attempt
 _BACK = 0.12  # m/s
 _BACK_TIME = 2.0  # s
 _ASIDE = 0.10  # m/s
 _ASIDE_TIME = 1.2  # s
 _TURN = 0.3  # rad/s
-_LEVEL = math.radians(8.0)  # of pitch, up to which it turns straight
+_LEVEL = math.radians(8.0)  # pitch up to which a recovery turns the robot straight
 
 
 @dataclass(frozen=True)
 class RecoveryPhase:
-    """One thing that is done for a while."""
+    """Phase of a recovery: commands for some time."""
 
     duration: float
     """s"""
@@ -44,8 +45,8 @@ class RecoveryPhase:
     """rad"""
 
 
-def phases(motion: Motion, attempt: int, pitch: float) -> tuple[RecoveryPhase, ...]:
-    """What to do for the attempt (0, 1, ...) to get free from where `motion` is stuck."""
+def recovery_phases(motion: Motion, attempt: int, pitch: float) -> tuple[RecoveryPhase, ...]:
+    """Return the phases of an attempt (0, 1, ...) to get free from where `motion` is stuck."""
     angle = _ANGLES[attempt % len(_ANGLES)]
     if motion.turn:
         side = 1 if attempt % 2 == 0 else -1
@@ -59,11 +60,12 @@ def phases(motion: Motion, attempt: int, pitch: float) -> tuple[RecoveryPhase, .
     return (back, RecoveryPhase(2.0, 0.0, None, angle))
 
 
-WINDOW = 5.0  # s that are looked back; as it tips over an edge, a robot loses half its way for 3 s
-_LEAST_WAY = 0.12  # m commanded within the window, from which a way is judged
+# While a robot tips over an edge, it makes only half the commanded distance for 3 s.
+WINDOW = 5.0  # s over which motion and commands are compared
+_LEAST_DISTANCE = 0.12  # m commanded within the window; below it, distances are not judged
 _LEAST_TURN = math.radians(15.0)
-_STUCK = 0.2  # share of what was commanded, under which the robot is stuck
-_SLIPPING = 0.5  # the same, under which it slips
+_STUCK = 0.2  # share of the commanded motion, below which the robot is stuck
+_SLIPPING = 0.5  # share of the commanded motion, below which the robot slips
 _MOST_ROLL = math.radians(35.0)
 _MOST_PITCH = math.radians(60.0)  # front down; flights are up to 45°
 _LEAST_PITCH = math.radians(-40.0)
@@ -72,27 +74,34 @@ _LEAST_PITCH = math.radians(-40.0)
 @dataclass(frozen=True)
 class _Sample:
     pose: BodyPose
-    way: float
-    """m commanded since the one before"""
+    distance: float
+    """m commanded since the previous sample"""
     turn: float
-    """rad, the same"""
+    """rad commanded since the previous sample"""
 
 
-class StallWatch:
-    """Looks back over the last seconds. Holds where the robot was and what was commanded."""
+class StallDetector:
+    """Detector of a robot that does not move as commanded.
+
+    It holds the poses and commands of the last WINDOW seconds.
+    """
 
     def __init__(self, period: float) -> None:
-        """`period` (s) is that between calls of `look`."""
+        """`period` is the time between calls of `update`, in s."""
         self._period = period
         self._samples: deque[_Sample] = deque(maxlen=round(WINDOW / period))
 
-    def forget(self) -> None:
-        """Begins anew, as after a change of mind."""
+    def clear(self) -> None:
+        """Discard the samples, for example when a phase of a recovery begins or ends."""
         self._samples.clear()
 
-    def look(self, pose: BodyPose, roll: float, speed: float, turn_rate: float) -> Incident | None:
-        """What is wrong now, if anything is; `speed` (m/s) and `turn_rate` (rad/s) are what was
-        commanded since the last call."""
+    def update(
+        self, pose: BodyPose, roll: float, speed: float, turn_rate: float
+    ) -> Incident | None:
+        """Add a sample, and return the present fault of the drive; None if there is none.
+
+        `speed` (m/s) and `turn_rate` (rad/s) are the commands since the last call.
+        """
         if abs(roll) > _MOST_ROLL or not _LEAST_PITCH < pose.pitch < _MOST_PITCH:
             detail = f"pitch {math.degrees(pose.pitch):.0f}°, roll {math.degrees(roll):.0f}°"
             return Incident(Trouble.TIPPED, detail, pose)
@@ -102,33 +111,37 @@ class StallWatch:
         if len(self._samples) < (self._samples.maxlen or 0):
             return None
         before = self._samples[0].pose
-        way = sum(s.way for s in self._samples)
+        distance = sum(s.distance for s in self._samples)
         turn = sum(s.turn for s in self._samples)
         went = math.dist((pose.x, pose.y, pose.z), (before.x, before.y, before.z))
         turned = abs(wrap(pose.yaw - before.yaw))
         share = max(
-            went / way if way > _LEAST_WAY else 0.0, turned / turn if turn > _LEAST_TURN else 0.0
+            went / distance if distance > _LEAST_DISTANCE else 0.0,
+            turned / turn if turn > _LEAST_TURN else 0.0,
         )
-        if (way <= _LEAST_WAY and turn <= _LEAST_TURN) or share >= _SLIPPING:
+        if (distance <= _LEAST_DISTANCE and turn <= _LEAST_TURN) or share >= _SLIPPING:
             return None
         detail = (
-            f"made {went:.2f} m of {way:.2f} m commanded"
-            if way > _LEAST_WAY
+            f"made {went:.2f} m of {distance:.2f} m commanded"
+            if distance > _LEAST_DISTANCE
             else f"turned {math.degrees(turned):.0f}° of {math.degrees(turn):.0f}° commanded"
         )
         return Incident(Trouble.STUCK if share < _STUCK else Trouble.SLIPPING, detail, pose)
 
 
 _CONTROL = 0.05  # s between commands
-_AT_REST = 0.01  # m/s, and rad/s about the vertical
-_STOPPING = 3.0  # s after which a robot that should stand counts as standing
-_FREE = 0.3  # m beyond where it was stuck, from which attempts count anew
+_AT_REST = 0.01  # m/s, and rad/s about the vertical, below which the robot is at rest
+_STOPPING = 3.0  # s after which a stopping robot counts as at rest
+_FREE = 0.3  # m from where it was stuck, beyond which attempts are counted anew
 _ALIGNING = 1.5  # 1/s
 _MOST_ALIGNING = 0.3  # rad/s
 
 
 class TrackedDrive(NonCopyable):
-    """Follows paths with the tracked body. Holds the body, the path and what went wrong on it."""
+    """Drive that follows paths with the tracked body.
+
+    It holds the body, the path, a running recovery and the faults since the robot was placed.
+    """
 
     name = "tracked"
     time_step = 0.1
@@ -142,19 +155,19 @@ class TrackedDrive(NonCopyable):
     ) -> None:
         self.body = TrackedBody(world, robot, traction, mass_scale)
         self.incidents: list[Incident] = []
-        """what went wrong since the robot was placed, whether it went on or not"""
+        """faults since the robot was placed, whether or not the robot could continue"""
         self._world = world
         self._robot = robot
         self._follower: Follower | None = None
         self._flippers = Flippers()
         self._flight: tuple[Motion, Flight] | None = None
-        self._watch = StallWatch(self.time_step)
+        self._stall_detector = StallDetector(self.time_step)
         self._phases: deque[RecoveryPhase] = deque()
         self._phase_left = 0.0
         self._attempts = 0
         self._stuck_at: BodyPose | None = None
-        self._other_angle = 0.0  # s for which the flippers keep the angle of the recovery
-        self._standing = 0.0  # s since it was to stop
+        self._angle_time_left = 0.0  # s for which they keep `_phase_angle`
+        self._stopping_time = 0.0  # s since the robot was commanded to stop
         self._failure: str | None = None
 
     @property
@@ -167,38 +180,38 @@ class TrackedDrive(NonCopyable):
 
     @property
     def motion(self) -> Motion | None:
-        """The motion of the path that is under way; None without a path."""
+        """Motion of the path that is under way; None without a path."""
         return self._follower.motion if self._follower else None
 
     def place(self, pose: BodyPose) -> None:
-        """Puts the robot there, at rest; it settles on the ground within a moment."""
-        self._forget()
+        """Place the robot at the pose, at rest; it settles on the ground within a moment."""
+        self._clear()
         self.incidents.clear()
         self._flippers = Flippers()
         self.body.reset(pose, self._flippers.angle)
         self._world.set_drive_touches(())
 
-    def begin(self, path: Path, velocity: float | None) -> None:
-        """Sets off along `path` at `velocity` (m/s) on the flat, or at the robot's own speeds."""
-        self._forget()
+    def follow(self, path: Path, velocity: float | None) -> None:
+        """Start to follow `path` at `velocity` (m/s) on the flat, or at the robot's own speeds."""
+        self._clear()
         self._follower = Follower(path, self._robot, velocity, self.body.pivot)
 
     def halt(self) -> None:
-        """Stops the tracks and forgets the path; the steps that follow let it come to rest."""
+        """Stop the tracks, and discard the path; the robot comes to rest in the next steps."""
         failure = self._failure
-        self._forget()
+        self._clear()
         self._failure = failure
         self._stop()
 
     def step(self) -> DriveStatus:
-        """Goes on for one time step, in which the tracks get new commands twice."""
+        """Continue for one time step, in which the tracks get new commands twice."""
         for _ in range(round(self.time_step / _CONTROL)):
             self._control()
             self.body.advance(round(_CONTROL / TIME_STEP))
         touches = self.body.touches()
         self._world.set_drive_touches(touches)
         if self._follower is not None and self._failure is None:
-            self._look(touches)
+            self._check_motion(touches)
         if self._failure is not None and self._follower is not None:
             self._follower = None
             self._stop()
@@ -209,7 +222,7 @@ class TrackedDrive(NonCopyable):
 
     def _control(self) -> None:
         if self._follower is None:
-            self._standing += _CONTROL
+            self._stopping_time += _CONTROL
             self._stop()
             return
         pose = self.body.pose
@@ -219,14 +232,14 @@ class TrackedDrive(NonCopyable):
         step = self._follower.step(pose, self.body.velocity)
         if step.motion is None:
             self._follower = None
-            self._standing = 0.0
+            self._stopping_time = 0.0
             self._stop()
             return
-        careful = self._flippers.step(self._flight_of(step.motion), step.motion, pose, _CONTROL)
-        speed = max(-CAREFUL, min(CAREFUL, step.speed)) if careful else step.speed
+        careful = self._flippers.step(self._flight_for(step.motion), step.motion, pose, _CONTROL)
+        speed = max(-CAREFUL_SPEED, min(CAREFUL_SPEED, step.speed)) if careful else step.speed
         angle = self._flippers.angle
-        if self._other_angle > 0.0:
-            self._other_angle -= _CONTROL
+        if self._angle_time_left > 0.0:
+            self._angle_time_left -= _CONTROL
             angle = self._phase_angle
         self._command(speed, step.turn_rate, angle)
 
@@ -237,22 +250,26 @@ class TrackedDrive(NonCopyable):
     def _stop(self) -> None:
         self.body.command(0.0, 0.0, self._flippers.angle)
 
-    def _flight_of(self, motion: Motion) -> Flight | None:
-        """The flight that a motion goes over; looked at once."""
+    def _flight_for(self, motion: Motion) -> Flight | None:
+        """Return the flight of a motion, found once for it; None if it is not on stairs."""
         if not motion.on_stairs:
             return None
         if self._flight is None or self._flight[0] is not motion:
             self._flight = motion, find_flight(self._world, motion, self._robot.track_gauge)
         return self._flight[1]
 
-    def _look(self, touches: tuple[Touch, ...]) -> None:
-        """Notes what is wrong, and decides what to do about it."""
+    def _check_motion(self, touches: tuple[Touch, ...]) -> None:
+        """Record a fault of the drive; start a recovery or fail if the robot cannot continue."""
         assert self._follower is not None
-        incident = self._watch.look(self.body.pose, self.body.roll, *self._commanded)
+        incident = self._stall_detector.update(self.body.pose, self.body.roll, *self._commanded)
         if incident is None:
             return
         last = self.incidents[-1] if self.incidents else None
-        if last is None or last.trouble != incident.trouble or _apart(last, incident) > _FREE:
+        if (
+            last is None
+            or last.trouble != incident.trouble
+            or _distance_apart(last, incident) > _FREE
+        ):
             self.incidents.append(incident)
         if incident.trouble is Trouble.SLIPPING:
             return
@@ -272,10 +289,10 @@ class TrackedDrive(NonCopyable):
             return
         motion = self._follower.motion
         if motion is not None:
-            self._phases.extend(phases(motion, self._attempts, incident.pose.pitch))
+            self._phases.extend(recovery_phases(motion, self._attempts, incident.pose.pitch))
             self._phase_left = self._phases[0].duration
             self._attempts += 1
-            self._watch.forget()
+            self._stall_detector.clear()
 
     def _recover(self, pose: BodyPose) -> None:
         phase = self._phases[0]
@@ -288,26 +305,28 @@ class TrackedDrive(NonCopyable):
         self._phase_left -= _CONTROL
         if self._phase_left <= 1e-9:
             self._phases.popleft()
-            self._watch.forget()
+            self._stall_detector.clear()
             if self._phases:
                 self._phase_left = self._phases[0].duration
             else:
-                self._other_angle, self._phase_angle = GOING_ON, phase.flipper
+                self._angle_time_left, self._phase_angle = ANGLE_DURATION, phase.flipper
 
     def _at_rest(self) -> bool:
         speed, turn_rate = self.body.velocity
-        return (abs(speed) < _AT_REST and abs(turn_rate) < _AT_REST) or self._standing > _STOPPING
+        return (
+            abs(speed) < _AT_REST and abs(turn_rate) < _AT_REST
+        ) or self._stopping_time > _STOPPING
 
-    def _forget(self) -> None:
+    def _clear(self) -> None:
         self._follower = None
         self._failure = None
         self._phases.clear()
-        self._watch.forget()
+        self._stall_detector.clear()
         self._attempts = 0
         self._stuck_at = None
-        self._other_angle = 0.0
+        self._angle_time_left = 0.0
         self._phase_angle = 0.0
-        self._standing = 0.0
+        self._stopping_time = 0.0
         self._commanded = 0.0, 0.0
 
 
@@ -315,5 +334,5 @@ def _distance(a: BodyPose, b: BodyPose) -> float:
     return math.dist((a.x, a.y, a.z), (b.x, b.y, b.z))
 
 
-def _apart(a: Incident, b: Incident) -> float:
+def _distance_apart(a: Incident, b: Incident) -> float:
     return _distance(a.pose, b.pose)

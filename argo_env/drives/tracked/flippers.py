@@ -1,5 +1,7 @@
-"""What the flippers do on the way: raised on the flat, a push up the first step, flat on a flight,
-and down on the deck at its top edge, so that the robot tips over slowly.
+"""Flippers on a path: raised on the flat, flat on a flight, down at the ends of a flight.
+
+They push the robot up the first step, and touch the deck at the top edge of the flight, so that the
+robot tips over slowly.
 
 The tips reach 5 cm beyond the rear of the tracks, so they carry the end that leads up.
 """
@@ -9,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from argo_env.drives.drive import FLAT, RAISED, RATE
+from argo_env.drives.drive import FLAT, FLIPPER_RATE, RAISED
 from argo_env.navigation.path import Motion
 from argo_env.robot.pose import BodyPose
 from argo_env.world.world import World
@@ -20,40 +22,43 @@ _PUSH = math.radians(-10.0)  # onto the first tread
 _LENGTH = 0.87  # m, from the axle to the middle of the tip
 _TIP = -0.49  # m, where the tip is along the robot when the flippers lie flat
 _CLEARANCE = 0.115  # m, of the flat tip above the ground
-_LOWERING = math.radians(12.0)  # rad/s, at which the robot is let down
-_LIFTING = math.radians(15.0)  # rad/s, at which the rear is lifted
+_LOWERING = math.radians(12.0)  # rad/s, at which the flippers let the robot down
+_LIFTING = math.radians(15.0)  # rad/s, at which the flippers lift the rear
 _AT_RISER = -0.52  # m, where the first riser is along the robot when its rear is about to touch it
-_GAP = math.radians(10.0)  # kept above the deck, where the flippers must not lift
-_SHY = math.radians(5.0)  # less than would lift the robot to the pitch of the flight
-_TIPPED = math.radians(2.0)  # less pitch than on the flight, by which it has begun to tip
+_GAP = math.radians(10.0)  # above the deck, where the flippers must not lift the robot
+_MARGIN = math.radians(5.0)  # above the angle that would lift the robot to the flight's pitch
+_TIPPED = math.radians(2.0)  # below the flight's pitch, at which the robot has begun to tip
 _LEVEL = math.radians(3.0)
-CAREFUL = 0.08  # m/s over an edge
-_SPACING = 0.005  # m between the heights looked at
+CAREFUL_SPEED = 0.08  # m/s over an edge
+_SPACING = 0.005  # m between the points whose heights are used
 _STEP = 0.03  # m of height that ends a deck
 
 
 @dataclass(frozen=True)
 class Flight:
-    """A flight as the robot sees it: where it begins and ends, in m along the line downhill."""
+    """Flight as the robot sees it: its top edge and its foot, in m along the line downhill."""
 
     x: float
     y: float
-    """a point on the line"""
+    """x and y of a point on the line, in m"""
     ahead: tuple[float, float]
-    """the way down, and the robot's heading"""
+    """unit vector downhill, which is the robot's heading"""
     top: float
     foot: float
     slope: float
-    """rad, of the line through the nosings"""
+    """slope of the line through the nosings in rad"""
 
     def edges(self, pose: BodyPose) -> tuple[float, float]:
-        """m along the robot's tracks from its middle to the top edge and to the foot."""
+        """Return the distances (m) along the tracks from the robot's middle to the two edges.
+
+        The first is that to the top edge, the second that to the foot.
+        """
         at = (pose.x - self.x) * self.ahead[0] + (pose.y - self.y) * self.ahead[1]
         return (self.top - at) / math.cos(pose.pitch), (self.foot - at) / math.cos(pose.pitch)
 
 
 def find_flight(world: World, motion: Motion, gauge: float) -> Flight:
-    """Looks at the ground below the tracks along a motion on stairs."""
+    """Return the flight that the ground below the tracks shows along a motion on stairs."""
     high, low = (motion.start, motion.end) if motion.gear > 0 else (motion.end, motion.start)
     ahead = math.cos(motion.start.yaw), math.sin(motion.start.yaw)
     length = math.dist((high.x, high.y), (low.x, low.y))
@@ -73,39 +78,41 @@ def find_flight(world: World, motion: Motion, gauge: float) -> Flight:
 
 
 class Flippers:
-    """Decides where the flippers go. Holds the angle commanded last."""
+    """Control of the flippers. It holds the angle commanded last."""
 
     def __init__(self) -> None:
         self.angle = RAISED
 
     def step(self, flight: Flight | None, motion: Motion | None, pose: BodyPose, dt: float) -> bool:
-        """Moves the commanded angle on by `dt` (s). Returns whether the robot should go slowly."""
+        """Update the commanded angle after `dt` (s); return whether the robot should go slowly."""
         if flight is None or motion is None:
-            self._towards(RAISED, RATE, dt)
+            self._towards(RAISED, FLIPPER_RATE, dt)
             return False
         top, foot = flight.edges(pose)
         on_flight = pose.pitch > flight.slope - _TIPPED
         if motion.gear < 0:
             if top > -0.35:
                 if on_flight:
-                    self._towards(_touching(min(pose.pitch, flight.slope), top) + _GAP, RATE, dt)
+                    self._towards(
+                        _touching_angle(min(pose.pitch, flight.slope), top) + _GAP, FLIPPER_RATE, dt
+                    )
                 else:
-                    self._towards(FLAT, _LOWERING if pose.pitch > _LEVEL else RATE, dt)
+                    self._towards(FLAT, _LOWERING if pose.pitch > _LEVEL else FLIPPER_RATE, dt)
                 return top > 0.0 and pose.pitch > _LEVEL
             if foot < _AT_RISER:
-                self._towards(RAISED, RATE, dt)
+                self._towards(RAISED, FLIPPER_RATE, dt)
                 return False
             if foot < -0.3 and pose.pitch < math.radians(8.0):
                 self._towards(_PUSH, _LIFTING, dt)
                 return True
         elif -0.35 < top < 0.22:
-            wanted = _touching(flight.slope, top) + (_SHY if top > 0.0 else _GAP)
-            self._towards(wanted, _LIFTING if wanted < self.angle else RATE, dt)
+            wanted = _touching_angle(flight.slope, top) + (_MARGIN if top > 0.0 else _GAP)
+            self._towards(wanted, _LIFTING if wanted < self.angle else FLIPPER_RATE, dt)
             return top > -0.1
         elif top >= 0.22:
-            self._towards(_TOUCHING, RATE, dt)
+            self._towards(_TOUCHING, FLIPPER_RATE, dt)
             return False
-        self._towards(FLAT, RATE, dt)
+        self._towards(FLAT, FLIPPER_RATE, dt)
         return False
 
     def _towards(self, angle: float, rate: float, dt: float) -> None:
@@ -113,8 +120,10 @@ class Flippers:
         self.angle += max(-most, min(most, angle - self.angle))
 
 
-def _touching(pitch: float, top: float) -> float:
-    """The angle at which the tips touch the deck behind an edge that is `top` (m) ahead of the
-    robot's middle, when it is pitched down over that edge."""
+def _touching_angle(pitch: float, top: float) -> float:
+    """Return the angle (rad) at which the tips touch the deck behind an edge.
+
+    The edge is `top` (m) ahead of the middle of the robot, which is pitched down over it.
+    """
     drop = _CLEARANCE + max(0.0, top - _TIP) * math.tan(pitch)
     return max(_LOWEST, -math.asin(min(1.0, drop / _LENGTH)))

@@ -1,7 +1,7 @@
-"""The robot's model with all that does not move against the body made one part of it.
+"""Model of the robot in which all links that do not move against the body are one part.
 
 The arm is stowed while the robot drives and the tracks are bolted on, so the physics needs three
-rigid parts only, the body and two flippers. A step of the physics takes half the time for it.
+rigid parts only, the body and two flippers. This halves the time of a step of the physics.
 """
 
 from collections.abc import Mapping
@@ -16,9 +16,14 @@ from scipy.spatial.transform import Rotation
 Matrix = NDArray[np.float64]
 
 
-def lumped(urdf: Path, arm: Mapping[str, float], moving: tuple[str, ...], mass_scale: float) -> str:
-    """The URDF with every joint but those in `moving` fixed, at the angles of `arm` (deg), and
-    their links made part of the link that carries them; all masses times `mass_scale`."""
+def lump_links(
+    urdf: Path, arm: Mapping[str, float], moving: tuple[str, ...], mass_scale: float
+) -> str:
+    """Return the URDF in which only the joints in `moving` can move.
+
+    All other joints are fixed at the angles of `arm` (deg), or 0, and their links become part of
+    the link that carries them. All masses are multiplied by `mass_scale`.
+    """
     source = ET.parse(urdf).getroot()
     links = {link.get("name", ""): link for link in source.findall("link")}
     joints = {_ref(joint, "child"): joint for joint in source.findall("joint")}
@@ -47,7 +52,7 @@ def lumped(urdf: Path, arm: Mapping[str, float], moving: tuple[str, ...], mass_s
 def _carried(
     name: str, joints: Mapping[str, ET.Element], arm: Mapping[str, float], moving: tuple[str, ...]
 ) -> tuple[str, Matrix]:
-    """The link that a link becomes part of, and its pose there, shape (4, 4)."""
+    """Return the link that a link becomes part of, and its pose there, shape (4, 4)."""
     pose = np.eye(4)
     while name in joints and joints[name].get("name") not in moving:
         joint = joints[name]
@@ -62,7 +67,7 @@ def _carried(
 def _add_inertia(
     link: ET.Element, parts: list[tuple[ET.Element, Matrix]], mass_scale: float
 ) -> None:
-    """Adds the masses of all parts, which have these poses in the link, as one rigid body."""
+    """Add the masses of all parts, with their poses in the link, as one rigid body."""
     masses, centers, tensors = [], [], []
     for part, pose in parts:
         inertial = part.find("inertial")
@@ -89,8 +94,8 @@ def _add_inertia(
     frame[:3, 3] = center
     _add_origin(inertial, frame)
     ET.SubElement(inertial, "mass", value=repr(float(mass_scale * total)))
-    # PyBullet turns a body's frame into its principal axes, so products of inertia, which are a
-    # twentieth of the moments here, are left out.
+    # PyBullet turns a body's frame into its principal axes. So the products of inertia, here a
+    # twentieth of the moments, are left out.
     names = ("ixx", "iyy", "izz")
     moments = {key: repr(float(mass_scale * inertia[k, k])) for k, key in enumerate(names)}
     ET.SubElement(inertial, "inertia", moments | dict.fromkeys(("ixy", "ixz", "iyz"), "0"))
@@ -103,7 +108,7 @@ def _add_origin(element: ET.Element, pose: Matrix) -> None:
 
 
 def _pose(element: ET.Element) -> Matrix:
-    """The origin of an element, shape (4, 4)."""
+    """Return the origin of an element as a matrix, shape (4, 4)."""
     origin = element.find("origin")
     pose = np.eye(4)
     pose[:3, :3] = Rotation.from_euler("xyz", _vector(origin, "rpy")).as_matrix()

@@ -1,5 +1,7 @@
-"""Terrain of the tracked robot: the world's solids as bodies that never move, and those of them
-that it presses against and must not touch."""
+"""Terrain of the tracked robot: the world's solids as static bodies, and contacts with them.
+
+The contacts are those with elements that the robot presses against and must not touch.
+"""
 
 import math
 from collections.abc import Sequence
@@ -20,14 +22,14 @@ _HOUSING_WIDTH = 0.15
 _HOUSING_HEIGHT = {CheckpointKind.LIQUID_LEVEL_GAUGE: 0.32}
 
 
-_WALKING, _OTHER = "grating", "structure"  # materials that stand for two groups of elements
+_WALKING, _OTHER = "grating", "structure"  # materials that mark the two groups of elements
 
 
 class Terrain:
-    """The solids of a world, with its checkpoints' housings as boxes, and their names.
+    """Solids of a world, with its checkpoints' housings as boxes, and their names.
 
-    They make two parts only, what one walks on and all else: each part more costs time in every
-    step of the physics.
+    They form only two parts, the walking surfaces and all else, because each further part costs
+    time in every step of the physics.
     """
 
     def __init__(self, world: World) -> None:
@@ -38,21 +40,21 @@ class Terrain:
         )
         self._index = {m: ElementIndex(self._elements, m) for m in (_WALKING, _OTHER)}
         self.walking = _WALKING
-        """the name of the part that tracks may stand on"""
+        """name of the part that tracks may stand on"""
 
     def elements_at(self, part: str, points: Sequence[Vector]) -> list[str]:
-        """The names of the elements of that part at points (m) on its surface."""
+        """Return the names of the elements of a part at points (m) on its surface."""
         return self._index[part].at_each(points)
 
     def write(self, folder: str) -> Path:
-        """Writes the URDF; returns where it is."""
+        """Write the URDF to the folder, and return its path."""
         path = Path(folder) / "terrain.urdf"
         path.write_text(to_urdf(self.name, self._elements, drawn=False), encoding="utf-8")
         return path
 
 
 def _housing(checkpoint: SiteCheckpoint) -> Element:
-    """A checkpoint as one box: as a body with a joint it would slow every step of the physics."""
+    """Return a checkpoint as one box: a body with a joint would slow every step of the physics."""
     x, y, z = checkpoint.position
     height = _HOUSING_HEIGHT.get(checkpoint.kind, _HOUSING_WIDTH)
     size = (_HOUSING_DEPTH, _HOUSING_WIDTH, height)
@@ -65,83 +67,86 @@ def _housing(checkpoint: SiteCheckpoint) -> Element:
     return Element(checkpoint.name, Role.PIPE, (Box(center, size, turn),), "pipe")
 
 
-_PRESS = 20.0  # N from which a contact counts; less is a brush
-_HULL_TOP = 0.57  # m; what is higher is arm
-_MANY = 1000  # presses whose elements are looked up at once, to be found together
+_LEAST_FORCE = 20.0  # N, from which a contact counts; less is only a brush
+_HULL_TOP = 0.57  # m; all that is higher is the arm
+_BATCH = 1000  # pending contacts at which their elements are looked up
 
 
 @dataclass(frozen=True, slots=True)
-class Press:
-    """One contact that counts: what of the robot, on which part of the terrain, and where."""
+class StrongContact:
+    """Contact strong enough to count: part of the robot, part of the terrain, and point."""
 
     part: str
     ground: str
     point: Vector
     distance: float
-    """m, less than 0 for an overlap"""
+    """distance in m, less than 0 for an overlap"""
 
 
-class Presses:
-    """Collects presses until they are taken. Holds those whose elements have not been looked up
-    yet, in their order, and of the others the deepest of each part on each element."""
+class ContactLog:
+    """Log of strong contacts until they are read.
+
+    It holds the contacts whose elements have not been looked up yet, in their order, and of the
+    others the deepest for each part of the robot and each element.
+    """
 
     def __init__(self, terrain: Terrain, grounds: dict[int, str], names: dict[int, str]) -> None:
-        """`grounds` and `names` are the links of the terrain and of the robot by number."""
+        """`grounds` and `names` are the names of the terrain's and the robot's links by number."""
         self._terrain = terrain
         self._grounds = grounds
         self._names = names
-        self._noted: list[Press] = []
-        self._found: dict[tuple[str, str], Touch] = {}
+        self._pending: list[StrongContact] = []
+        self._deepest: dict[tuple[str, str], Touch] = {}
 
-    def note(
-        self, contacts: list[tuple[Any, ...]], origin: Vector, axes: tuple[float, ...]
-    ) -> None:
-        """Takes note of contacts, rows of PyBullet's `getContactPoints`; the robot's frame has its
-        `origin` (m) and its `axes`, a rotation matrix row by row."""
+    def add(self, contacts: list[tuple[Any, ...]], origin: Vector, axes: tuple[float, ...]) -> None:
+        """Add the strong ones of some contacts, which are rows of PyBullet's `getContactPoints`.
+
+        `origin` (m) and `axes`, a rotation matrix row by row, are those of the robot's frame.
+        """
         for contact in contacts:
             link, other, on_robot, point, distance, force = (
                 contact[3], contact[4], contact[5], contact[6], contact[8], contact[9],
             )  # fmt: skip
-            if force < _PRESS:
+            if force < _LEAST_FORCE:
                 continue
             part = self._names[link] if link >= 0 else _part_at(on_robot, origin, axes)
-            self._noted.append(Press(part, self._grounds[other], point, distance))
-        if len(self._noted) >= _MANY:
+            self._pending.append(StrongContact(part, self._grounds[other], point, distance))
+        if len(self._pending) >= _BATCH:
             self._look_up()
 
-    def take(self) -> tuple[Touch, ...]:
-        """All presses since the last call."""
-        touches = tuple(touch for _, touch in self.memory())
-        self._found = {}
+    def pop(self) -> tuple[Touch, ...]:
+        """Return the contacts since the last call, and clear the log."""
+        touches = tuple(touch for _, touch in self.state())
+        self._deepest = {}
         return touches
 
-    def memory(self) -> tuple[tuple[tuple[str, str], Touch], ...]:
-        """All presses since they were last taken, to be remembered."""
-        if self._noted:
+    def state(self) -> tuple[tuple[tuple[str, str], Touch], ...]:
+        """Return the contacts since the last `pop` in a form for `restore`."""
+        if self._pending:
             self._look_up()
-        return tuple(self._found.items())
+        return tuple(self._deepest.items())
 
-    def remember(self, memory: tuple[tuple[tuple[str, str], Touch], ...]) -> None:
-        """Goes back to what `memory` gave."""
-        self._noted, self._found = [], dict(memory)
+    def restore(self, state: tuple[tuple[tuple[str, str], Touch], ...]) -> None:
+        """Set the log to a state that `state` returned."""
+        self._pending, self._deepest = [], dict(state)
 
     def _look_up(self) -> None:
-        """Finds the elements, for all at once, as the time that takes hardly grows with them."""
-        noted, self._noted = self._noted, []
+        """Look up the elements of all pending contacts at once: more take hardly more time."""
+        pending, self._pending = self._pending, []
         elements: dict[int, str] = {}
-        for ground in {press.ground for press in noted}:
-            rows = [k for k, press in enumerate(noted) if press.ground == ground]
-            names = self._terrain.elements_at(ground, [noted[k].point for k in rows])
+        for ground in {contact.ground for contact in pending}:
+            rows = [k for k, contact in enumerate(pending) if contact.ground == ground]
+            names = self._terrain.elements_at(ground, [pending[k].point for k in rows])
             elements.update(zip(rows, names, strict=True))
-        for k, press in enumerate(noted):
-            key = press.part, elements[k]
-            known = self._found.get(key)
-            if known is None or -press.distance > known.depth:
-                self._found[key] = Touch(*key, press.point, max(0.0, -press.distance))
+        for k, contact in enumerate(pending):
+            key = contact.part, elements[k]
+            deepest = self._deepest.get(key)
+            if deepest is None or -contact.distance > deepest.depth:
+                self._deepest[key] = Touch(*key, contact.point, max(0.0, -contact.distance))
 
 
 def _part_at(point: Vector, origin: Vector, m: tuple[float, ...]) -> str:
-    """Which part of the body has that point: hull, track, or the stowed arm."""
+    """Return the part of the body at a point: hull, track, or the stowed arm."""
     x, y, z = point[0] - origin[0], point[1] - origin[1], point[2] - origin[2]
     left, up = x * m[1] + y * m[4] + z * m[7], x * m[2] + y * m[5] + z * m[8]
     if up > _HULL_TOP:

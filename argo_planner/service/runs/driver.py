@@ -413,7 +413,7 @@ class RunDriver:
         """Whether nothing goes on until somebody tells the run something."""
         simulation, machine = self._simulation, self._simulation.machine
         drive = simulation.setup.drive
-        if isinstance(drive, Powertrain) and drive.pressed:
+        if isinstance(drive, Powertrain) and drive.stop_pressed:
             return True
         if simulation.task is not None:
             return False

@@ -1,4 +1,4 @@
-"""The battery: what is drawn, what is left, and what the voltage tells of it."""
+"""The battery: the power drawn, the charge left, and its estimate from the voltage."""
 
 import math
 from itertools import pairwise
@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_env.drives.battery import ESTIMATE_ERROR, Battery, estimated_charge, load
+from argo_env.drives.battery import ESTIMATE_ERROR, Battery, electric_load, estimated_charge
 from argo_env.robot.pose import BodyPose
 from tests.conftest import examples
 
@@ -21,7 +21,7 @@ def test_lasts_as_long_as_its_energy(robot):
         battery.use(robot.power.driving, hours * 36.0)
     assert battery.charge == pytest.approx(0.0, abs=1e-9)
     battery.use(1.0, 1.0)
-    assert battery.empty
+    assert battery.is_empty
     battery.use(-robot.power.charging, 3600.0)
     assert battery.charge == pytest.approx(robot.power.charging / robot.battery)
     battery.use(-robot.power.charging, 36000.0)
@@ -72,5 +72,5 @@ def test_the_voltage_is_between_23_and_28_at_rest_and_falls(robot):
     ],
 )
 def test_what_it_draws(robot, after, measuring, name):
-    watts = load(robot.power, HERE, after, 0.1, measuring)
+    watts = electric_load(robot.power, HERE, after, 0.1, measuring)
     assert watts == getattr(robot.power, name)

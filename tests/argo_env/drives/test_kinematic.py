@@ -1,4 +1,4 @@
-"""The kinematic drive: times, places and speeds of what it does, on paths of the navigator."""
+"""The kinematic drive: its times, poses and speeds on paths of the navigator."""
 
 import math
 from itertools import pairwise
@@ -15,10 +15,10 @@ from argo_env.drives import kinematic
 from argo_env.drives.drive import DriveStatus
 from argo_env.drives.kinematic import (
     STEP,
-    GroundMemory,
     KinematicDrive,
-    ground_memory,
-    resting,
+    RestingPoseCache,
+    rest_height_and_slope,
+    resting_pose_cache,
     resting_poses,
 )
 from argo_env.navigation import Path
@@ -30,19 +30,19 @@ from tests.argo_env.drives.test_route import level
 
 
 def as_told(robot):
-    """The robot without a calibration: it goes at the speed that it is told, at once."""
+    """The robot without a calibration reaches the commanded speed at once."""
     return robot.model_copy(update={"calibration": Calibration()})
 
 
 def follow(world, robot, path, velocity=None, time_step=0.1):
-    """The poses from the start on after every step, and the drive."""
+    """Return the poses, at the start and after every step, and the drive."""
     drive = KinematicDrive(world, robot, time_step)
     return follow_path(drive, path, velocity), drive
 
 
 @pytest.fixture(scope="module")
 def paths(navigator, catalog):
-    """A way on the flat, one up the stairs and the same down."""
+    """Return a path on the flat, one up the stairs and one down the same stairs."""
     (a, b, *_), (c, *_) = (catalog.floor(n).patrol for n in (1, 2))
     return {"flat": navigator.plan(a, b), "up": navigator.plan(a, c), "down": navigator.plan(c, a)}
 
@@ -150,7 +150,7 @@ def test_touches_nothing_on_the_way(simulation, robot, paths, way):
     path = paths[way]
     drive = KinematicDrive(simulation, robot)
     drive.place(level(path.start))
-    drive.begin(path, None)
+    drive.follow(path, None)
     while drive.step() is DriveStatus.MOVING:
         assert simulation.touches() == ()
 
@@ -193,7 +193,7 @@ def test_halt_stops_at_once(simulation, robot, paths):
     path = paths["flat"]
     drive = KinematicDrive(simulation, robot)
     drive.place(level(path.start))
-    drive.begin(path, None)
+    drive.follow(path, None)
     for _ in range(60):
         drive.step()
     here = drive.pose
@@ -207,7 +207,7 @@ def test_halt_stops_at_once(simulation, robot, paths):
 def test_goes_on_from_where_it_was_halted(simulation, robot, paths, navigator, catalog):
     drive = KinematicDrive(simulation, robot)
     drive.place(level(paths["flat"].start))
-    drive.begin(paths["flat"], None)
+    drive.follow(paths["flat"], None)
     lattice = navigator.lattice.poses()[:, :2]
     while not 0.03 < np.hypot(*(lattice - (drive.pose.x, drive.pose.y)).T).min() < 0.1:
         assert drive.step() is DriveStatus.MOVING
@@ -215,7 +215,7 @@ def test_goes_on_from_where_it_was_halted(simulation, robot, paths, navigator, c
     drive.halt()
     goal = catalog.floor(1).patrol[3]
     path = navigator.plan(Pose(x=here.x, y=here.y, z=here.z, yaw=here.yaw), goal)
-    drive.begin(path, None)
+    drive.follow(path, None)
     steps, last = 1, here
     while drive.step() is DriveStatus.MOVING:
         moved = math.dist((last.x, last.y), (drive.pose.x, drive.pose.y))
@@ -232,7 +232,7 @@ SLOPE = math.degrees(math.atan2(2.5 / 14, 0.28))
 
 
 def lowest_line(offsets, heights):
-    """Height at 0 of the line above all points that is lowest there."""
+    """Return the height at 0 of the line above all points that is lowest there."""
     solution = linprog(
         [1.0, 0.0],
         A_ub=np.column_stack([-np.ones(len(offsets)), -offsets]),
@@ -258,7 +258,7 @@ def ground(draw):
 @given(ground())
 def test_rests_on_the_lowest_line_above_the_ground(ground):
     offsets, heights = ground
-    middle, slope = resting(offsets, heights)
+    middle, slope = rest_height_and_slope(offsets, heights)
     assert middle.shape == slope.shape == (len(heights),)
     for row, m, s in zip(heights, middle, slope, strict=True):
         assert m == pytest.approx(lowest_line(offsets, row), abs=1e-6)
@@ -268,7 +268,7 @@ def test_rests_on_the_lowest_line_above_the_ground(ground):
 @given(st.floats(-1, 1), st.floats(-1, 1))
 def test_rests_on_a_plane_as_it_is(height, slope):
     offsets = np.linspace(-0.45, 0.45, 18)
-    middle, found = resting(offsets, (height + slope * offsets)[None, :])
+    middle, found = rest_height_and_slope(offsets, (height + slope * offsets)[None, :])
     assert middle[0] == pytest.approx(height, abs=1e-9)
     assert found[0] == pytest.approx(slope, abs=1e-9)
 
@@ -342,7 +342,7 @@ def test_climb_is_monotonous(on_flight):
     assert rise.sum() == pytest.approx(abs(motion.end.z - motion.start.z), abs=0.005)
 
 
-def test_goes_on_where_the_motion_before_ended(simulation, robot):
+def test_continues_where_the_previous_motion_ended(simulation, robot):
     """A flight that is driven in pieces, with seams anywhere, is climbed without jumps."""
     whole = FLIGHTS[1]
     seams = [whole.at(share) for share in np.linspace(0.0, 1.0, 12)]
@@ -351,34 +351,38 @@ def test_goes_on_where_the_motion_before_ended(simulation, robot):
         assert (after[0].z, after[0].pitch) == pytest.approx((before[-1].z, before[-1].pitch))
 
 
-def test_ground_that_is_remembered_is_not_probed_again(simulation, robot, monkeypatch):
-    memory = GroundMemory()
+def test_ground_of_a_cached_motion_is_not_probed_again(simulation, robot, monkeypatch):
+    cache = RestingPoseCache()
     motion = drive(1.9, 2.5, 2.5, 1.9, 9.0, 2.5, 90)
-    first = memory.resting_poses(simulation, motion, robot)
+    first = cache.resting_poses(simulation, motion, robot)
     assert first == resting_poses(simulation, motion, robot)
     monkeypatch.setattr(kinematic, "resting_poses", None)
-    assert memory.resting_poses(simulation, drive(1.9, 2.5, 2.5, 1.9, 9.0, 2.5, 90), robot) == first
+    assert cache.resting_poses(simulation, drive(1.9, 2.5, 2.5, 1.9, 9.0, 2.5, 90), robot) == first
 
 
 def test_where_something_may_move_the_ground_is_probed_each_time(simulation, umad, robot):
-    """Beside a checkpoint, and all over while there is a screen."""
-    memory = GroundMemory()
+    """The ground is probed beside a checkpoint, and everywhere while there is a screen."""
+    cache = RestingPoseCache()
     motion = drive(1.9, 2.5, 2.5, 1.9, 9.0, 2.5, 90)
-    level = memory.resting_poses(simulation, motion, robot)
+    level = cache.resting_poses(simulation, motion, robot)
     number = simulation.add_screen("plank", Box((1.9, 6.0, 2.55), (1.0, 1.0, 0.1)), (1, 0, 0))
     try:
-        assert max(p.z for p in memory.resting_poses(simulation, motion, robot)) > 2.59
+        assert max(p.z for p in cache.resting_poses(simulation, motion, robot)) > 2.59
     finally:
         simulation.remove_screen(number)
-    assert memory.resting_poses(simulation, motion, robot) == level
+    assert cache.resting_poses(simulation, motion, robot) == level
     x, y, z = umad.checkpoints[0].position
     beside = drive(x, y - 0.8, z - 0.4, x + 0.5, y - 0.8, z - 0.4, 0)
-    assert memory.resting_poses(simulation, beside, robot) is not memory.resting_poses(
+    assert cache.resting_poses(simulation, beside, robot) is not cache.resting_poses(
         simulation, beside, robot
     )
 
 
-def test_other_ground_has_a_memory_of_its_own(umad, robot):
+def test_other_ground_has_a_cache_of_its_own(umad, robot):
     size = robot.track_length, robot.track_gauge
-    assert ground_memory(umad.elements, *size) is ground_memory(tuple(umad.elements), *size)
-    assert ground_memory(umad.elements, *size) is not ground_memory(umad.elements[1:], *size)
+    assert resting_pose_cache(umad.elements, *size) is resting_pose_cache(
+        tuple(umad.elements), *size
+    )
+    assert resting_pose_cache(umad.elements, *size) is not resting_pose_cache(
+        umad.elements[1:], *size
+    )

@@ -1,4 +1,4 @@
-"""The route drive: its times and places against the analysis and the kinematic drive."""
+"""The route drive: its times and poses against the analysis and the kinematic drive."""
 
 import math
 
@@ -33,9 +33,9 @@ def level(pose):
 
 
 def follow(drive, path, velocity=None):
-    """The drive's poses from the start on, after every step."""
+    """Return the drive's poses at the start and after every step."""
     drive.place(level(path.start))
-    drive.begin(path, velocity)
+    drive.follow(path, velocity)
     poses, status = [drive.pose], DriveStatus.MOVING
     while status is DriveStatus.MOVING:
         assert len(poses) < 100_000
@@ -47,7 +47,7 @@ def follow(drive, path, velocity=None):
 
 @st.composite
 def paths(draw):
-    """Turns and drives, forwards, backwards, up and down."""
+    """Draw a path of turns and straight motions, forwards, backwards, up and down."""
     here = Pose(x=0.0, y=0.0, z=0.0, yaw=draw(st.floats(-3.0, 3.0)))
     motions = []
     for _ in range(draw(st.integers(0, 8))):
@@ -101,7 +101,7 @@ def test_the_front_is_down_on_stairs_and_level_elsewhere(path, robot):
     for k, pose in enumerate(follow(drive, path)[:-1]):
         if k == 0 or not path.motions:
             continue
-        motion, share = table.at(k * 0.1)
+        motion, share = table.motion_at(k * 0.1)
         slope = math.atan(0.6) if motion.on_stairs else 0.0
         assert pose.pitch == pytest.approx(slope, abs=1e-6)
         assert 0.0 <= share <= 1.0
@@ -112,7 +112,7 @@ def test_halt_stops_at_once_and_forgets_the_path():
     there = Pose(x=4, y=0, z=0, yaw=0)
     drive = RouteDrive(ROBOT)
     drive.place(BodyPose(0, 0, 0, 0))
-    drive.begin(Path(here, (Motion(here, there),)), 0.5)
+    drive.follow(Path(here, (Motion(here, there),)), 0.5)
     for _ in range(20):
         assert drive.step() is DriveStatus.MOVING
     stopped = drive.pose
@@ -159,7 +159,7 @@ def test_there_is_nothing_to_show_or_to_photograph(yard):
 
 
 def test_lines_of_sight_are_those_of_the_world(umad, robot, simulation):
-    """Against the geometry that views are planned with, and against rays in PyBullet."""
+    """They agree with the geometry that plans views, and with rays in PyBullet."""
     paper, rng = WorldWithoutPhysics(umad, robot), np.random.default_rng(4)
     low, high = (0.0, 0.0, 0.1), (15.0, 10.0, 12.0)
     names = {e.name for e in umad.elements}

@@ -363,7 +363,7 @@ def fault(kind, at, until=None, **fields):
 
 
 def pressed(targets):
-    return targets.drive.pressed
+    return targets.drive.stop_pressed
 
 
 def test_the_alarm_sounds_until_the_last_one_ends(targets):
@@ -390,7 +390,7 @@ def test_the_slowest_of_several_drive_faults_counts(targets):
         fault("drive_dysfunction", 5, 10, speed=0.2),
         fault("drive_dysfunction", 6, 20, speed=0.7),
     )
-    assert observe_at(targets, lambda s: s.drive.share, (1, 7, 12, 30), *slow) == [
+    assert observe_at(targets, lambda s: s.drive.speed_share, (1, 7, 12, 30), *slow) == [
         0.5,
         0.2,
         0.5,

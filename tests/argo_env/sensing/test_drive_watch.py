@@ -32,15 +32,15 @@ def report_times_along(yard, *goals, pressed=(), share=1.0):
     drive = Powertrain(RouteDrive(yard.robot))
     watch = DriveWatch(drive, yard.robot)
     drive.place(BodyPose(START.x, START.y, START.z, START.yaw))
-    drive.share = share
+    drive.speed_share = share
     reports, step, here = [], 0, START
     for goal in goals:
         path = yard.plan(here, goal)
         here = path.end
-        drive.begin(path, None)
-        while drive.way is not None and step < 6000:
+        drive.follow(path, None)
+        while drive.path_and_velocity is not None and step < 6000:
             step += 1
-            drive.pressed = any(a <= step * STEP < b for a, b in pressed)
+            drive.stop_pressed = any(a <= step * STEP < b for a, b in pressed)
             drive.step()
             if step % round(watch.period / STEP) == 3:
                 reports += [step * STEP for _ in watch.update(step * STEP, drive.pose)]

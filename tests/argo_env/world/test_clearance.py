@@ -118,7 +118,7 @@ def test_most_detections_are_skipped_on_stairs(
     monkeypatch.setattr(usual, "_detect", lambda: (detections.append(1), detect()))
     drive = KinematicDrive(usual, robot)
     drive.place(BodyPose(start.x, start.y, start.z, start.yaw))
-    drive.begin(path, None)
+    drive.follow(path, None)
     steep = steep_detections = 0
     while drive.step() is DriveStatus.MOVING:
         before = len(detections)

@@ -1,4 +1,4 @@
-"""Worlds and bodies for the tracked robot, apart from the world that other tests look at."""
+"""Worlds and bodies for the tracked robot, separate from the world of other tests."""
 
 import pytest
 

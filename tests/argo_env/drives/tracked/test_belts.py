@@ -1,4 +1,4 @@
-"""The forces of belts, by hand-made contacts."""
+"""The forces of belts at hand-made contacts."""
 
 import math
 
@@ -17,7 +17,7 @@ GROUND = 7
 
 
 def contact(x, y, force, link=-1, other=GROUND):
-    """A contact with level ground, in metres from below the centre of mass."""
+    """Return a contact with level ground; x and y are in m from below the centre of mass."""
     return (0, 0, 0, link, other, (x, y, -0.25), (x, y, -0.25), (0.0, 0.0, 1.0), 0.0, force)
 
 
@@ -27,10 +27,10 @@ def standing():
 
 def pull(belts, contacts, speeds=(0.0, 0.0), velocity=STILL, spin=STILL, steps=1):
     for _ in range(steps):
-        wrench, strange = belts.wrench(
+        wrench, other = belts.wrench(
             contacts, GROUND, speeds, STILL, LEVEL, velocity, spin, 1 / 240
         )
-    return wrench, strange
+    return wrench, other
 
 
 def belts(**traction):
@@ -53,7 +53,7 @@ def test_a_robot_that_slides_sideways_is_held_by_the_side_grip():
 
 
 def test_a_push_that_is_held_leaves_no_creep():
-    """Grousers hold by how far they are bent: after a slip the force stays without any slip."""
+    """Bent grousers hold the robot: after a slip the force stays without any slip."""
     held = belts()
     pull(held, standing(), velocity=(0.1, 0.0, 0.0), steps=5)
     first = pull(held, standing())[0][0]
@@ -87,7 +87,7 @@ def test_no_force_is_beyond_the_grip(normals, speeds, velocity, spin):
     assert wrench[2] == pytest.approx(0.0, abs=1e-9)
 
 
-def test_what_is_no_belt_or_no_ground_is_strange():
+def test_other_contacts_are_those_of_no_belt_or_no_ground():
     belly, wall = contact(0.0, 0.0, 50.0), contact(0.4, 0.23, 50.0, other=3)
-    _, strange = pull(belts(), [*standing(), belly, wall])
-    assert strange == [belly, wall]
+    _, other = pull(belts(), [*standing(), belly, wall])
+    assert other == [belly, wall]

@@ -1,4 +1,4 @@
-"""The body on its tracks: rest, speed, turns, flights, and the same again bit by bit."""
+"""The body on its tracks: rest, speed, turns, flights, and repetition bit by bit."""
 
 import math
 
@@ -36,7 +36,7 @@ def test_rests_level_where_it_is_put(body):
 
 @pytest.mark.parametrize(("heading", "up"), [(0.0, 1), (math.pi, -1)])
 def test_leans_to_the_side_that_is_lower(body, robot, heading, up):
-    """With one track on the edge of the slab, 3 cm above the gravel, and the other beside it."""
+    """One track is on the edge of the slab, 3 cm above the gravel, and the other beside it."""
     body.reset(BodyPose(8.0, 0.1, 0.0, heading))
     seconds(body, 1.0)
     lean = math.asin(0.03 / robot.track_gauge)
@@ -68,7 +68,7 @@ def test_turns_in_place_at_the_rate_commanded(body, degrees):
 
 
 def test_belts_slip_in_a_turn(body):
-    """They run faster than wheels without slip would, since tracks slide sideways in a turn."""
+    """Belts run faster than wheels without slip, since tracks slide sideways in a turn."""
     body.reset(GRAVEL)
     body.command(0.0, math.radians(22.5), 0.0)
     seconds(body, 3.0)
@@ -135,7 +135,7 @@ def test_pressing_on_a_wall_is_a_touch(body):
 
 
 def dance(body):
-    """Poses of a drive with turns, flippers and a flight, as exact numbers."""
+    """Return the exact poses of a motion with turns, flippers and a flight."""
     rows = []
     for speed, rate, flipper in ((0.3, 0.2, 0.4), (-0.2, -0.3, -0.3), (0.0, 0.4, 0.0)):
         body.command(speed, rate, flipper)

@@ -1,4 +1,4 @@
-"""The tracked drive: flights, landings, halts, and what it does when it can't go on."""
+"""The tracked drive: flights, landings, halts, and recovery when it can't continue."""
 
 import math
 from itertools import pairwise
@@ -7,7 +7,7 @@ import pytest
 
 from argo_compiler.base.model import Pose
 from argo_env.drives.drive import DriveStatus, Trouble
-from argo_env.drives.tracked.drive import WINDOW, StallWatch, TrackedDrive
+from argo_env.drives.tracked.drive import WINDOW, StallDetector, TrackedDrive
 from argo_env.navigation.path import Motion, Path, wrap
 from argo_env.robot.pose import BodyPose
 from benchmarks.tracked import path_of
@@ -30,9 +30,9 @@ def straight(a, length, gear=1):
 
 
 def follow(drive, path, velocity=None, most=2000, start=None, world=None, touched=None):
-    """Drives along the path; gives the last status and the poses after each step."""
+    """Follow the path; return the last status and the poses at the start and after each step."""
     drive.place(start or level(path.start))
-    drive.begin(path, velocity)
+    drive.follow(path, velocity)
     status, poses = DriveStatus.MOVING, [drive.pose]
     while status is DriveStatus.MOVING:
         assert len(poses) < most
@@ -120,7 +120,7 @@ def test_arrives_without_motions(drive):
 def test_halt_brakes_then_says_arrived(drive, seconds):
     path = straight(at(4.0, -2.05, -0.03), 4.0)
     drive.place(level(path.start))
-    drive.begin(path, None)
+    drive.follow(path, None)
     for _ in range(round(seconds / drive.time_step)):
         assert drive.step() is DriveStatus.MOVING
     before = drive.pose
@@ -140,7 +140,7 @@ def test_halt_brakes_then_says_arrived(drive, seconds):
 def test_halts_on_a_flight_and_goes_on(drive, navigator):
     path = navigator.plan(at(1.9, 2.8, 2.5), at(1.9, 7.95, 5.0))
     drive.place(level(path.start))
-    drive.begin(path, None)
+    drive.follow(path, None)
     while drive.pose.z < 3.2:
         assert drive.step() is DriveStatus.MOVING
     drive.halt()
@@ -152,14 +152,14 @@ def test_halts_on_a_flight_and_goes_on(drive, navigator):
     assert math.dist((held.x, held.y, held.z), (drive.pose.x, drive.pose.y, drive.pose.z)) < 0.005
     here = drive.pose
     on = navigator.plan(Pose(x=here.x, y=here.y, z=here.z, yaw=here.yaw), path.end)
-    drive.begin(on, None)
+    drive.follow(on, None)
     while (status := drive.step()) is DriveStatus.MOVING:
         pass
     assert status is DriveStatus.ARRIVED
     assert math.dist((drive.pose.x, drive.pose.y), (path.end.x, path.end.y)) <= 0.05
 
 
-def test_a_wall_in_the_way_is_told_after_recovery_was_tried(drive):
+def test_a_wall_on_the_path_is_reported_after_recovery_was_tried(drive):
     path = straight(at(1.9, 7.7, 0.0), 2.3)
     status, poses = follow(drive, path)
     assert status is DriveStatus.FAILED
@@ -174,7 +174,7 @@ def test_a_wall_in_the_way_is_told_after_recovery_was_tried(drive):
     while drive.step() is DriveStatus.MOVING:
         pass
     away = straight(at(drive.pose.x, drive.pose.y, 0.0), 0.4, gear=-1)
-    drive.begin(away, None)
+    drive.follow(away, None)
     assert drive.failure is None
     while (status := drive.step()) is DriveStatus.MOVING:
         pass
@@ -183,7 +183,7 @@ def test_a_wall_in_the_way_is_told_after_recovery_was_tried(drive):
 
 def test_being_stuck_is_noticed_within_the_window(drive):
     drive.place(BodyPose(1.9, 7.7, 0.0, 0.0))
-    drive.begin(straight(at(1.9, 7.7, 0.0), 2.3), None)
+    drive.follow(straight(at(1.9, 7.7, 0.0), 2.3), None)
     farthest, standing = -math.inf, 0.0
     while not drive.incidents:
         assert drive.step() is DriveStatus.MOVING
@@ -192,9 +192,9 @@ def test_being_stuck_is_noticed_within_the_window(drive):
     assert 0.4 * WINDOW <= standing <= WINDOW
 
 
-def test_tipping_over_is_told(drive):
+def test_tipping_over_is_reported(drive):
     drive.place(BodyPose(5.0, -2.05, 0.6, 0.0, math.radians(75)))
-    drive.begin(straight(at(5.0, -2.05, -0.03), 2.0), None)
+    drive.follow(straight(at(5.0, -2.05, -0.03), 2.0), None)
     status = DriveStatus.MOVING
     for _ in range(50):
         status = drive.step()
@@ -205,12 +205,12 @@ def test_tipping_over_is_told(drive):
     assert drive.incidents[-1].trouble is Trouble.TIPPED
 
 
-def look(watch, speeds, moved, rate=0.0, turned=0.0):
-    """What the watch says last, when the robot is commanded and moves like that for long enough."""
+def last_fault(detector, speeds, moved, rate=0.0, turned=0.0):
+    """Return the last fault that the detector reports after longer than its window."""
     incident, x, yaw = None, 0.0, 0.0
     for _ in range(round((WINDOW + 1.0) / 0.05)):
         x, yaw = x + 0.05 * moved, yaw + 0.05 * turned
-        incident = watch.look(BodyPose(x, 0.0, 0.0, yaw), 0.0, speeds, rate)
+        incident = detector.update(BodyPose(x, 0.0, 0.0, yaw), 0.0, speeds, rate)
     return incident and incident.trouble
 
 
@@ -224,15 +224,15 @@ def look(watch, speeds, moved, rate=0.0, turned=0.0):
         (0.0, 0.0, None),
     ],
 )
-def test_watch_compares_ways(commanded, went, trouble):
-    assert look(StallWatch(0.05), commanded, went) is trouble
+def test_detector_compares_distances(commanded, went, trouble):
+    assert last_fault(StallDetector(0.05), commanded, went) is trouble
 
 
 @pytest.mark.parametrize(
     ("turned", "trouble"), [(0.38, None), (0.1, Trouble.SLIPPING), (0.0, Trouble.STUCK)]
 )
-def test_watch_compares_turns(turned, trouble):
-    assert look(StallWatch(0.05), 0.0, 0.0, rate=0.4, turned=turned) is trouble
+def test_detector_compares_turns(turned, trouble):
+    assert last_fault(StallDetector(0.05), 0.0, 0.0, rate=0.4, turned=turned) is trouble
 
 
 @pytest.mark.long
@@ -241,7 +241,7 @@ def test_twins_drive_the_same_bit_by_bit(drive, ground, robot, navigator):
     twin = TrackedDrive(ground, robot)
     for each in (drive, twin):
         each.place(level(path.start))
-        each.begin(path, 0.3)
+        each.follow(path, 0.3)
     for _ in range(250):
         assert drive.step() is twin.step()
         assert drive.pose == twin.pose

@@ -108,7 +108,7 @@ def test_stairs_landings_railings_and_rims_are_no_obstacles(
     )
     drive = KinematicDrive(simulation, robot)
     drive.place(BodyPose(here.x, here.y, here.z, here.yaw))
-    drive.begin(navigator.plan(here, Pose(x=goal[0], y=goal[1], z=goal[2])), None)
+    drive.follow(navigator.plan(here, Pose(x=goal[0], y=goal[1], z=goal[2])), None)
     poses = [(0.0, drive.pose)]
     while drive.step() is DriveStatus.MOVING:
         poses.append((poses[-1][0] + 0.1, drive.pose))

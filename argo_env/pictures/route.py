@@ -193,7 +193,7 @@ def _place(planned: MissionProblem, visit: int, site: Site) -> tuple[float, floa
     """Where a visit's task is: x, y (m) and floor."""
     task = planned.visits.task(planned.visits.task_units[visit].entry)
     if task.action is Action.MEASURE:
-        checkpoint = site.measured_by(task.object_id)
+        checkpoint = site.checkpoint_for(task.object_id)
         return checkpoint.position[0], checkpoint.position[1], checkpoint.floor
     pose = task.pose or Pose(x=0.0, y=0.0, z=0.0)
     return pose.x, pose.y, site.floor_at(pose.z)

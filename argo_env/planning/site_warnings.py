@@ -43,7 +43,7 @@ def _why_unseen(task: Task, pose: Pose, navigator: "Navigator") -> str | None:
     from argo_env.sensing.sensor import MeasurementError
     from argo_env.world.without_physics import WorldWithoutPhysics
 
-    checkpoint = navigator.site.measured_by(task.object_id)
+    checkpoint = navigator.site.checkpoint_for(task.object_id)
     world = WorldWithoutPhysics(navigator.site, navigator.robot)
     sensor = IdealSensor(world, navigator.robot, {checkpoint.id: checkpoint.nominal.low})
     try:

@@ -170,7 +170,7 @@ class SiteTravel:
     def _plan(self, origin: Pose, place: str | Pose | None) -> Path:
         if isinstance(place, Pose):
             return self._navigator.plan(origin, place)
-        checkpoint = self._on.site.measured_by(place)
+        checkpoint = self._on.site.checkpoint_for(place)
         return self._navigator.plan_to_view(origin, checkpoint.id)
 
     def _leg(self, way: Path, velocity: float | None, work: float) -> Leg | NoPath:

@@ -109,7 +109,7 @@ def make_reading(
     """
     if ended.outcome != "done" or ended.value is None or task.object_id is None:
         return None
-    checkpoint = site.measured_by(task.object_id)
+    checkpoint = site.checkpoint_for(task.object_id)
     from_origin = math.dist(checkpoint.position, (pose.x, pose.y, pose.z))
     return Reading(
         checkpoint=checkpoint.id,

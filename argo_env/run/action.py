@@ -389,7 +389,7 @@ class SimulatedAction:
 
     def _checkpoint(self) -> SiteCheckpoint:
         """Return the task's checkpoint. Raises ArgoError if the site does not have it."""
-        return self._setup.navigator.site.measured_by(self.task.object_id)
+        return self._setup.navigator.site.checkpoint_for(self.task.object_id)
 
     def _checkpoint_id(self) -> int:
         return self._checkpoint().id

@@ -214,7 +214,7 @@ class Entry(Model):
             if number == own_reading:
                 continue
             if event.kind == "reading_given" and event.value is not None:
-                checkpoint = site.measured_by(event.object_id)
+                checkpoint = site.checkpoint_for(event.object_id)
                 given.append(
                     GivenValue(
                         t=self.t,

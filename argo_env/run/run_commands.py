@@ -91,7 +91,7 @@ def check_by_hand(task: Task, mission: Mission, site: Site) -> None:
             "that drives or measures"
         )
     if task.action is Action.MEASURE:
-        site.measured_by(task.object_id)
+        site.checkpoint_for(task.object_id)
     elif task.pose is None:
         raise Invalid(f"task '{task.name}' does not state where to drive: give it a pose")
 
@@ -230,7 +230,7 @@ def _check(event: LoggedEvent, mission: Mission, site: Site) -> None:
     if event.by_hand:
         _check_by_hand(event.by_hand, mission)
     if event.object_id is not None:
-        site.measured_by(event.object_id)
+        site.checkpoint_for(event.object_id)
 
 
 def _check_by_hand(results: Sequence[ByHand], mission: Mission) -> None:

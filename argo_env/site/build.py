@@ -1,6 +1,8 @@
-"""From a site's description to its solids, the one generator that all else is made from: process
-equipment, columns, docking stations, and decks out of rectangles, with the free edges where a
-railing belongs."""
+"""Generator of a site's solids from its description.
+
+Everything else about the shape of a site is made from these solids: process equipment, columns,
+docking stations, and decks that consist of rectangles, with railings along their free edges.
+"""
 
 import math
 from dataclasses import dataclass
@@ -20,14 +22,14 @@ from argo_env.site.spec import (
     SiteSpec,
     VesselSpec,
 )
-from argo_env.site.stairs import build_flight, mouths, outside, railing
+from argo_env.site.stairs import build_flight, mouths, railing, railing_offset
 
 DOCK_DISTANCE = 0.62  # m from the centre of a docked robot to the face of its station
 MOUNT_LENGTH = 0.2  # m from the face of a checkpoint back to what carries it
 
 
 def build_vessel(vessel: VesselSpec, z: float) -> Element:
-    """A vessel with its centre `center` above height `z`; a lying one stands on two saddles."""
+    """Build a vessel above the height `z` (m); a lying one stands on two saddles."""
     x, y, height = vessel.center
     turn: Vector = {
         "x": (0.0, math.pi / 2, 0.0),
@@ -53,20 +55,20 @@ def build_vessel(vessel: VesselSpec, z: float) -> Element:
 
 
 def build_pipe(pipe: PipeSpec) -> Element:
-    """A pipe as a cylinder from each point to the next."""
+    """Build a pipe as one cylinder from each point to the next."""
     solids = []
     for (x0, y0, z0), (x1, y1, z1) in pairwise(pipe.points):
         dx, dy, dz = x1 - x0, y1 - y0, z1 - z0
         length = math.sqrt(dx * dx + dy * dy + dz * dz)
         turn = (0.0, math.acos(dz / length), math.atan2(dy, dx))
         center = ((x0 + x1) / 2, (y0 + y1) / 2, (z0 + z1) / 2)
-        # Reaching half a bore beyond the points closes the corners.
+        # Each cylinder reaches half a radius beyond its points, which closes the corners.
         solids.append(Cylinder(center, pipe.radius, length + pipe.radius, turn))
     return Element(pipe.name, Role.PIPE, tuple(solids), "pipe")
 
 
 def build_pump(pump: PumpSpec, z: float) -> Element:
-    """A centrifugal pump and its motor on a skid of 1.2 m by 0.6 m."""
+    """Build a centrifugal pump and its motor on a skid of 1.2 m by 0.6 m."""
     yaw = math.radians(pump.yaw)
     cos, sin = math.cos(yaw), math.sin(yaw)
 
@@ -85,13 +87,13 @@ def build_pump(pump: PumpSpec, z: float) -> Element:
 
 
 def build_column(number: int, center: tuple[float, float], bottom: float, top: float) -> Element:
-    """A steel column of 0.2 m by 0.2 m."""
+    """Build a steel column of 0.2 m by 0.2 m between two heights (m)."""
     box = Box((center[0], center[1], (bottom + top) / 2), (0.2, 0.2, top - bottom))
     return Element(f"column {number}", Role.STRUCTURE, (box,), "structure")
 
 
 def build_dock(area: AreaSpec, ground_z: float) -> Element:
-    """A docking station: a cabinet whose charging contacts face the docked robot, and a sign."""
+    """Build a docking station: a cabinet with charging contacts that face the robot, and a sign."""
     x, y, degrees = area.dock
     yaw = math.radians(degrees)
 
@@ -108,7 +110,7 @@ def build_dock(area: AreaSpec, ground_z: float) -> Element:
 
 
 def build_mount(checkpoint: CheckpointSpec, floor_z: float) -> Element:
-    """The bracket between a checkpoint and the pipe or vessel behind it."""
+    """Build the bracket between a checkpoint and the pipe or vessel behind it."""
     x, y, height = checkpoint.position
     yaw = math.radians(checkpoint.yaw)
     back = (MOUNT_LENGTH + 0.06) / 2
@@ -122,7 +124,7 @@ _EPSILON = 1e-6
 
 @dataclass(frozen=True)
 class RimEdge:
-    """A straight piece of a deck's rim, from `start` to `end` (m); `outward` is its unit normal."""
+    """Straight piece of a deck's rim, from `start` to `end` (m); `outward` is its unit normal."""
 
     start: tuple[float, float]
     end: tuple[float, float]
@@ -131,18 +133,20 @@ class RimEdge:
 
 @dataclass(frozen=True)
 class Deck:
-    """A deck cut at all its coordinates: `plan[i, j]` says whether the field x[i]..x[i+1],
-    y[j]..y[j+1] is plated."""
+    """Deck as a grid that is cut at all coordinates of its rectangles.
+
+    `plated[i, j]` is true if a plate covers the field from x[i] to x[i+1] and from y[j] to y[j+1].
+    """
 
     x: NDArray[np.float64]
     y: NDArray[np.float64]
-    plan: NDArray[np.bool_]
+    plated: NDArray[np.bool_]
 
     @staticmethod
     def from_rectangles(
         plates: tuple[Rect, ...], openings: tuple[Rect, ...], cuts: tuple[Rect, ...] = ()
     ) -> "Deck":
-        """The union of `plates` less the union of `openings`; edges are also cut along `cuts`."""
+        """Return the union of `plates` less that of `openings`; `cuts` cut the edges as well."""
         everything = np.array(plates + openings + cuts)
         x, y = _coordinates(everything[:, [0, 2]]), _coordinates(everything[:, [1, 3]])
         middle_x, middle_y = np.meshgrid((x[:-1] + x[1:]) / 2, (y[:-1] + y[1:]) / 2, indexing="ij")
@@ -156,11 +160,11 @@ class Deck:
         return Deck(x, y, covered(plates) & ~covered(openings))
 
     def plates(self) -> list[Rect]:
-        """The plated area as rectangles that do not overlap: runs along x, merged along y."""
+        """Return the plated area as disjoint rectangles: runs along x, merged along y."""
         rectangles: list[Rect] = []
         open_runs: dict[tuple[int, int], int] = {}
         for j in range(len(self.y) - 1):
-            runs = _runs(self.plan[:, j])
+            runs = _runs(self.plated[:, j])
             for run in [r for r in open_runs if r not in runs]:
                 rectangles.append(self._rectangle(run, open_runs.pop(run), j))
             for run in runs:
@@ -178,17 +182,17 @@ class Deck:
         )
 
     def free_edges(self, gaps: tuple[Rect, ...]) -> list[RimEdge]:
-        """The rim of the deck, without the pieces that lie in one of the `gaps`."""
-        padded = np.pad(self.plan, 1)
+        """Return the rim of the deck without the pieces that lie in one of the `gaps`."""
+        padded = np.pad(self.plated, 1)
         edges: list[RimEdge] = []
         for axis, lines, across in ((0, self.x, self.y), (1, self.y, self.x)):
-            plan = padded if axis == 0 else padded.T
+            fields = padded if axis == 0 else padded.T
             for line in range(len(lines)):
-                before, after = plan[line, 1:-1], plan[line + 1, 1:-1]
+                before, after = fields[line, 1:-1], fields[line + 1, 1:-1]
                 for sign, rim in ((1.0, before & ~after), (-1.0, after & ~before)):
                     at = float(lines[line])
-                    kept = rim & ~_in_gaps(at, across, gaps, axis)
-                    for first, last in _runs(kept):
+                    free = rim & ~_in_gaps(at, across, gaps, axis)
+                    for first, last in _runs(free):
                         a, b = float(across[first]), float(across[last])
                         if axis == 0:
                             edges.append(RimEdge((at, a), (at, b), (sign, 0.0)))
@@ -202,7 +206,7 @@ def _coordinates(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Stretches of true as (first, one past the last)."""
+    """Return the stretches of true flags as (first index, index after the last)."""
     steps = np.diff(np.pad(flags.astype(np.int8), 1))
     return list(
         zip(np.flatnonzero(steps == 1).tolist(), np.flatnonzero(steps == -1).tolist(), strict=True)
@@ -212,7 +216,7 @@ def _runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
 def _in_gaps(
     at: float, across: NDArray[np.float64], gaps: tuple[Rect, ...], axis: int
 ) -> NDArray[np.bool_]:
-    """Which pieces of the line at coordinate `at` lie inside a gap."""
+    """Return for each piece of the line at coordinate `at` whether it lies inside a gap."""
     middle = (across[:-1] + across[1:]) / 2
     inside = np.zeros(len(middle), dtype=bool)
     for gap in gaps:
@@ -230,7 +234,7 @@ GROUND_THICKNESS = 0.5  # m
 
 
 def build_site(spec: SiteSpec) -> tuple[Element, ...]:
-    """All elements of the site, with unique names, in the order of the description."""
+    """Return all elements of the site, with unique names, in the order of the description."""
     elements: list[Element] = [_ground(spec)]
     gaps = _stair_mouths(spec)
     for floor in spec.floors:
@@ -284,7 +288,7 @@ def _plated(
     gaps: tuple[Rect, ...],
     railed: bool,
 ) -> list[Element]:
-    """A deck at height `z` with its railings; without them it is a slab on the ground."""
+    """Build a deck at height `z` (m) with railings, or a slab on the ground if not `railed`."""
     deck = Deck.from_rectangles(walkways, openings, gaps if railed else ())
     thickness = DECK_THICKNESS if railed else SLAB_THICKNESS
     plates: list[Solid] = [
@@ -305,13 +309,13 @@ def _plated(
         plates.append(Box(center, (abs(x1 - x0) or width, abs(y1 - y0) or width, depth)))
     elements = [Element(f"{name} deck", Role.DECK, tuple(plates), "grating")]
     for number, edge in enumerate(deck.free_edges(gaps), start=1):
-        solids = railing(edge.start, edge.end, z, outside(edge.outward))
+        solids = railing(edge.start, edge.end, z, railing_offset(edge.outward))
         elements.append(Element(f"{name} railing {number}", Role.RAILING, solids, "railing"))
     return elements
 
 
 def _stair_mouths(spec: SiteSpec) -> list[tuple[float, Rect]]:
-    """Height and area of every place where a flight joins a deck."""
+    """Return the height (m) and the area of each place where a flight joins a deck."""
     return [
         mouth
         for tower in spec.towers

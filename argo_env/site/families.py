@@ -1,8 +1,8 @@
-"""Generated sites: from a family's parameters to the description of a site.
+"""Generator of a site's description from the parameters of a family.
 
-The sites are after UMAD: decks of gratings around open fields, risers beside the aisles that carry
-the checkpoints, vessels that reach through all decks. `argo_env.planning.generated` checks that a
-site can be driven before anybody gets it.
+The sites resemble UMAD: decks of gratings around open fields, vertical pipes (risers) beside the
+aisles that carry the checkpoints, and vessels that reach through all decks.
+`argo_env.planning.generated` checks that the robot can drive on a site before it returns the site.
 """
 
 from collections.abc import Collection
@@ -30,17 +30,19 @@ from argo_env.site.spec import (
 
 GROUND_Z = -0.03  # m
 _PIPE = 0.06  # m, radius of a riser
-_OVERHEAD = 2.25  # m above a deck, where pipes cross: people have 2.1 m
+_OVERHEAD = 2.25  # m above a deck, where pipes cross; people have 2.1 m of headroom
 
 Refused = Collection[tuple[int, int]]
-"""Floors and slots, by their numbers, that a checkpoint can't be read at."""
+"""Numbers of a floor and a slot where a checkpoint can't be read."""
 
 
 def draw_site(
     family: Family, attempt: int = 0, refused: Refused = ()
 ) -> tuple[SiteSpec, dict[int, tuple[int, int]]]:
-    """The description of a site of the family, and the floor and the slot of each checkpoint by
-    its id. Other attempts give other sites; checkpoints avoid the `refused` slots.
+    """Return the description of a site of the family, and where its checkpoints are.
+
+    The second value maps the id of each checkpoint to the numbers of its floor and slot. Another
+    `attempt` gives another site; checkpoints avoid the `refused` slots.
 
     Raises ArgoError if the checkpoints do not fit on the site.
     """
@@ -115,7 +117,7 @@ def _floor(
 def _vessels(
     family: Family, layout: Layout, random: np.random.Generator
 ) -> tuple[tuple[VesselSpec, ...], tuple[Rect, ...]]:
-    """Upright vessels, each in a field of its own, and the fields that stay free."""
+    """Draw upright vessels, each in a field of its own; return them and the fields left free."""
     vessels: list[VesselSpec] = []
     free: list[Rect] = []
     for x0, y0, x1, y1 in layout.fields:
@@ -139,7 +141,7 @@ def _pumps(
     for x0, y0, x1, _ in fields:
         if x1 - x0 < 3.6 or random.random() >= family.clutter:
             continue
-        # In the south of the field: vessels keep further off its ends.
+        # In the south of the field, as vessels keep a larger distance from its ends.
         x, y = random.uniform(x0 + 1.5, x1 - 1.5), y0 + 1.0
         yaw = float(random.choice([0.0, 180.0]))
         name = f"pump P-{301 + len(pumps)}"
@@ -150,7 +152,7 @@ def _pumps(
 def _fences(
     family: Family, width: float, depth: float, random: np.random.Generator
 ) -> dict[str, tuple[Point, ...]]:
-    """Fences south and north of the slab, with a gate each."""
+    """Draw fences south and north of the slab, each with a gate."""
     fences: dict[str, tuple[Point, ...]] = {}
     for side, y in (("south", -1.2), ("north", depth + 1.2)):
         if random.random() < family.clutter:
@@ -161,7 +163,7 @@ def _fences(
 
 
 def _overhead(family: Family, layout: Layout, random: np.random.Generator) -> tuple[PipeSpec, ...]:
-    """Pipes over the heads, from south to north through a field each."""
+    """Draw overhead pipes, each from south to north through one field."""
     pipes: list[PipeSpec] = []
     for floor in range(family.floors):
         for x0, y0, x1, y1 in layout.fields:
@@ -174,21 +176,24 @@ def _overhead(family: Family, layout: Layout, random: np.random.Generator) -> tu
 
 
 def _columns(width: float, depth: float) -> tuple[Point, ...]:
-    """Columns outside the rims, at the corners."""
+    """Return the columns: outside the rims of the decks, at the corners."""
     return tuple((x, y) for x in (0.2, width - 0.2) for y in (-0.15, depth + 0.15))
 
 
 def _choose_slots(
     family: Family, attempt: int, layout: Layout, refused: Refused
 ) -> list[tuple[int, list[int]]]:
-    """Each floor with the slots that have a checkpoint there, ascending."""
+    """Return each floor with the slots that have a checkpoint there, in ascending order.
+
+    Raises Invalid if a floor has too few slots.
+    """
     random = generator(family.seed, "slots", attempt)
     per_floor = [
         family.checkpoints // family.floors + (k < family.checkpoints % family.floors)
         for k in range(family.floors)
     ]
     order = random.permutation(len(layout.slots)).tolist()
-    # Risers go through all floors: a quarter more than a floor needs, so that floors differ.
+    # A riser passes all floors. A quarter more slots than a floor needs makes the floors differ.
     usual = set(order[: max(per_floor) + 2 + max(per_floor) // 4])
     floors = []
     for floor, count in enumerate(per_floor, start=1):
@@ -209,7 +214,7 @@ def _choose_slots(
 def _checkpoints(
     family: Family, attempt: int, layout: Layout, chosen: list[tuple[int, list[int]]]
 ) -> tuple[list[tuple[CheckpointSpec, ...]], tuple[PipeSpec, ...]]:
-    """The checkpoints of each floor, numbered from the bottom, and the risers that carry them."""
+    """Return each floor's checkpoints, numbered from the bottom, and the risers that carry them."""
     offsets = generator(family.seed, "offsets", attempt).uniform(0.15, 0.4, len(layout.slots))
     beside = offsets.round(2).tolist()
     number = 0
@@ -231,7 +236,7 @@ def _checkpoints(
 
 
 def _at(slot: Slot, beside: float) -> Point:
-    """The point so far (m) beside the aisle."""
+    """Return the point at a distance of `beside` m from the edge of the aisle."""
     return round(slot.x + slot.out[0] * beside, 3), round(slot.y + slot.out[1] * beside, 3)
 
 
@@ -240,7 +245,7 @@ def _checkpoint(
 ) -> CheckpointSpec:
     kind = list(CheckpointKind)[int(random.integers(len(CheckpointKind)))]
     position = (*_at(slot, beside), round(float(random.uniform(0.2, 2.0)), 2))
-    # The face looks back at the aisle.
+    # The face looks towards the aisle.
     yaw = {(0, -1): 90.0, (0, 1): -90.0, (-1, 0): 0.0, (1, 0): 180.0}[slot.out]
     return CheckpointSpec(
         id=number,

@@ -1,4 +1,4 @@
-"""Families of generated sites: the parameters that a site is drawn from, and their text form."""
+"""Families of generated sites: the parameters that define a site, and their text form."""
 
 from collections.abc import Callable
 from enum import StrEnum
@@ -12,12 +12,12 @@ from argo_env.files.yaml_messages import error_message
 
 PREFIX = "generated:"
 TEST_SEEDS = 1_000_000
-"""Seeds from here on are for testing: train on smaller ones."""
+"""Smallest seed for testing; smaller ones are for training."""
 _SIZE = (12, 40)  # m, least and most of each edge
 
 
 class Stairs(StrEnum):
-    """The stair towers of a site; two are independent ways up."""
+    """Stair towers of a site; with two of them there are two independent ways up."""
 
     STRAIGHT = "straight"
     """flights one above the other, on the west side"""
@@ -27,7 +27,7 @@ class Stairs(StrEnum):
 
 
 class Family(Model):
-    """What a generated site is drawn from. Equal parameters always give the same site.
+    """Parameters that define a generated site; equal parameters always give the same site.
 
     Seeds below TEST_SEEDS are for training, the others for testing.
     """
@@ -37,9 +37,9 @@ class Family(Model):
     """m from west to east and from south to north, of the decks"""
     stairs: Stairs = Stairs.BOTH
     clutter: float = Field(0.5, ge=0, le=1)
-    """how much stands about: vessels, pumps, pipes, barriers, platforms; 0 is none"""
+    """amount of vessels, pumps, pipes, barriers and platforms, from 0 (none) to 1"""
     checkpoints: int = Field(20, ge=0, le=500)
-    """on all floors together"""
+    """number of checkpoints on all floors together"""
     seed: int = Field(0, ge=0)
 
     @field_validator("size")
@@ -63,14 +63,15 @@ class Family(Model):
 
 
 def is_family(name: str) -> bool:
-    """Whether a site's name is that of a generated one."""
+    """Return True if a site's name is that of a generated site."""
     return name.startswith(PREFIX)
 
 
 def parse_family(text: str) -> Family:
-    """The family that a text such as `generated:floors=3,size=20x14,seed=7` names.
+    """Return the family for a text such as `generated:floors=3,size=20x14,seed=7`.
 
-    What is not given has its default. Raises ArgoError, with all that may be given.
+    Parameters that the text leaves out have their defaults. Raises ArgoError for a wrong text; its
+    message lists all parameters.
     """
     given: dict[str, Any] = {}
     for part in text.removeprefix(PREFIX).split(","):
@@ -78,7 +79,7 @@ def parse_family(text: str) -> Family:
             continue
         key, equals, value = (piece.strip() for piece in part.partition("="))
         if not equals or key not in Family.model_fields:
-            raise _error(text, f"`{part.strip()}` is none of its parameters")
+            raise _error(text, f"`{part.strip()}` is not one of its parameters")
         if key in given:
             raise _error(text, f"{key} is given twice")
         try:

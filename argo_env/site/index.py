@@ -1,4 +1,4 @@
-"""Index of a site's solids in arrays, and the first of them that rays meet."""
+"""Indexes of a site's solids: search by box or nearest point, and ray casting, in arrays."""
 
 from collections.abc import Sequence
 
@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 from argo_env.site.shapes import Box, Element, Solid, Vector, half_extents
 
-_NEAR = 0.05  # m from a point, within which the nearest solid is looked for first
+_NEAR = 0.05  # m, distance within which the nearest solid is searched first
 
 
 class SolidIndex:
-    """Finds the solids that may reach into a box."""
+    """Index that finds the solids which may reach into a box."""
 
     def __init__(self, elements: tuple[Element, ...]) -> None:
         self._solids = [solid for element in elements for solid in element.solids]
@@ -20,13 +20,13 @@ class SolidIndex:
         self._low, self._high = centers - halves, centers + halves
 
     def between(self, low: NDArray[np.float64], high: NDArray[np.float64]) -> list[Solid]:
-        """The solids whose bounding boxes touch the box from `low` to `high` (m), in order."""
+        """Return, in order, solids whose bounding boxes touch the box from `low` to `high` (m)."""
         inside = ((self._high >= low) & (self._low <= high)).all(axis=1)
         return [self._solids[k] for k in np.flatnonzero(inside).tolist()]
 
 
 class ElementIndex:
-    """Finds the element nearest to a point among those of one material."""
+    """Index that finds, among the elements of one material, the one nearest to a point."""
 
     def __init__(self, elements: tuple[Element, ...], material: str) -> None:
         parts = [(e.name, s) for e in elements if e.material == material for s in e.solids]
@@ -42,35 +42,47 @@ class ElementIndex:
         upright = np.einsum("njk,nk->nj", np.abs(self._rotations), self._halves) + _NEAR
         self._low, self._high = self._centers - upright, self._centers + upright
 
-    def at(self, point: Vector) -> str:
-        """The name of the element whose solid, or the box around it, is nearest to `point` (m)."""
-        every = np.arange(len(self._names))
-        return self._names[int(np.argmin(self._away(np.array(point), every)))]
+    def nearest(self, point: Vector) -> str:
+        """Return the name of the element nearest to `point` (m).
 
-    def at_each(self, points: Sequence[Vector]) -> list[str]:
-        """The same for each of many points, which takes far less time where they lie beside solids
-        and close together."""
-        places = np.array(points)
+        A solid counts as the box around it, in the solid's own axes.
+        """
+        every = np.arange(len(self._names))
+        return self._names[int(np.argmin(self._squared_distances(np.array(point), every)))]
+
+    def nearest_each(self, points: Sequence[Vector]) -> list[str]:
+        """Return the name of the nearest element for each of many points (m).
+
+        This is far faster than calls of `nearest` if the points lie beside solids and close
+        together.
+        """
+        positions = np.array(points)
         around = np.flatnonzero(
-            ((self._low <= places.max(axis=0)) & (self._high >= places.min(axis=0))).all(axis=1)
+            ((self._low <= positions.max(axis=0)) & (self._high >= positions.min(axis=0))).all(
+                axis=1
+            )
         )
-        low, high, at = self._low[around], self._high[around], places[:, None]
+        low, high, at = self._low[around], self._high[around], positions[:, None]
         rows, columns = np.nonzero(((low <= at) & (at <= high)).all(axis=2))
         solids = around[columns]
-        away = self._away(places[rows], solids)
-        # The nearest first, and of equals the first solid.
+        away = self._squared_distances(positions[rows], solids)
+        # The nearest solid comes first; among equally near ones, the first in the order.
         order = np.lexsort((solids, away, rows))
         first = order[np.r_[True, np.diff(rows[order]) > 0]] if len(order) else order
         first = first[away[first] <= _NEAR**2]
-        found = dict(zip(rows[first].tolist(), solids[first].tolist(), strict=True))
+        nearest = dict(zip(rows[first].tolist(), solids[first].tolist(), strict=True))
         return [
-            self._names[found[k]] if k in found else self.at(point)
+            self._names[nearest[k]] if k in nearest else self.nearest(point)
             for k, point in enumerate(points)
         ]
 
-    def _away(self, point: NDArray[np.float64], solids: NDArray[np.int64]) -> NDArray[np.float64]:
-        """The square of the distance (m²) from a point, or from one for each, to the boxes around
-        these solids."""
+    def _squared_distances(
+        self, point: NDArray[np.float64], solids: NDArray[np.int64]
+    ) -> NDArray[np.float64]:
+        """Return the squared distances (m²) to the boxes around these solids.
+
+        `point` is one point, or one for each solid.
+        """
         local = np.einsum("nj,njk->nk", point - self._centers[solids], self._rotations[solids])
         away = np.maximum(np.abs(local) - self._halves[solids], 0.0)
         return np.asarray((away**2).sum(axis=1))
@@ -80,13 +92,15 @@ _TINY = 1e-9
 
 
 class SolidRays:
-    """The solids of elements in arrays, for many rays at once. A solid goes by its number, counted
-    through the elements in order."""
+    """Solids of elements in arrays, for ray casting with many rays at once.
+
+    The number of a solid is its index among the solids of all elements, in order.
+    """
 
     def __init__(self, elements: tuple[Element, ...]) -> None:
         parts = [(e, s) for e in elements for s in e.solids]
         self.elements = tuple(e for e, _ in parts)
-        """for each solid, the one that it belongs to"""
+        """element that each solid belongs to"""
         self._centers = np.array([s.center for _, s in parts]).reshape(-1, 3)
         self._rotations = np.array([s.rotation() for _, s in parts]).reshape(-1, 3, 3)
         self._round = np.array([not isinstance(s, Box) for _, s in parts], dtype=bool)
@@ -104,17 +118,26 @@ class SolidRays:
             (self.low[:, k].copy() - _TINY, self.high[:, k].copy() + _TINY) for k in range(3)
         ]
 
-    def first(
+    def first_hits(
         self,
         origin: NDArray[np.float64],
         directions: NDArray[np.float64],
         reach: float,
         inside: bool = False,
     ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-        """The distance (m) to the first solid from `origin`, shape (3,) or (n, 3), in each of
-        `directions`, unit vectors of the shape (n, 3), and which solid it is; inf and -1 where
-        there is none within `reach` (m). Solids that a ray starts inside of are left out, or with
-        `inside` come first, at less than 0: as far back as they begin."""
+        """Return the distance (m) to the first solid on each ray, and the number of that solid.
+
+        Args:
+            origin: Start of all rays, shape (3,), or of each ray, shape (n, 3).
+            directions: Unit vectors, shape (n, 3).
+            reach: Length of the rays in m.
+            inside: Whether to count solids that a ray starts inside of. They come first, with a
+                negative distance: that from the origin back to their surface. Otherwise they are
+                left out.
+
+        Returns:
+            Distances and numbers, both of shape (n,); inf and -1 where a ray meets no solid.
+        """
         ends = origin + reach * directions
         near = np.ones(len(self._centers), dtype=bool)
         for axis, (low, high) in enumerate(self._bounds):
@@ -130,7 +153,7 @@ class SolidRays:
         )
         met = (entry <= leave) & ((leave if inside else entry) >= 0.0)
         distance = np.where(met, entry, np.inf)
-        # The nearest first, and of equals the first solid.
+        # The nearest solid comes first; among equally near ones, the first in the order.
         order = np.lexsort((solids, distance, rays))
         first = order[np.r_[True, np.diff(rays[order]) > 0]]
         first = first[distance[first] <= reach]
@@ -144,7 +167,7 @@ class SolidRays:
         directions: NDArray[np.float64],
         reach: float,
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Pairs of a ray and one of the solids `near` whose upright bounds it meets."""
+        """Return pairs of a ray and a solid of `near` whose bounding box the ray meets."""
         enter, leave = np.zeros((len(directions), len(near))), np.inf
         for axis, (low, high) in enumerate(self._bounds):
             start = origin[..., axis].reshape(-1, 1)
@@ -161,8 +184,11 @@ class SolidRays:
         directions: NDArray[np.float64],
         solids: NDArray[np.int64],
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """The distances (m) at which each ray enters and leaves the solid that goes with it; the
-        former is the greater if it misses it. The arrays have one row for each pair."""
+        """Return the distances (m) at which the ray of each pair enters and leaves its solid.
+
+        A ray that misses its solid enters at a greater distance than it leaves. The arrays have one
+        row for each pair of a ray and a solid.
+        """
         rotations, halves, round_ = (
             self._rotations[solids],
             self._halves[solids],
@@ -173,7 +199,7 @@ class SolidRays:
         first, second = (-halves - start) / slope, (halves - start) / slope
         entries, leaves = np.minimum(first, second), np.maximum(first, second)
         if round_.any():
-            # The round side of a cylinder stands for the slabs across its axis.
+            # The curved side of a cylinder replaces the slabs across its axis.
             s, d, radius = start[round_], slope[round_], halves[round_, 0]
             a = d[:, 0] ** 2 + d[:, 1] ** 2
             b = d[:, 0] * s[:, 0] + d[:, 1] * s[:, 1]

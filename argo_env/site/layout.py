@@ -1,7 +1,8 @@
-"""The plan of a generated site: aisles, stair towers, the fields between them, and the places
-beside the aisles where checkpoints may be.
+"""Layout of a generated site: aisles, stair towers, fields, and slots for checkpoints.
 
-All edges of decks lie at multiples of 0.1 m but for the heads of flights. x points east.
+Fields are the openings between the aisles, and slots are the points beside the aisles where
+checkpoints may be. All edges of decks lie at multiples of 0.1 m, except at the heads of flights.
+x points east.
 """
 
 import math
@@ -21,12 +22,12 @@ _RISE = (0.16, 0.195)  # m: steps that the robot climbs and people accept
 _GOING = (0.21, 0.31)  # m, ISO 14122-3
 _STRIDE = (0.60, 0.66)  # m, going + 2 rise, ISO 14122-3
 _BAY = (4.0, 7.0)  # m from one cross aisle to the next
-_SPACING = 0.8  # m from place to place along an aisle
+_SPACING = 0.8  # m from slot to slot along an aisle
 
 
 @dataclass(frozen=True)
 class Slot:
-    """A place beside an aisle: a point on its edge (m), and the way out of it, a unit vector."""
+    """Point on the edge of an aisle (m); `out` is the unit vector away from the aisle."""
 
     x: float
     y: float
@@ -35,8 +36,12 @@ class Slot:
 
 @dataclass(frozen=True)
 class Layout:
-    """A plan. `ring` and `crossings` are the rectangles of the decks by name, the latter per cross
-    aisle; `fields` are the openings between them."""
+    """Layout of a site, the same on all upper floors.
+
+    `ring` maps the names of the outer deck's rectangles to them, and `crossings` does so for each
+    cross aisle. `fields` are the openings between them. `storey` is the height from floor to floor
+    in m.
+    """
 
     storey: float
     towers: tuple[TowerSpec, ...]
@@ -47,7 +52,7 @@ class Layout:
 
 
 def draw_layout(family: Family, random: np.random.Generator) -> Layout:
-    """The plan of a site of the family."""
+    """Draw the layout of a site of the family."""
     width, depth = (float(edge) for edge in family.size)
     storey = float(random.choice(_STOREYS))
     aisle = float(random.choice([1.0, 1.1, 1.2]))
@@ -81,7 +86,10 @@ def draw_layout(family: Family, random: np.random.Generator) -> Layout:
 
 
 def draw_steps(storey: float, even: bool, random: np.random.Generator) -> tuple[int, float, float]:
-    """Risers, rise and going (m) of a storey's stairs within ISO 14122-3."""
+    """Draw stairs for one storey within ISO 14122-3: number of risers, rise and going (m).
+
+    With `even`, the number of risers is even.
+    """
     choices = []
     for risers in range(int(storey / _RISE[1]), int(storey / _RISE[0]) + 2):
         rise = storey / risers
@@ -94,7 +102,7 @@ def draw_steps(storey: float, even: bool, random: np.random.Generator) -> tuple[
 
 
 def _tenths(low: float, high: float, random: np.random.Generator) -> float:
-    """A multiple of 0.1 m from low to high."""
+    """Draw a multiple of 0.1 m from `low` to `high`."""
     return int(random.integers(round(low * 10), round(high * 10) + 1)) / 10
 
 
@@ -147,7 +155,7 @@ def _dog_leg_tower(
 def _bays(
     width: float, depth: float, aisle: float, random: np.random.Generator
 ) -> tuple[tuple[dict[str, Rect], ...], tuple[Rect, ...]]:
-    """The cross aisles from south to north, and the fields beside them."""
+    """Draw the cross aisles, which run from south to north, and the fields beside them."""
     least, most = math.ceil(width / _BAY[1]), int(width // _BAY[0])
     bays = int(random.integers(least, most + 1))
     crossings, edges = [], [aisle]
@@ -176,7 +184,7 @@ def _bays(
 def _slots(
     width: float, depth: float, aisle: float, fields: tuple[Rect, ...], taken: list[Rect]
 ) -> tuple[Slot, ...]:
-    """Places along the edges of the decks, clear of corners, stairs and landings."""
+    """Return slots along the edges of the decks, away from corners, stairs and landings."""
     slots = []
     for x in np.arange(CORNER + 0.4, width - CORNER - 0.3, _SPACING).round(2).tolist():
         slots += [Slot(x, 0.0, (0, -1)), Slot(x, depth, (0, 1))]

@@ -1,7 +1,7 @@
-"""What a site should keep to: ISO 14122-3 for its stairs, the competition's rules for checkpoints.
+"""Checks of a site against ISO 14122-3 for stairs and the competition's rules for checkpoints.
 
-A site that does not is still a site; `argo sites` says where it differs. Stairs that end above or
-below the next floor are no matter of norms: such a site is wrong.
+A site that violates them can still be used; `argo sites` lists the violations. Stairs that end
+above or below the next floor are a different matter: such a site is wrong.
 """
 
 import math
@@ -13,33 +13,36 @@ from argo_env.site.spec import LEDGE, FloorSpec, SiteSpec, TowerSpec, away
 PITCH = (20.0, 45.0)  # deg, of a flight
 GOING = (0.21, 0.31)  # m
 STRIDE = (0.60, 0.66)  # m, going + 2 rise
-WIDTH = 0.8  # m of a flight, at least
-LANDING = 0.8  # m, at least
+WIDTH = 0.8  # m, least width of a flight
+LANDING = 0.8  # m, least length of a landing
 HEIGHT = (0.2, 2.0)  # m of a checkpoint above its deck (thesis 1.2)
-BESIDE = 0.5  # m that a checkpoint may be beside the walkway (thesis 1.2)
+BESIDE = 0.5  # m, greatest distance of a checkpoint from the walkway (thesis 1.2)
 _TOLERANCE = 1e-3  # m
 
 
-def breaches(spec: SiteSpec) -> list[str]:
-    """What is not as the norm and the rules ask, in the order of the description."""
-    found = [line for tower in spec.towers for line in _stairs(tower)]
-    return [*found, *(line for floor in spec.floors for line in _checkpoints(floor))]
+def violations(spec: SiteSpec) -> list[str]:
+    """Return a message for each violation of the norm or the rules, in the description's order."""
+    stairs = [line for tower in spec.towers for line in _stairs(tower)]
+    return [*stairs, *(line for floor in spec.floors for line in _checkpoints(floor))]
 
 
-def false_ends(spec: SiteSpec) -> list[str]:
-    """The stair towers that do not end at the next floor, each where it first does not."""
-    found = []
+def height_errors(spec: SiteSpec) -> list[str]:
+    """Return a message for each stair tower that does not end at the height of the next floor.
+
+    The message names the first floor where this happens.
+    """
+    errors = []
     for tower in spec.towers:
         risen = sum(flight.risers * flight.rise for flight in tower.flights)
         for below, above in pairwise(spec.floors):
             wanted = above.z - below.z
             if abs(risen - wanted) > LEDGE:
-                found.append(
+                errors.append(
                     f"{tower.name}: its flights rise {risen:.3f} m, and floor {above.number} lies "
                     f"{wanted:.3f} m above floor {below.number}"
                 )
                 break
-    return found
+    return errors
 
 
 def _stairs(tower: TowerSpec) -> Iterator[str]:

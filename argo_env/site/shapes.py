@@ -1,4 +1,4 @@
-"""The solids that a site is made of: boxes and cylinders, gathered into named elements."""
+"""Solids of a site: boxes and cylinders, grouped into named elements."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -11,7 +11,7 @@ Vector = tuple[float, float, float]
 
 
 class Role(StrEnum):
-    """What an element is for. The robot may stand on the walking roles, and touch no other."""
+    """Purpose of an element; the robot may stand on `WALKING_ROLES` and must touch no other."""
 
     GROUND = "ground"
     DECK = "deck"
@@ -29,20 +29,20 @@ WALKING_ROLES = frozenset({Role.GROUND, Role.DECK, Role.STAIR})
 
 @dataclass(frozen=True)
 class Box:
-    """A box: full edge lengths `size` (m) about `center` (m), turned by `rpy` (rad, fixed axes)."""
+    """Box with edge lengths `size` (m) about `center` (m), turned by `rpy` (rad, fixed axes)."""
 
     center: Vector
     size: Vector
     rpy: Vector = (0.0, 0.0, 0.0)
 
     def rotation(self) -> NDArray[np.float64]:
-        """Columns are the box's axes in the site's frame, shape (3, 3)."""
+        """Return a (3, 3) matrix whose columns are the box's axes in the site's frame."""
         return _rotation(self.rpy)
 
 
 @dataclass(frozen=True)
 class Cylinder:
-    """A cylinder of `radius` and `length` (m) about `center`, its axis z turned by `rpy` (rad)."""
+    """Cylinder of `radius` and `length` (m) about `center`, its axis z turned by `rpy` (rad)."""
 
     center: Vector
     radius: float
@@ -50,7 +50,7 @@ class Cylinder:
     rpy: Vector = (0.0, 0.0, 0.0)
 
     def rotation(self) -> NDArray[np.float64]:
-        """Columns are the cylinder's axes in the site's frame, shape (3, 3)."""
+        """Return a (3, 3) matrix whose columns are the cylinder's axes in the site's frame."""
         return _rotation(self.rpy)
 
 
@@ -59,8 +59,8 @@ Solid = Box | Cylinder
 
 @lru_cache(maxsize=1024)
 def _rotation(rpy: Vector) -> NDArray[np.float64]:
-    # A site has thousands of solids, but few ways to turn them.
-    # Few of those who open a site look at them, and scipy takes long to import.
+    # Cached, as a site has thousands of solids with few different rotations. The import is here, as
+    # that of scipy takes long and most users of a site do not need its solids.
     from scipy.spatial.transform import Rotation
 
     matrix = Rotation.from_euler("xyz", rpy).as_matrix()
@@ -70,7 +70,7 @@ def _rotation(rpy: Vector) -> NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class Element:
-    """A named part of the site, such as one flight of stairs or one run of railing."""
+    """Named part of the site, such as one flight of stairs or one run of railing."""
 
     name: str
     role: Role
@@ -79,7 +79,7 @@ class Element:
 
 
 def half_extents(solid: Solid) -> NDArray[np.float64]:
-    """Half the edges of the solid's bounding box along the site's axes, in m, shape (3,)."""
+    """Return half the edges (m) of the solid's bounding box along the site's axes, shape (3,)."""
     if isinstance(solid, Box):
         return np.asarray(np.abs(solid.rotation()) @ (np.array(solid.size) / 2))
     axis = solid.rotation()[:, 2]
@@ -91,10 +91,10 @@ def half_extents(solid: Solid) -> NDArray[np.float64]:
 def crossing(
     solid: Solid, origins: NDArray[np.float64], direction: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Where the lines origins + t * direction enter and leave the solid.
+    """Return t where the lines origins + t * direction enter and where they leave the solid.
 
-    `origins` has the shape (..., 3); `direction` is one vector or has the same shape. Returns t at
-    the entry and at the exit, shape (...); lines that miss the solid give (inf, -inf).
+    `origins` has the shape (..., 3); `direction` is one vector or has the same shape. Both results
+    have the shape (...); lines that miss the solid give (inf, -inf).
     """
     rotation = solid.rotation()
     start = (origins - np.array(solid.center)) @ rotation
@@ -115,7 +115,7 @@ def crossing(
 def _slab_crossing(
     start: NDArray[np.float64], slope: NDArray[np.float64], half: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Where start + t * slope lies between -half and half."""
+    """Return the lowest and the highest t for which start + t * slope is from -half to half."""
     parallel = np.abs(slope) < 1e-12
     divisor = np.where(parallel, 1.0, slope)
     first, second = (-half - start) / divisor, (half - start) / divisor
@@ -128,7 +128,10 @@ def _slab_crossing(
 def _disc_crossing(
     start: NDArray[np.float64], slope: NDArray[np.float64], radius: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Where lines cross an endless cylinder about z: the roots t of |p + t d|^2 = r^2."""
+    """Return the t where lines enter and leave an infinite cylinder about z.
+
+    They are the roots of |p + t d|^2 = r^2 in the plane of x and y.
+    """
     a = slope[..., 0] ** 2 + slope[..., 1] ** 2
     b = start[..., 0] * slope[..., 0] + start[..., 1] * slope[..., 1]
     c = start[..., 0] ** 2 + start[..., 1] ** 2 - radius**2

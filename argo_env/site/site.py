@@ -1,4 +1,4 @@
-"""A site that is ready to use: its description, its elements and its checkpoints in place."""
+"""Site that is ready to use: its description, elements, checkpoints, docks and named poses."""
 
 import math
 from collections.abc import Iterable
@@ -28,7 +28,7 @@ SCALES: dict[CheckpointKind, tuple[str, Interval]] = {
 
 @dataclass(frozen=True)
 class SiteCheckpoint:
-    """A checkpoint in place: the middle of its face (m), and where the face looks (`yaw`, rad)."""
+    """Checkpoint in the site's frame: the middle of its face (m) and its direction (`yaw`, rad)."""
 
     id: int
     kind: CheckpointKind
@@ -49,64 +49,65 @@ class SiteCheckpoint:
 
 @dataclass(frozen=True)
 class Site:
-    """A site: what was written, the solids made from it, and the poses and checkpoints in it."""
+    """Site: its description, the solids made from it, and the poses and checkpoints in it."""
 
     spec: SiteSpec
     checkpoints: tuple[SiteCheckpoint, ...]
     docks: dict[int, Pose]
     """pose of the docked robot for each starting area"""
     places: dict[str, Pose]
+    """poses on the ground that have a name"""
     altered: "tuple[Element, ...] | None" = None
-    """the elements, where they are others than the description gives"""
+    """elements that replace those of the description; None if there are none"""
 
     @property
     def name(self) -> str:
         return self.spec.name
 
-    # A mission is checked without its site's solids: imported when needed.
+    # The check of a mission does not need its site's solids, so their modules are imported late.
 
     @cached_property
     def elements(self) -> "tuple[Element, ...]":
-        """The named parts that its solids belong to."""
+        """Named parts of the site, with their solids."""
         from argo_env.site.build import build_site
 
         return build_site(self.spec) if self.altered is None else self.altered
 
     @cached_property
     def solids(self) -> "SolidIndex":
-        """All solids of the site, to be found by where they are."""
+        """Index that finds the solids of the site by their location."""
         from argo_env.site.index import SolidIndex
 
         return SolidIndex(self.elements)
 
     @cached_property
     def rays(self) -> "SolidRays":
-        """What straight lines meet first of its solids."""
+        """Ray casting against all solids of the site."""
         from argo_env.site.index import SolidRays
 
         return SolidRays(self.elements)
 
     def with_elements(self, elements: "tuple[Element, ...]") -> "Site":
-        """The same site with other elements, as where something lies about on it."""
+        """Return this site with other elements, for example with an obstacle on it."""
         return self if elements == self.elements else replace(self, altered=elements)
 
     def checkpoint(self, id: int) -> SiteCheckpoint:
-        """The checkpoint with this id; NotFound if there is none."""
+        """Return the checkpoint with this id; raises NotFound if there is none."""
         for checkpoint in self.checkpoints:
             if checkpoint.id == id:
                 return checkpoint
         numbers = (checkpoint.id for checkpoint in self.checkpoints)
         raise NotFound(f"site {self.name} has no checkpoint {id}; {_there_are(numbers)}")
 
-    def measured_by(self, object_id: str | None) -> SiteCheckpoint:
-        """The checkpoint that tasks call `object_id`; NotFound if there is none."""
+    def checkpoint_for(self, object_id: str | None) -> SiteCheckpoint:
+        """Return the checkpoint that tasks call `object_id`; raises NotFound if there is none."""
         for checkpoint in self.checkpoints:
             if str(checkpoint.id) == object_id:
                 return checkpoint
         raise NotFound(f"site {self.name} has no checkpoint {object_id}")
 
     def floor(self, number: int) -> FloorSpec:
-        """The floor of that number; NotFound if there is none."""
+        """Return the floor with this number; raises NotFound if there is none."""
         for floor in self.spec.floors:
             if floor.number == number:
                 return floor
@@ -114,12 +115,12 @@ class Site:
         raise NotFound(f"site {self.name} has no floor {number}; {_there_are(numbers)}")
 
     def floor_at(self, z: float) -> int:
-        """The number of the floor whose storey holds the height z (m)."""
+        """Return the number of the floor whose storey contains the height `z` (m)."""
         return max([f.number for f in self.spec.floors if f.z <= z + 0.1], default=1)
 
 
 def _there_are(numbers: Iterable[int]) -> str:
-    """Which numbers there are, runs of them in short."""
+    """Return a text that lists the numbers, with consecutive ones as `1 to 4`."""
     runs: list[list[int]] = []
     for number in sorted(numbers):
         if runs and number == runs[-1][-1] + 1:
@@ -130,14 +131,15 @@ def _there_are(numbers: Iterable[int]) -> str:
 
 
 def site_names() -> tuple[str, ...]:
-    """The sites that Argo ships, by name."""
+    """Return the names of the sites that Argo ships, sorted."""
     return tuple(sorted(p.parent.name for p in resources.scenarios().glob("*/site.yaml")))
 
 
 def load_site(name: str) -> Site:
-    """The site of that name, or the one that the file `name` describes.
+    """Return the site with this name, or the one that the file `name` describes.
 
-    Raises ArgoError, with the place in the file, if there is no such site or it makes no sense.
+    Raises ArgoError if there is no such site or its description is wrong; the message then states
+    the place in the file.
     """
     from argo_env.site.site_file import read_site_spec
 
@@ -145,12 +147,12 @@ def load_site(name: str) -> Site:
 
 
 def site_file(name: str) -> Path:
-    """The file that describes the site of that name, or is named itself.
+    """Return the path of the site's description; `name` is a site's name or such a path itself.
 
-    Raises NotFound if there is none, Invalid for the parameters of a generated site.
+    Raises NotFound if there is no such site, and Invalid if it is a generated site.
     """
     if is_family(name):
-        raise Invalid(f"site `{name}` is drawn and not read from a file: `open_site` gives it")
+        raise Invalid(f"site `{name}` is generated and has no file: open it with `open_site`")
     path = Path(name)
     if path.suffix in {".yaml", ".yml"}:
         return path
@@ -164,7 +166,7 @@ def site_file(name: str) -> Path:
 
 
 def make_site(spec: SiteSpec) -> Site:
-    """The site that `spec` describes."""
+    """Return the site that `spec` describes."""
     checkpoints = tuple(
         SiteCheckpoint(
             c.id,

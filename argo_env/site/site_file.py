@@ -1,4 +1,4 @@
-"""A site's description as YAML: read, with errors that say where it is wrong, and written."""
+"""Site descriptions as YAML: parser, with errors that state the place, and writer."""
 
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from argo_env.site.spec import MAX_BYTES, SiteSpec
 
 
 def read_site_spec(path: Path) -> SiteSpec:
-    """The description of a site in a YAML file.
+    """Read the description of a site from a YAML file.
 
     Raises ArgoError if the file can't be read, and DiagnosticError if it describes no site.
     """
@@ -18,7 +18,7 @@ def read_site_spec(path: Path) -> SiteSpec:
 
 
 def parse_site_spec(text: str, source_name: str) -> SiteSpec:
-    """The description of a site in the text of a YAML file, which messages call `source_name`.
+    """Parse the description of a site from YAML text; messages call its source `source_name`.
 
     Raises DiagnosticError if it describes no site.
     """
@@ -34,7 +34,7 @@ def parse_site_spec(text: str, source_name: str) -> SiteSpec:
 
 
 def to_yaml(spec: SiteSpec) -> str:
-    """As `read_site_spec` reads it; fields that have their defaults are left out."""
+    """Return YAML text that `read_site_spec` can read, without fields that have their defaults."""
     return yaml.safe_dump(
         spec.model_dump(mode="json", exclude_defaults=True),
         sort_keys=False,

@@ -1,7 +1,7 @@
-"""A site as data: what `scenarios/<site>/site.yaml` may say. Lengths in m, angles in degrees.
+"""Data model of a site: the content of `scenarios/<site>/site.yaml`.
 
-Rectangles are `[x0, y0, x1, y1]` in the site's frame. Heights of things on a floor are above that
-floor's deck.
+Lengths are in m, angles in degrees. Rectangles are `[x0, y0, x1, y1]` in the site's frame. Heights
+of things on a floor are above that floor's deck.
 """
 
 import math
@@ -14,19 +14,19 @@ from pydantic_core import PydanticCustomError
 from argo_compiler.base.catalog import CheckpointKind, Interval
 from argo_compiler.base.model import Model
 
-LEDGE = 5e-3  # m, up to which two heights are level for a robot
+LEDGE = 5e-3  # m, greatest difference of two heights that is level for a robot
 MAX_BYTES = 50_000_000
-"""of a site's file; one with hundreds of checkpoints takes some 100 kB"""
+"""greatest size of a site's file; one with hundreds of checkpoints takes about 100 kB"""
 MAX_GROUND = 200.0  # m along an edge; navigation keeps a grid of 0.1 m over it
 
-# What no site exceeds. All solids are made from the description, so that a slip of the pen in a
-# number must not ask for millions of them.
+# Limits that no site exceeds. All solids are made from the description, so a typing error in a
+# number must not lead to millions of them.
 MAX_FLOORS = 50
-MAX_RISERS = 100  # of a flight; the norm has a landing after 18 or so
-MAX_THINGS = 1000  # of one kind, on a floor or on the whole site
+MAX_RISERS = 100  # of a flight; the norm asks for a landing after about 18
+MAX_THINGS = 1000  # items of one kind, on a floor or on the whole site
 _FAR = 10_000.0  # m from the origin
-_BULKY = 50.0  # m of a radius or a width
-_STEEP = 2.0  # m of a rise or a going
+_BULKY = 50.0  # m, for a radius or a width
+_STEEP = 2.0  # m, for a rise or a going
 
 Coordinate = Annotated[float, Field(ge=-_FAR, le=_FAR)]
 Point = tuple[Coordinate, Coordinate]
@@ -69,7 +69,7 @@ Line3 = Annotated[
 
 
 class VesselSpec(Model):
-    """A vessel: upright from `bottom` to `top`, or lying on saddles along x or y."""
+    """Vessel of a `length` about its `center`: upright, or lying on saddles along x or y."""
 
     name: str
     axis: Literal["x", "y", "z"] = "z"
@@ -79,7 +79,7 @@ class VesselSpec(Model):
 
 
 class PipeSpec(Model):
-    """A pipe through the given points, in the site's frame."""
+    """Pipe through the given points, in the site's frame."""
 
     name: str
     points: Line3
@@ -93,7 +93,7 @@ class PipeSpec(Model):
 
 
 class PumpSpec(Model):
-    """A pump with its motor on a skid; `yaw` turns the motor's axis."""
+    """Pump with its motor on a skid; `yaw` turns the motor's axis."""
 
     name: str
     center: Point
@@ -101,7 +101,7 @@ class PumpSpec(Model):
 
 
 class CheckpointSpec(Model):
-    """A checkpoint: where its face is, where the face looks (`yaw`), and what it can show."""
+    """Checkpoint: the position and direction (`yaw`) of its face, and its nominal range."""
 
     id: int = Field(ge=1)
     kind: CheckpointKind
@@ -113,7 +113,7 @@ class CheckpointSpec(Model):
 
 
 class FloorSpec(Model):
-    """A floor: the deck's rectangles less the openings, and what stands on it."""
+    """Floor: the deck's rectangles less its openings, and the equipment and checkpoints on it."""
 
     number: int = Field(ge=1)
     z: Coordinate
@@ -122,7 +122,7 @@ class FloorSpec(Model):
     railed: bool = True
     """whether free edges of the deck carry a railing"""
     gates: dict[str, Rect] = Field(default_factory=dict, max_length=MAX_THINGS)
-    """where a railing is left out"""
+    """areas without railing"""
     barriers: dict[str, Line] = Field(default_factory=dict, max_length=MAX_THINGS)
     """railings that stand on the deck, along polylines"""
     vessels: tuple[VesselSpec, ...] = Field(default=(), max_length=MAX_THINGS)
@@ -131,7 +131,7 @@ class FloorSpec(Model):
 
 
 class FlightSpec(Model):
-    """A flight of open steps that rises along `yaw` from `foot`, the middle of its first nosing."""
+    """Flight of open steps that rises along `yaw` from `foot`, the middle of its first nosing."""
 
     name: str
     foot: Point3
@@ -143,7 +143,7 @@ class FlightSpec(Model):
 
 
 class LandingSpec(Model):
-    """A landing between flights; railed where no flight joins it."""
+    """Landing between flights, with a railing where no flight joins it."""
 
     name: str
     rect: Rect
@@ -151,7 +151,7 @@ class LandingSpec(Model):
 
 
 class TowerSpec(Model):
-    """A stair tower, repeated from floor to floor: flights and landings relative to each floor."""
+    """Stair tower, repeated from floor to floor: flights and landings relative to each floor."""
 
     name: str
     flights: tuple[FlightSpec, ...] = Field(max_length=MAX_FLOORS)
@@ -159,7 +159,7 @@ class TowerSpec(Model):
 
 
 class AreaSpec(Model):
-    """A starting area: the pose of the robot that is docked in its station, in front of it."""
+    """Starting area, with the pose of a robot that is docked in front of the area's station."""
 
     number: int = Field(ge=1)
     dock: Stance
@@ -167,7 +167,7 @@ class AreaSpec(Model):
 
 
 class PlaceSpec(Model):
-    """A named place on the ground, as x, y, yaw."""
+    """Named pose on the ground, as x, y, yaw."""
 
     name: str
     pose: Stance
@@ -176,14 +176,14 @@ class PlaceSpec(Model):
 def _usable_name(name: str) -> str:
     if not name.strip() or name.startswith(".") or any(c in "/\\" or ord(c) < 32 for c in name):
         raise ValueError(
-            f"`{name}` is no name of a site: files are named by it, so give it one without "
-            "slashes, which does not begin with a dot"
+            f"`{name}` can't be the name of a site, as files are named after it: use a name "
+            "without slashes that does not begin with a dot"
         )
     return name
 
 
 class SiteSpec(Model):
-    """A whole site."""
+    """Description of a whole site."""
 
     name: Annotated[str, Field(max_length=200), AfterValidator(_usable_name)]
     """files are named by it"""
@@ -204,7 +204,9 @@ class SiteSpec(Model):
     def _consistent(self) -> "SiteSpec":
         for index, floor in enumerate(self.floors, start=1):
             if floor.number != index:
-                raise ValueError(f"floors must be numbered 1, 2, …; the {index}. is {floor.number}")
+                raise ValueError(
+                    f"floors must be numbered 1, 2, …; item {index} has the number {floor.number}"
+                )
         for below, above in pairwise(self.floors):
             if abs(above.z - below.z - self.storey) > LEDGE:
                 raise PydanticCustomError(
@@ -223,38 +225,38 @@ class SiteSpec(Model):
             if len(paths) > 1:
                 raise PydanticCustomError(
                     "duplicate",
-                    "{thing} stands twice, and must not",
+                    "{thing} occurs twice: names and numbers must be unique",
                     {"thing": f"{kind} {name}", "path": paths[1]},
                 )
         return self
 
     def _named(self) -> dict[tuple[str, str], list[tuple[str | int, ...]]]:
-        """What is found by its name or number, with the paths of the fields that give it."""
-        found: dict[tuple[str, str], list[tuple[str | int, ...]]] = {}
+        """Return each kind and name of a named part, with the paths of the fields that hold it."""
+        paths: dict[tuple[str, str], list[tuple[str | int, ...]]] = {}
 
-        def note(kind: str, name: object, *path: str | int) -> None:
-            found.setdefault((kind, str(name)), []).append(path)
+        def add(kind: str, name: object, *path: str | int) -> None:
+            paths.setdefault((kind, str(name)), []).append(path)
 
         for i, area in enumerate(self.areas):
-            note("starting area", area.number, "areas", i, "number")
+            add("starting area", area.number, "areas", i, "number")
         for i, place in enumerate(self.places):
-            note("place", place.name.casefold(), "places", i, "name")
+            add("place", place.name.casefold(), "places", i, "name")
         for i, tower in enumerate(self.towers):
-            note("tower", tower.name, "towers", i, "name")
+            add("tower", tower.name, "towers", i, "name")
             for k, flight in enumerate(tower.flights):
-                note(f"in {tower.name}:", flight.name, "towers", i, "flights", k, "name")
+                add(f"in {tower.name}:", flight.name, "towers", i, "flights", k, "name")
             for k, landing in enumerate(tower.landings):
-                note(f"in {tower.name}:", landing.name, "towers", i, "landings", k, "name")
-        # Whatever stands on the site shows up in contacts and pictures by its name alone.
+                add(f"in {tower.name}:", landing.name, "towers", i, "landings", k, "name")
+        # Contacts and pictures identify equipment by its name alone.
         for i, vessel in enumerate(self.vessels):
-            note("equipment", vessel.name, "vessels", i, "name")
+            add("equipment", vessel.name, "vessels", i, "name")
         for i, pipe in enumerate(self.pipes):
-            note("equipment", pipe.name, "pipes", i, "name")
+            add("equipment", pipe.name, "pipes", i, "name")
         for i, floor in enumerate(self.floors):
             for k, vessel in enumerate(floor.vessels):
-                note("equipment", vessel.name, "floors", i, "vessels", k, "name")
+                add("equipment", vessel.name, "floors", i, "vessels", k, "name")
             for k, pump in enumerate(floor.pumps):
-                note("equipment", pump.name, "floors", i, "pumps", k, "name")
+                add("equipment", pump.name, "floors", i, "pumps", k, "name")
             for k, checkpoint in enumerate(floor.checkpoints):
-                note("checkpoint", checkpoint.id, "floors", i, "checkpoints", k, "id")
-        return found
+                add("checkpoint", checkpoint.id, "floors", i, "checkpoints", k, "id")
+        return paths

@@ -1,5 +1,7 @@
-"""Flights of open steel steps with stringers and handrails, and railings after ISO 14122-3: top
-rail, knee rail, toe plate and posts."""
+"""Flights of open steel steps with stringers and handrails, and railings after ISO 14122-3.
+
+A railing has a top rail, a knee rail, a toe plate and posts.
+"""
 
 import math
 from collections.abc import Callable
@@ -9,16 +11,16 @@ from argo_env.site.spec import FlightSpec, Rect
 
 RAIL_HEIGHT = 1.1  # m above the deck
 KNEE_HEIGHT = 0.55  # m
-TOE_PLATE = 0.1  # m, its height
+TOE_PLATE = 0.1  # m, height
 THICKNESS = 0.04  # m, of rails and posts
-POST_SPACING = 1.5  # m, at most
+POST_SPACING = 1.5  # m, greatest
 HANDRAIL_HEIGHT = 0.95  # m above the nosings of a flight
 
 
 def railing(
     start: tuple[float, float], end: tuple[float, float], z: float, offset: tuple[float, float]
 ) -> tuple[Solid, ...]:
-    """A railing on a deck at height `z` from `start` to `end`, moved sideways by `offset` (m)."""
+    """Build a railing on a deck at height `z` from `start` to `end`, moved by `offset` (m)."""
     x0, y0 = start[0] + offset[0], start[1] + offset[1]
     x1, y1 = end[0] + offset[0], end[1] + offset[1]
     length, yaw = math.hypot(x1 - x0, y1 - y0), math.atan2(y1 - y0, x1 - x0)
@@ -38,24 +40,27 @@ def railing(
     return tuple(solids)
 
 
-def outside(outward: tuple[float, float]) -> tuple[float, float]:
-    """How far a railing stands from the rim of its deck, so that the whole deck stays clear."""
+def railing_offset(outward: tuple[float, float]) -> tuple[float, float]:
+    """Return the offset (m) of a railing from its deck's rim that leaves the whole deck free."""
     return outward[0] * THICKNESS / 2, outward[1] * THICKNESS / 2
 
 
 TREAD_THICKNESS = 0.04  # m
-TREAD_OVERLAP = 0.02  # m that a tread reaches under the next one
+TREAD_OVERLAP = 0.02  # m by which a tread reaches under the next one
 STRINGER_DEPTH = 0.2  # m
-MOUTH_DEPTH = 0.3  # m across the first and the last nosing that stay free of railings
+MOUTH_DEPTH = 0.3  # m across the first and the last nosing, without railings
 
 
 def flight_run(flight: FlightSpec) -> float:
-    """m from the lowest to the highest nosing in plan; the last riser is the rim of the deck."""
+    """Return the horizontal distance (m) from the lowest to the highest nosing of the flight.
+
+    The last riser is the rim of the deck.
+    """
     return (flight.risers - 1) * flight.going
 
 
 def build_flight(flight: FlightSpec, prefix: str, base_z: float) -> tuple[Element, ...]:
-    """The steps as one element, and the handrails with the stringers as another."""
+    """Build the steps as one element, and the handrails with the stringers as another."""
     yaw = math.radians(flight.yaw)
     slope = math.atan2(flight.rise, flight.going)
     place = _placer(flight, base_z)
@@ -96,7 +101,10 @@ def build_flight(flight: FlightSpec, prefix: str, base_z: float) -> tuple[Elemen
 
 
 def mouths(flight: FlightSpec, base_z: float) -> tuple[tuple[float, Rect], tuple[float, Rect]]:
-    """Where the flight joins the decks at its foot and head: height and area without railing."""
+    """Return the height (m) and the area without railing where the flight joins the decks.
+
+    The first value is that of its foot, the second that of its head.
+    """
     place = _placer(flight, base_z)
     result = []
     for along, height in ((0.0, 0.0), (flight_run(flight), flight.risers * flight.rise)):
@@ -111,7 +119,10 @@ def mouths(flight: FlightSpec, base_z: float) -> tuple[tuple[float, Rect], tuple
 
 
 def _placer(flight: FlightSpec, base_z: float) -> Callable[[float, float, float], Vector]:
-    """From (along the flight, to its left, up), all in m, to the site's frame."""
+    """Return a function that maps a point in the flight's frame to the site's frame.
+
+    The point is given in m: along the flight, to its left, up.
+    """
     yaw = math.radians(flight.yaw)
     cos, sin = math.cos(yaw), math.sin(yaw)
     x, y, z = flight.foot

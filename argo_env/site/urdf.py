@@ -1,7 +1,7 @@
-"""A site's elements as URDF: one fixed link for each material, one named solid for each part.
+"""URDF of a site's elements: one fixed link for each material, with one entry for each solid.
 
-Few links with many solids, since PyBullet's collision step grows with the number of links: 30 µs
-with 12 links of 250 boxes, 3 ms with 400 links of 8 boxes (one run on two cores).
+There are few links with many solids, as the time of PyBullet's collision step grows with the number
+of links: 30 µs with 12 links of 250 boxes, 3 ms with 400 links of 8 boxes (one run on two cores).
 """
 
 from functools import lru_cache
@@ -24,14 +24,16 @@ COLOURS: dict[str, tuple[float, float, float]] = {
 """Red, green and blue from 0 to 1 for each material."""
 
 
-@lru_cache(maxsize=32)  # worlds of the same site, and its storeys, are made again and again
+@lru_cache(maxsize=32)  # worlds of a site, and its storeys, are made many times
 def to_urdf(name: str, elements: tuple[Element, ...], drawn: bool = True) -> str:
-    """The elements as one URDF document. Links are named after materials, solids after elements.
-    Unless `drawn`, pictures show nothing of it, and PyBullet loads it in half the time.
+    """Return the elements as one URDF document.
 
-    Every tag stands on a line of its own: PyBullet cuts lines longer than 1,024 characters.
+    Links are named after materials, and solids after elements. Unless `drawn`, pictures show none
+    of the elements, and PyBullet loads the document in half the time.
+
+    Every tag has a line of its own, as PyBullet cuts lines longer than 1,024 characters.
     """
-    # A site has thousands of solids: text at once takes a fraction of the time of a tree of tags.
+    # A site has thousands of solids: writing text is much faster than building a tree of tags.
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', f"<robot name={quoteattr(name)}>"]
     lines += ['<link name="site">', *_INERTIAL, "</link>"]
     for material in sorted({e.material for e in elements}):
@@ -57,7 +59,7 @@ def to_urdf(name: str, elements: tuple[Element, ...], drawn: bool = True) -> str
     return "\n".join([*lines, "</robot>", ""])
 
 
-# The site never moves, but PyBullet asks for a mass.
+# The site never moves, but PyBullet requires a mass.
 _INERTIAL = (
     "<inertial>",
     '<mass value="1" />',
@@ -69,19 +71,19 @@ _INERTIAL = (
 def _solid(name: str, solid: Solid, material: str, drawn: bool) -> list[str]:
     quoted = quoteattr(name)
     if isinstance(solid, Box):
-        shape = f'<box size="{_words(solid.size)}" />'
+        shape = f'<box size="{_numbers_text(solid.size)}" />'
     else:
         shape = f'<cylinder radius="{solid.radius:.6g}" length="{solid.length:.6g}" />'
-    where = [
-        f'<origin xyz="{_words(solid.center)}" rpy="{_words(solid.rpy)}" />',
+    geometry = [
+        f'<origin xyz="{_numbers_text(solid.center)}" rpy="{_numbers_text(solid.rpy)}" />',
         "<geometry>",
         shape,
         "</geometry>",
     ]
-    shown = [f"<visual name={quoted}>", *where, f'<material name="{material}" />', "</visual>"]
-    return [*(shown if drawn else ()), f"<collision name={quoted}>", *where, "</collision>"]
+    shown = [f"<visual name={quoted}>", *geometry, f'<material name="{material}" />', "</visual>"]
+    return [*(shown if drawn else ()), f"<collision name={quoted}>", *geometry, "</collision>"]
 
 
-def _words(vector: Vector) -> str:
+def _numbers_text(vector: Vector) -> str:
     # Adding 0.0 turns -0.0 into 0.0.
     return " ".join([f"{round(v, 6) + 0.0:.9g}" for v in vector])

@@ -273,7 +273,7 @@ class Bodies(Connection):
                 return self.site.checkpoint(id).name
         if body in self._screens:
             return self._screens[body]
-        return self._elements[self._site_links[link]].at(point)
+        return self._elements[self._site_links[link]].nearest(point)
 
     @cached_property
     def _elements(self) -> dict[str, ElementIndex]:

@@ -7,7 +7,7 @@ from argo_env.planning.flaws import Flaw, Standing, look_over
 from argo_env.planning.opening import OpenedSite
 from argo_env.site import load_site, site_names
 from argo_env.site.family import PREFIX, is_family
-from argo_env.site.norms import breaches
+from argo_env.site.norms import violations
 from argo_env.site.site_file import to_yaml
 
 
@@ -52,7 +52,7 @@ def list_sites() -> tuple[SiteSummary, ...]:
 def check_site(site: OpenedSite) -> SiteReport:
     """Looks for what the robot can't reach."""
     found = look_over(site.navigator)
-    return SiteReport(tuple(breaches(site.site.spec)), found.flaws, found.standing)
+    return SiteReport(tuple(violations(site.site.spec)), found.flaws, found.standing)
 
 
 def draw_report(site: OpenedSite, report: SiteReport) -> bytes:

@@ -44,7 +44,7 @@ class Terrain:
 
     def elements_at(self, part: str, points: Sequence[Vector]) -> list[str]:
         """Return the names of the elements of a part at points (m) on its surface."""
-        return self._index[part].at_each(points)
+        return self._index[part].nearest_each(points)
 
     def write(self, folder: str) -> Path:
         """Write the URDF to the folder, and return its path."""

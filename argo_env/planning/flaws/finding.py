@@ -18,7 +18,7 @@ from argo_env.planning.flaws.flaw import Flaw, Mark, between, direction, in_the_
 from argo_env.planning.flaws.floors import floor_flaws, lost_floors
 from argo_env.planning.flaws.standing import Standing
 from argo_env.site import Site, SiteCheckpoint
-from argo_env.site.norms import false_ends
+from argo_env.site.norms import height_errors
 from argo_env.site.shapes import Vector, crossing
 
 
@@ -189,11 +189,11 @@ def look_over(navigator: Navigator) -> SiteCheck:
     site = navigator.site
     unled = _unled_places(navigator) if _docks_serve(navigator) else None
     if unled == [] and not (
-        false_ends(site.spec) or unserved_floors(navigator) or unseen_checkpoints(navigator)
+        height_errors(site.spec) or unserved_floors(navigator) or unseen_checkpoints(navigator)
     ):
         return SiteCheck(())
     standing = Standing.of(navigator)
-    if ends := false_ends(site.spec):
+    if ends := height_errors(site.spec):
         # What can't be reached for that is found again once they are mended.
         return SiteCheck(tuple(Flaw(end) for end in ends), standing)
     if unled is None or dock_flaws(standing):

@@ -31,7 +31,7 @@ class SiteMap:
             directions: unit vectors, shape (n, 3).
             reach: length of the rays in m.
         """
-        return self._rays.first(origin, directions, reach)
+        return self._rays.first_hits(origin, directions, reach)
 
     def element(self, solid: int) -> Element:
         """Return the element that a solid belongs to."""

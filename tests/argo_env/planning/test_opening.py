@@ -376,7 +376,7 @@ def test_a_site_with_something_in_the_way_is_not_pickled(umad):
 
 
 def test_drawn_sites_are_in_no_file():
-    with pytest.raises(Invalid, match="`open_site` gives it"):
+    with pytest.raises(Invalid, match="open it with `open_site`"):
         load_site(DRAWN)
 
 

@@ -1,4 +1,4 @@
-"""Decks against a boolean raster of half-metre fields."""
+"""Decks are compared with a boolean raster of half-metre fields."""
 
 import numpy as np
 from hypothesis import given, settings
@@ -35,7 +35,7 @@ def perimeter(fields):
 
 
 def pieces(edge):
-    """The middles of the edge's pieces of one field."""
+    """Return the middles of the edge's pieces, each as long as one field."""
     start, end = np.array(edge.start), np.array(edge.end)
     count = round(np.abs(end - start).sum() / FIELD)
     return [start + (k + 0.5) / count * (end - start) for k in range(count)]

@@ -1,4 +1,4 @@
-"""Generated sites: what is asked for is what comes, and it can be driven."""
+"""Generated sites have the requested properties, and the robot can drive on them."""
 
 import math
 
@@ -13,7 +13,7 @@ from argo_env.planning.generated import generate
 from argo_env.site import make_site
 from argo_env.site.families import draw_site
 from argo_env.site.family import TEST_SEEDS, Family, Stairs, parse_family
-from argo_env.site.norms import breaches, false_ends
+from argo_env.site.norms import height_errors, violations
 from argo_env.site.site_file import read_site_spec, to_yaml
 from tests.conftest import examples
 
@@ -39,9 +39,9 @@ small_families = st.builds(
 
 @settings(max_examples=examples(60), deadline=None)
 @given(family=families)
-def test_a_draw_keeps_the_norms_and_has_what_was_asked_for(family):
+def test_a_draw_keeps_the_norms_and_has_the_requested_properties(family):
     spec, slots = draw_site(family)
-    assert breaches(spec) == false_ends(spec) == []
+    assert violations(spec) == height_errors(spec) == []
     assert len(spec.floors) == family.floors
     ids = [c.id for floor in spec.floors for c in floor.checkpoints]
     assert ids == list(range(1, family.checkpoints + 1)) == list(slots)
@@ -49,7 +49,7 @@ def test_a_draw_keeps_the_norms_and_has_what_was_asked_for(family):
     for tower in spec.towers:
         assert all(0.16 <= f.rise <= 0.195 for f in tower.flights)
     assert draw_site(family) == (spec, slots)
-    # Not where it is said that they can't be read.
+    # Checkpoints avoid refused slots.
     refused = set(list(slots.values())[:5])
     assert not refused & set(draw_site(family, refused=refused)[1].values())
 
@@ -64,7 +64,7 @@ def test_every_place_is_reached_from_every_dock_and_back(family, robot, tmp_path
     file = tmp_path_factory.mktemp("generated") / "site.yaml"
     file.write_text(to_yaml(site.spec), encoding="utf-8")
     assert read_site_spec(file) == site.spec
-    assert breaches(site.spec) == false_ends(site.spec) == []
+    assert violations(site.spec) == height_errors(site.spec) == []
     for dock in site.docks.values():
         for floor in site.spec.floors:
             # In the north-west corner of every floor.
@@ -80,8 +80,8 @@ def test_every_place_is_reached_from_every_dock_and_back(family, robot, tmp_path
             navigator.plan(there.end, dock)
 
 
-def test_a_site_without_stairs_to_the_upper_floor_is_not_given_out(monkeypatch):
-    """The check does not trust the draw."""
+def test_a_site_without_stairs_to_the_upper_floor_is_refused(monkeypatch):
+    """`generate` checks the site that `draw_site` returns."""
 
     def without_stairs(family, attempt=0, refused=()):
         spec, slots = draw_site(family, attempt, refused)
@@ -95,7 +95,7 @@ def test_a_site_without_stairs_to_the_upper_floor_is_not_given_out(monkeypatch):
 
 @pytest.mark.long
 def test_checkpoints_that_can_not_be_read_are_moved(monkeypatch):
-    """One that is far too high, in the first draw."""
+    """A checkpoint that is far too high in the first draw gets another slot."""
 
     def raised(family, attempt=0, refused=()):
         spec, slots = draw_site(family, attempt, refused)
@@ -163,7 +163,7 @@ def test_norms_find_what_is_wrong():
             "floors": (floor.model_copy(update={"checkpoints": (far,)}), *spec.floors[1:]),
         }
     )
-    found = "\n".join(breaches(wrong))
-    for said in ("pitch", "going", "wide", "2.3 m high", "2.5 m beside"):
-        assert said in found
+    messages = "\n".join(violations(wrong))
+    for text in ("pitch", "going", "wide", "2.3 m high", "2.5 m beside"):
+        assert text in messages
     assert make_site(wrong).checkpoints

@@ -10,7 +10,7 @@ from argo_env.site import load_site
 
 
 class _Plain(yaml.SafeDumper):
-    """Writes no anchors: what is changed in one place must not change in another."""
+    """Dumper without anchors, so that a change of one part does not change another."""
 
     def ignore_aliases(self, data):  # noqa: ARG002
         return True
@@ -87,7 +87,7 @@ def test_a_folder_is_no_site(tmp_path):
         b"\x89PNG\r\n",
     ],
 )
-def test_what_is_no_site(tmp_path, content):
+def test_a_text_that_describes_no_site(tmp_path, content):
     path = written(tmp_path, content)
     assert str(path) in refusal(path)
 
@@ -106,7 +106,7 @@ def change(description, where, value):
         (("roof",), 1, "roof"),
         (("floors", 2, "colour"), "red", "floors[2].colour"),
         (("floors", 1, "number"), 7, "numbered"),
-        (("floors", 1, "checkpoints", 0, "id"), 1, "checkpoint 1 stands twice"),
+        (("floors", 1, "checkpoints", 0, "id"), 1, "checkpoint 1 occurs twice"),
         (("floors", 1, "checkpoints", 0, "kind"), "lever", "floors[1].checkpoints[0].kind"),
         (
             ("floors", 1, "checkpoints", 0, "nominal", "low"),
@@ -199,14 +199,14 @@ def test_sizes_that_no_site_has_are_refused_with_their_place(tmp_path, where, va
         (("floors", 0, "pumps"), "equipment"),
     ],
 )
-def test_names_and_numbers_stand_once(tmp_path, description, where, thing):
+def test_names_and_numbers_are_unique(tmp_path, description, where, thing):
     part = description
     for step in where:
         part = part[step]
     part.append(part[0])
     path = written(tmp_path, description)
     message = refusal(path)
-    assert "stands twice" in message
+    assert "occurs twice" in message
     assert thing in message
     index = len(part) - 1
     assert f"{where[-1]}[{index}]." in message
@@ -222,7 +222,7 @@ def test_mistakes_are_shown_in_their_line(tmp_path):
     assert "is `storey` meant?" in message
 
 
-def test_keys_stand_once(tmp_path, umad):
+def test_keys_are_unique(tmp_path, umad):
     path = written(tmp_path, UMAD + "\nname: other\n")
     message = refusal(path)
     line = UMAD.split("\n").index("name: umad") + 1

@@ -1,4 +1,4 @@
-"""Rays and points, many at once: as one line and one solid, or point, at a time."""
+"""Queries for many rays or points at once give the same as one query at a time."""
 
 import numpy as np
 import pytest
@@ -20,13 +20,13 @@ solids = st.one_of(
 
 
 def gathered(parts):
-    """The solids in elements of up to two."""
+    """Return the solids in elements of up to two."""
     pairs = [tuple(parts[k : k + 2]) for k in range(0, len(parts), 2)]
     return tuple(Element(f"part {k}", Role.STRUCTURE, p, "steel") for k, p in enumerate(pairs))
 
 
 def one_by_one(parts, origin, direction, reach, inside):
-    """The distance to the first solid and its number, from `crossing`."""
+    """Return the distance to the first solid and its number, found with `crossing`."""
     best = np.inf, -1
     for number, solid in enumerate(parts):
         entry, leave = (t[0] for t in crossing(solid, origin[None], direction))
@@ -52,7 +52,7 @@ def test_many_rays_are_as_one_by_one(parts, seed, inside, apart):
     elements = gathered(parts)
     rays = SolidRays(elements)
     assert [e.name for e in rays.elements] == [e.name for e in elements for _ in e.solids]
-    distances, found = rays.first(origins if apart else origins[0], directions, reach, inside)
+    distances, found = rays.first_hits(origins if apart else origins[0], directions, reach, inside)
     for origin, direction, distance, solid in zip(
         origins, directions, distances, found.tolist(), strict=True
     ):
@@ -66,9 +66,9 @@ def test_a_ray_from_inside_begins_behind_itself():
         gathered([Box((0.0, 0.0, 0.0), (2.0, 2.0, 2.0)), Cylinder((3.0, 0, 0), 0.5, 1.0)])
     )
     ahead = np.array([[1.0, 0.0, 0.0]])
-    assert [v[0] for v in rays.first(np.zeros(3), ahead, 9.0)] == [2.5, 1]
-    assert [v[0] for v in rays.first(np.zeros(3), ahead, 9.0, inside=True)] == [-1.0, 0]
-    assert [v[0] for v in rays.first(np.zeros(3), ahead, 2.0)] == [np.inf, -1]
+    assert [v[0] for v in rays.first_hits(np.zeros(3), ahead, 9.0)] == [2.5, 1]
+    assert [v[0] for v in rays.first_hits(np.zeros(3), ahead, 9.0, inside=True)] == [-1.0, 0]
+    assert [v[0] for v in rays.first_hits(np.zeros(3), ahead, 2.0)] == [np.inf, -1]
 
 
 SITE = load_site("umad")
@@ -77,7 +77,7 @@ SITE = load_site("umad")
 @pytest.mark.parametrize("material", ["railing", "grating", "structure", "pump"])
 @pytest.mark.parametrize("reach", [0.001, 0.1, 20.0])
 def test_many_points_at_once_are_those_one_by_one(material, reach):
-    """Points on surfaces, where several solids may be equally near, beside them, and far away."""
+    """The points lie on surfaces, where several solids may be equally near, beside them, or far."""
     index = ElementIndex(SITE.elements, material)
     rng = np.random.default_rng(7)
     solids = [s for e in SITE.elements if e.material == material for s in e.solids]
@@ -89,4 +89,4 @@ def test_many_points_at_once_are_those_one_by_one(material, reach):
         place = np.array(solid.center) + solid.rotation() @ corner
         points.append(tuple((place + rng.uniform(-reach, reach, 3)).tolist()))
         points.append(tuple(place.tolist()))
-    assert index.at_each(points) == [index.at(point) for point in points]
+    assert index.nearest_each(points) == [index.nearest(point) for point in points]

@@ -1,4 +1,4 @@
-"""Boxes and cylinders against PyBullet, trimesh and plain sampling."""
+"""Boxes and cylinders agree with PyBullet, trimesh and plain sampling."""
 
 import math
 
@@ -22,7 +22,7 @@ points = st.tuples(*[st.floats(-6.0, 6.0)] * 3)
 
 
 def axes(solid):
-    """Columns are the solid's axes, from PyBullet's reading of URDF's roll, pitch and yaw."""
+    """Return the solid's axes as columns, as PyBullet interprets roll, pitch and yaw of URDF."""
     quaternion = pybullet.getQuaternionFromEuler(solid.rpy)
     return np.array(pybullet.getMatrixFromQuaternion(quaternion)).reshape(3, 3)
 
@@ -82,7 +82,7 @@ def test_crossing_agrees_with_a_ray_of_pybullet(client, solid, start, end):
     pybullet.removeBody(body, physicsClientId=client)
     expected = low[0] <= high[0] and 0.0 <= low[0] <= 1.0
     if not expected and hit[0] >= 0:
-        # PyBullet's rays may hit what they miss by a millimetre.
+        # PyBullet's rays may hit a solid that they miss by a millimetre.
         assert contains(solid, np.array(hit[3]), 0.005)
         return
     assert (hit[0] >= 0) == expected
@@ -90,15 +90,15 @@ def test_crossing_agrees_with_a_ray_of_pybullet(client, solid, start, end):
         assert low[0] * length == pytest.approx(
             first_inside(solid, start, end, low, high), abs=1e-6
         )
-        # PyBullet's rays end up to millimetres before the surface, which a ray along it meets much
-        # later: its answer is held against the surface, and not against the way along the ray.
+        # PyBullet's rays end up to some millimetres before the surface. A grazing ray meets the
+        # surface much later, so the hit is compared with the surface, and not along the ray.
         place = np.array(hit[3])
         assert contains(solid, place, 0.005)
         assert not contains(solid, place, -0.005)
 
 
 def first_inside(solid, start, end, low, high):
-    """m along the line from outside to where the solid begins, by halving."""
+    """Return the distance (m) along the line to the solid's surface, by bisection."""
     outside, inside = 0.0, (low[0] + high[0]) / 2
     assert contains(solid, start + inside * (end - start), 0.0)
     for _ in range(60):
@@ -144,8 +144,8 @@ def test_many_lines_cross_as_each_alone(solid, starts):
     for origin, low, high in zip(origins, *crossing(solid, origins, direction), strict=True):
         (alone_low,), (alone_high,) = crossing(solid, origin[None], direction)
         if math.isinf(low) != math.isinf(alone_low):
-            # Products of matrices of other sizes are rounded otherwise, in the last bit: only a
-            # line that just touches can be read either way.
+            # Products of matrices of different sizes differ in the last bit, so only a line that
+            # just touches the solid may have either result.
             assert (high - low if math.isfinite(low) else alone_high - alone_low) < 1e-6
         else:
             assert (low, high) == pytest.approx((alone_low, alone_high), abs=1e-7)

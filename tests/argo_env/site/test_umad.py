@@ -1,4 +1,4 @@
-"""The shipped site: what is known of it, and the norms and rules that it must keep."""
+"""The shipped site has its known properties, and keeps the norms and rules."""
 
 import math
 from functools import partial
@@ -177,7 +177,7 @@ def test_walkways_of_upper_floors_are_wide_and_clear(umad, umad_world):
 
 
 def test_headroom_over_decks_and_stairs(umad, umad_world):
-    """Nothing overhead within 2.1 m over the middles of walkways and of treads."""
+    """No solid lies within 2.1 m above the middles of walkways and of treads."""
     starts = [
         ((x0 + x1) / 2, (y0 + y1) / 2, floor.z + 0.01)
         for floor in umad.spec.floors[1:]
@@ -237,7 +237,7 @@ def test_elements_have_unique_names(umad):
 
 
 def rim(site):
-    """Points every 5 cm along the rims of all railed decks: x, y, z and the way out."""
+    """Yield points every 5 cm along the rims of all railed decks: x, y, z, outward direction."""
     decks = [(floor.z, floor) for floor in site.spec.floors[1:]]
     decks += [
         (floor.z + landing.z, SimpleNamespace(walkways={"": landing.rect}, openings={}))

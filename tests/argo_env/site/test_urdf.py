@@ -1,4 +1,4 @@
-"""The written URDF, read back by PyBullet and by yourdfpy."""
+"""The written URDF is read by PyBullet and by yourdfpy."""
 
 from collections import Counter
 

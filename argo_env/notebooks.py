@@ -42,9 +42,9 @@ def machine_html(machine: "Hfsm") -> str:
     """Return the diagram of a machine, or its Mermaid text if it is too large to be drawn."""
     from argo_compiler.export import to_mermaid
     from argo_env.report.html import machine_page
-    from argo_env.report.machine import drawable
+    from argo_env.report.machine import is_drawable
 
-    if not drawable(machine):
+    if not is_drawable(machine):
         return f"<pre>{escape(to_mermaid(machine))}</pre>"
     return _framed(machine_page(machine))
 

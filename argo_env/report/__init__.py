@@ -1,4 +1,4 @@
-"""The report of a run: its record as JSON, and one page that a person reads."""
+"""Report of a run: its record as JSON, and one page for people."""
 
 from argo_env.report.files import write_report
 

@@ -1,4 +1,4 @@
-"""The files of a report."""
+"""Files of a report."""
 
 import json
 from pathlib import Path
@@ -12,14 +12,14 @@ from argo_env.site import Site
 
 RECORD = "report.json"
 PAGE = "report.html"
-"""the file of a report that a person opens"""
+"""file of a report that a person opens"""
 
 
 def write_report(record: RunRecord, site: Site, folder: Path) -> Path:
-    """Writes `report.json` and `report.html` into the folder and returns the path of the page.
+    """Write `report.json` and `report.html` into the folder and return the path of the page.
 
-    Equal records give the same bytes. `RunRecord.model_validate_json` reads the JSON back.
-    Raises ArgoError if the record is of another site, or the files can't be written.
+    Equal records give the same bytes. `RunRecord.model_validate_json` reads the JSON again.
+    Raises ArgoError if the record belongs to another site, or the files can't be written.
     """
     if record.site != site.name:
         raise Conflict(
@@ -32,7 +32,7 @@ def write_report(record: RunRecord, site: Site, folder: Path) -> Path:
 
 
 def to_json(record: RunRecord) -> str:
-    """The record as JSON: an entry of a list, such as a sample of the path, takes one line."""
+    """Return the record as JSON; each item of a list, such as a sample of the path, has a line."""
     fields = record.model_dump(mode="json")
     parts = [f'  "{name}": {_value(value)}' for name, value in fields.items()]
     return "{\n" + ",\n".join(parts) + "\n}\n"

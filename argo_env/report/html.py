@@ -1,4 +1,4 @@
-"""The page that shows a run."""
+"""Page that shows a run."""
 
 from functools import cache
 from pathlib import Path
@@ -11,37 +11,37 @@ from argo_compiler.hfsm import Hfsm
 from argo_compiler.il import Action, Mission
 from argo_compiler.il.reserved import RETURN_TASK
 from argo_env.formatting import clock
-from argo_env.report.machine import drawable, machine
+from argo_env.report.machine import is_drawable, machine
 from argo_env.report.plan import elevation, floor_plan, visited_floors
 from argo_env.report.rounds import blocks, repeat_rules, waits, with_readings, with_waits
 from argo_env.report.svg import Node, clean, drawing, markup, node
-from argo_env.report.timeline import charge_curve, is_untold, timeline
+from argo_env.report.timeline import charge_curve, lacks_measuring_times, timeline
 from argo_env.report.track import colour
 from argo_env.run.record import Anomaly, Reading, RunRecord
 from argo_env.site import Site
 from argo_env.site.site import SCALES
 
-BAR = 130.0  # px, width of the bar of a reading
+BAR = 130.0  # px, width of the scale of a reading
 
 
 def page(record: RunRecord, site: Site) -> str:
-    """The whole report as one HTML page that needs no other file."""
+    """Return the whole report as one HTML page that needs no other file."""
     floors = visited_floors(record)
-    found = blocks(record)
-    stood = waits(record)
+    task_blocks = blocks(record)
+    idle_times = waits(record)
     others = [str(f.number) for f in site.spec.floors if f.number not in floors]
     return _template().render(
         style=_style(),
         record=record,
         headline=record.headline,
         site=site,
-        found=_found(record),
-        untold=any(map(is_untold, record.tasks)),
+        found=_findings(record),
+        untold=any(map(lacks_measuring_times, record.tasks)),
         missed=record.missed_faults,
         failed=[t for t in record.tasks if t.outcome == "failed"],
         readings=[(reading, markup(_bar(reading))) for reading in record.readings],
         timeline=markup(timeline(record)) if record.tasks or record.waits else None,
-        waits=stood,
+        waits=idle_times,
         rounds=with_readings(record),
         rules=repeat_rules(record),
         charge=None if (curve := charge_curve(record)) is None else markup(curve),
@@ -49,16 +49,16 @@ def page(record: RunRecord, site: Site) -> str:
         unvisited=others,
         elevation=markup(elevation(site, record)) if record.path else None,
         ramp=", ".join(colour(i / 6) for i in range(7)),
-        blocks=list(zip(found, with_waits(found, stood), strict=True)),
+        blocks=list(zip(task_blocks, with_waits(task_blocks, idle_times), strict=True)),
         docking=_docking(record.mission),
-        machine=markup(machine(record.hfsm)) if drawable(record.hfsm) else None,
-        ways_of_failure=any(leaf.failure or leaf.missed for leaf in record.hfsm.leaves),
+        machine=markup(machine(record.hfsm)) if is_drawable(record.hfsm) else None,
+        has_failure_transitions=any(leaf.failure or leaf.missed for leaf in record.hfsm.leaves),
         mermaid=to_mermaid(record.hfsm),
     )
 
 
 def machine_page(hfsm: Hfsm) -> str:
-    """The diagram of a machine that is not too large to be drawn, as a page of its own."""
+    """Return a page that shows only the diagram of a machine for which `is_drawable` is true."""
     return f"<!DOCTYPE html><style>{_style()}</style><main>{markup(machine(hfsm))}</main>"
 
 
@@ -81,8 +81,11 @@ def _template() -> Template:
     return environment.from_string(text)
 
 
-def _found(record: RunRecord) -> list[tuple[int | None, Anomaly]]:
-    """All that was found and what tells that it is over, with the numbers that drawings give."""
+def _findings(record: RunRecord) -> list[tuple[int | None, Anomaly]]:
+    """Return all findings and their ends, sorted by time, with their numbers in the drawings.
+
+    The number is None for an abnormal reading without an anomaly, which no drawing shows.
+    """
     findings = {finding.number: finding for finding in record.findings}
     rows: list[tuple[int | None, Anomaly]] = [
         (number, findings.get(number, anomaly))
@@ -93,7 +96,7 @@ def _found(record: RunRecord) -> list[tuple[int | None, Anomaly]]:
 
 
 def _docking(mission: Mission) -> frozenset[str]:
-    """The names of the tasks that are ways into the docking station."""
+    """Return the names of the tasks that drive into the docking station."""
     return frozenset(
         [RETURN_TASK]
         + [
@@ -105,7 +108,7 @@ def _docking(mission: Mission) -> frozenset[str]:
 
 
 def _bar(reading: Reading) -> Node:
-    """The value within the scale of its kind, with the nominal band."""
+    """Draw the value on the scale of its kind, with the nominal range as a band."""
     _, scale = SCALES[reading.kind]
     low, high = min(scale.low, reading.nominal.low), max(scale.high, reading.nominal.high)
 

@@ -1,8 +1,8 @@
-"""The state machine as a drawing: states from top to bottom, ways beside them.
+"""Drawing of the state machine: states from top to bottom, transitions as arrows.
 
-Every state is a row. The way to the state right below is a short arrow; any other one leaves its
-row on the right, in a slot of its own that holds its label, and runs down or up in a lane of its
-own. So no label can meet another one or a line that does not belong to it.
+Every state is a row. A transition without a label to the next state below is a short arrow. Any
+other one leaves its row on the right, in a slot of its own that holds its label, and runs down or
+up in a lane where it meets no other. So no label can overlap another one or a line of another one.
 """
 
 from collections.abc import Iterator
@@ -15,18 +15,18 @@ from argo_compiler.il import Stop
 from argo_env.report.svg import Node, drawing, node, number, shorten
 
 MAX_STATES = 45
-"""leaves and groups of the largest machine that is drawn"""
+"""greatest number of leaves and groups of a machine that is drawn"""
 
 NODE_WIDTH = 290.0  # px
-SLOT = 19.0  # px, height of one way's label
+SLOT = 19.0  # px, height of one transition's label
 GAP = 16.0  # px between rows
 PAD = 14.0  # px between the borders of nested boxes
-LANE = 11.0  # px between parallel ways
+LANE = 11.0  # px between parallel lines of transitions
 CHARACTER = 6.3  # px, width of a character of a label
 MAX_LABEL = 46  # characters
 
 _DECISION = "decide "
-"""with a composite's id: the row in which its ways on are chosen"""
+"""prefix of a composite's id: key of the row from which the transitions of its end leave"""
 
 _INITIAL = "initial"
 _AFTER_FAILURES = {TransitionKind.FAILURE: "failed", TransitionKind.MISSED: "time window missed"}
@@ -34,14 +34,14 @@ _AFTER_FAILURES = {TransitionKind.FAILURE: "failed", TransitionKind.MISSED: "tim
 
 @dataclass
 class _Row:
-    """A row of the drawing. Holds the slots that are given away while the ways are laid out."""
+    """Row of the drawing. The layout adds the slots of transitions, then sets `y`."""
 
     key: str
     kind: str
     text: str
     depth: int
     slots: list[int] = field(default_factory=list)
-    """numbers of the ways that leave or enter on the right, from above"""
+    """numbers of the transitions that leave or enter on the right, from above"""
     y: float = 0.0
 
     @property
@@ -49,40 +49,45 @@ class _Row:
         least = {"leaf": 34.0, "decision": 24.0, "head": 26.0}.get(self.kind, 22.0)
         return max(least, SLOT * len(self.slots) + 6)
 
-    def slot(self, way: int) -> float:
-        """y of the slot of a way."""
+    def slot_y(self, arrow: int) -> float:
+        """Return the y (px) of a transition's slot."""
         offset = (self.height - SLOT * len(self.slots)) / 2
-        return self.y + offset + SLOT * (self.slots.index(way) + 0.8)
+        return self.y + offset + SLOT * (self.slots.index(arrow) + 0.8)
 
 
 @dataclass(frozen=True)
-class _Way:
+class _Arrow:
+    """Arrow of one transition between two rows, by their keys."""
+
     source: str
     target: str
     kind: str
     label: str
 
 
-def drawable(hfsm: Hfsm) -> bool:
-    """Whether the machine is small enough to be read as a drawing."""
+def is_drawable(hfsm: Hfsm) -> bool:
+    """Return True if the machine is small enough to be readable as a drawing."""
     return len(hfsm.leaves) + len(hfsm.composites) <= MAX_STATES
 
 
 def machine(hfsm: Hfsm) -> Node:
-    """The drawing of the machine: one `state` for each leaf and composite, one `way` for each
-    transition."""
+    """Draw the machine.
+
+    The drawing has one element of class `state` for each leaf and composite, and one of class `way`
+    for each transition and for the start.
+    """
     rows = _rows(hfsm)
-    place = {row.key: i for i, row in enumerate(rows)}
-    ways = list(_ways(hfsm))
+    index = {row.key: i for i, row in enumerate(rows)}
+    arrows = list(_arrows(hfsm))
     straight = {
         i
-        for i, way in enumerate(ways)
-        if not way.label and _adjacent(rows, place[way.source], place[way.target])
+        for i, arrow in enumerate(arrows)
+        if not arrow.label and _are_adjacent(rows, index[arrow.source], index[arrow.target])
     }
-    for i, way in enumerate(ways):
+    for i, arrow in enumerate(arrows):
         if i not in straight:
-            rows[place[way.source]].slots.append(i)
-            rows[place[way.target]].slots.append(i)
+            rows[index[arrow.source]].slots.append(i)
+            rows[index[arrow.target]].slots.append(i)
     y = 10.0
     for row in rows:
         row.y = y
@@ -90,22 +95,24 @@ def machine(hfsm: Hfsm) -> Node:
     depth = max(row.depth for row in rows)
     left = 10.0 + depth * PAD
     labels = left + NODE_WIDTH + depth * PAD + 12
-    longest = max((len(way.label) for way in ways), default=0)
+    longest = max((len(arrow.label) for arrow in arrows), default=0)
     lanes = labels + longest * CHARACTER + 14
     spans = {
-        i: (rows[place[w.source]].slot(i), rows[place[w.target]].slot(i))
-        for i, w in enumerate(ways)
+        i: (rows[index[a.source]].slot_y(i), rows[index[a.target]].slot_y(i))
+        for i, a in enumerate(arrows)
         if i not in straight
     }
     lane = _lanes(spans)
-    parts = _boxes(hfsm, rows, place, left)
-    for i, way in enumerate(ways):
-        source, target = rows[place[way.source]], rows[place[way.target]]
+    parts = _boxes(hfsm, rows, index, left)
+    for i, arrow in enumerate(arrows):
+        source, target = rows[index[arrow.source]], rows[index[arrow.target]]
         if i in straight:
-            parts.append(_straight(way, source, target, left))
+            parts.append(_straight_arrow(arrow, source, target, left))
         else:
-            parts.append(_bent(way, (source, target), i, left, labels, lanes + lane[i] * LANE))
-    # States come after the ways, so that a straight way passes below the title of a group.
+            parts.append(
+                _bent_arrow(arrow, (source, target), i, left, labels, lanes + lane[i] * LANE)
+            )
+    # States are drawn after the arrows, so a straight arrow passes below the title of a group.
     parts += [_state(row, left, depth) for row in rows]
     width = lanes + (max(lane.values(), default=0) + 1) * LANE + 6
     return drawing(width, y, "State machine of the mission", *parts, class_="drawing machine")
@@ -135,24 +142,24 @@ def _rows(hfsm: Hfsm) -> list[_Row]:
     return rows
 
 
-def _ways(hfsm: Hfsm) -> Iterator[_Way]:
-    yield _Way(_INITIAL, hfsm.mission.initial, "begin", "")
+def _arrows(hfsm: Hfsm) -> Iterator[_Arrow]:
+    yield _Arrow(_INITIAL, hfsm.mission.initial, "begin", "")
     for leaf in hfsm.leaves:
         for transition in leaf.transitions:
-            yield _way(leaf.id, transition, None)
+            yield _arrow(leaf.id, transition, None)
         for transition in filter(None, (leaf.failure, leaf.missed)):
-            yield _way(leaf.id, transition, None)
+            yield _arrow(leaf.id, transition, None)
     for group in hfsm.composites:
         for transition in group.transitions:
-            yield _way(_DECISION + group.id, transition, group)
+            yield _arrow(_DECISION + group.id, transition, group)
         if group.timeout:
-            yield _way(group.id, group.timeout, group)
+            yield _arrow(group.id, group.timeout, group)
 
 
-def _way(source: str, transition: StateTransition, group: Composite | None) -> _Way:
+def _arrow(source: str, transition: StateTransition, group: Composite | None) -> _Arrow:
     completed = transition.completes
     target = transition.target or DONE if completed is None else _DECISION + completed
-    return _Way(source, target, transition.kind, shorten(_label(transition, group), MAX_LABEL))
+    return _Arrow(source, target, transition.kind, shorten(_label(transition, group), MAX_LABEL))
 
 
 def _label(transition: StateTransition, group: Composite | None) -> str:
@@ -177,13 +184,16 @@ def _label(transition: StateTransition, group: Composite | None) -> str:
     return ", ".join(limits)
 
 
-def _adjacent(rows: list[_Row], source: int, target: int) -> bool:
-    """Whether only heads of groups lie between a row and one below it."""
+def _are_adjacent(rows: list[_Row], source: int, target: int) -> bool:
+    """Return True if `target` is below `source`, and only heads of groups are between them."""
     return source < target and all(row.kind == "head" for row in rows[source + 1 : target])
 
 
 def _lanes(spans: dict[int, tuple[float, float]]) -> dict[int, int]:
-    """A lane for each way, short ones inside, so that ways in one lane do not meet."""
+    """Return a lane for each transition, by its number; those in the same lane do not meet.
+
+    `spans` gives the y (px) of both ends. Short transitions get the inner lanes.
+    """
     lanes: list[list[tuple[float, float]]] = []
     result = {}
     for i, (a, b) in sorted(spans.items(), key=lambda item: (abs(item[1][1] - item[1][0]), item)):
@@ -199,13 +209,13 @@ def _lanes(spans: dict[int, tuple[float, float]]) -> dict[int, int]:
     return result
 
 
-def _boxes(hfsm: Hfsm, rows: list[_Row], place: dict[str, int], left: float) -> list[Node]:
+def _boxes(hfsm: Hfsm, rows: list[_Row], index: dict[str, int], left: float) -> list[Node]:
     boxes = []
     for composite in hfsm.composites:
-        first = place[composite.id]
+        first = index[composite.id]
         depth = rows[first].depth
         last = first
-        while last + 1 < len(rows) and _inside(rows[last + 1], depth):
+        while last + 1 < len(rows) and _is_inside(rows[last + 1], depth):
             last += 1
         deeper = max(row.depth for row in rows[first : last + 1]) - depth
         top, bottom = rows[first].y - 2, rows[last].y + rows[last].height + 4
@@ -230,8 +240,8 @@ def _boxes(hfsm: Hfsm, rows: list[_Row], place: dict[str, int], left: float) -> 
     return boxes
 
 
-def _inside(row: _Row, depth: int) -> bool:
-    """Whether the row belongs to the composite of that depth which lies right above."""
+def _is_inside(row: _Row, depth: int) -> bool:
+    """Return True if the row belongs to the composite of this depth that the previous row is in."""
     return row.depth > depth or (row.depth == depth and row.kind != "head")
 
 
@@ -264,7 +274,7 @@ def _state(row: _Row, left: float, depth: int) -> Node:
     return node("g", text, box, label, class_="state leaf" if row.kind == "leaf" else "decision")
 
 
-def _straight(way: _Way, source: _Row, target: _Row, left: float) -> Node:
+def _straight_arrow(arrow: _Arrow, source: _Row, target: _Row, left: float) -> Node:
     x = left + NODE_WIDTH * (0.5 if "head" not in (source.kind, target.kind) else 0.9)
     if source.kind == "initial":
         x = left + NODE_WIDTH / 2
@@ -275,16 +285,16 @@ def _straight(way: _Way, source: _Row, target: _Row, left: float) -> Node:
         "g",
         node("path", d=f"M{number(x)},{number(start)}V{number(end - 6)}", class_="line"),
         node("path", d=tip, class_="tip"),
-        class_=f"way {way.kind}",
+        class_=f"way {arrow.kind}",
     )
 
 
-def _bent(
-    way: _Way, ends: tuple[_Row, _Row], index: int, left: float, labels: float, lane: float
+def _bent_arrow(
+    arrow: _Arrow, ends: tuple[_Row, _Row], index: int, left: float, labels: float, lane: float
 ) -> Node:
-    start, end = (row.slot(index) for row in ends)
+    start, end = (row.slot_y(index) for row in ends)
     if ends[0] is ends[1]:
-        # A way back to its own row has one slot for both ends; listed twice, they lie side by side.
+        # A transition to its own row is listed twice there, so its ends lie in neighbouring slots.
         end = start + SLOT
     edges = [
         left + NODE_WIDTH / 2 + 10 if r.kind in {"initial", "final"} else left + NODE_WIDTH
@@ -298,6 +308,6 @@ def _bent(
         node("path", d=line, class_="line"),
         node("path", d=tip, class_="tip"),
     ]
-    if way.label:
-        parts.append(node("text", x=labels, y=start - 4, text=way.label))
-    return node("g", *parts, class_=f"way {way.kind}")
+    if arrow.label:
+        parts.append(node("text", x=labels, y=start - 4, text=arrow.label))
+    return node("g", *parts, class_=f"way {arrow.kind}")

@@ -1,4 +1,4 @@
-"""The outlines of solids as they are seen along an axis of the site."""
+"""Outlines of solids, seen along an axis of the site."""
 
 import math
 from functools import lru_cache
@@ -21,17 +21,17 @@ DRAWING_ORDER = (
     Role.DOCK,
     Role.RAILING,
 )
-"""What lies below comes first."""
+"""Roles in the order in which they are drawn: lower ones first."""
 
 _ROUND = 16
-"""corners that a disc is drawn with"""
+"""number of corners of a disc's outline"""
 _CORNERS = np.array([[a, b, c] for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)])
 _SOLIDS = 1 << 13
-"""whose heights are kept: each floor asks for those of all solids of a site"""
+"""size of the cache of heights; each floor needs those of all solids of a site"""
 
 
 def outline(solid: Solid, axes: tuple[int, int]) -> list[Point]:
-    """The outline in m of the solid on the plane of two axes of the site, counter-clockwise."""
+    """Return the outline (m) of the solid in the plane of two site axes, counter-clockwise."""
     if isinstance(solid, Box):
         local = _CORNERS * np.array(solid.size) / 2
     else:
@@ -45,16 +45,17 @@ def outline(solid: Solid, axes: tuple[int, int]) -> list[Point]:
 
 @lru_cache(maxsize=_SOLIDS)
 def heights(solid: Solid) -> tuple[float, float]:
-    """The lowest and the highest z (m) of the solid."""
+    """Return the lowest and the highest z (m) of the solid."""
     half = float(half_extents(solid)[2])
     return solid.center[2] - half, solid.center[2] + half
 
 
 def on_floor(element: Element, z: float, storey: float) -> tuple[Solid, ...]:
-    """The solids of the element that a plan of the floor at height `z` shows.
+    """Return the solids of the element that a plan of the floor at height `z` (m) shows.
 
-    Decks go by their top. A flight of stairs and its handrails are shown where they begin.
-    Equipment and columns are shown on every floor that they reach into.
+    For decks and the ground their top decides. A flight of stairs, a handrail or a railing is shown
+    on the floor whose height range contains the middle of its own. Equipment and columns are shown
+    on every floor that they reach into. `storey` is the height from floor to floor in m.
     """
     low, high = z - 0.2, z + storey - 0.3
     if element.role in {Role.STAIR, Role.RAILING}:
@@ -66,7 +67,7 @@ def on_floor(element: Element, z: float, storey: float) -> tuple[Solid, ...]:
 
 
 def _hull(points: NDArray[np.float64]) -> list[Point]:
-    """The convex hull of points of the shape (n, 2), by Andrew's monotone chain."""
+    """Return the convex hull of points of the shape (n, 2), by Andrew's monotone chain."""
     ordered = sorted({(round(x, 4), round(y, 4)) for x, y in points.tolist()})
     if len(ordered) < 3:
         return ordered
@@ -83,5 +84,5 @@ def _half_hull(points: list[Point]) -> list[Point]:
 
 
 def _turn(a: Point, b: Point, c: Point) -> float:
-    """Positive if the way from a over b to c turns left."""
+    """Return a positive number if the line from `a` through `b` to `c` turns left."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

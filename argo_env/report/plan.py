@@ -1,4 +1,4 @@
-"""Drawings of the site in the report: floors from above, and all of it from the side."""
+"""Drawings of the site in the report: floors from above, and the whole site from the side."""
 
 import math
 from collections.abc import Iterable
@@ -8,7 +8,7 @@ from itertools import pairwise
 from argo_compiler.il import EventKind
 from argo_env.report.outline import DRAWING_ORDER, Point, heights, on_floor, outline
 from argo_env.report.svg import Node, drawing, node, polyline
-from argo_env.report.timeline import found_mark
+from argo_env.report.timeline import finding_mark
 from argo_env.report.track import arrows, flag, stretches, track
 from argo_env.run.record import PathSample, RunRecord
 from argo_env.site import Site, SiteCheckpoint
@@ -19,7 +19,7 @@ MARGIN = 34.0  # px, for the axes
 
 @dataclass(frozen=True)
 class Canvas:
-    """The rectangle from (x0, y0) to (x1, y1) in m, drawn with `scale` px for 1 m."""
+    """Rectangle from (x0, y0) to (x1, y1) in m, drawn with `scale` px for 1 m."""
 
     x0: float
     y0: float
@@ -29,20 +29,20 @@ class Canvas:
 
     @property
     def width(self) -> float:
-        """px."""
+        """Width in px, with margins."""
         return (self.x1 - self.x0) * self.scale + 2 * MARGIN
 
     @property
     def height(self) -> float:
-        """px."""
+        """Height in px, with margins."""
         return (self.y1 - self.y0) * self.scale + 2 * MARGIN
 
     def at(self, x: float, y: float) -> Point:
-        """The place in px of a point in m; the second axis points up."""
+        """Return the position in px of a point in m; the second axis points up."""
         return MARGIN + (x - self.x0) * self.scale, MARGIN + (self.y1 - y) * self.scale
 
     def solids(self, role: Role, solids: Iterable[Solid], axes: tuple[int, int]) -> Node:
-        """The solids of one role as a single path."""
+        """Draw the solids of one role as a single path."""
         shapes = (
             polyline((self.at(*p) for p in outline(solid, axes)), closed=True) for solid in solids
         )
@@ -51,7 +51,7 @@ class Canvas:
     def elements(
         self, shown: Iterable[tuple[Role, tuple[Solid, ...]]], axes: tuple[int, int]
     ) -> list[Node]:
-        """All solids, what lies below first."""
+        """Draw all solids, lower roles first."""
         parts = list(shown)
         drawn = []
         for role in DRAWING_ORDER:
@@ -61,7 +61,7 @@ class Canvas:
         return drawn
 
     def frame(self, names: tuple[str, str]) -> list[Node]:
-        """The frame with coordinates every 2 m along both axes."""
+        """Draw the frame with coordinates every 2 m along both axes."""
         left, top = self.at(self.x0, self.y1)
         right, bottom = self.at(self.x1, self.y0)
         marks = [
@@ -80,7 +80,7 @@ class Canvas:
         return marks
 
     def scale_bar(self) -> Node:
-        """A bar of 1 m above the frame's right end."""
+        """Draw a bar of 1 m above the frame's right end."""
         right, top = self.at(self.x1, self.y1)
         return node(
             "g",
@@ -95,23 +95,25 @@ def _text(x: float, y: float, text: str, class_: str) -> Node:
 
 
 def _every(step: int, low: float, high: float) -> range:
-    """The multiples of `step` between the bounds."""
+    """Return the multiples of `step` between the bounds."""
     return range(math.ceil(low / step) * step, math.floor(high) + 1, step)
 
 
 _PLAN_SCALE = 46.0  # px for 1 m
-_ASIDE = 2.0 / _PLAN_SCALE  # m to the right of the way, so that the way back is seen beside it
+_ASIDE = (
+    2.0 / _PLAN_SCALE
+)  # m to the right of the path, so that the opposite direction is visible beside it
 _ARROWS_UP_TO = 120.0
-"""m of path on a floor; on longer ones heads would hide the lines"""
+"""m, longest path on a floor that has arrows; on longer ones they would hide the lines"""
 
 
 def visited_floors(record: RunRecord) -> list[int]:
-    """The floors that the path touches, from below."""
+    """Return the floors that the path touches, in ascending order."""
     return sorted({sample.floor for sample in record.path})
 
 
 def floor_plan(site: Site, record: RunRecord, number: int) -> Node:
-    """The plan of one floor: site, checkpoints, path, start, end and contacts."""
+    """Draw one floor from above: site, checkpoints, path, start, end, contacts and findings."""
     floor_z = next(f.z for f in site.spec.floors if f.number == number)
     shown = [(e.role, on_floor(e, floor_z, site.spec.storey)) for e in site.elements]
     parts = stretches(record.path, number)
@@ -122,8 +124,8 @@ def floor_plan(site: Site, record: RunRecord, number: int) -> Node:
     measured = {r.checkpoint: r.normal for r in record.readings}
     marks = [_checkpoint(canvas, c, measured) for c in site.checkpoints if c.floor == number]
     contacts = [_cross(canvas, c.x, c.y) for c in record.contacts if site.floor_at(c.z) == number]
-    found = [
-        found_mark(*canvas.at(at[0], at[1]), k, "found" if a.place else "noticed")
+    findings = [
+        finding_mark(*canvas.at(at[0], at[1]), k, "found" if a.place else "noticed")
         for k, a in enumerate(record.anomalies, start=1)
         if (at := a.place or a.noticed_from) is not None
         and a.floor == number
@@ -138,7 +140,7 @@ def floor_plan(site: Site, record: RunRecord, number: int) -> Node:
         *_path(canvas, parts, record),
         *marks,
         *contacts,
-        *found,
+        *findings,
         _north(canvas),
         canvas.scale_bar(),
         class_="drawing plan",
@@ -156,7 +158,7 @@ def _path(canvas: Canvas, parts: list[list[PathSample]], record: RunRecord) -> l
 
 
 def _flags(canvas: Canvas, parts: list[list[PathSample]], record: RunRecord) -> list[Node]:
-    """Start and end, side by side for a mission that ends in its station."""
+    """Draw the marks of start and end, side by side if the mission ends where it started."""
     first, last = record.path[0], record.path[-1]
     flags = []
     if parts and parts[0][0] is first:
@@ -169,7 +171,7 @@ def _flags(canvas: Canvas, parts: list[list[PathSample]], record: RunRecord) -> 
 
 
 def _checkpoint(canvas: Canvas, checkpoint: SiteCheckpoint, measured: dict[int, bool]) -> Node:
-    """The face as a dot with a tick where it looks, and its id beside it, off the tick."""
+    """Draw the face as a dot, a line in its direction, and its id on the opposite side."""
     x, y = canvas.at(checkpoint.position[0], checkpoint.position[1])
     cos, sin = math.cos(checkpoint.yaw), math.sin(checkpoint.yaw)
     state = {None: "unread", True: "read", False: "read abnormal"}[measured.get(checkpoint.id)]
@@ -191,7 +193,7 @@ def _cross(canvas: Canvas, x: float, y: float) -> Node:
 
 
 def _north(canvas: Canvas) -> Node:
-    """The site's y axis points north."""
+    """Draw an arrow to the north, the direction of the site's y axis."""
     right, top = canvas.at(canvas.x1, canvas.y1)
     x, y = right - 20, top + 16
     return node(
@@ -207,11 +209,11 @@ _SHOWN = frozenset({Role.GROUND, Role.DECK, Role.STAIR, Role.VESSEL, Role.STRUCT
 
 
 def elevation(site: Site, record: RunRecord) -> Node:
-    """The site from the south, x to the right and z up."""
+    """Draw the site from the south, with x to the right and z up, and the path."""
     shown = [
         (e.role, e.solids)
         for e in site.elements
-        # Of the structure, the columns are shown, and not what carries the checkpoints.
+        # Of the structure, only the columns are shown, not the mounts of checkpoints.
         if e.role in _SHOWN and (e.role is not Role.STRUCTURE or _height(e) > site.spec.storey)
     ]
     corners = [p for _, solids in shown for s in solids for p in outline(s, (0, 2))]
@@ -232,10 +234,10 @@ def elevation(site: Site, record: RunRecord) -> Node:
     ]
     if record.path:
         first, last = record.path[0], record.path[-1]
-        place = canvas.at(last.x, last.z)
+        end_at = canvas.at(last.x, last.z)
         near = abs(first.x - last.x) < 0.5 and abs(first.z - last.z) < 0.5
         drawn.append(flag(canvas.at(first.x, first.z), "S", "start"))
-        drawn.append(flag((place[0] + (20 if near else 0), place[1]), "E", "end"))
+        drawn.append(flag((end_at[0] + (20 if near else 0), end_at[1]), "E", "end"))
     return drawing(
         canvas.width,
         canvas.height,
@@ -250,6 +252,6 @@ def elevation(site: Site, record: RunRecord) -> Node:
 
 
 def _height(element: Element) -> float:
-    """m from the lowest to the highest point."""
+    """Return the distance (m) from the lowest to the highest point of the element."""
     ends = [end for solid in element.solids for end in heights(solid)]
     return max(ends) - min(ends)

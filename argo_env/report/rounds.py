@@ -1,5 +1,4 @@
-"""The runs of tasks in blocks, each visit to a group with its rounds and what lies between; and
-what the robot waited for."""
+"""Runs of tasks, in blocks for each visit to a group and for what lies between, and waits."""
 
 import math
 from bisect import bisect_right
@@ -16,30 +15,32 @@ from argo_env.formatting import clock
 from argo_env.run.record import GivenValue, Interruption, Reading, RoundRun, RunRecord, TaskRun
 
 MOMENT = 0.5
-"""s, up to which standing still is no waiting"""
+"""s, longest standstill that does not count as a wait"""
 
 
 @dataclass(frozen=True)
 class Wait:
-    """The robot stood still from `start` to `end` (s)."""
+    """Wait of the robot, which stood still from `start` to `end` (s)."""
 
     what: str
-    """it waited for, and why"""
+    """what the robot waited for, with the task, group or cause"""
     start: float
     end: float
     outcome: str
-    """how it ended, in words"""
+    """end of the wait, in words"""
 
 
 def waits(record: RunRecord) -> tuple[Wait, ...]:
-    """When the robot stood still: at WAITs, for time windows and rounds, in pauses and reactions;
-    in the order of time."""
-    found = [*_planned(record), *_interrupted(record)]
-    return tuple(sorted(found, key=lambda wait: wait.start))
+    """Return the waits in the order of time.
+
+    They are WAIT tasks, waits for time windows and rounds, and those in pauses and reactions.
+    """
+    unsorted = [*_planned(record), *_interrupted(record)]
+    return tuple(sorted(unsorted, key=lambda wait: wait.start))
 
 
 def _planned(record: RunRecord) -> Iterator[Wait]:
-    """What the mission itself waits for."""
+    """Yield the waits that the mission itself asks for."""
     end = record.result.duration
     for wait in record.waits:
         outcome = f"failed: {wait.failure}" if wait.failure else _ended(wait.ended)
@@ -48,33 +49,48 @@ def _planned(record: RunRecord) -> Iterator[Wait]:
         if run.early is not None:
             what = f"the time window ({run.task})"
             yield Wait(what, *run.early, _ended(run.early[1] < end))
-    for each in record.rounds:
-        until = min(filter(None, (each.began, each.ended, end)))
-        if each.due is not None and each.due > each.since and until - each.since >= MOMENT:
-            yield Wait(f"the next round ({each.group})", each.since, until, _ended(until < end))
+    for round_run in record.rounds:
+        until = min(filter(None, (round_run.began, round_run.ended, end)))
+        if (
+            round_run.due is not None
+            and round_run.due > round_run.since
+            and until - round_run.since >= MOMENT
+        ):
+            yield Wait(
+                f"the next round ({round_run.group})", round_run.since, until, _ended(until < end)
+            )
 
 
 def _interrupted(record: RunRecord) -> list[Wait]:
-    """The parts of pauses and reactions in which it stood still."""
-    found = []
+    """Return the parts of pauses and reactions in which the robot stood still."""
+    waits = []
     until = {reaction.event: reaction.until for reaction in record.mission.reactions}
-    before: Interruption | None = None
-    for each in record.interruptions:
-        runs = [t.end for t in record.tasks if t.start < each.end and t.end > each.start]
-        since = max([each.start, *runs])
-        # A run that is stopped as soon as nothing more can come has waited no time.
-        if each.end - since >= MOMENT or (record.result.outcome is None and each is _last(record)):
-            awaited = until.get(each.event) if each.event else None
-            cause = each.cause
-            if each.event is None and before and before.event and before.end == each.start:
-                cause = before.cause  # which has ended in this pause
+    previous: Interruption | None = None
+    for interruption in record.interruptions:
+        runs = [
+            t.end for t in record.tasks if t.start < interruption.end and t.end > interruption.start
+        ]
+        since = max([interruption.start, *runs])
+        # A run that is stopped as soon as no event can occur any more has waited for no time.
+        if interruption.end - since >= MOMENT or (
+            record.result.outcome is None and interruption is _last(record)
+        ):
+            awaited = until.get(interruption.event) if interruption.event else None
+            cause = interruption.cause
+            if (
+                interruption.event is None
+                and previous
+                and previous.event
+                and previous.end == interruption.start
+            ):
+                cause = previous.cause  # of the reaction that has ended in this pause
             what = f"{awaited.replace('_', ' ') if awaited else 'a person'} ({cause})"
-            outcome = _ended(each.end < record.result.duration)
-            if each.limit_over:
-                outcome = f"the limit of the hold was over at {clock(each.end)}"
-            found.append(Wait(what, since, each.end, outcome))
-        before = each
-    return found
+            outcome = _ended(interruption.end < record.result.duration)
+            if interruption.limit_over:
+                outcome = f"the limit of the hold was over at {clock(interruption.end)}"
+            waits.append(Wait(what, since, interruption.end, outcome))
+        previous = interruption
+    return waits
 
 
 def _ended(over: bool) -> str:
@@ -82,18 +98,18 @@ def _ended(over: bool) -> str:
 
 
 def _last(record: RunRecord) -> Interruption | None:
-    """The interruption that went on when the run was stopped."""
+    """Return the interruption that lasted until the run was stopped; None if there is none."""
     last = record.interruptions[-1]
     return last if last.end >= record.result.duration else None
 
 
 @dataclass(frozen=True)
 class Block:
-    """Consecutive runs of tasks. `group` is the outermost group that they belong to, if any."""
+    """Consecutive runs of tasks in the same outermost group, or outside of groups (None)."""
 
     group: str | None
     rounds: tuple[tuple[TaskRun, ...], ...]
-    """the runs of each round; outside of groups there is one"""
+    """runs of each round; outside of groups there is one round"""
 
     @property
     def runs(self) -> tuple[TaskRun, ...]:
@@ -101,20 +117,20 @@ class Block:
 
     @property
     def start(self) -> float:
-        """s."""
+        """Start of the first run in s."""
         return self.rounds[0][0].start
 
     @property
     def end(self) -> float:
-        """s."""
+        """End of the last run in s."""
         return self.rounds[-1][-1].end
 
 
 def blocks(record: RunRecord) -> tuple[Block, ...]:
-    """The runs of a record in their order.
+    """Return the runs of a record in blocks, in their order.
 
-    Where a group and another one in it begin and end with the same tasks, the rounds of the inner
-    one are counted. The drive of a reaction belongs to the visit that it interrupts.
+    If a group consists of nothing but another group, the rounds of the inner one count as well. The
+    drive of a reaction belongs to the visit that the reaction interrupts.
     """
     hfsm = record.hfsm
     outermost = _outermost(hfsm)
@@ -130,8 +146,8 @@ def blocks(record: RunRecord) -> tuple[Block, ...]:
         if id is None or group is None:
             result.append(Block(None, (visit,)))
             continue
-        alike = _alike(hfsm, group)
-        begins = [r.began for r in record.rounds if r.group in alike and r.began is not None]
+        coextensive = _coextensive(hfsm, group)
+        begins = [r.began for r in record.rounds if r.group in coextensive and r.began is not None]
         numbers = [bisect_right(begins, run.start) for run in visit]
         rounds = [
             tuple(run for k, run in zip(numbers, visit, strict=True) if k == number)
@@ -142,13 +158,13 @@ def blocks(record: RunRecord) -> tuple[Block, ...]:
 
 
 def with_waits(
-    found: Sequence[Block], waits: Sequence[Wait]
+    blocks: Sequence[Block], waits: Sequence[Wait]
 ) -> tuple[tuple[tuple[TaskRun | Wait, ...], ...], ...]:
-    """For each block its rounds, with the waits in them: all by the times of their beginnings."""
-    begins = [part[0].start for block in found for part in block.rounds]
+    """Return for each block its rounds, with the waits in them, all sorted by their start."""
+    begins = [part[0].start for block in blocks for part in block.rounds]
     spans = pairwise([-math.inf, *begins[1:], math.inf])
     result = []
-    for block in found:
+    for block in blocks:
         rounds = []
         for part, (since, until) in zip(block.rounds, spans, strict=False):
             inside = [wait for wait in waits if since <= wait.start < until]
@@ -159,39 +175,47 @@ def with_waits(
 
 
 def with_readings(record: RunRecord) -> list[tuple[RoundRun, str]]:
-    """The rounds whose beginnings are planned or whose end is decided, each with the values, as
-    they were at its end, that its group repeats until."""
+    """Return the rounds with a due time or an end condition, each with a text of its readings.
+
+    The text gives the last values before the end of the round, for the checkpoints of the condition
+    that ends the repetition; it is empty if the round has not ended.
+    """
     until = {c.name: c.repeat.until for c in record.hfsm.composites[1:] if c.repeat}
     return [
-        (one, _values(record, until[one.group], one.ended) if one.ended else "")
-        for one in record.rounds
-        if one.due is not None or until[one.group]
+        (
+            round_run,
+            _values(record, until[round_run.group], round_run.ended) if round_run.ended else "",
+        )
+        for round_run in record.rounds
+        if round_run.due is not None or until[round_run.group]
     ]
 
 
 def repeat_rules(record: RunRecord) -> list[str]:
-    """What the plan says of these rounds, for each of their groups a sentence."""
+    """Return a sentence for each group with timed or conditional rounds: when it repeats."""
     rules = []
     for group in record.hfsm.composites[1:]:
         repeat = group.repeat
         if repeat is None or not (repeat.every or repeat.until):
             continue
-        said = [f"a round every {repeat.every:g} s"] if repeat.every else []
-        said += [f"until {conditions_text(repeat.until)}"] if repeat.until else []
-        said += [f"{repeat.count} rounds at most"] if repeat.count else []
-        said += [f"for {repeat.duration:g} s at most"] if repeat.duration else []
-        rules.append(f"{group.name}: {', '.join(said)}.")
+        limits = [f"a round every {repeat.every:g} s"] if repeat.every else []
+        limits += [f"until {conditions_text(repeat.until)}"] if repeat.until else []
+        limits += [f"{repeat.count} rounds at most"] if repeat.count else []
+        limits += [f"for {repeat.duration:g} s at most"] if repeat.duration else []
+        rules.append(f"{group.name}: {', '.join(limits)}.")
     return rules
 
 
 def _values(record: RunRecord, until: Sequence[Condition], at: float) -> str:
-    """The last reading before the time `at` (s) of each checkpoint that the conditions look at: a
-    measurement that failed takes the place of the value before it (rule C3)."""
-    said = []
+    """Return a text with the last value, up to the time `at` (s), of the conditions' checkpoints.
+
+    A failed measurement replaces the value before it (rule C3).
+    """
+    texts = []
     for id in dict.fromkeys(condition.object_id for condition in until):
-        told: list[Reading | GivenValue] = [*record.readings, *record.given_values]
-        before = [one for one in told if str(one.checkpoint) == id and one.t <= at]
-        last = max(before, key=lambda one: one.t, default=None)
+        values: list[Reading | GivenValue] = [*record.readings, *record.given_values]
+        earlier = [value for value in values if str(value.checkpoint) == id and value.t <= at]
+        last = max(earlier, key=lambda value: value.t, default=None)
         text = "no value" if last is None else f"{last.value:.4g} {last.unit} at {clock(last.t)}"
         failed = [
             t.end for t in record.tasks if t.object_id == id and t.outcome_in_words == "failed"
@@ -199,18 +223,18 @@ def _values(record: RunRecord, until: Sequence[Condition], at: float) -> str:
         since = max((end for end in failed if end <= at), default=-math.inf)
         if since > (-math.inf if last is None else last.t):
             text = f"failed at {clock(since)}"
-        said.append(f"#{id}: {text}")
-    return ", ".join(said)
+        texts.append(f"#{id}: {text}")
+    return ", ".join(texts)
 
 
-def _alike(hfsm: Hfsm, group: Composite) -> frozenset[str]:
-    """The names of the group and of those in it that begin and end with the same tasks."""
+def _coextensive(hfsm: Hfsm, group: Composite) -> frozenset[str]:
+    """Return the names of the group and of the groups in it that hold exactly the same tasks."""
     composites = {c.id: c for c in hfsm.composites}
-    found = {group.name}
+    names = {group.name}
     while (inner := composites.get(group.children[-1])) and len(group.children) == 1:
         group = inner
-        found.add(group.name)
-    return frozenset(found)
+        names.add(group.name)
+    return frozenset(names)
 
 
 def _id_of(group: Composite | None) -> str | None:
@@ -218,7 +242,7 @@ def _id_of(group: Composite | None) -> str | None:
 
 
 def _outermost(hfsm: Hfsm) -> dict[str, Composite]:
-    """The outermost group that each leaf lies in."""
+    """Return the outermost group of each leaf in a group, by the leaf's id."""
     top: dict[str, Composite] = {}
     for group in hfsm.composites[1:]:
         top[group.id] = top.get(group.parent or "", group)

@@ -1,6 +1,6 @@
-"""A tiny builder of SVG: elements with short numbers, and the polylines they are made of.
+"""Small builder of SVG: elements with short numbers, and polylines.
 
-The elements carry no name space, as they stand inside of an HTML page.
+The elements have no namespace, as they are part of an HTML page.
 """
 
 import re
@@ -14,14 +14,16 @@ from numpy.typing import NDArray
 Node = ElementTree.Element
 
 _CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
-"""What XML can't hold, not even escaped."""
+"""Characters that XML can't contain, not even escaped."""
 
 
 def node(
     tag: str, *children: Node, text: str = "", title: str = "", **attributes: str | float
 ) -> Node:
-    """An element, with a title last in it if it has one. In names of attributes `_` stands for `-`,
-    and one at the end is dropped."""
+    """Return an element; a `title` becomes its last child.
+
+    In names of attributes `_` stands for `-`, and `_` at the end is removed.
+    """
     element = ElementTree.Element(tag)
     for name, value in attributes.items():
         key = "viewBox" if name == "viewBox" else name.rstrip("_").replace("_", "-")
@@ -34,7 +36,7 @@ def node(
 
 
 def drawing(width: float, height: float, name: str, *children: Node, class_: str = "") -> Node:
-    """An `svg` of that size in px; `name` says in words what it shows."""
+    """Return an `svg` element of this size in px; `name` is its description in words."""
     return node(
         "svg",
         *children,
@@ -48,41 +50,42 @@ def drawing(width: float, height: float, name: str, *children: Node, class_: str
 
 
 def markup(element: Node) -> Markup:
-    """The element as text that is safe to stand in a page."""
+    """Return the element as text that is safe in a page."""
     return Markup(ElementTree.tostring(element, encoding="unicode"))
 
 
 def clean(text: str) -> str:
-    """The text without the characters that XML can't hold."""
+    """Return the text with a replacement character for each one that XML can't contain."""
     return _CONTROL.sub("\ufffd", text)
 
 
 def number(value: float) -> str:
-    """The number with one decimal at most: a tenth of a pixel can't be seen."""
+    """Return the number with one decimal at most, as less than a tenth of a pixel is invisible."""
     text = f"{value:.1f}".removesuffix(".0")
     return "0" if text == "-0" else text
 
 
 def shorten(text: str, length: int) -> str:
-    """The text, cut to `length` characters."""
+    """Return the text, cut to `length` characters."""
     return text if len(text) <= length else text[: length - 1].rstrip() + "…"
 
 
 def polyline(points: Iterable[Sequence[float]], closed: bool = False) -> str:
-    """The data of a `path` through the points."""
+    """Return the data of a `path` element through the points."""
     steps = " ".join(f"{number(p[0])},{number(p[1])}" for p in points)
     return f"M{steps}{'z' if closed else ''}"
 
 
 def simplify(points: NDArray[np.float64], tolerance: float) -> NDArray[np.intp]:
-    """Which points of a line to keep so that all others are within `tolerance` of the line.
+    """Return indices of points that suffice to draw a line (Douglas and Peucker).
 
-    `points` has the shape (n, 2); returns ascending indices with both ends (Douglas and Peucker).
+    All other points are within `tolerance` of the line through those. `points` has the shape
+    (n, 2); the indices ascend, and both ends are among them.
     """
     if len(points) < 3:
         return np.arange(len(points))
-    keep = np.zeros(len(points), dtype=bool)
-    keep[[0, -1]] = True
+    needed = np.zeros(len(points), dtype=bool)
+    needed[[0, -1]] = True
     pending = [(0, len(points) - 1)]
     while pending:
         first, last = pending.pop()
@@ -92,15 +95,15 @@ def simplify(points: NDArray[np.float64], tolerance: float) -> NDArray[np.intp]:
         worst = int(np.argmax(away))
         if away[worst] > tolerance:
             middle = first + 1 + worst
-            keep[middle] = True
+            needed[middle] = True
             pending += [(first, middle), (middle, last)]
-    return np.flatnonzero(keep)
+    return np.flatnonzero(needed)
 
 
 def _distances(
     points: NDArray[np.float64], start: NDArray[np.float64], end: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """The distance of each point from the stretch between start and end."""
+    """Return the distance of each point from the line segment between start and end."""
     along = end - start
     length = float(along @ along)
     share = np.clip((points - start) @ along / length, 0.0, 1.0) if length else 0.0

@@ -1,5 +1,4 @@
-"""The tasks along the simulated time, a row for each task and a bar for each run, and the battery's
-charge."""
+"""Timeline of the tasks, with a row for each task and a bar for each run, and charge curve."""
 
 import math
 from collections.abc import Iterator
@@ -21,7 +20,7 @@ _STEPS = (1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600)
 
 
 def timeline(record: RunRecord) -> Node:
-    """All runs of tasks, with the rounds of groups above and the measurements as dots."""
+    """Draw all runs of tasks, with the rounds of groups above and the measurements as dots."""
     begun = [(run.start, run.task) for run in record.tasks]
     begun += [(wait.start, wait.task) for wait in record.waits]
     rows = {name: i for i, name in enumerate(dict.fromkeys(name for _, name in sorted(begun)))}
@@ -33,13 +32,13 @@ def timeline(record: RunRecord) -> Node:
     for name, row in rows.items():
         y = HEAD + ROW * row
         parts.append(node("path", d=f"M0,{y + ROW:g}h{WIDTH:g}", class_="row"))
-        said = shorten(name, 30)
-        parts.append(node("text", x=0.0, y=y + 16, text=said, title=name, class_="label"))
+        label = shorten(name, 30)
+        parts.append(node("text", x=0.0, y=y + 16, text=label, title=name, class_="label"))
     for run in record.tasks:
         parts += _bars(run, HEAD + ROW * rows[run.task], px)
-    for name, start, until, said in _waiting(record):
+    for name, start, until, title in _waits(record):
         if name in rows:
-            parts.append(_bar(start, until, HEAD + ROW * rows[name], px, "waiting", said))
+            parts.append(_bar(start, until, HEAD + ROW * rows[name], px, "waiting", title))
     parts += _windows(record, rows, px)
     for reading in record.readings:
         if reading.task in rows:
@@ -57,20 +56,20 @@ def timeline(record: RunRecord) -> Node:
     return drawing(WIDTH, bottom + 24, "Tasks along the time", *parts, class_="drawing timeline")
 
 
-def is_untold(run: TaskRun) -> bool:
-    """Whether a run measured, and does not tell when."""
+def lacks_measuring_times(run: TaskRun) -> bool:
+    """Return True if a run is a measurement and its record does not state when it measured."""
     return run.measuring is None and run.action is Action.MEASURE
 
 
 def _bars(run: TaskRun, y: float, px: float) -> list[Node]:
-    """The bar of a run, and over it a darker one for each time that the robot measured."""
+    """Draw the bar of a run, and over it a darker one for each time that the robot measured."""
     text = f"{run.task}: {clock(run.start)} to {clock(run.end)}, {run.outcome_in_words}"
     text += f" ({run.reason})" if run.reason else ""
-    untold = " untold" if is_untold(run) else ""
+    untold = " untold" if lacks_measuring_times(run) else ""
     spans = [(run.start, run.end, f"run{untold} {run.outcome}", text)]
     for start, end in run.measuring or ():
-        said = f"{run.task}: measuring, {clock(start)} to {clock(end)}"
-        spans.append((start, end, f"measuring {run.outcome}", said))
+        measuring = f"{run.task}: measuring, {clock(start)} to {clock(end)}"
+        spans.append((start, end, f"measuring {run.outcome}", measuring))
     return [_bar(start, end, y, px, class_, title) for start, end, class_, title in spans]
 
 
@@ -87,8 +86,8 @@ def _bar(start: float, end: float, y: float, px: float, class_: str, title: str)
     )
 
 
-def _waiting(record: RunRecord) -> Iterator[tuple[str, float, float, str]]:
-    """What the mission waited for: the row, from when to when (s), and what it says."""
+def _waits(record: RunRecord) -> Iterator[tuple[str, float, float, str]]:
+    """Yield the waits of the mission: the task of the row, start and end (s), and a text."""
     for wait in record.waits:
         text = f"{wait.task}: waits for {wait.what}, {clock(wait.start)} to {clock(wait.end)}"
         yield wait.task, wait.start, wait.end, text + (f": {wait.why}" if wait.why else "")
@@ -103,15 +102,15 @@ def _waiting(record: RunRecord) -> Iterator[tuple[str, float, float, str]]:
             )
     first = {c.name: c.initial for c in record.hfsm.composites[1:]}
     names = {leaf.id: leaf.task.name for leaf in record.hfsm.leaves}
-    for each in record.rounds:
-        until = each.began or each.ended or record.result.duration
-        if until > each.since:
-            said = f"round {each.number} of {each.group} is due at {clock(until)}"
-            yield names[first[each.group]], each.since, until, said
+    for round_run in record.rounds:
+        until = round_run.began or round_run.ended or record.result.duration
+        if until > round_run.since:
+            title = f"round {round_run.number} of {round_run.group} is due at {clock(until)}"
+            yield names[first[round_run.group]], round_run.since, until, title
 
 
 def _windows(record: RunRecord, rows: dict[str, int], px: float) -> Iterator[Node]:
-    """A bracket over the row of a task from the begin to the end of its window."""
+    """Yield a bracket over the row of each task with a time window, from its start to its end."""
     end = record.result.duration
     for run in {run.task: run for run in record.windows}.values():
         if run.task not in rows or run.earliest > end:
@@ -122,12 +121,12 @@ def _windows(record: RunRecord, rows: dict[str, int], px: float) -> Iterator[Nod
         line += "v4" if run.latest is not None and run.latest <= end else ""
         kind = "hard" if run.hard else "soft"
         until = "" if run.latest is None else f" to {clock(run.latest)}"
-        said = f"{kind} time window, {clock(run.earliest)}{until}"
-        yield node("path", d=line, title=said, class_="window" if run.hard else "window soft")
+        title = f"{kind} time window, {clock(run.earliest)}{until}"
+        yield node("path", d=line, title=title, class_="window" if run.hard else "window soft")
 
 
 def time_axis(end: float, px: float, top: float, bottom: float) -> list[Node]:
-    """Lines from `top` to `bottom` at full minutes or so up to `end` (s), with `px` for 1 s."""
+    """Draw lines from `top` to `bottom` at round times up to `end` (s), with `px` for 1 s."""
     step = next((s for s in _STEPS if s * px >= 60), 3600 * math.ceil(60 / (3600 * px)))
     marks = []
     for t in range(0, math.floor(end) + 1, step):
@@ -138,7 +137,10 @@ def time_axis(end: float, px: float, top: float, bottom: float) -> list[Node]:
 
 
 def _interruptions(record: RunRecord, px: float, bottom: float) -> list[Node]:
-    """A band over each pause and each reaction, and a line where a dead process was replaced."""
+    """Draw a band for each pause and reaction, and a line where the run was resumed.
+
+    A run is resumed from its journal after its process died.
+    """
     marks = []
     for interruption in record.interruptions:
         width = max((interruption.end - interruption.start) * px, 1.5)
@@ -154,31 +156,34 @@ def _interruptions(record: RunRecord, px: float, bottom: float) -> list[Node]:
         )
         marks.append(band)
     for t in record.resumed:
-        line, said = f"M{LABELS + t * px:.1f},{HEAD - 8:g}V{bottom:g}", f"at {clock(t)}"
+        line, when = f"M{LABELS + t * px:.1f},{HEAD - 8:g}V{bottom:g}", f"at {clock(t)}"
         marks.append(
-            node("path", d=line, title=f"resumed from the journal {said}", class_="resumed")
+            node("path", d=line, title=f"resumed from the journal {when}", class_="resumed")
         )
     return marks
 
 
 def _anomalies(record: RunRecord, px: float, bottom: float) -> list[Node]:
-    """A line at each finding, with its number where there is room."""
+    """Draw a line at each finding, with its number where there is room."""
     marks = []
     free_from = -math.inf
     for number, anomaly in enumerate(record.anomalies, start=1):
         x = LABELS + anomaly.t * px
         line, what = f"M{x:.1f},{HEAD - 8:g}V{bottom:g}", anomaly.kind.replace("_", " ")
-        said = f"{number} {what}: {anomaly.detail}, {clock(anomaly.t)}"
-        marks.append(node("path", d=line, title=said, class_="found-line"))
+        title = f"{number} {what}: {anomaly.detail}, {clock(anomaly.t)}"
+        marks.append(node("path", d=line, title=title, class_="found-line"))
         if x > free_from:
-            marks.append(found_mark(x, HEAD - 8, number, "found"))
+            marks.append(finding_mark(x, HEAD - 8, number, "found"))
             free_from = x + 16
     return marks
 
 
-def found_mark(x: float, y: float, number: int, class_: str) -> Node:
-    """A diamond about a place in px with the number of a finding: `found`, or `noticed` from there
-    only."""
+def finding_mark(x: float, y: float, number: int, class_: str) -> Node:
+    """Draw a diamond about a position in px, with the number of a finding.
+
+    `class_` is `found` at the place of the finding, and `noticed` at the place from which the robot
+    noticed it.
+    """
     return node(
         "g",
         node("path", d=f"M{x:.1f},{y - 9:.1f}l9,9l-9,9l-9,-9z"),
@@ -188,7 +193,7 @@ def found_mark(x: float, y: float, number: int, class_: str) -> Node:
 
 
 def _rounds(record: RunRecord, px: float, bottom: float) -> list[Node]:
-    """A band over each visit to a group, shaded by turns, with the numbers of the rounds."""
+    """Draw the rounds of each visit to a group as bands of alternating shades, with numbers."""
     marks = []
     for block in blocks(record):
         if block.group is None:
@@ -213,11 +218,14 @@ def _rounds(record: RunRecord, px: float, bottom: float) -> list[Node]:
 
 HEIGHT = 96.0  # px of the curve
 TOP = 12.0  # px above it
-LOW = 20.0  # %, where the robot calls the battery low
+LOW = 20.0  # %, below which the robot reports a low battery
 
 
 def charge_curve(record: RunRecord) -> Node | None:
-    """The charge in percent under the timeline, on the same time axis; None if none was noted."""
+    """Draw the charge in percent on the time axis of the timeline.
+
+    Returns None if the record has fewer than two samples with a charge.
+    """
     points = [(s.t, 100.0 * s.charge) for s in record.path if s.charge is not None]
     if len(points) < 2:
         return None
@@ -229,8 +237,8 @@ def charge_curve(record: RunRecord) -> Node | None:
         return LABELS + t * px, bottom - HEIGHT * percent / 100.0
 
     line = np.array([at(*point) for point in points])
-    kept = line[simplify(line, 0.3)].tolist()
-    area = [(kept[0][0], bottom), *kept, (kept[-1][0], bottom)]
+    curve = line[simplify(line, 0.3)].tolist()
+    area = [(curve[0][0], bottom), *curve, (curve[-1][0], bottom)]
     marks = time_axis(end, px, TOP, bottom)
     for percent in (0, 50, 100):
         x, y = at(0.0, percent)
@@ -246,6 +254,6 @@ def charge_curve(record: RunRecord) -> Node | None:
         f"Charge of the battery: {first:.1f} % at the start, {last:.1f} % at the end",
         *marks,
         node("path", d=polyline(area, closed=True), class_="charge-area"),
-        node("path", d=polyline(kept), class_="charge"),
+        node("path", d=polyline(curve), class_="charge"),
         class_="drawing timeline",
     )

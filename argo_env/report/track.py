@@ -1,4 +1,4 @@
-"""The driven path as lines that are coloured by time."""
+"""Driven path as lines that are coloured by time."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -11,25 +11,25 @@ from argo_env.report.outline import Point
 from argo_env.report.svg import Node, node, number, polyline, simplify
 from argo_env.run.record import PathSample
 
-TOLERANCE = 0.02  # m that the drawn path may be away from the samples
-_AROUND = 0.1  # m of way before and after a point that tell its direction
+TOLERANCE = 0.02  # m, greatest distance of the drawn path from the samples
+_AROUND = 0.1  # m of path before and after a point that define its direction
 SHADES = 24
-"""colours from the beginning to the end of the mission"""
+"""number of colours from the start to the end of the mission"""
 
 _RAMP = ((0x0F, 0xA3, 0xA3), (0x25, 0x63, 0xEB), (0x7C, 0x3A, 0xED), (0xDB, 0x27, 0x77))
 
 
 def colour(share: float) -> str:
-    """The colour of a time, as a share of the mission's duration from 0 to 1."""
-    place = min(max(share, 0.0), 1.0) * (len(_RAMP) - 1)
-    index = min(int(place), len(_RAMP) - 2)
-    part = place - index
+    """Return the colour of a time, given as a share of the mission's duration from 0 to 1."""
+    position = min(max(share, 0.0), 1.0) * (len(_RAMP) - 1)
+    index = min(int(position), len(_RAMP) - 2)
+    part = position - index
     mixed = (round(a + part * (b - a)) for a, b in zip(_RAMP[index], _RAMP[index + 1], strict=True))
     return "#" + "".join(f"{channel:02x}" for channel in mixed)
 
 
 def stretches(path: Sequence[PathSample], floor: int | None) -> list[list[PathSample]]:
-    """The unbroken parts of the path on one floor; None: the whole path."""
+    """Return the unbroken parts of the path on one floor, or the whole path if `floor` is None."""
     if floor is None:
         return [list(path)] if path else []
     runs = groupby(path, key=lambda sample: sample.floor == floor)
@@ -43,44 +43,50 @@ def track(
     end: float,
     aside: float = 0.0,
 ) -> list[Node]:
-    """The parts as lines: `plane` gives the two coordinates (m) of a sample, `at` the px of them.
+    """Draw the parts of a path as lines.
 
-    `end` (s) is the time that has the last colour, and `aside` is by how much (m) the lines lie to
-    the right of the way.
+    Args:
+        parts: Unbroken parts of the path.
+        plane: Returns the two coordinates (m) of a sample in the drawing's plane.
+        at: Returns the position in px of such coordinates.
+        end: Time of the last colour in s.
+        aside: Distance of the lines to the right of the path in m.
     """
     lines = []
     for samples in parts:
         shades = [min(int(SHADES * s.t / end), SHADES - 1) if end else 0 for s in samples]
-        way = beside(np.array([plane(s) for s in samples]), aside)
+        line = shift_right(np.array([plane(s) for s in samples]), aside)
         cuts = [i for i in range(1, len(samples)) if shades[i] != shades[i - 1]]
         for first, last in pairwise([0, *cuts, len(samples)]):
             # Each line reaches the first sample of the next one, so that there is no gap.
-            points = way[first : last + 1]
-            kept = points[simplify(points, TOLERANCE)]
-            if len(kept) > 1:
+            points = line[first : last + 1]
+            corners = points[simplify(points, TOLERANCE)]
+            if len(corners) > 1:
                 stroke = colour(shades[first] / (SHADES - 1))
-                d = polyline(at(x, y) for x, y in kept.tolist())
+                d = polyline(at(x, y) for x, y in corners.tolist())
                 lines.append(node("path", d=d, class_="track", stroke=stroke))
     return lines
 
 
-def beside(points: NDArray[np.float64], aside: float) -> NDArray[np.float64]:
-    """The points of a way in plan, of the shape (n, 2), moved by `aside` (m) to its right: so the
-    ways out and back do not lie on each other."""
+def shift_right(points: NDArray[np.float64], aside: float) -> NDArray[np.float64]:
+    """Return the points of a path in plan, shape (n, 2), moved by `aside` (m) to its right.
+
+    So two passes in opposite directions do not cover each other.
+    """
     steps = np.hypot(*np.diff(points, axis=0).T)
-    gone = np.concatenate([[0.0], steps.cumsum()])
-    if not aside or gone[-1] == 0.0:
+    driven = np.concatenate([[0.0], steps.cumsum()])
+    if not aside or driven[-1] == 0.0:
         return points
-    distinct = np.concatenate([[True], steps > 0.0])  # np.interp needs ascending places
+    distinct = np.concatenate([[True], steps > 0.0])  # np.interp needs ascending distances
 
     def along(by: float) -> NDArray[np.float64]:
         return np.column_stack(
-            [np.interp(gone + by, gone[distinct], axis[distinct]) for axis in points.T]
+            [np.interp(driven + by, driven[distinct], axis[distinct]) for axis in points.T]
         )
 
     ahead = along(_AROUND) - along(-_AROUND)
     length = np.hypot(*ahead.T)
-    # Where it turns back, it goes on to the right of how it came.
+    # Where the path turns back, the direction before the turn defines its right side.
     turning = length < _AROUND / 10
     ahead[turning] = (points - along(-_AROUND))[turning]
     length = np.maximum(np.hypot(*ahead.T), 1e-9)
@@ -94,10 +100,9 @@ def arrows(
     spacing: float,
     aside: float = 0.0,
 ) -> list[Node]:
-    """Small heads that point along the way in plan, one every `spacing` m, and `aside` (m) to its
-    right."""
+    """Draw arrow heads along the path in plan, one every `spacing` m, `aside` (m) to its right."""
     heads, since = [], spacing / 2
-    way = beside(np.array([(s.x, s.y) for s in samples]), aside).tolist()
+    line = shift_right(np.array([(s.x, s.y) for s in samples]), aside).tolist()
     for k, (a, b) in enumerate(pairwise(samples), start=1):
         step = math.hypot(b.x - a.x, b.y - a.y)
         since += step
@@ -106,17 +111,17 @@ def arrows(
         since = 0.0
         (ax, ay), (bx, by) = at(a.x, a.y), at(b.x, b.y)
         turn = math.degrees(math.atan2(by - ay, bx - ax))
-        px, py = at(*way[k])
-        place = f"translate({number(px)},{number(py)}) rotate({turn:.0f})"
-        heads.append(node("path", d="M-5,-4L3,0L-5,4z", transform=place, class_="heading"))
+        px, py = at(*line[k])
+        pose = f"translate({number(px)},{number(py)}) rotate({turn:.0f})"
+        heads.append(node("path", d="M-5,-4L3,0L-5,4z", transform=pose, class_="heading"))
     return heads
 
 
-def flag(place: Point, text: str, class_: str) -> Node:
-    """A round mark with a letter, for the start and the end."""
+def flag(center: Point, text: str, class_: str) -> Node:
+    """Draw a round mark with a letter, for the start or the end, about a position in px."""
     return node(
         "g",
-        node("circle", cx=place[0], cy=place[1], r=9.0),
-        node("text", x=place[0], y=place[1] + 4, text=text, class_="middle"),
+        node("circle", cx=center[0], cy=center[1], r=9.0),
+        node("text", x=center[0], y=center[1] + 4, text=text, class_="middle"),
         class_=f"flag {class_}",
     )

@@ -43,7 +43,7 @@ def test_found_told_kept_and_shown(argo, folder):
         "brick", "abnormal_value", "connection_loss", "gas_leak", "platform_alarm",
     ]  # fmt: skip
     page = (folder / "out" / "report.html").read_text(encoding="utf-8")
-    assert "What was found" in page
+    assert "<h2>Findings</h2>" in page
     assert "the base station answers" in page
     # From half of its journal it goes on with the same faults, and with one more event.
     cut(folder / "run.journal")

@@ -1,4 +1,4 @@
-"""Records of runs that never took place, for reports that are quick to make."""
+"""Made-up records of runs, for reports that are quick to make."""
 
 import math
 from itertools import pairwise
@@ -31,7 +31,7 @@ def site():
 
 
 def along(corners, seconds, step=0.5):
-    """Samples along straight lines between the corners, at one speed."""
+    """Return samples along straight lines between the corners, at constant speed."""
     lengths = [math.dist(a, b) for a, b in pairwise(corners)]
     speed, samples, t = sum(lengths) / seconds, [], 0.0
     for (a, b), length in zip(pairwise(corners), lengths, strict=True):
@@ -47,7 +47,7 @@ def along(corners, seconds, step=0.5):
 
 @pytest.fixture
 def make():
-    """Makes a record of a mission with one run for each name in `runs`, 6 s each.
+    """Return a function that makes a record with one run of 6 s for each name in `runs`.
 
     `outcomes` gives (outcome, reason) by number of the run; `changes` replaces fields.
     """
@@ -95,7 +95,10 @@ def make():
 
 @pytest.fixture
 def simple(make):
-    """One storey up: two readings, one of them abnormal, a failed task, a contact, a warning."""
+    """Record of a run on two floors.
+
+    It has two readings, one of them abnormal, a failed task, a contact and a warning.
+    """
     low = Condition(type=ConditionType.LESS, object_id="1", param1=3.0)
     tasks = (
         measure("1", way("6", low), "8"),
@@ -151,7 +154,7 @@ def simple(make):
 
 @pytest.fixture
 def patrol(make):
-    """A group of four tasks, gone through 25 times in 600 s."""
+    """Record of a group of four tasks, repeated 25 times in 600 s."""
     names = ["1", "3", "4", "2"]
     tasks = in_order(*map(measure, names))
     group = Group(name="Patrol", start="1", end="2", max_repeat_count=25, max_repeat_duration=600)

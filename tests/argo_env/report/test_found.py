@@ -1,4 +1,4 @@
-"""What was found, and the battery's charge, in the report."""
+"""The report shows findings, faults, waits and the battery's charge."""
 
 import re
 from xml.etree import ElementTree
@@ -11,7 +11,7 @@ from argo_compiler.il import EventKind, Mission
 from argo_env.faults.plant import GasLeakFault, PlatformAlarm
 from argo_env.report.html import page
 from argo_env.report.timeline import charge_curve
-from argo_env.report.track import beside
+from argo_env.report.track import shift_right
 from argo_env.run.record import Anomaly, Interruption
 from tests.mission_writing import drive
 
@@ -21,7 +21,7 @@ def anomaly(t, kind=EventKind.GAS_LEAK, place=None, floor=None):
 
 
 def charged(record, charges):
-    """The record with these charges along its path, by turns."""
+    """Return the record with a charge for each sample; `charges` maps its share of the path."""
     path = tuple(
         s.model_copy(update={"charge": charges(k / max(1, len(record.path) - 1))})
         for k, s in enumerate(record.path)
@@ -31,7 +31,7 @@ def charged(record, charges):
 
 @pytest.fixture
 def simple(simple):
-    """The record without its abnormal reading, which would be found as well."""
+    """Return the record without its abnormal reading, which would be a finding as well."""
     return simple.model_copy(update={"readings": simple.readings[:1]})
 
 
@@ -98,7 +98,7 @@ def test_a_run_that_was_interrupted_is_not_shown_as_if_it_had_ended(simple, site
     assert "<dd>stopped</dd>" in text
 
 
-def test_what_tells_no_place_is_not_drawn_as_if_it_were_there(simple, site):
+def test_a_finding_without_a_place_has_a_mark_of_its_own(simple, site):
     at = simple.path[0]
     leak = Anomaly(
         t=1.0, kind=EventKind.GAS_LEAK, detail="a hiss", source="gas",
@@ -114,7 +114,7 @@ def test_what_tells_no_place_is_not_drawn_as_if_it_were_there(simple, site):
     assert "◇" not in page(simple, site)
 
 
-def test_what_is_over_is_no_finding_that_counts(simple, site):
+def test_the_end_of_a_finding_is_not_counted(simple, site):
     def tiles(*kinds):
         found = tuple(anomaly(k + 1.0, kind) for k, kind in enumerate(kinds))
         text = page(simple.model_copy(update={"anomalies": found}), site)
@@ -129,20 +129,18 @@ def test_faults_that_did_not_happen(simple, site):
     faults = (GasLeakFault(at=1.0), GasLeakFault(at=500.0), PlatformAlarm(at=900.0))
     text = page(simple.model_copy(update={"faults": faults}), site)
     assert "gas leak, gas leak (did not happen), platform alarm (did not happen)" in text
-    told = re.findall(r'<p class="note missed">(.*?)</p>', section(text, "anomalies"))
-    assert told == [
+    messages = re.findall(r'<p class="note missed">(.*?)</p>', section(text, "anomalies"))
+    assert messages == [
         "Fault gas leak did not happen: begins at 500 s, the mission ended at 18 s",
         "Fault platform alarm did not happen: begins at 900 s, the mission ended at 18 s",
     ]
 
 
-def test_what_is_said_of_reading_the_mission_holds_for_any_source(simple, site):
-    assert "1 remark about what the mission was read from" in section(
-        page(simple, site), "warnings"
-    )
-    # As of a script that is right, a mission's .json or a bag: the record does not tell which.
+def test_remarks_about_the_mission_suit_any_source(simple, site):
+    assert "1 remark about the source of the mission" in section(page(simple, site), "warnings")
+    # The source may be a correct script, a mission's .json or a bag: the record does not say.
     text = section(page(simple.model_copy(update={"diagnostics": ()}), site), "warnings")
-    assert "taken as it was written" in text
+    assert "used as written" in text
     assert "script" not in text.lower()
     assert "import" not in text.lower()
 
@@ -153,7 +151,7 @@ def test_no_curve_without_a_battery(simple):
 
 
 @pytest.mark.parametrize("charges", [lambda s: 1 - s, lambda s: s, lambda _: 0.5])
-def test_the_curve_stays_in_its_frame_and_tells_both_ends(simple, site, charges):
+def test_the_curve_stays_in_its_frame_and_states_both_ends(simple, site, charges):
     record = charged(simple, charges)
     curve = charge_curve(record)
     first, last = 100 * charges(0.0), 100 * charges(1.0)
@@ -167,16 +165,16 @@ def test_the_curve_stays_in_its_frame_and_tells_both_ends(simple, site, charges)
     assert ElementTree.tostring(curve, encoding="unicode") in page(record, site)
 
 
-def test_the_ways_out_and_back_lie_beside_each_other():
+def test_lines_of_opposite_directions_lie_beside_each_other():
     out = np.column_stack([np.linspace(0.0, 4.0, 81), np.zeros(81)])
-    way = beside(np.vstack([out, out[::-1]]), 0.05)
-    inner = (way[:, 0] > 0.2) & (way[:, 0] < 3.8)
-    there, back = way[:81][inner[:81]], way[81:][inner[81:]]
-    assert there[:, 1] == pytest.approx(-0.05)  # to the right of east lies the south
+    shifted = shift_right(np.vstack([out, out[::-1]]), 0.05)
+    inner = (shifted[:, 0] > 0.2) & (shifted[:, 0] < 3.8)
+    forth, back = shifted[:81][inner[:81]], shifted[81:][inner[81:]]
+    assert forth[:, 1] == pytest.approx(-0.05)  # to the right of east lies the south
     assert back[:, 1] == pytest.approx(0.05)
-    assert np.hypot(*(way - np.vstack([out, out[::-1]])).T) == pytest.approx(0.05)
+    assert np.hypot(*(shifted - np.vstack([out, out[::-1]])).T) == pytest.approx(0.05)
     still = np.zeros((3, 2))
-    assert (beside(still, 0.05) == still).all()
+    assert (shift_right(still, 0.05) == still).all()
 
 
 def test_waits_stand_between_the_runs_by_their_time(simple, site):
@@ -193,7 +191,7 @@ def test_waits_stand_between_the_runs_by_their_time(simple, site):
     assert first == ["1", "8", "waits for a person (paused)", "6"]
 
 
-def test_a_way_into_the_station_is_called_so(make, site):
+def test_a_drive_into_the_station_is_shown_as_dock(make, site):
     dock = Pose(x=0.0, y=0.0, z=0.0, yaw=0.0)
     tasks = drive("there", "DOCK", pose=Pose(x=1.0, y=0.0, z=0.0)), drive("DOCK", pose=dock)
     text = page(make(Mission(tasks=tasks, dock=dock), ["there", "DOCK"]), site)

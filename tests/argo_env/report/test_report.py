@@ -31,7 +31,7 @@ VOID = {"meta", "br", "hr", "img", "input", "link"}
 
 
 class Balance(HTMLParser):
-    """Collects attributes and checks that tags are closed in order."""
+    """Parser that collects attributes and checks that tags are closed in order."""
 
     def __init__(self, text):
         super().__init__()
@@ -131,7 +131,7 @@ def test_rounds_are_collapsed(site, patrol):
     assert len(classes(timeline, "round")) == 25
 
 
-def test_timeline_tells_driving_from_measuring(site, simple):
+def test_timeline_distinguishes_driving_and_measuring(site, simple):
     spans = {0: ((3.0, 6.0),), 1: ((7.0, 8.0), (10.0, 12.0)), 2: ()}
     tasks = tuple(t.model_copy(update={"measuring": spans[n]}) for n, t in enumerate(simple.tasks))
     text = page(simple.model_copy(update={"tasks": tasks}), site)
@@ -149,13 +149,13 @@ def test_timeline_tells_driving_from_measuring(site, simple):
     assert "</i>driving</span>" in text
     assert "</i>measuring</span>" in text
     assert "</i>failed, driving and measuring</span>" in text
-    assert "the record does not tell when" not in text
+    assert "the record does not state when" not in text
     assert '<td class="n" data-name="measuring">3.0 s</td>' in text
 
 
-def test_old_records_do_not_tell_when_it_measured(site, simple):
+def test_old_records_do_not_state_measuring_times(site, simple):
     text = page(simple, site)
-    assert "the record does not tell when" in text
+    assert "the record does not state when" in text
     assert 'class="run untold done"' in text
     assert 'class="measuring' not in text
 
@@ -175,13 +175,13 @@ def test_machine_shows_every_state_and_transition(record):
     drawing = machine(record.hfsm)
     assert len(classes(drawing, "leaf")) == len(record.hfsm.leaves)
     assert len(classes(drawing, "composite")) == len(record.hfsm.composites)
-    # One more: where the mission begins.
+    # One more, for the start of the mission.
     assert len(classes(drawing, "way")) == len(list(record.hfsm.transitions())) + 1
     kinds = Counter(w.get("class").split()[1] for w in classes(drawing, "way"))
     assert kinds == Counter([*(t.kind for t in record.hfsm.transitions()), "begin"])
 
 
-def test_labels_of_ways_are_apart(record):
+def test_labels_of_transitions_are_apart(record):
     labels = [w.find("text") for w in classes(machine(record.hfsm), "way")]
     heights = sorted(float(t.get("y")) for t in labels if t is not None)
     assert heights

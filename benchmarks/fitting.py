@@ -58,7 +58,7 @@ def fit(drives: Iterable[TimedDrive], robot: RobotSpec) -> Calibration:
 def told_seconds(motion: Motion, robot: RobotSpec, velocity: float | None = None) -> float:
     """s that a motion would take if the robot were as fast as it is told to be, all the way."""
     if motion.turn:
-        return abs(motion.turn) / robot.told_speed(motion.kind)
+        return abs(motion.turn) / robot.target_speed(motion.kind)
     return motion.length / motion.speed(robot, velocity)
 
 

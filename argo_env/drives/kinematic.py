@@ -19,7 +19,7 @@ from argo_env.closing import NonCopyable
 from argo_env.drives.drive import FLAT, FLIPPER_RATE, RAISED, DriveStatus
 from argo_env.drives.timed_drive import TimedDrive
 from argo_env.navigation.path import Motion, wrap
-from argo_env.robot.pose import BodyPose, Place, Places
+from argo_env.robot.pose import BodyPose, PoseArray, PoseTuple
 from argo_env.robot.spec import RobotSpec
 from argo_env.site.shapes import Element
 from argo_env.world.world import World
@@ -161,7 +161,7 @@ class KinematicDrive(NonCopyable, TimedDrive):
         self._poses: list[BodyPose] = []  # along the motion
 
     def place(self, pose: BodyPose) -> None:
-        """Place the robot at the pose, at rest."""
+        """PoseTuple the robot at the pose, at rest."""
         super().place(pose)
         self._show()
 
@@ -181,7 +181,7 @@ class KinematicDrive(NonCopyable, TimedDrive):
     def can_batch_steps(self) -> bool:
         return self._world.stays_clear(self._pose)
 
-    def poses_ahead(self, count: int) -> Places:
+    def poses_ahead(self, count: int) -> PoseArray:
         clear = takewhile(self._world.stays_clear, self._upcoming_poses(min(count, _LOOKAHEAD)))
         poses = [(pose.x, pose.y, pose.z, pose.yaw, pose.pitch) for pose in clear]
         return np.array(poses).reshape(-1, 5)
@@ -195,7 +195,7 @@ class KinematicDrive(NonCopyable, TimedDrive):
             for share in shares.tolist():
                 yield self._pose_at(motion, share)
 
-    def skip_to(self, pose: Place, count: int) -> None:
+    def skip_to(self, pose: PoseTuple, count: int) -> None:
         super().skip_to(pose, count)
         self._show()
 

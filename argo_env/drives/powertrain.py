@@ -10,7 +10,7 @@ from argo_env.drives.drive import Drive, DriveStatus, Incident
 from argo_env.drives.standstill import PATIENCE, first_motionless_step, has_moved
 from argo_env.drives.timed_drive import TimedDrive, path_from_pose
 from argo_env.navigation.path import Path
-from argo_env.robot.pose import BodyPose, Place, Places, place_of
+from argo_env.robot.pose import BodyPose, PoseArray, PoseTuple, pose_tuple_at
 
 _SLOWEST = 0.02  # share of the speed, below which the drive may be judged to be stalled
 
@@ -19,7 +19,7 @@ _SLOWEST = 0.02  # share of the speed, below which the drive may be judged to be
 class StepsAhead:
     """Predicted next steps, none of which has been made."""
 
-    poses: Places
+    poses: PoseArray
     """pose of the robot after each step, shape (n, 5)"""
     drive_steps: NDArray[np.int64]
     """number of steps that the drive itself has made after each step, shape (n,)"""
@@ -69,7 +69,7 @@ class Powertrain:
         return self._drive.incidents
 
     def place(self, pose: BodyPose) -> None:
-        """Place the robot at the pose, at rest."""
+        """PoseTuple the robot at the pose, at rest."""
         self.path_and_velocity = None
         self._drive.place(pose)
 
@@ -145,7 +145,7 @@ class Powertrain:
                     previous, self._still_time = drive_steps, 0.0
                 else:
                     self._still_time += self.time_step
-        drive.skip_to(place_of(ahead.poses, last), made - first)
+        drive.skip_to(pose_tuple_at(ahead.poses, last), made - first)
         if made > first:
             self._last_pose = drive.pose
 
@@ -186,5 +186,5 @@ class Powertrain:
         return DriveStatus.MOVING
 
 
-def _place(pose: BodyPose) -> Place:
+def _place(pose: BodyPose) -> PoseTuple:
     return pose.x, pose.y, pose.z, pose.yaw, pose.pitch

@@ -9,13 +9,13 @@ import math
 
 import numpy as np
 
-from argo_env.robot.pose import Place, Places, place_of
+from argo_env.robot.pose import PoseArray, PoseTuple, pose_tuple_at
 
 PATIENCE = 30.0  # s without any motion, after which the robot gives its path up
 _MOVED = 1e-3  # m or rad, above which a change of pose is a motion
 
 
-def first_motionless_step(before: Place, poses: Places) -> int:
+def first_motionless_step(before: PoseTuple, poses: PoseArray) -> int:
     """Return the number, from 1, of the first step in which the robot does not move.
 
     Step k leads to pose k of `poses`, the first step from the pose `before`. If the robot moves in
@@ -25,11 +25,11 @@ def first_motionless_step(before: Place, poses: Places) -> int:
     change = np.abs(np.diff(all_poses, axis=0))
     surely = (change[:, :4] > _MOVED).any(axis=1)
     for k in np.flatnonzero(~surely).tolist():
-        if not has_moved(place_of(all_poses, k), place_of(all_poses, k + 1)):
+        if not has_moved(pose_tuple_at(all_poses, k), pose_tuple_at(all_poses, k + 1)):
             return k + 1
     return len(all_poses)
 
 
-def has_moved(before: Place, after: Place) -> bool:
+def has_moved(before: PoseTuple, after: PoseTuple) -> bool:
     """Return whether the robot has moved between two poses."""
     return math.dist(before[:3], after[:3]) > _MOVED or abs(after[3] - before[3]) > _MOVED

@@ -13,7 +13,7 @@ from argo_compiler.base.model import Pose
 from argo_env.drives.drive import DriveStatus, Incident
 from argo_env.drives.timetable import Timetable, count_steps
 from argo_env.navigation.path import Motion, Path, wrap
-from argo_env.robot.pose import BodyPose, Place, Places
+from argo_env.robot.pose import BodyPose, PoseArray, PoseTuple
 from argo_env.robot.spec import RobotSpec
 
 _SAME_POSITION = 1e-3  # m
@@ -46,7 +46,7 @@ class TimedDrive(ABC):
         return ()
 
     def place(self, pose: BodyPose) -> None:
-        """Place the robot at the pose, at rest."""
+        """PoseTuple the robot at the pose, at rest."""
         self.halt()
         self._pose = pose
 
@@ -91,14 +91,14 @@ class TimedDrive(ABC):
         return steps * self.time_step
 
     @abstractmethod
-    def poses_ahead(self, count: int) -> Places:
+    def poses_ahead(self, count: int) -> PoseArray:
         """Return the poses after each of the next `count` steps, shape (n, 5).
 
         `count` is at most `steps_left`. The poses equal those that `step` would lead to, to the
         last bit. There are fewer than `count` if something can happen to the robot on the way.
         """
 
-    def skip_to(self, pose: Place, count: int) -> None:
+    def skip_to(self, pose: PoseTuple, count: int) -> None:
         """Skip `count` steps, and set the robot to the pose after them."""
         self._steps += count
         self._pose = BodyPose(*pose)
@@ -138,7 +138,7 @@ class RouteDrive(TimedDrive):
     def can_batch_steps(self) -> bool:
         return True
 
-    def poses_ahead(self, count: int) -> Places:
+    def poses_ahead(self, count: int) -> PoseArray:
         assert self._timetable is not None
         poses, first = np.empty((count, 5)), 0
         for motion, share in self._timetable.motions_at(self._times_ahead(count)):

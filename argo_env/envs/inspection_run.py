@@ -20,7 +20,7 @@ from argo_env.closing import Closing
 from argo_env.drives.battery import ESTIMATE_ERROR, estimated_charge
 from argo_env.navigation import Navigator
 from argo_env.planning.opening import OpenedSite
-from argo_env.robot.pose import BodyPose, Places, place_of
+from argo_env.robot.pose import BodyPose, PoseArray, pose_tuple_at
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine, OpenMachine
 from argo_env.run.observer import Observer
@@ -180,7 +180,7 @@ class Inspection(Closing):
         places = self._simulation.fast_forward(min(until, self._limit))
         for number in _apart(_position(self._trail[-1][1]), places):
             now = round(began + (number + 1) * self._drive.time_step, 6)
-            self._trail.append((now, BodyPose(*place_of(places, number))))
+            self._trail.append((now, BodyPose(*pose_tuple_at(places, number))))
         self._mark(self.now, self._drive.pose)
 
     def _deed(self, began: float = math.inf) -> Deed:
@@ -207,7 +207,7 @@ class Inspection(Closing):
         self._trail.append((now, pose))
 
 
-def _apart(last: Vector, places: Places) -> Iterator[int]:
+def _apart(last: Vector, places: PoseArray) -> Iterator[int]:
     """The numbers of the places that are as far as `_TRAIL` from `last` (m), each then being the
     last one for the next."""
     if not len(places):

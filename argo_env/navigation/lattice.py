@@ -16,7 +16,7 @@ from argo_env.navigation.graphs import Graph, graph_of, graph_of_moves, part_of,
 from argo_env.navigation.raster import CELL
 from argo_env.navigation.stencil import HEADINGS, Stencil, heading_angle, standing, turning
 from argo_env.navigation.surface import Surface
-from argo_env.robot.spec import MotionKind, RobotSpec, drive_kind
+from argo_env.robot.spec import MotionKind, RobotSpec, motion_kind
 
 MARGIN = 0.02  # m kept free around the footprint
 ROOM = 0.1  # m around the footprint where driving is preferred
@@ -184,7 +184,7 @@ def _drives(
         source, target = np.flatnonzero(ok), target[ok]
         mean_rise = (rise[source] + rise[target]) / 2
         step = np.where(heading[source] % 2 == 0, CELL, CELL * np.sqrt(2.0))
-        flat, stairs = (robot.real_speed(drive_kind(gear, tilted)) for tilted in (False, True))
+        flat, stairs = (robot.real_speed(motion_kind(gear, tilted)) for tilted in (False, True))
         speed = np.where(np.abs(mean_rise) > LEVEL, stairs, flat)
         edges.append((source, target, step * np.hypot(1.0, mean_rise / length) / speed))
     return edges

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, overload
 
 from argo_compiler.base.model import Pose
-from argo_env.robot.spec import MotionKind, RobotSpec, drive_kind
+from argo_env.robot.spec import MotionKind, RobotSpec, motion_kind
 
 if TYPE_CHECKING:
     import numpy as np
@@ -32,7 +32,7 @@ class Motion:
 
     @property
     def kind(self) -> MotionKind:
-        return MotionKind.TURN if self.turn else drive_kind(self.gear, self.on_stairs)
+        return MotionKind.TURN if self.turn else motion_kind(self.gear, self.on_stairs)
 
     @property
     def length(self) -> float:
@@ -64,7 +64,7 @@ class Motion:
     def speed(self, robot: RobotSpec, velocity: float | None = None) -> float:
         """m/s that a drive aims at; `velocity` (m/s) replaces the robot's own speed on the flat
         ahead, and on stairs and backwards where it is the slower one."""
-        planned = robot.told_speed(self.kind)
+        planned = robot.target_speed(self.kind)
         if velocity is None:
             return planned
         flat_ahead = self.gear > 0 and not self.on_stairs
@@ -73,8 +73,8 @@ class Motion:
     def duration(self, robot: RobotSpec, velocity: float | None = None) -> float:
         """s that the motion takes, by the robot's calibration."""
         if self.turn:
-            return robot.seconds(self.kind, abs(self.turn))
-        return robot.seconds(self.kind, self.length, self.speed(robot, velocity))
+            return robot.motion_time(self.kind, abs(self.turn))
+        return robot.motion_time(self.kind, self.length, self.speed(robot, velocity))
 
 
 @dataclass(frozen=True)

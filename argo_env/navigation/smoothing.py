@@ -205,7 +205,7 @@ def _elapsed(pieces: list[list[Motion]], robot: RobotSpec) -> NDArray[np.float64
     for piece in pieces:
         time = times[-1]
         for motion in piece:
-            lost = robot.calibration.pace(motion.kind).lost if motion.kind == last else 0.0
+            lost = robot.calibration.pace_for(motion.kind).lost if motion.kind == last else 0.0
             time += motion.duration(robot) - lost
             last = motion.kind
         times.append(time)

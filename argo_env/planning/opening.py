@@ -19,7 +19,7 @@ from argo_env.files import cache
 from argo_env.files.parts import NO_CACHE, Parts
 from argo_env.planning.catalog import kept_catalog, make_catalog
 from argo_env.planning.code import digest_of_code
-from argo_env.robot.spec import RobotSpec, checked_robot, load_robot
+from argo_env.robot.spec import RobotSpec, load_robot, validate_robot
 from argo_env.site import Site, make_site
 from argo_env.site.family import Family, is_family, parse_family
 from argo_env.site.site import site_file
@@ -141,7 +141,7 @@ def open_site(reference: str = "umad", robot: RobotSpec | None = None) -> Opened
     """
     if not isinstance(reference, str):
         raise Invalid(f"{reference!r} is no text: a site is opened by its name or its file's path")
-    robot = checked_robot(robot) if robot else load_robot()
+    robot = validate_robot(robot) if robot else load_robot()
     if is_family(reference):
         family = parse_family(reference)
         if parse_family(str(family)) == family:  # a text may lack digits

@@ -41,16 +41,16 @@ class MotionTopics:
     def __init__(self, writer: TopicWriter, model: RobotModel, limbs: Limbs) -> None:
         self._writer = writer
         self._limbs = limbs
-        self._moving = [joint for joint in model.joints if joint.moves]
+        self._moving = [joint for joint in model.joints if joint.is_movable]
         self._names = [joint.name for joint in self._moving]
         self._values: list[float] | None = None
         self._limbs_due = 0.0
-        self._fixed = [joint for joint in model.joints if not joint.moves]
+        self._fixed = [joint for joint in model.joints if not joint.is_movable]
         self._base = FrameTransforms(
             transforms=[FrameTransform(parent_frame_id=WORLD, child_frame_id=BASE)]
         )
         self._limb_frames = FrameTransforms(
-            transforms=[_transform(joint, *joint.at(0.0)) for joint in self._moving]
+            transforms=[_transform(joint, *joint.child_pose(0.0)) for joint in self._moving]
         )
         self._pose = PoseInFrame(frame_id=WORLD)
         self._joints = JointStates()
@@ -60,7 +60,7 @@ class MotionTopics:
     def begin(self, t: float) -> None:
         """Writes what does not change."""
         still = FrameTransforms(
-            transforms=[_transform(joint, *joint.at(0.0)) for joint in self._fixed]
+            transforms=[_transform(joint, *joint.child_pose(0.0)) for joint in self._fixed]
         )
         for transform in still.transforms:
             set_time(transform.timestamp, t)
@@ -88,7 +88,7 @@ class MotionTopics:
         for joint, value, transform, state in zip(
             self._moving, values, transforms, states, strict=True
         ):
-            position, rotation = joint.at(value)
+            position, rotation = joint.child_pose(value)
             set_time(transform.timestamp, t)
             set_vector(transform.translation, position)
             set_rotation(transform.rotation, rotation)

@@ -47,7 +47,9 @@ def site_scenes(site: Site, t: float) -> dict[int, SceneUpdate]:
 def robot_scene(model: RobotModel, t: float) -> SceneUpdate:
     """The robot's links, each in its own frame."""
     return SceneUpdate(
-        entities=[_entity(link, link, looks, t, locked=True) for link, looks in model.looks.items()]
+        entities=[
+            _entity(link, link, solids, t, locked=True) for link, solids in model.visuals.items()
+        ]
     )
 
 

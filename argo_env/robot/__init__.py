@@ -1,1 +1,1 @@
-"""The robot: its measures, its model and its pose. What moves it is in `argo_env/drives`."""
+"""Robot: its dimensions, its model and its pose; `argo_env/drives` moves it."""

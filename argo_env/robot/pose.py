@@ -1,28 +1,29 @@
-"""The pose of the robot's body in the world."""
+"""Pose of the robot's body in the world, also as tuples and arrays."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-Place = tuple[float, float, float, float, float]
+PoseTuple = tuple[float, float, float, float, float]
 """x, y, z (m), yaw and pitch (rad) of a robot that does not roll"""
-Places = NDArray[np.float64]
-"""many of them, shape (n, 5)"""
+PoseArray = NDArray[np.float64]
+"""poses of a robot that does not roll, shape (n, 5); columns as in `PoseTuple`"""
 
 
-def place_of(places: Places, number: int) -> Place:
-    """One of many places."""
-    x, y, z, yaw, pitch = places[number].tolist()
+def pose_tuple_at(poses: PoseArray, index: int) -> PoseTuple:
+    """Return one pose of an array as a tuple."""
+    x, y, z, yaw, pitch = poses[index].tolist()
     return x, y, z, yaw, pitch
 
 
 @dataclass(frozen=True)
 class BodyPose:
-    """Where the robot's origin is, on the ground between its tracks (m), and its attitude (rad).
+    """Position (m) of the robot's origin, on the ground between its tracks, and attitude (rad).
 
-    Pitch is positive with the front down, as a turn about the robot's y axis, roll with the right
-    side down, as one about its x axis. Of fixed axes, roll comes first, then pitch, then yaw.
+    Pitch is a rotation about the robot's y axis, positive with the front down. Roll is a rotation
+    about its x axis, positive with the right side down. About fixed axes, roll is applied first,
+    then pitch, then yaw.
     """
 
     x: float

@@ -1,4 +1,4 @@
-"""The robot's URDF as recordings need it: its links' looks, and where the joints put them."""
+"""Robot model from a URDF file: the visual solids of its links, and its joints."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -19,8 +19,10 @@ _GREY: Colour = (0.6, 0.6, 0.6, 1.0)
 
 @dataclass(frozen=True)
 class Visual:
-    """A solid of a link's looks: a box of edges `size` (m), or a cylinder or ball whose bounding
-    box has them, in the link's frame."""
+    """Visual solid of a link, in the link's frame: a box, cylinder or sphere.
+
+    `size` has the edges of the box (m), or of the bounding box of the cylinder or sphere.
+    """
 
     shape: str
     """`box`, `cylinder` or `sphere`"""
@@ -32,7 +34,11 @@ class Visual:
 
 @dataclass(frozen=True)
 class Joint:
-    """Where a link is on the link that carries it (m), and about or along what it moves."""
+    """Joint between a child link and its parent link.
+
+    Position (m) and rotation are those of the child in the parent's frame at the joint's zero; the
+    child turns about the axis or slides along it.
+    """
 
     name: str
     kind: str
@@ -44,31 +50,34 @@ class Joint:
     axis: Vector
 
     @property
-    def moves(self) -> bool:
+    def is_movable(self) -> bool:
         return self.kind != "fixed"
 
-    def at(self, value: float) -> tuple[Vector, Quaternion]:
-        """The child's place in the parent's frame with the joint at a position (rad or m)."""
+    def child_pose(self, value: float) -> tuple[Vector, Quaternion]:
+        """Return the child's position and rotation in the parent's frame.
+
+        `value` is the position of the joint, in rad, or m if it is prismatic.
+        """
         if self.kind == "prismatic":
-            along = rotate(self.rotation, scale(self.axis, value))
-            return add(self.position, along), self.rotation
+            shift = rotate(self.rotation, scale(self.axis, value))
+            return add(self.position, shift), self.rotation
         sin, cos = math.sin(value / 2), math.cos(value / 2)
         return self.position, multiply(self.rotation, (*scale(self.axis, sin), cos))
 
 
 @dataclass(frozen=True)
 class RobotModel:
-    """Links with their looks, and joints, in the order of the URDF."""
+    """Robot model: links with their visual solids, and joints, in the order of the URDF."""
 
     text: str
     """the URDF document"""
-    looks: Mapping[str, Sequence[Visual]]
-    """by link; meshes are left out"""
+    visuals: Mapping[str, Sequence[Visual]]
+    """visual solids by the link's name; meshes are left out"""
     joints: tuple[Joint, ...]
 
 
 def read_model(path: Path) -> RobotModel:
-    """The model that a URDF file describes."""
+    """Return the model that a URDF file describes."""
     text = path.read_text(encoding="utf-8")
     robot = ET.fromstring(text)
     colours = {
@@ -76,17 +85,17 @@ def read_model(path: Path) -> RobotModel:
         for material in robot.findall("material")
         if material.find("color") is not None
     }
-    looks = {
+    visuals = {
         link.attrib["name"]: tuple(
-            look for visual in link.findall("visual") if (look := _look(visual, colours))
+            solid for visual in link.findall("visual") if (solid := _visual(visual, colours))
         )
         for link in robot.findall("link")
     }
-    return RobotModel(text, looks, tuple(_joint(joint) for joint in robot.findall("joint")))
+    return RobotModel(text, visuals, tuple(_joint(joint) for joint in robot.findall("joint")))
 
 
 def from_rpy(rpy: Vector) -> Quaternion:
-    """Roll, pitch and yaw (rad, fixed axes) as a quaternion."""
+    """Return roll, pitch and yaw (rad, fixed axes) as a quaternion."""
     roll, pitch, yaw = (angle / 2 for angle in rpy)
     x = (math.sin(roll), 0.0, 0.0, math.cos(roll))
     y = (0.0, math.sin(pitch), 0.0, math.cos(pitch))
@@ -95,7 +104,7 @@ def from_rpy(rpy: Vector) -> Quaternion:
 
 
 def multiply(a: Quaternion, b: Quaternion) -> Quaternion:
-    """The turn `b`, then the turn `a`."""
+    """Return the rotation that applies `b` first, then `a`."""
     ax, ay, az, aw = a
     bx, by, bz, bw = b
     return (
@@ -107,19 +116,19 @@ def multiply(a: Quaternion, b: Quaternion) -> Quaternion:
 
 
 def rotate(q: Quaternion, v: Vector) -> Vector:
-    """The vector, turned."""
+    """Return the vector `v`, rotated by the quaternion `q`."""
     x, y, z, w = q
     rx, ry, rz, _ = multiply(multiply(q, (*v, 0.0)), (-x, -y, -z, w))
     return rx, ry, rz
 
 
 def add(a: Vector, b: Vector) -> Vector:
-    """The sum of two vectors."""
+    """Return the sum of two vectors."""
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
 def scale(v: Vector, factor: float) -> Vector:
-    """A vector, `factor` times as long."""
+    """Return the vector multiplied by a factor."""
     return v[0] * factor, v[1] * factor, v[2] * factor
 
 
@@ -142,7 +151,7 @@ def _link(joint: ET.Element, end: str) -> str:
     return "" if element is None else element.attrib["link"]
 
 
-def _look(visual: ET.Element, colours: Mapping[str, Colour]) -> Visual | None:
+def _visual(visual: ET.Element, colours: Mapping[str, Colour]) -> Visual | None:
     position, rotation = _origin(visual)
     material = visual.find("material")
     colour = _GREY
@@ -154,11 +163,11 @@ def _look(visual: ET.Element, colours: Mapping[str, Colour]) -> Visual | None:
             case "box":
                 size = _vector(shape.attrib["size"])
             case "cylinder":
-                across = 2 * float(shape.attrib["radius"])
-                size = (across, across, float(shape.attrib["length"]))
+                diameter = 2 * float(shape.attrib["radius"])
+                size = (diameter, diameter, float(shape.attrib["length"]))
             case "sphere":
-                across = 2 * float(shape.attrib["radius"])
-                size = (across, across, across)
+                diameter = 2 * float(shape.attrib["radius"])
+                size = (diameter, diameter, diameter)
             case _:
                 return None
         return Visual(shape.tag, size, position, rotation, colour)

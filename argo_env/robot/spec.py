@@ -1,5 +1,8 @@
-"""Data of a robot for planning and driving (`urdf/robot/<name>.yaml`); and the speeds that it
-reaches in fact, beside those that it is told to go at."""
+"""Data of a robot for planning and driving, from `urdf/robot/<name>.yaml`.
+
+The data include target speeds, which a drive aims at, and a calibration, from which the speeds that
+the robot really reaches follow.
+"""
 
 import math
 import os
@@ -16,7 +19,7 @@ from argo_env.files import cache, resources
 
 
 class MotionKind(StrEnum):
-    """The kinds of motions that a path is made of; each has a speed of its own."""
+    """Kind of a motion, as a part of a path; each kind has its own speed."""
 
     AHEAD = "ahead"
     """forwards on the flat"""
@@ -30,24 +33,24 @@ class MotionKind(StrEnum):
     """in place"""
 
 
-def drive_kind(gear: int, on_stairs: bool) -> MotionKind:
-    """The kind of a drive in gear +1 or -1. On stairs the front is the lower end."""
+def motion_kind(gear: int, on_stairs: bool) -> MotionKind:
+    """Return the kind of a motion in gear +1 or -1; on stairs, the robot's front is downhill."""
     if on_stairs:
         return MotionKind.DOWN if gear > 0 else MotionKind.UP
     return MotionKind.AHEAD if gear > 0 else MotionKind.REVERSE
 
 
 class MotionPace(Model):
-    """What one kind of motion takes: its length over the real speed, and a time for each motion."""
+    """Calibration of one kind of motion: the real speed, and a constant time for each motion."""
 
     share: float = Field(1.0, gt=0)
-    """of the speed that is told, what the robot reaches"""
+    """ratio of the speed that the robot reaches to the target speed"""
     lost: float = Field(0.0, ge=0)
-    """s that each motion takes in addition, to set off and to come to rest"""
+    """s that each motion takes in addition, to accelerate and to come to rest"""
 
 
 class Calibration(Model):
-    """The pace of each kind of motion. Without a measurement a robot does as it is told."""
+    """Calibration of each kind of motion; by default, a robot reaches its target speeds exactly."""
 
     ahead: MotionPace = MotionPace()
     reverse: MotionPace = MotionPace()
@@ -55,16 +58,16 @@ class Calibration(Model):
     down: MotionPace = MotionPace()
     turn: MotionPace = MotionPace()
 
-    def pace(self, kind: MotionKind) -> MotionPace:
+    def pace_for(self, kind: MotionKind) -> MotionPace:
         pace: MotionPace = getattr(self, kind)
         return pace
 
 
-_Described = TypeVar("_Described", bound=BaseModel)
+_Description = TypeVar("_Description", bound=BaseModel)
 
 
 class Footprint(Model):
-    """The rectangle that the robot covers on the ground, about its point of rotation, in m."""
+    """Rectangle that the robot covers on the ground, around its point of rotation, in m."""
 
     front: float = Field(gt=0)
     rear: float = Field(gt=0)
@@ -72,12 +75,12 @@ class Footprint(Model):
 
     @property
     def radius(self) -> float:
-        """m, of the circle that the robot sweeps when it turns in place."""
+        """Radius in m of the circle that the robot sweeps when it turns in place."""
         return math.hypot(max(self.front, self.rear), self.half_width)
 
 
 class SensorSpec(Model):
-    """Where the camera is when the arm is raised, and what it can see."""
+    """Position of the camera when the arm is raised, and the limits of its view."""
 
     offset: tuple[float, float, float]
     """m, from the robot's point on the ground, in its frame"""
@@ -91,12 +94,12 @@ class SensorSpec(Model):
 
     @property
     def stowing_time(self) -> float:
-        """s, to stow the raised arm; to raise it takes as long."""
+        """Time in s to stow the raised arm; to raise the arm takes as long."""
         return self.measuring_time / 3
 
 
 class PowerSpec(Model):
-    """What the robot draws from its battery, computers and sensors included, in W."""
+    """Power in W that the robot draws from its battery, including computers and sensors."""
 
     driving: float = Field(gt=0)
     """on the flat, forwards or backwards"""
@@ -107,18 +110,18 @@ class PowerSpec(Model):
     descending: float = Field(gt=0)
     """down stairs"""
     measuring: float = Field(gt=0)
-    """standing, the arm in motion or raised"""
+    """at rest, with the arm in motion or raised"""
     standing: float = Field(gt=0)
-    """standing, the arm stowed"""
+    """at rest, with the arm stowed"""
     charging: float = Field(gt=0)
-    """W that the docking station gives beside what the robot draws"""
+    """W that charge the battery at the docking station, in addition to the robot's own consumption"""
 
 
 class RobotSpec(Model):
-    """A robot: its model, its measures, the speeds that it aims at and what becomes of them.
+    """Robot: its model, its dimensions, its target speeds, its battery and its calibration.
 
-    `speed` to `turn_rate` are what a drive is told; `seconds` says how long a motion takes in fact,
-    and all plans count with that.
+    `speed` to `turn_rate` are target speeds, which a drive aims at. `motion_time` returns the time
+    that a motion really takes, and all travel times use it.
     """
 
     name: str
@@ -152,29 +155,29 @@ class RobotSpec(Model):
     """deg, joints of the arm while measuring"""
     sensor: SensorSpec
     calibration: Calibration = Calibration()
-    """from `<name>.calibration.yaml`, where there is one"""
+    """from `<name>.calibration.yaml`, if that file exists"""
 
     @model_validator(mode="after")
-    def _arm_is_its_models(self) -> "RobotSpec":
+    def _check_arm_joints(self) -> "RobotSpec":
         if odd := self.arm_stowed.keys() ^ self.arm_raised.keys():
             raise ValueError(
-                f"arm_stowed and arm_raised name the same joints; in only one there are: "
+                f"arm_stowed and arm_raised must name the same joints; only one of them has: "
                 f"{', '.join(sorted(odd))}"
             )
         if unknown := self.arm_stowed.keys() - _joints(self.urdf):
             raise ValueError(
-                f"arm_stowed and arm_raised name joints of {self.urdf}; it has no "
+                f"arm_stowed and arm_raised must name joints of {self.urdf}; it has no "
                 f"{', '.join(sorted(unknown))}"
             )
         return self
 
     @property
     def turn_rate_radians(self) -> float:
-        """rad/s."""
+        """Target rate in rad/s for a turn in place."""
         return math.radians(self.turn_rate)
 
-    def told_speed(self, kind: MotionKind) -> float:
-        """m/s that a drive of this kind aims at; rad/s for a turn."""
+    def target_speed(self, kind: MotionKind) -> float:
+        """Return the speed in m/s that a motion of this kind aims at; in rad/s for a turn."""
         return {
             MotionKind.AHEAD: self.speed,
             MotionKind.REVERSE: self.reverse_speed,
@@ -184,29 +187,31 @@ class RobotSpec(Model):
         }[kind]
 
     def real_speed(self, kind: MotionKind) -> float:
-        """m/s that a drive of this kind reaches; rad/s for a turn."""
-        return self.told_speed(kind) * self.calibration.pace(kind).share
+        """Return the speed in m/s that a motion of this kind reaches; in rad/s for a turn."""
+        return self.target_speed(kind) * self.calibration.pace_for(kind).share
 
-    def seconds(self, kind: MotionKind, amount: float, told: float | None = None) -> float:
-        """How long a motion over `amount` (m, or rad for a turn) takes, if it is `told` a speed of
-        its own (m/s)."""
-        pace = self.calibration.pace(kind)
-        return amount / ((told or self.told_speed(kind)) * pace.share) + pace.lost
+    def motion_time(self, kind: MotionKind, amount: float, target: float | None = None) -> float:
+        """Return the time in s of a motion over `amount` (m, or rad for a turn).
+
+        `target` is its target speed (m/s, or rad/s for a turn); None is that of its kind.
+        """
+        pace = self.calibration.pace_for(kind)
+        return amount / ((target or self.target_speed(kind)) * pace.share) + pace.lost
 
 
 @lru_cache
 def _joints(urdf: str) -> frozenset[str]:
-    """Return the names of a model's joints; ValueError if there is no such model."""
-    from xml.parsers import expat  # alone it is imported faster than ElementTree
+    """Return the names of a model's joints; raises ValueError if the model can't be read."""
+    from xml.parsers import expat  # faster to import than ElementTree
 
     names: set[str] = set()
 
-    def note(tag: str, attributes: dict[str, str]) -> None:
+    def add_joint(tag: str, attributes: dict[str, str]) -> None:
         if tag == "joint":
             names.add(attributes.get("name", ""))
 
     parser = expat.ParserCreate()
-    parser.StartElementHandler = note
+    parser.StartElementHandler = add_joint
     try:
         parser.Parse((robot_folder() / urdf).read_bytes(), True)
     except (OSError, expat.ExpatError) as error:
@@ -214,9 +219,11 @@ def _joints(urdf: str) -> frozenset[str]:
     return frozenset(names)
 
 
-def checked_robot(robot: RobotSpec) -> RobotSpec:
-    """The robot, if its description makes sense, which pydantic's `model_copy` does not look at;
-    else Invalid."""
+def validate_robot(robot: RobotSpec) -> RobotSpec:
+    """Return the robot, validated again: pydantic's `model_copy` does not validate its changes.
+
+    Raises Invalid if the description makes no sense.
+    """
     try:
         return RobotSpec.model_validate(dict(robot))
     except ValidationError as error:
@@ -224,35 +231,40 @@ def checked_robot(robot: RobotSpec) -> RobotSpec:
 
 
 def load_robot(name: str = "tracker") -> RobotSpec:
-    """The robot of that name; ArgoError if there is none or its description makes no sense."""
+    """Return the robot of that name, with its calibration if there is one.
+
+    Raises NotFound if there is no such robot, and Invalid if its description makes no sense.
+    """
     path, calibrated = robot_folder() / f"{name}.yaml", calibration_file(name)
     if not os.path.isfile(path):
         known = sorted(p.stem for p in robot_folder().glob("*.yaml") if "." not in p.stem)
         raise NotFound(f"no robot `{name}`; there are: {', '.join(known)}")
-    spec: RobotSpec = _described(RobotSpec, path, path.read_text(encoding="utf-8"))
+    spec: RobotSpec = _parse_description(RobotSpec, path, path.read_text(encoding="utf-8"))
     if not os.path.isfile(calibrated):
         return spec
-    paces = _described(Calibration, calibrated, calibrated.read_text(encoding="utf-8"))
-    return spec.model_copy(update={"calibration": paces})
+    calibration = _parse_description(
+        Calibration, calibrated, calibrated.read_text(encoding="utf-8")
+    )
+    return spec.model_copy(update={"calibration": calibration})
 
 
-@lru_cache(maxsize=16)  # each time that a site is opened
-def _described(kind: type[_Described], path: Path, text: str) -> _Described:
-    """Return what the text of a file describes. The fields that it sets are kept on disk."""
+@lru_cache(maxsize=16)  # it is called whenever a site is opened
+def _parse_description(kind: type[_Description], path: Path, text: str) -> _Description:
+    """Return the model in the text of a file; the cache on disk stores the fields that are set."""
     parts = cache.entry_for([text], cache.ROBOTS)
-    known = parts.load_text("fields")
+    cached = parts.load_text("fields")
     try:
-        if known is not None:
-            return kind.model_validate_json(known)
-        described = kind.model_validate(_read_yaml(path, text))
+        if cached is not None:
+            return kind.model_validate_json(cached)
+        description = kind.model_validate(_read_yaml(path, text))
     except ValidationError as error:
         raise Invalid(f"{path}: {error}") from error
-    parts.store_text("fields", described.model_dump_json(exclude_unset=True))
-    return described
+    parts.store_text("fields", description.model_dump_json(exclude_unset=True))
+    return description
 
 
 def _read_yaml(path: Path, text: str) -> Any:
-    import yaml  # takes longer to import than to read any robot
+    import yaml  # imported here: this takes longer than to parse a robot's file
 
     try:
         return yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
@@ -261,10 +273,10 @@ def _read_yaml(path: Path, text: str) -> Any:
 
 
 def calibration_file(name: str) -> Path:
-    """Where the calibration of the robot of that name lies, if there is one."""
+    """Return the path of the calibration of the robot of that name; the file may not exist."""
     return robot_folder() / f"{name}.calibration.yaml"
 
 
 def robot_folder() -> Path:
-    """Where the robots' models and descriptions lie."""
+    """Return the folder of the robots' models and descriptions."""
     return resources.urdf() / "robot"

@@ -31,7 +31,7 @@ from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import EventKind, Task
 from argo_env.faults.kinds import AnyFault
 from argo_env.files.yaml_messages import error_message
-from argo_env.robot.pose import BodyPose, Place
+from argo_env.robot.pose import BodyPose, PoseTuple
 from argo_env.run.record import (
     DIGITS,
     REPORTED,
@@ -252,7 +252,7 @@ class RunLog:
         self.contacts: list[Contact] = []
         self.resumed: list[float] = []
         self._path: list[PathSample] = []
-        self._pending_samples: list[tuple[float, Place, float | None]] = []
+        self._pending_samples: list[tuple[float, PoseTuple, float | None]] = []
         """samples that are not yet in the path: times (s), poses and charges"""
 
     def add(self, entry: Entry) -> None:
@@ -283,7 +283,7 @@ class RunLog:
         other.add(entry)
         return other
 
-    def sample(self, t: float, pose: Place, charge: float | None) -> None:
+    def sample(self, t: float, pose: PoseTuple, charge: float | None) -> None:
         """Add a point to the recorded path: time `t` (s), pose and battery charge (0 to 1)."""
         self._pending_samples.append((t, pose, charge))
 
@@ -305,7 +305,7 @@ class RunLog:
             self._pending_samples.clear()
         return self._path
 
-    def _point(self, t: float, pose: Place, charge: float | None) -> dict[str, float | None]:
+    def _point(self, t: float, pose: PoseTuple, charge: float | None) -> dict[str, float | None]:
         x, y, z, yaw, pitch = pose
         return {
             "t": t,

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.il.docked import DOCKED_DISTANCE_M, is_at_dock
 from argo_env.drives.battery import Battery, electric_load
-from argo_env.robot.pose import BodyPose, Places
+from argo_env.robot.pose import BodyPose, PoseArray
 from argo_env.robot.spec import RobotSpec
 from argo_env.run.log import Entry
 from argo_env.site import Site
@@ -80,7 +80,7 @@ class PowerSupply:
         self._battery.use(watts, seconds)
 
     def predict(
-        self, loads: NDArray[np.float64], places: Places, seconds: float
+        self, loads: NDArray[np.float64], places: PoseArray, seconds: float
     ) -> PredictedSupply:
         """Predict the supply after each of n steps, up to the one in which the battery is empty.
 
@@ -122,7 +122,7 @@ class PowerSupply:
         charges, remainders, drawn = (np.array(column) for column in zip(*states, strict=True))
         return charges, remainders, drawn
 
-    def _docked_after(self, loads: NDArray[np.float64], places: Places) -> NDArray[np.bool_]:
+    def _docked_after(self, loads: NDArray[np.float64], places: PoseArray) -> NDArray[np.bool_]:
         """Return after which of the steps the robot stands in a dock, shape (n,)."""
         x, y = places[:, 0], places[:, 1]
         near = np.zeros(len(loads), dtype=bool)

@@ -15,7 +15,7 @@ from argo_compiler.il import Mission, Task
 from argo_env.closing import Closing
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.start import start_pose
-from argo_env.robot.pose import BodyPose, Places
+from argo_env.robot.pose import BodyPose, PoseArray
 from argo_env.run import termination
 from argo_env.run.initial_state import match_progress, progress_now
 from argo_env.run.log import Entry, LoggedEvent
@@ -61,7 +61,7 @@ LoggedEvents = Sequence[tuple[float, LoggedEvent]]
 
 _MAX_BATCH = 5_000
 """maximum number of steps in a batch"""
-_NO_POSES: Places = np.empty((0, 5))
+_NO_POSES: PoseArray = np.empty((0, 5))
 
 
 def never() -> bool:
@@ -228,7 +228,7 @@ class Simulation(Closing):
                 observer.on_step(self._state.now, self._state.action)
         self.end_if_finished()
 
-    def fast_forward(self, until: float = math.inf) -> Places:
+    def fast_forward(self, until: float = math.inf) -> PoseArray:
         """Let time pass up to the next time at which something may happen, but not beyond `until`.
 
         This makes many time steps at once if the robot only drives, measures or stands and surely
@@ -472,7 +472,7 @@ class Simulation(Closing):
         steps = int((next_time - state.now) / self.setup.drive.time_step) - 1
         return min(steps, _MAX_BATCH)
 
-    def _batch_steps(self, limit: int) -> Places | None:
+    def _batch_steps(self, limit: int) -> PoseArray | None:
         """Make at most `limit` steps at once, up to the first in which the robot notices something.
 
         Returns the robot's poses after each of them but the last; None if no step was made.

@@ -19,7 +19,7 @@ from argo_env.drives.battery import electric_loads
 from argo_env.drives.powertrain import Powertrain, StepsAhead
 from argo_env.navigation import Blockage, Path
 from argo_env.navigation.retreat import driven, recent
-from argo_env.robot.pose import BodyPose, Place, Places, place_of
+from argo_env.robot.pose import BodyPose, PoseArray, PoseTuple, pose_tuple_at
 from argo_env.run.action import RETREAT, SimulatedAction
 from argo_env.run.initial_state import InitialState
 from argo_env.run.log import Entry, RunLog
@@ -80,14 +80,14 @@ class StepBatch:
         self._power = supply.predict(loads, self._poses[1:], time_step)
         self.steps = len(self._power)
 
-    def poses(self, count: int) -> Places:
+    def poses(self, count: int) -> PoseArray:
         """Return the robot's poses after the first `count` steps; no poses if it stands still."""
         return self._poses[1 : 1 if self._ahead is None else count + 1]
 
-    def sample(self, step: int) -> tuple[Place, float | None]:
+    def sample(self, step: int) -> tuple[PoseTuple, float | None]:
         """Return the robot's pose after `step` steps, and the battery's charge then, 0 to 1."""
         charge = self._supply.charge_after(self._power, step - 1)
-        return place_of(self._poses, step), charge
+        return pose_tuple_at(self._poses, step), charge
 
     @property
     def charge_range(self) -> tuple[float, float]:

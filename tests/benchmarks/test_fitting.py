@@ -109,7 +109,7 @@ def test_a_robot_comes_with_its_calibration(tmp_path, monkeypatch):
     calibrated.write_text("ahead: {share: 0.5, lost: 2.0}\n", encoding="utf-8")
     robot = load_robot("other")
     assert robot.calibration == Calibration(ahead=MotionPace(share=0.5, lost=2.0))
-    assert robot.seconds(MotionKind.AHEAD, 4.0) == pytest.approx(4.0 / (robot.speed / 2) + 2.0)
+    assert robot.motion_time(MotionKind.AHEAD, 4.0) == pytest.approx(4.0 / (robot.speed / 2) + 2.0)
     with pytest.raises(ArgoError, match=r"there are: other$"):
         load_robot("another")
     calibrated.write_text("ahead: {share: -1}\n", encoding="utf-8")

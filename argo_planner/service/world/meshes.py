@@ -154,17 +154,21 @@ def _model(model: RobotModel, name: str, angles: dict[str, float]) -> bytes:
                 add(carried[link].parent)
             order.append(link)
 
-    for link in model.looks:
+    for link in model.visuals:
         add(link)
     nodes = []
     for link in order:
-        meshes = [_look(look) for look in model.looks.get(link, ())]
+        meshes = [_look(look) for look in model.visuals.get(link, ())]
         joint = carried.get(link)
         if joint is None:
             nodes.append(DrawnNode(link, meshes))
             continue
-        position, rotation = joint.at(angles.get(joint.name, 0.0))
-        told = {"joint": joint.name, "kind": joint.kind, "axis": joint.axis} if joint.moves else {}
+        position, rotation = joint.child_pose(angles.get(joint.name, 0.0))
+        told = (
+            {"joint": joint.name, "kind": joint.kind, "axis": joint.axis}
+            if joint.is_movable
+            else {}
+        )
         parent = order.index(joint.parent)
         nodes.append(DrawnNode(link, meshes, parent, position, rotation, told))
     return to_glb(name, nodes)

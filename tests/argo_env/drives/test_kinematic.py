@@ -223,7 +223,7 @@ def test_goes_on_from_where_it_was_halted(simulation, robot, paths, navigator, c
         steps, last = steps + 1, drive.pose
     aside = math.dist((here.x, here.y), (path.start.x, path.start.y))
     assert 0.03 < aside < 0.1
-    shift = robot.seconds(MotionKind.AHEAD, aside)
+    shift = robot.motion_time(MotionKind.AHEAD, aside)
     assert steps * 0.1 == pytest.approx(path.duration(robot) + shift, abs=0.1 + 1e-6)
     assert (drive.pose.x, drive.pose.y) == pytest.approx((path.end.x, path.end.y))
 

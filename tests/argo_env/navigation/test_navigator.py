@@ -143,7 +143,7 @@ def test_smoothed_paths_beat_the_lattice(navigator, robot):
             start, goal = (pose_of(navigator, state) for state in (source, target))
             path = navigator.plan(start, goal)
             # The lattice counts the time lost with each motion by its turns only.
-            lost = sum(robot.calibration.pace(m.kind).lost for m in path.motions)
+            lost = sum(robot.calibration.pace_for(m.kind).lost for m in path.motions)
             assert path.duration(robot) <= costs[target] + lost + 0.01
             for end, wanted in ((path.start, start), (path.end, goal)):
                 assert apart(end, wanted) < 1e-6

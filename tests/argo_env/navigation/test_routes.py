@@ -154,7 +154,7 @@ def test_travel_times_of_checkpoints_and_poses(hall, robot):
             # counts the time lost with each motion by its turns only.
             path = hall.plan(start, goal)
             duration = path.duration(robot)
-            lost = sum(robot.calibration.pace(m.kind).lost for m in path.motions)
+            lost = sum(robot.calibration.pace_for(m.kind).lost for m in path.motions)
             assert duration <= 1.01 * times[a, b] + lost + 0.01
             assert times[a, b] <= 1.3 * duration + 4.0
     # Up the stairs is slower than down.

@@ -1,4 +1,4 @@
-"""The models of the robot and of the checkpoints, by their URDF as two readers see it."""
+"""URDF models of the robot and of the checkpoints, as two parsers read them."""
 
 import itertools
 import math
@@ -35,7 +35,7 @@ def urdf(robot):
 
 
 def surface_points(part):
-    """Points in its link's frame whose hull is the box, cylinder or mesh, shape (n, 3)."""
+    """Return points, shape (n, 3), whose hull is the box, cylinder or mesh, in the link's frame."""
     geometry = part.geometry
     if geometry.mesh is not None:
         text = (resources.urdf() / "checkpoints" / geometry.mesh.filename).read_text()
@@ -53,7 +53,10 @@ def surface_points(part):
 
 
 def box_around(urdf, links=None, joints=None, parts="collisions"):
-    """Low and high corner of the box around `links`, joints in degrees, in the base's frame."""
+    """Return the low and high corners of the box around `links`, in the base's frame.
+
+    The positions of the `joints` are in degrees.
+    """
     positions = dict.fromkeys(urdf.actuated_joint_names, 0.0) | (joints or {})
     urdf.update_cfg({name: math.radians(angle) for name, angle in positions.items()})
     points = []
@@ -74,7 +77,7 @@ def load(client, path):
     return body, {info[1].decode(): info for info in joints}
 
 
-def test_both_readers_find_the_same_joints(client, robot, urdf):
+def test_both_parsers_find_the_same_joints(client, robot, urdf):
     _, joints = load(client, robot_folder() / robot.urdf)
     assert set(joints) == set(urdf.joint_map)
     for name in urdf.actuated_joint_names:
@@ -166,7 +169,7 @@ def test_camera_of_the_robot_in_pybullet(client, robot):
     assert math.dist(head, robot.sensor.offset) <= 0.03
 
 
-def test_unknown_robot_is_told_with_the_known_ones():
+def test_the_error_of_an_unknown_robot_lists_the_known_ones():
     with pytest.raises(ArgoError, match="no robot `rover`; there are: tracker"):
         load_robot("rover")
 
@@ -223,28 +226,28 @@ def test_indicator_covers_the_scale(client, name, low, high):
 
 
 def without(joint: str, *poses: str) -> RobotSpec:
-    """The tracker without a joint in some of the arm's poses."""
+    """Return the tracker without a joint in some of the arm's poses."""
     robot = load_robot()
-    left = {
+    without_joint = {
         pose: {name: angle for name, angle in getattr(robot, pose).items() if name != joint}
         for pose in poses
     }
-    return robot.model_copy(update=left)
+    return robot.model_copy(update=without_joint)
 
 
 @pytest.mark.parametrize("pose", ["arm_stowed", "arm_raised"])
 def test_a_joint_that_only_one_pose_of_the_arm_has(pose: str):
     odd = without("arm_yaw", pose)
-    with pytest.raises(ValidationError, match="in only one there are: arm_yaw"):
+    with pytest.raises(ValidationError, match="only one of them has: arm_yaw"):
         RobotSpec(**dict(odd))
-    with pytest.raises(Invalid, match="in only one there are: arm_yaw"):
+    with pytest.raises(Invalid, match="only one of them has: arm_yaw"):
         open_site("darmstadt", odd)
 
 
 def test_a_joint_that_the_model_does_not_have():
     robot = load_robot()
     arm = {pose: {**getattr(robot, pose), "tail": 0.0} for pose in ("arm_stowed", "arm_raised")}
-    with pytest.raises(Invalid, match=r"name joints of tracker\.urdf; it has no tail"):
+    with pytest.raises(Invalid, match=r"must name joints of tracker\.urdf; it has no tail"):
         open_site("darmstadt", robot.model_copy(update=arm))
     with pytest.raises(Invalid, match=r"the robot's model rover\.urdf can't be read"):
         open_site("darmstadt", robot.model_copy(update={"urdf": "rover.urdf"}))
@@ -288,9 +291,9 @@ def test_links_are_where_pybullet_has_them(body, data) -> None:
         # URDF may name a link before the one that carries it.
         joint = next(joint for joint in waiting if joint.parent in places)
         waiting.remove(joint)
-        value = data.draw(angles) if joint.moves else 0.0
+        value = data.draw(angles) if joint.is_movable else 0.0
         pybullet.resetJointState(robot, numbers[joint.name], value, physicsClientId=client)
-        position, rotation = joint.at(value)
+        position, rotation = joint.child_pose(value)
         where, how = places[joint.parent]
         places[joint.child] = add(where, rotate(how, position)), multiply(how, rotation)
     for joint in model.joints:
@@ -313,9 +316,9 @@ def test_rpy_means_what_it_means_to_pybullet_also_where_a_body_is_recorded(rpy) 
         assert abs(sum(a * b for a, b in zip(mine, theirs, strict=True))) == pytest.approx(1.0)
 
 
-def test_looks_are_read(body) -> None:
+def test_visuals_are_parsed(body) -> None:
     client, robot = body
-    looks = read_model(FILE).looks
+    looks = read_model(FILE).visuals
     boxes = [look for parts in looks.values() for look in parts]
     drawn = pybullet.getVisualShapeData(robot, physicsClientId=client)
     assert len(boxes) == len(drawn)

@@ -242,7 +242,7 @@ def test_velocity_is_that_of_the_way_to_the_task(navigator):
     took = {t.task: t.end - t.start for t in record.tasks}
     speeds = {"A": 0.2, "B": 0.3, "C": navigator.robot.speed}
     for name, speed in speeds.items():
-        planned = navigator.robot.seconds(MotionKind.AHEAD, 3.0, speed)
+        planned = navigator.robot.motion_time(MotionKind.AHEAD, 3.0, speed)
         assert took[name] == pytest.approx(planned, abs=0.2)
 
 
@@ -320,7 +320,7 @@ def test_contacts_are_counted(navigator):
     assert [c.start for c in record.contacts] == sorted(c.start for c in record.contacts)
     y = record.path[0].y
     (hull,) = (c for c in record.contacts if c.link == "base_link")
-    speed = 3.0 / navigator.robot.seconds(MotionKind.AHEAD, 3.0)
+    speed = 3.0 / navigator.robot.motion_time(MotionKind.AHEAD, 3.0)
     assert hull.start == pytest.approx((y - 0.35 - 0.12) / speed, abs=0.25)
     assert hull.end == pytest.approx((y + 0.39 - 0.08) / speed, abs=0.25)
     # Of two rails and posts it is as deep as half the height of what overlaps, or more.

@@ -161,7 +161,7 @@ class KinematicDrive(NonCopyable, TimedDrive):
         self._poses: list[BodyPose] = []  # along the motion
 
     def place(self, pose: BodyPose) -> None:
-        """PoseTuple the robot at the pose, at rest."""
+        """Place the robot at the pose, at rest."""
         super().place(pose)
         self._show()
 

@@ -69,7 +69,7 @@ class Powertrain:
         return self._drive.incidents
 
     def place(self, pose: BodyPose) -> None:
-        """PoseTuple the robot at the pose, at rest."""
+        """Place the robot at the pose, at rest."""
         self.path_and_velocity = None
         self._drive.place(pose)
 

@@ -46,7 +46,7 @@ class TimedDrive(ABC):
         return ()
 
     def place(self, pose: BodyPose) -> None:
-        """PoseTuple the robot at the pose, at rest."""
+        """Place the robot at the pose, at rest."""
         self.halt()
         self._pose = pose
 

@@ -114,7 +114,7 @@ class PowerSpec(Model):
     standing: float = Field(gt=0)
     """at rest, with the arm stowed"""
     charging: float = Field(gt=0)
-    """W that charge the battery at the docking station, in addition to the robot's own consumption"""
+    """W that charge the battery at the docking station, beyond the robot's own consumption"""
 
 
 class RobotSpec(Model):

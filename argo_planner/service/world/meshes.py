@@ -164,11 +164,8 @@ def _model(model: RobotModel, name: str, angles: dict[str, float]) -> bytes:
             nodes.append(DrawnNode(link, meshes))
             continue
         position, rotation = joint.child_pose(angles.get(joint.name, 0.0))
-        told = (
-            {"joint": joint.name, "kind": joint.kind, "axis": joint.axis}
-            if joint.is_movable
-            else {}
-        )
+        data = {"joint": joint.name, "kind": joint.kind, "axis": joint.axis}
+        told = data if joint.is_movable else {}
         parent = order.index(joint.parent)
         nodes.append(DrawnNode(link, meshes, parent, position, rotation, told))
     return to_glb(name, nodes)

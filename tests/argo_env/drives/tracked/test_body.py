@@ -36,7 +36,7 @@ def test_rests_level_where_it_is_put(body):
 
 @pytest.mark.parametrize(("heading", "up"), [(0.0, 1), (math.pi, -1)])
 def test_leans_to_the_side_that_is_lower(body, robot, heading, up):
-    """One track is on the edge of the slab, 3 cm above the gravel, and the other beside it."""
+    """The edge of the slab carries a track, 3 cm above the gravel, which carries the other."""
     body.reset(BodyPose(8.0, 0.1, 0.0, heading))
     seconds(body, 1.0)
     lean = math.asin(0.03 / robot.track_gauge)

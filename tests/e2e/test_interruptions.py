@@ -207,7 +207,7 @@ def test_an_interrupted_run_that_is_recorded_only(argo, folder, tmp_path, number
     assert "nothing is kept to go on from, as --report or --journal would have it" in said
     assert f"what was done is shown by: argo replay {recording};" in said
     again = argo("replay", recording, "--report", tmp_path / "again", status=1)
-    verdict = next(line for line in shown.splitlines() if "not at its end" in line)
+    verdict = next(line for line in shown.splitlines() if "has not ended" in line)
     assert verdict in again.stdout
     assert not reported(tmp_path / "again").result.ended
 
@@ -222,7 +222,7 @@ def test_interrupted_before_the_first_step(argo, folder, navigator, tmp_path) ->
         process.send_signal(signal.SIGINT)
         shown, said = process.communicate()
     assert (process.returncode, "Traceback" in said) == (130, False)
-    assert "not at its end" in shown
+    assert "has not ended" in shown
     assert not reported(report).result.ended
     argo("resume", report / "run.journal", "--report", report, status=0)
     require_complete(reported(report), simulated(PLAN, navigator, **settings(3)), ())

@@ -273,7 +273,10 @@ class TestSteering:
     @pytest.mark.parametrize(
         ("done", "says"),
         [
-            (ByHand(task="MEASURE 9"), "'MEASURE 9' was done by hand, but the plan does not"),
+            (
+                ByHand(task="MEASURE 9"),
+                "'MEASURE 9' was done by hand, but the mission plan does not",
+            ),
             (ByHand(task="A", value=3.0), "'A', which measures nothing"),
         ],
     )

@@ -145,7 +145,7 @@ def test_what_is_refused_changes_nothing(service: Served) -> None:
     service.command(id, 1, {"kind": "change_task", "name": "a", "velocity": 0.2})
     service.command(id, 2, {"kind": "change_task", "name": "a", "velocity": 0.3}, client=bob)
     told = problem(service.command(id, 3, kind="undo"), 409, "changed-since")
-    assert "bob changed it in revision 3" in told["detail"]
+    assert "changed later, by bob in revision 3" in told["detail"]
 
 
 def test_versions_are_kept_and_come_back(service: Served) -> None:

@@ -144,8 +144,11 @@ def test_putting_a_version_back_is_answered_again_when_the_version_is_gone(servi
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"name": "\u200b\u200b"}, "name: Value error, the obstacle needs a name that can be seen"),
-        ({"name": "  "}, "can be seen"),
+        (
+            {"name": "\u200b\u200b"},
+            "name: Value error, the obstacle needs a name with visible characters",
+        ),
+        ({"name": "  "}, "visible characters"),
         ({"name": "a\nb"}, "U+000A"),
         ({"id": "\u200b"}, "id: Value error"),
         ({"pose": {"x": 1e9, "y": 0, "z": 0}}, "pose: Value error, the obstacle stands farther"),

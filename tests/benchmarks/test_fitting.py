@@ -44,8 +44,8 @@ def drives(calibration, rng, count, kinds=tuple(MotionKind), each=1, velocity=No
 
 def close(found, true, share=1e-3, lost=1e-3):
     for kind in MotionKind:
-        assert found.pace(kind).share == pytest.approx(true.pace(kind).share, abs=share)
-        assert found.pace(kind).lost == pytest.approx(true.pace(kind).lost, abs=lost)
+        assert found.pace_for(kind).share == pytest.approx(true.pace_for(kind).share, abs=share)
+        assert found.pace_for(kind).lost == pytest.approx(true.pace_for(kind).lost, abs=lost)
 
 
 @given(calibrations, st.integers(0, 99), st.sampled_from([1, 7]), st.sampled_from([None, 0.3]))

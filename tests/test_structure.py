@@ -17,7 +17,7 @@ KNOWS = {
     "argo_planner": {"argo_compiler", "argo_env"},
     "baselines": {"argo_compiler", "argo_env"},
 }
-"""What each package may import of the others."""
+"""Other packages that each package may import."""
 FRONT_DOORS = {"argo_compiler", "argo_env"}
 
 

@@ -24,7 +24,7 @@ _AGED = (ConditionType.STALE, ConditionType.ABNORMAL)
 
 @dataclass
 class Proved:
-    """What a witness leaves possible, by indices in the mission's lists; grows during a walk.
+    """Possibilities that a witness leaves, by indices in the mission's lists; a walk adds to them.
 
     Everything else is proved impossible.
     """

@@ -30,10 +30,10 @@ class DraftGroup:
 
     group: Group
     first: DraftTask | None
-    """None if the group's start or end does not exist, or they are in the wrong order: such a group
-    stays unchanged"""
+    """first task of the group; None if the group's start or end does not exist, or if they are in
+    the wrong order: such a group stays unchanged"""
     last: DraftTask | None
-    """None in the same cases"""
+    """last task of the group; None in the same cases"""
 
 
 class MissionDraft:

@@ -23,7 +23,7 @@ class Pending:
 
 @dataclass(frozen=True, slots=True)
 class InterruptState:
-    """Who controls the robot: the mission, a reaction, or a person."""
+    """State of control: whether the mission, a reaction or a person controls the robot."""
 
     stage: Stage = Stage.GOING
     paused: bool = False

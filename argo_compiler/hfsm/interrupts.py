@@ -15,7 +15,7 @@ from enum import StrEnum
 
 
 class Stage(StrEnum):
-    """Who controls the robot, and in which phase."""
+    """Phase of the control of the robot by the mission, a reaction or a person."""
 
     GOING = "going"
     """the mission goes on"""
@@ -38,7 +38,7 @@ class Stage(StrEnum):
 
 
 class Trigger(StrEnum):
-    """What may happen to a mission."""
+    """Kind of occurrence that may change who controls the robot."""
 
     ALWAYS = "always"
     """nothing: tried after each row"""
@@ -134,7 +134,7 @@ class InterruptRow:
     stages: tuple[Stage, ...]
     trigger: Trigger
     target: Stage | None = None
-    """None if the stage does not change"""
+    """next stage; None if the stage does not change"""
     when: tuple[InterruptGuard, ...] = ()
     unless: tuple[InterruptGuard, ...] = ()
     effects: tuple[Effect, ...] = ()

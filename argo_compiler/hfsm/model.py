@@ -122,7 +122,7 @@ class Composite(Model):
     initial: str
     """the leaf that a round begins with; it may lie in a composite further down"""
     repeat: RepeatRule | None = None
-    """None for the mission, which has a single round"""
+    """rule of the rounds; None for the mission, which has a single round"""
     transitions: tuple[StateTransition, ...] = ()
     """for the end of a round, in the order in which they are tried"""
     timeout: StateTransition | None = None

@@ -115,7 +115,7 @@ class Progress(Model):
     waiting: tuple[Waiting, ...] = ()
     """in the order in which the events occurred"""
     outcome: Outcome | None = None
-    """None if the mission has not ended"""
+    """outcome of the mission; None if it has not ended"""
     by_hand: tuple[ByHand, ...] = ()
     """tasks done by hand whose visit the machine has not reached yet; those of the same task in
     order"""

@@ -44,7 +44,7 @@ class CompiledTransition:
     guards: tuple[Guard, ...]
     conditions: tuple[Condition, ...]
     target: "LeafNode | None"
-    """None for the final state, or with `completes`"""
+    """next leaf; None for the final state, or with `completes`"""
     kept_groups: int
     """how many of the active groups, from the outermost, are not left"""
     domain: "GroupNode | None"

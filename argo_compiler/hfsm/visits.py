@@ -11,7 +11,7 @@ class TaskVisit:
     """Visit of a task. The machine changes it during the visit and reuses it for the next one."""
 
     leaf: LeafNode | None
-    """None before the mission's start, or if nothing remains to be done"""
+    """leaf of the task; None before the mission's start, or if nothing remains to be done"""
     number: int
     """unique number of the visit"""
     turn: int

@@ -29,7 +29,7 @@ class _Branch:
     extra: float
     """cost of the further rounds of groups that end here"""
     probability: float | None
-    """None if unknown"""
+    """probability that the transition is taken; None if it is unknown"""
 
 
 class BranchCosts:

@@ -125,7 +125,7 @@ def _problem_data(network: StepNetwork, nodes: list[int]) -> "ProblemData":
 
 
 class _Turn:
-    """One iterated local search from the best route so far, which offers each better route.
+    """Iterated local search from the best route so far, which offers each better route.
 
     Holds the least cost so far and the number of iterations since then.
     """

@@ -29,7 +29,7 @@ class Link(Protocol):
 
 
 class Channel:
-    """One end of the channel; the other end is its peer.
+    """End of the channel; the other end is its peer.
 
     It holds the unacknowledged messages and the numbers that were received last. Posted messages
     are delivered once and in order, whatever the link does, as long as both processes live. A peer

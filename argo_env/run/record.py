@@ -447,7 +447,7 @@ class RunRecord(Model):
     resumed: tuple[float, ...] = ()
     """s, times at which the run was resumed from its journal after its process had died"""
     reordering: Reordering | None = None
-    """None: the tasks are in the order in which the mission was written"""
+    """change of the tasks' order before the run; None: they are in the order as written"""
 
     @model_validator(mode="before")
     @classmethod

@@ -100,7 +100,7 @@ class RunSetup:
     watches: tuple[Watch, ...] = ()
     """watches that notice anomalies"""
     battery: Battery | None = None
-    """None: the robot's power never ends"""
+    """battery of the robot; None: its power never ends"""
     schedule: FaultSchedule | None = None
     """schedule of the faults; None: there are none"""
     instruments: Instruments | None = None

@@ -22,7 +22,7 @@ _MIN_VERTICAL_GAP = 0.05  # m: boxes with a larger vertical gap need no horizont
 
 @dataclass(frozen=True, eq=False)
 class SolidBounds:
-    """One upright bounding box, or many: arrays have the shape (3,) or (n, 3)."""
+    """Upright bounding box, or many: arrays have the shape (3,) or (n, 3)."""
 
     low: NDArray[np.float64]
     """m, lowest corner"""

@@ -1,4 +1,4 @@
-"""What notebooks show."""
+"""Display of missions, machines and records in notebooks."""
 
 import sys
 from html import unescape

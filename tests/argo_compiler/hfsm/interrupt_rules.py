@@ -7,7 +7,7 @@ from argo_compiler.il import Afterwards, Response
 
 @dataclass(frozen=True)
 class Alarmed:
-    """Who controls the robot, in the terms of the rules."""
+    """Control of the robot by mission, reaction or person, in the terms of the rules."""
 
     paused: bool = False
     alarms: tuple = ()

@@ -1,1 +1,1 @@
-"""What a person uses: the command `argo`."""
+"""The command `argo`, the planning service and the planner page."""

@@ -1,4 +1,4 @@
-"""The command `argo`: its name, its version, and the commands that it has."""
+"""The command `argo`: its subcommands, its own options, and its exit status."""
 
 import errno
 import gc
@@ -18,24 +18,23 @@ from argo_planner.terminal.verbosity import set_verbosity
 _COMMANDS = {
     "import": (
         "import_script.import_script",
-        "Read a mission script, a bag or an isar mission, and write the mission as JSON.",
+        "Read a script, a ROS bag or an isar mission, and write the mission as JSON.",
     ),
     "check": (
         "check.check_mission",
-        "Say all that is wrong or odd about a mission; exits with status 2 if there are errors.",
+        "Check a mission without running it; exits with status 2 if there are errors.",
     ),
     "explain": (
         "explain.explain_mission",
-        "Say back in plain sentences what was understood of a mission, and what was assumed.",
+        "Print in plain sentences how Argo understood a mission, and what it assumed.",
     ),
     "compile": (
         "compile.compile_mission",
-        "Lower a mission to its state machine and write it as JSON.",
+        "Convert a mission to its state machine, and write that as JSON.",
     ),
     "format": (
         "format.format_mission",
-        "Write a mission as a script, in one canonical form; importing that gives the same "
-        "mission.",
+        "Write a mission as a script in a standard form; importing it gives the same mission.",
     ),
     "export": (
         "export.export_mission",
@@ -47,23 +46,23 @@ _COMMANDS = {
     ),
     "run": (
         "run.run",
-        "Run a mission, or the spec of a run, show what was measured, and write a report.",
+        "Run a mission in simulation and show the results; a report or a film on request.",
     ),
     "resume": (
         "resume.resume_run",
-        "Go on with a run whose process has died, from its journal.",
+        "Continue an interrupted run from its journal.",
     ),
     "replay": (
         "replay.replay",
-        "Show what was recorded of a run, and make its report and its film again.",
+        "Show the results of a recorded run; its report and film can be made again.",
     ),
     "evaluate": (
         "evaluate.evaluate",
-        "Run missions many times: how sure they work, what breaks them, which is better.",
+        "Estimate the success rate of missions by many runs, or compare two evaluations.",
     ),
     "sites": (
         "sites.show_sites",
-        "List the sites, or check one; exits with status 2 if it can't be driven.",
+        "List the sites, or check one; exits with status 2 if parts can't be reached.",
     ),
     "plan": (
         "plan.plan_mission",
@@ -71,36 +70,36 @@ _COMMANDS = {
     ),
     "serve": (
         "serve.serve_plans",
-        "Serve the missions of a folder to many people at once.",
+        "Serve the planner page with a folder of missions to several people at once.",
     ),
     "schema": (
         "schema.show_schema",
-        "Print the JSON Schema of a mission, a machine, its progress, faults or a reading.",
+        "Print the JSON Schema of one kind of file, such as missions or faults.",
     ),
     "doctor": (
         "doctor.show_health",
-        "Show the version, the cache on disk, and which optional parts are installed.",
+        "Show Argo's version, its cache on disk, and which optional parts are installed.",
     ),
 }
-"""by their names: the module and the function of each, and the line that lists it"""
+"""commands by name: module and function of each, and its line in `argo --help`"""
 _SHORT = {"import", "check", "explain", "compile", "format", "export"}
-"""commands that read a mission, and end"""
+"""commands that end soon: they read a mission and run nothing"""
 
 
 class ArgoCommands(LazyGroup):
-    """The commands in the order in which `argo --help` lists them."""
+    """The commands of `argo`, in the order in which `argo --help` lists them."""
 
     lazy_commands = tuple(
         LazyCommand(name, f"argo_planner.commands.{module}", function, help)
-        for name, (place, help) in _COMMANDS.items()
-        for module, function in [place.split(".")]
+        for name, (path, help) in _COMMANDS.items()
+        for module, function in [path.split(".")]
     )
 
 
 app = typer.Typer(
     name="argo",
     cls=ArgoCommands,
-    help="Turns a written inspection mission into a checked plan and drives it through a site.",
+    help="Turn a written inspection mission into a checked plan and drive it through a site.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
@@ -128,15 +127,15 @@ def argo(
             "--verbose",
             count=True,
             show_default=False,
-            help="say what is done; -vv: in detail",
+            help="show what is being done; -vv: in detail",
         ),
     ] = 0,
     quiet: Annotated[
         bool, typer.Option("-q", "--quiet", help="show results and errors only")
     ] = False,
 ) -> None:
-    """Turns a written inspection mission into a checked plan and drives it through a site."""
-    from argo_planner.terminal.stage_display import stages_shown  # `argo --help` has no stages
+    """Turn a written inspection mission into a checked plan and drive it through a site."""
+    from argo_planner.terminal.stage_display import stages_shown  # `argo --help` needs no stages
 
     collect_again(seldom=context.invoked_subcommand in _SHORT)
     set_verbosity(verbose, quiet)
@@ -144,19 +143,19 @@ def argo(
 
 
 def main() -> None:
-    """The entry point: what goes wrong is said in one message, with exit status 2."""
+    """Run the command; an error becomes one message and exit status 2."""
     output = guard_output()
     try:
         status = _carry_out()
         if output.failure is not None and status in {0, 1, 2}:
-            status = _without_output(output.failure, status)
+            status = _status_without_output(output.failure, status)
         raise SystemExit(status)
     finally:
-        gc.freeze()  # the process ends: all goes, and needs no search for what can go
+        gc.freeze()  # the process ends and frees all memory: nothing needs to be collected
 
 
 def _carry_out() -> int:
-    """Carry out what the command line asks for. Return the exit status."""
+    """Run what the command line asks for, and return the exit status."""
     raised = SignalWatch()
     try:
         try:
@@ -167,16 +166,16 @@ def _carry_out() -> int:
             sys.stdout.flush()
     except BaseException as error:
         ignore_signals()  # the first one may have come before they were ignored
-        told = isinstance(error, SystemExit) and error.code not in {None, 0}
-        if raised.came is not None and not told:  # whatever has been made of it
+        reported = isinstance(error, SystemExit) and error.code not in {None, 0}
+        if raised.came is not None and not reported:  # a library may have raised another error
             print("argo: interrupted", file=sys.stderr)
             return raised.came.status
-        return _status(error)
+        return _report_error(error)
     return 0
 
 
-def _status(error: BaseException) -> int:
-    """What went wrong is said; raised again if it is a defect of Argo."""
+def _report_error(error: BaseException) -> int:
+    """Print an error and return the exit status; raise it again if it is a defect of Argo."""
     if isinstance(error, SystemExit) and isinstance(error.code, int):
         return error.code
     if isinstance(error, ArgoError):
@@ -187,9 +186,14 @@ def _status(error: BaseException) -> int:
     raise error
 
 
-def _without_output(failure: OSError, status: int) -> int:
-    """The exit status of a command whose output nobody has got; else it would be that `status`."""
-    if failure.errno == errno.EPIPE:  # its reader has gone, and knows
+def _status_without_output(failure: OSError, status: int) -> int:
+    """Return the exit status of a command whose output could not be written.
+
+    Args:
+        failure: why the output could not be written
+        status: the exit status if it could
+    """
+    if failure.errno == errno.EPIPE:  # the reader has closed the pipe, so needs no message
         return 2 if status == 2 else 141
     print(f"argo: the output can't be written: {failure.strerror}", file=sys.stderr)
     return 2

@@ -1,19 +1,22 @@
-"""The way into the command `argo`, which may be interrupted from its first moment on."""
+"""The entry point of the command `argo`, which can be interrupted at any moment."""
 
 import gc
 import os
 
 
 def main() -> None:
-    """Makes ready for signals before anything else is imported, which takes most of a second."""
+    """Prepare for signals, import the command line and run it.
+
+    Signals come first, as the imports take most of a second.
+    """
     try:
         from argo_planner.terminal.signals import end_at_once
 
         end_at_once()
     except KeyboardInterrupt:
         raise SystemExit(130) from None
-    gc.disable()  # what is imported stays; `collect_again` is called when a command begins
-    # To look for plug-ins pydantic would read what every installed package says of itself.
+    gc.disable()  # imported modules stay in memory; `collect_again` runs when a command begins
+    # To find plug-ins, pydantic would read the metadata of every installed package.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     from argo_planner import cli
 

@@ -1,4 +1,4 @@
-"""A group of commands whose modules are imported when one of them is called."""
+"""A group of commands whose modules are imported only when one of them is called."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,14 +16,19 @@ from argo_planner.terminal.verbosity import common_options
 
 
 class _Command(TyperCommand):
-    """Says what is wrong with an option in the words of the messages about files."""
+    """A command that reports a wrong option in the words of the messages about files."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """The arguments that are left; raises UsageError."""
+        """Parse the options and return the remaining arguments.
+
+        Raises:
+            Invalid: a long option has only one dash.
+            UsageError: Click finds another error.
+        """
         for word in (argument.partition("=")[0] for argument in args):
-            # It would be read as letters of their own: -report as -r -e -p ...
+            # Click would read each letter as an option: -report as -r -e -p ...
             if word[:2] != "--" and any(f"-{word}" in option.opts for option in self.params):
-                raise Invalid(f"no option {word}; is -{word} meant?")
+                raise Invalid(f"there is no option {word}; did you mean -{word}?")
         try:
             return super().parse_args(ctx, args)
         except typer.BadParameter as error:
@@ -38,7 +43,7 @@ class _Command(TyperCommand):
 
 @dataclass(frozen=True)
 class LazyCommand:
-    """A command by its name, where its function is found, and the line that lists it."""
+    """A command's name, its module and function, and its line in the list of commands."""
 
     name: str
     module: str
@@ -47,7 +52,7 @@ class LazyCommand:
 
 
 class LazyGroup(TyperGroup):
-    """Lists its commands without importing them, in the order of `lazy_commands`."""
+    """Group of commands that lists them without importing them, in the order of `lazy_commands`."""
 
     lazy_commands: ClassVar[Sequence[LazyCommand]] = ()
 
@@ -56,23 +61,25 @@ class LazyGroup(TyperGroup):
         for command in self.lazy_commands:
             self.add_command(TyperCommand(command.name, help=command.help))
 
-    # What runs, helps or completes a command comes by here; what lists them does not.
+    # Click calls this to run a command, show its help or complete it, but not to list commands.
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        """The command that is called, with its parameters."""
+        """Return the name of the called command, the command itself, and its arguments."""
         if not ctx.resilient_parsing and any(
             f"--{args[0]}" in option.opts for option in self.get_params(ctx)
         ):
-            raise Invalid(f"no command {args[0]}; is --{args[0]} meant?")
+            raise Invalid(f"there is no command {args[0]}; did you mean --{args[0]}?")
         name, listed, rest = super().resolve_command(ctx, args)
         if not ctx.resilient_parsing:
-            _require_said(rest)
+            _require_no_empty(rest)
         called = next((c for c in self.lazy_commands if c.name == name), None)
         return name, load_command(called) if called else listed, rest
 
 
-def _require_said(arguments: Sequence[str]) -> None:
-    """Raises Invalid where one is empty, as in `--report "$UNSET"`: what is named so would be the
-    current folder."""
+def _require_no_empty(arguments: Sequence[str]) -> None:
+    """Raise Invalid if an argument or the value of an option is empty.
+
+    Such as `--report "$UNSET"`: as a path, the empty text would be the current folder.
+    """
     for before, argument in pairwise(("", *arguments)):
         option, equals, value = argument.partition("=")
         if not argument:
@@ -80,13 +87,14 @@ def _require_said(arguments: Sequence[str]) -> None:
         elif not (equals and option.startswith("--") and not value):
             continue
         place = f"{option}: its value" if option.startswith("-") else "an argument"
-        raise Invalid(f"{place} is empty; say what is meant, or leave it out")
+        raise Invalid(f"{place} is empty; give a value, or leave it out")
 
 
 def load_command(command: LazyCommand) -> Any:
-    """The command with its parameters, as Typer makes it of its function."""
+    """Return the command with its parameters, which Typer makes from its function."""
     app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-    # What is imported stays: to look for garbage in it takes a tenth of a short command's time.
+    # Imported modules stay in memory; searching them for garbage takes a tenth of the time of a
+    # short command.
     with collector_held():
         module = import_module(command.module)
     app.command(command.name, cls=_Command)(getattr(module, command.function))
@@ -96,7 +104,7 @@ def load_command(command: LazyCommand) -> Any:
 
 
 def _common_parameters() -> list[Any]:
-    """Those of the options that all commands have."""
+    """Return the parameters of the options that all commands have."""
     app = typer.Typer(add_completion=False)
     app.command()(common_options)
     return [parameter for parameter in get_command(app).params if parameter.name != "help"]

@@ -34,7 +34,7 @@ def check_mission(
     end_area: EndArea = None,
     force: Force = False,
 ) -> None:
-    """Say all that is wrong or odd about a mission; exits with status 2 if there are errors."""
+    """Check a mission without running it; exits with status 2 if there are errors."""
     check_outputs([source, site], [output], force=force)
     diagnostics = with_options(_diagnostics(source, site, start_area, end_area))
     written = write_diagnostics(diagnostics, str(source), format)

@@ -24,7 +24,7 @@ def compile_mission(
     end_area: EndArea = None,
     force: Force = False,
 ) -> None:
-    """Lower a mission to its state machine and write it as JSON."""
+    """Convert a mission to its state machine, and write that as JSON."""
     check_outputs([source, site], [output, mermaid], force=force)
     opened = open_site(site)
     imported = import_shown(read_upload(source), opened, start_area, end_area)

@@ -15,7 +15,7 @@ def show_health(
         typer.Option("--empty-cache", help="take away all that is kept; it is made again"),
     ] = False,
 ) -> None:
-    """Show the version, the cache on disk, and which optional parts are installed."""
+    """Show Argo's version, its cache on disk, and which optional parts are installed."""
     if empty_cache:
         _empty()
     found = examine()

@@ -154,7 +154,7 @@ def evaluate(
     ] = None,
     force: Force = False,
 ) -> None:
-    """Run missions many times: how sure they work, what breaks them, which is better."""
+    """Estimate the success rate of missions by many runs, or compare two evaluations."""
     console = Console(highlight=False)
     if compare is not None:
         refuse_others(context, sources)

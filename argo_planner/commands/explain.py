@@ -27,7 +27,7 @@ def explain_mission(
     end_area: EndArea = None,
     force: Force = False,
 ) -> None:
-    """Say back in plain sentences what was understood of a mission, and what was assumed."""
+    """Print in plain sentences how Argo understood a mission, and what it assumed."""
     check_outputs([source, site], [output], force=force)
     opened = open_site(site)
     imported = import_mission(read_upload(source), opened, start_area, end_area)

@@ -22,7 +22,7 @@ def format_mission(
     end_area: EndArea = None,
     force: Force = False,
 ) -> None:
-    """Write a mission as a script, in one canonical form; importing that gives the same mission."""
+    """Write a mission as a script in a standard form; importing it gives the same mission."""
     check_outputs([source, site], [output], force=force)
     opened = open_site(site)
     script = as_script(import_shown(read_upload(source), opened, start_area, end_area), opened)

@@ -32,7 +32,7 @@ def import_script(
     end_area: EndArea = None,
     force: Force = False,
 ) -> None:
-    """Read a mission script, a bag or an isar mission, and write the mission as JSON."""
+    """Read a script, a ROS bag or an isar mission, and write the mission as JSON."""
     upload = read_upload(script)
     if kind_of(upload) is SourceKind.MISSION and isinstance(upload.content, bytes):
         decode_mission(upload.content, upload.name)  # says what is wrong with a broken one

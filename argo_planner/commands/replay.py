@@ -31,7 +31,7 @@ def replay(
     render: Render = None,
     force: Force = False,
 ) -> None:
-    """Show what was recorded of a run, and make its report and its film again."""
+    """Show the results of a recorded run; its report and film can be made again."""
     if not force:
         require_no_unfinished(report)
     check_outputs([recording], [render], [(report, REPORT_FILES)], force)

@@ -53,7 +53,7 @@ def resume_run(
     ] = None,
     force: Force = False,
 ) -> None:
-    """Go on with a run whose process has died, from its journal."""
+    """Continue an interrupted run from its journal."""
     if os.path.isfile(journal / JOURNAL):
         raise Invalid(f"{journal}: is a folder; name the journal in it: {journal / JOURNAL}")
     check_outputs([journal], [recording, render], (), force)

@@ -167,7 +167,7 @@ def run(
     ] = None,
     force: Force = False,
 ) -> None:
-    """Run a mission, or the spec of a run, show what was measured, and write a report."""
+    """Run a mission in simulation and show the results; a report or a film on request."""
     outputs = _Outputs(source, report, render, recording, journal, gui, pace, force)
     outputs.check(site, faults)
     said = None

@@ -10,5 +10,5 @@ from argo_planner.use_cases.schemas import FileKind, schema
 def show_schema(
     name: Annotated[FileKind, typer.Argument(help="of which file")] = FileKind.MISSION,
 ) -> None:
-    """Print the JSON Schema of a mission, a machine, its progress, faults or a reading."""
+    """Print the JSON Schema of one kind of file, such as missions or faults."""
     print(schema(name), end="")

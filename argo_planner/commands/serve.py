@@ -71,7 +71,7 @@ def serve_plans(
         ),
     ] = None,
 ) -> None:
-    """Serve the missions of a folder to many people at once."""
+    """Serve the planner page with a folder of missions to several people at once."""
     try:
         from argo_planner.service.runs.host import AfterRestart
         from argo_planner.service.web.access import (

@@ -39,7 +39,7 @@ def show_sites(
     ] = None,
     force: Force = False,
 ) -> None:
-    """List the sites, or check one; exits with status 2 if it can't be driven."""
+    """List the sites, or check one; exits with status 2 if parts can't be reached."""
     if site is None:
         if output or picture:
             raise Invalid("a description or a picture is of one site: say which")

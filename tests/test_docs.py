@@ -15,14 +15,22 @@ from argo_planner.use_cases.routing import parse_requirements
 from argo_planner.use_cases.sites import check_site
 
 ROOT = Path(__file__).parents[1]
+PAGES = {
+    path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8")
+    for path in (
+        ROOT / "README.md",
+        ROOT / "CONTRIBUTING.md",
+        *sorted((ROOT / "docs").rglob("*.md")),
+    )
+}
+"""texts of the pages, by their names"""
 
 
 def snippets(language):
     """Return the snippets of a language by page."""
     fence = re.compile(rf"^```{language}\n(.*?)^```", re.M | re.S)
-    pages = (ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")))
-    found = {p.relative_to(ROOT).as_posix(): fence.findall(p.read_text("utf-8")) for p in pages}
-    return {page: parts for page, parts in found.items() if parts}
+    by_page = {page: fence.findall(text) for page, text in PAGES.items()}
+    return {page: parts for page, parts in by_page.items() if parts}
 
 
 PYTHON, YAML = snippets("python"), snippets("yaml")
@@ -70,13 +78,12 @@ MAX_WIDTH = 120
 
 def test_lines_of_pages_are_short():
     """Generated tables and code are as wide as what they show."""
-    pages = (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md"))
     code = re.compile(r"^ *```.*?^ *```", re.M | re.S)
     long_lines = [
-        f"{name}: {line}"
-        for name, page in ((page.relative_to(ROOT).as_posix(), page) for page in pages)
-        if name not in GENERATED
-        for line in code.sub("", page.read_text("utf-8")).splitlines()
+        f"{page}: {line}"
+        for page, text in PAGES.items()
+        if page not in GENERATED
+        for line in code.sub("", text).splitlines()
         if len(line) > MAX_WIDTH
     ]
     assert not long_lines

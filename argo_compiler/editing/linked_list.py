@@ -5,7 +5,7 @@ neighbours, so thousands of changes to a list of a hundred thousand items take n
 pass over the list.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Generic, Self, TypeVar
 
@@ -52,12 +52,6 @@ class LinkedList(Generic[_Item]):
             after.before = item
         else:
             self.last = item
-
-    def insert_all_after(self, items: Sequence[_Item], anchor: _Item | None) -> None:
-        """Insert the items in order after the anchor, or at the start if the anchor is None."""
-        for item in items:
-            self.insert_after(anchor, item)
-            anchor = item
 
     def remove(self, item: _Item) -> None:
         """Remove the item and link its neighbours to each other."""

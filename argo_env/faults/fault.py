@@ -108,7 +108,9 @@ class TimedFault(Fault):
     @model_validator(mode="after")
     def _ordered(self) -> Self:
         if self.at is not None and self.until is not None and self.until <= self.at:
-            raise ValueError(f"it ends at {self.until:g} s, before it begins at {self.at:g} s")
+            raise ValueError(
+                f"it ends at {self.until:g} s, but begins at {self.at:g} s; it must end later"
+            )
         return self
 
     @property

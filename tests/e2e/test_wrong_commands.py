@@ -255,7 +255,7 @@ SAID = {
     # files of faults
     "run s.txt --faults field.yaml": "is `temperature` meant?",
     "run s.txt --faults minutes.yaml": "minutes.yaml:3:9: error: faults[0].at: `at` has",
-    "run s.txt --faults backwards.yaml": "it ends at 20 s, before it begins at 100 s",
+    "run s.txt --faults backwards.yaml": "it ends at 20 s, but begins at 100 s; it must end later",
     "run s.txt --faults flat.yaml": "`place[2]` is missing",
     "run s.txt --faults far.yaml": "there is no equipment at (900, 3.5, 0.8)",
     "run s.txt --faults seventy.yaml": "has no checkpoint 77; there are: 1 to 20",

@@ -135,7 +135,6 @@ SUSPICIOUS = 33.0
 PIXELS = 3  # of a spot, at least
 PROBES = 7  # pixels of a spot that are looked up on the map, at most
 REACH = 10.0  # m, of the rays on the map
-CONFIRMING = 2  # images in a row in which a spot must appear
 SAME_SPOT = 1.5  # m between two estimates of the same spot's position, at most
 SURE_RANGE = 6.0  # m within which a reported spot must appear if it is in view and still hot
 GONE_IMAGES = 3  # images in which a reported spot is missing from the view, until it is gone

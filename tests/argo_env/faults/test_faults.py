@@ -62,7 +62,8 @@ class TestFiles:
             ("faults:\n  - kind: gas_leak\n    rat: 1\n", 3, "is `rate` meant?"),
             ("faults:\n  - kind: gas_leak\n    rate: -1\n", 3, "faults[0].rate"),
             ("faults:\n  - kind: brick\n    at: 3\n", 3, "have no such field"),
-            ("faults:\n  - kind: gas_leak\n    at: 9\n    until: 5\n", 2, "before it begins"),
+            ("faults:\n  - kind: gas_leak\n    at: 9\n    until: 5\n", 2, "it must end later"),
+            ("faults:\n  - kind: gas_leak\n    at: 5\n    until: 5\n", 2, "it must end later"),
             ("faults:\n  - kind: brick\n    floor: 1\n    floor: 2\n", 4, "given at line 3"),
             ("faults:\n  - kind: low_battery\n    charge: .nan\n", 3, "charge"),
             (

@@ -71,19 +71,19 @@ def test_the_distribution_of_faults_is_accepted():
     assert len(decode_distribution(text.encode(), "docs/evaluating.md").chances) == 2
 
 
-GENERATED = {"docs/diagnostics.md", "docs/script.md"}
+WITH_TABLES = {"docs/diagnostics.md", "docs/script.md"}
+"""pages with wide tables"""
 MAX_WIDTH = 120
 """characters of a line"""
 
 
 def test_lines_of_pages_are_short():
-    """Generated tables and code are as wide as what they show."""
+    """Code and the tables of some pages may be wider."""
     code = re.compile(r"^ *```.*?^ *```", re.M | re.S)
     long_lines = [
         f"{page}: {line}"
         for page, text in PAGES.items()
-        if page not in GENERATED
         for line in code.sub("", text).splitlines()
-        if len(line) > MAX_WIDTH
+        if len(line) > MAX_WIDTH and not (page in WITH_TABLES and line.startswith("|"))
     ]
     assert not long_lines

@@ -1,7 +1,7 @@
-"""Writes what is made from the grammar: `python -m argo_compiler.script [PAGE]`.
+"""Command that generates files from the grammar: `python -m argo_compiler.script [PAGE]`.
 
-That is the parser's tables, the lexicons and, between the marks of the page `docs/script.md` if it
-is named, all that can be said.
+It writes the parser's tables, the lexicons and, if the page `docs/script.md` is given, the
+reference between the page's markers.
 """
 
 import sys

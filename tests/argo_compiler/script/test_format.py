@@ -250,7 +250,7 @@ def test_a_round_that_lies_in_one_of_the_same_steps(catalog: Catalog) -> None:
 # ---- what is documented, shipped, and said back
 
 DOCS = (Path(__file__).parents[3] / "docs" / "script.md").read_text(encoding="utf-8")
-EXACT = DOCS[DOCS.index("## The exact forms") : DOCS.index("## Reading back")]
+EXACT = DOCS[DOCS.index("## The exact forms") : DOCS.index("## Explaining a mission")]
 BLOCKS = [block.split("```")[0] for block in EXACT.split("```protocol\n")[1:]]
 SAMPLES = [line for block in BLOCKS for line in block.splitlines()]
 

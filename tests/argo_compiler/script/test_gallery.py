@@ -20,7 +20,7 @@ from argo_env.site import load_site
 
 PAGE = Path(__file__).parents[3] / "docs" / "script.md"
 START = "Start in starting area 1."
-ASKED = "asked: "
+ASKED = "error: "
 _ROW = re.compile(r"^\|(.*?)(?<!\\)\|(.*)\|$")
 _CODE = re.compile(r"`` (.*?) ``|`(.*?)`")
 _NUMBER = re.compile(r"^\d+\. ")
@@ -49,7 +49,7 @@ def _codes(cell: str) -> list[str]:
 def rows(page: str) -> Iterator[Row]:
     """All rows; a table's first heading may name a line that stands behind each phrase."""
     gallery = page.partition("\n## A gallery of phrasings\n")[2].partition("\n## ")[0]
-    for table in re.findall(r"^\| said.*\n\|---\|---\|\n((?:\|.*\n)+)", gallery, re.MULTILINE):
+    for table in re.findall(r"^\| script.*\n\|---\|---\|\n((?:\|.*\n)+)", gallery, re.MULTILINE):
         heading = gallery[: gallery.index(table)].splitlines()[-2]
         behind = tuple(_codes(_cells(heading)[0]))
         for line in table.splitlines():

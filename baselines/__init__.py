@@ -1,1 +1,1 @@
-"""Policies for Argo's environments, and how they are trained, compared and plotted."""
+"""Policies for Argo's environments, with their training, comparison and plots."""

@@ -1,4 +1,4 @@
-"""What outcomes of policies on the same instances say."""
+"""Comparison of policies by their episodes on the same instances."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,30 +10,30 @@ from baselines.families import InstanceSet
 from baselines.intervals import Bootstrap, ConfidenceInterval
 from baselines.references import BestKnown
 
-_ROUNDING = 1e-6  # of a sum of prizes
+_ROUNDING = 1e-6  # tolerance for the rounding of a sum of prizes
 
 
 @dataclass(frozen=True)
-class Row:
-    """A policy on a test set."""
+class PolicyStatistics:
+    """Means of a policy over the instances of a test set, with confidence intervals."""
 
     policy: str
     prize: ConfidenceInterval
     gap: ConfidenceInterval
-    """share of the best known routes' prize that it did not win"""
+    """share of the best known routes' prize that the policy did not win"""
     behind: ConfidenceInterval
-    """by how much its prize is below that of the policy with the highest mean"""
+    """difference to the prize of the policy with the highest mean prize"""
     time: ConfidenceInterval
-    """s until the robot is docked"""
+    """time in s until the robot is docked"""
     feasible: ConfidenceInterval
-    """share of the routes"""
+    """share of feasible routes"""
     seconds: ConfidenceInterval
-    """s of processor time for an instance"""
+    """processor time in s for one instance"""
 
 
 @dataclass(frozen=True)
-class Beaten:
-    """A route that is better than the best known one."""
+class BetterRoute:
+    """A policy's route that wins a higher prize than the best known route."""
 
     policy: str
     instance: int
@@ -43,74 +43,82 @@ class Beaten:
 
 @dataclass(frozen=True)
 class PolicyComparison:
-    """Policies on the first instances of a test set."""
+    """Comparison of policies on the first instances of a test set."""
 
     test_set: str
     checksum: str
-    """of those instances"""
+    """checksum of these instances"""
     instances: int
+    """number of these instances"""
     proven: int
-    """for how many of them the best known route is proven to be the best"""
+    """number of these instances whose best known route is proven optimal"""
     open: float
-    """by what share of the best known routes' prize others can be better at most: 0 where all are
-    proven"""
-    rows: tuple[Row, ...]
+    """greatest possible gain over the best known routes, as a share of their prize; 0 if all are
+    proven optimal"""
+    rows: tuple[PolicyStatistics, ...]
+    """statistics of each policy"""
     outcomes: dict[str, tuple[EpisodeOutcome, ...]]
-    """by policy"""
+    """outcomes by the name of the policy, in the order of the instances"""
     best: tuple[BestKnown, ...]
+    """best known route of each instance"""
 
     @property
-    def front(self) -> tuple[Row, ...]:
-        """The policies than which no other wins as much in less time, the fastest first (the
-        Pareto front of mean prize and mean time)."""
-        kept: list[Row] = []
+    def pareto_front(self) -> tuple[PolicyStatistics, ...]:
+        """Pareto front of mean prize and mean processor time, the fastest policy first."""
+        front: list[PolicyStatistics] = []
         for row in sorted(self.rows, key=lambda row: (row.seconds.value, -row.prize.value)):
-            if not kept or row.prize.value > kept[-1].prize.value:
-                kept.append(row)
-        return tuple(kept)
+            if not front or row.prize.value > front[-1].prize.value:
+                front.append(row)
+        return tuple(front)
 
     @property
-    def beaten(self) -> tuple[Beaten, ...]:
-        """The routes that show that the best known ones are not the best."""
+    def better_routes(self) -> tuple[BetterRoute, ...]:
+        """Feasible routes of policies that win more than the best known ones."""
         return tuple(
-            Beaten(name, outcome.instance, outcome.prize, best.prize)
+            BetterRoute(name, outcome.instance, outcome.prize, best.prize)
             for name, outcomes in self.outcomes.items()
             for outcome, best in zip(outcomes, self.best, strict=True)
             if outcome.feasible and outcome.prize > best.prize + _ROUNDING
         )
 
 
-def compare(
-    tests: InstanceSet,
+def compare_policies(
+    test_set: InstanceSet,
     outcomes: dict[str, tuple[EpisodeOutcome, ...]],
     best: Sequence[BestKnown],
     seed: int,
 ) -> PolicyComparison:
-    """The figures of policies on the same instances of a test set, whose best known routes are
-    given."""
+    """Return the statistics of policies on the same instances of a test set.
+
+    Args:
+        test_set: the test set, of which the policies had the first instances.
+        outcomes: outcomes of each policy, by its name, in the order of the instances.
+        best: best known route of each of these instances.
+        seed: seed of the bootstrap.
+    """
     count = len(best)
     bootstrap = Bootstrap(count, seed)
-    prizes = {name: np.array([o.prize for o in found]) for name, found in outcomes.items()}
+    prizes = {name: np.array([o.prize for o in episodes]) for name, episodes in outcomes.items()}
     highest = max(prizes.values(), key=lambda values: float(values.mean()))
     known = np.array([reference.prize for reference in best])
     rows = []
-    for name, found in outcomes.items():
+    for name, episodes in outcomes.items():
         rows.append(
-            Row(
+            PolicyStatistics(
                 name,
                 bootstrap.mean(prizes[name]),
                 bootstrap.ratio(known - prizes[name], known),
                 bootstrap.mean(highest - prizes[name]),
-                bootstrap.mean(np.array([o.time for o in found])),
-                bootstrap.mean(np.array([o.feasible for o in found], dtype=float)),
-                bootstrap.mean(np.array([o.seconds for o in found])),
+                bootstrap.mean(np.array([o.time for o in episodes])),
+                bootstrap.mean(np.array([o.feasible for o in episodes], dtype=float)),
+                bootstrap.mean(np.array([o.seconds for o in episodes])),
             )
         )
     proven = sum(reference.proven for reference in best)
     bound = sum(reference.bound for reference in best)
     return PolicyComparison(
-        tests.name,
-        tests.checksum(count),
+        test_set.name,
+        test_set.checksum(count),
         count,
         proven,
         bound / float(known.sum()) - 1.0 if proven < count and known.any() else 0.0,

@@ -1,4 +1,4 @@
-"""Policies on the instances of a test set."""
+"""Episodes of policies on the instances of a test set."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -12,42 +12,55 @@ from baselines.families import InstanceSet
 from baselines.policy import Policy
 
 Clock = Callable[[], float]
+"""function that returns a time in s"""
 
 
 @dataclass(frozen=True)
 class EpisodeOutcome:
-    """What a policy did on one instance."""
+    """Result of one episode: a policy on one instance."""
 
     instance: int
+    """number of the instance"""
     prize: float
     time: float
-    """s when the robot was docked"""
+    """time in s when the robot was docked"""
     feasible: bool
-    """whether it was docked in time, and no action was illegal"""
+    """whether the robot was docked in time, and no action was illegal"""
     decisions: int
+    """number of actions"""
     seconds: float
-    """s of processor time that the policy thought, its preparation included"""
+    """processor time in s that the policy took for its preparation and its decisions"""
     route: tuple[int, ...]
-    """the nodes in order, the dock at the end"""
+    """nodes chosen by the policy, in their order; the dock or an illegal one is the last"""
 
 
 def play(
     policy: Policy,
-    tests: InstanceSet,
+    test_set: InstanceSet,
     instances: int,
     seed: int = 0,
     clock: Clock = time.process_time,
 ) -> Iterator[EpisodeOutcome]:
-    """The outcomes of a policy on the first instances of a test set, one after the other.
+    """Yield the outcomes of a policy on the first instances of a test set.
 
-    Raises ArgoError if the policy's action is no node.
+    Args:
+        policy: the policy.
+        test_set: the test set.
+        instances: number of its first instances to play.
+        seed: seed of the policy's random decisions in each episode.
+        clock: clock that measures the policy's decisions; by default the processor time.
+
+    Raises:
+        ArgoError: if an action of the policy is not a node.
     """
-    env = RouteEnv(source=tests.family.source, full=True)
-    for number in tests.numbers[:instances]:
-        yield _drive(policy, env, number, seed, clock)
+    env = RouteEnv(source=test_set.family.source, full=True)
+    for number in test_set.numbers[:instances]:
+        yield _run_episode(policy, env, number, seed, clock)
 
 
-def _drive(policy: Policy, env: RouteEnv, number: int, seed: int, clock: Clock) -> EpisodeOutcome:
+def _run_episode(
+    policy: Policy, env: RouteEnv, number: int, seed: int, clock: Clock
+) -> EpisodeOutcome:
     observation, _ = env.reset(options={"instance": number})
     begun = clock()
     policy.begin(observation, env.instance.budget, seed)

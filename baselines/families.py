@@ -1,4 +1,4 @@
-"""Families of instances, and the test sets that policies are compared on."""
+"""Families of instances, and the test sets on which policies are compared."""
 
 import hashlib
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ from argo_env.envs.route_sources import (
     RouteSource,
     SiteRoutes,
 )
-from baselines.kept_times import kept_times
+from baselines.stored_times import load_site_times
 
 UNSEEN_SITES = tuple(
     f"generated:floors={floors},size={size},checkpoints=48,seed={seed}"
@@ -26,29 +26,32 @@ UNSEEN_SITES = tuple(
         (5, "24x16", 1_000_004), (6, "20x14", 1_000_005),
     )
 )  # fmt: skip
-"""Generated sites that no policy is trained on: their seeds are those for testing. They are few, as
-the ways of each take a quarter of a minute to find."""
+"""Generated sites on which no policy is trained: their seeds are reserved for tests. They are few
+because computing the travel times of one takes a quarter of a minute."""
 
 
 @dataclass(frozen=True)
 class InstanceFamily:
-    """Instances of one kind."""
+    """Parameters of instances of one kind."""
 
     checkpoints: int = 20
+    """number of checkpoints of each instance"""
     sites: tuple[str, ...] = ("random",)
-    """`random`, or names of sites, which take turns"""
+    """sites from which the instances are taken in turn: `random`, or names of sites"""
     budget: float = 1200.0
-    """s"""
+    """time budget of a route in s"""
     precedence: float = PRECEDENCE
-    """share of checkpoints that another one must come before"""
+    """share of checkpoints that must follow another one"""
     noise: RouteNoise = NO_NOISE
 
     @cached_property
     def source(self) -> RouteSource:
-        """Makes the instances: also what an environment of this family is made with. The travel
-        times of sites are those that are kept with the test sets, if they are."""
+        """Source of the instances, which an environment of this family takes as its `source`.
+
+        It has the travel times that are stored with the test sets, for the sites that have some.
+        """
         sources = tuple(self._source(site) for site in self.sites)
-        return sources[0] if len(sources) == 1 else TurnTaking(sources)
+        return sources[0] if len(sources) == 1 else AlternatingSources(sources)
 
     def _source(self, site: str) -> RouteSource:
         if site == "random":
@@ -56,14 +59,16 @@ class InstanceFamily:
                 self.checkpoints, budget=self.budget, noise=self.noise, precedence=self.precedence
             )
         return SiteRoutes(
-            self.checkpoints, site, self.budget, self.noise, self.precedence, kept_times(site)
+            self.checkpoints, site, self.budget, self.noise, self.precedence, load_site_times(site)
         )
 
 
 @dataclass(frozen=True)
-class TurnTaking:
-    """Several sources with the same number of checkpoints: instance k is of source k modulo their
-    number."""
+class AlternatingSources:
+    """A source that takes its instances in turn from n sources with equally many checkpoints.
+
+    The instance with number k comes from the source with index k modulo n.
+    """
 
     sources: tuple[RouteSource, ...]
 
@@ -78,46 +83,47 @@ class TurnTaking:
     def draw(
         self, number: int, floors: Sequence[int] = (), faults: RouteFaults = NO_FAULTS
     ) -> RouteInstance:
-        """See RouteSource."""
-        return self.of(number).draw(number, floors, faults)
+        """Return the instance with this number; see `RouteSource.draw`."""
+        return self.source_for(number).draw(number, floors, faults)
 
-    def of(self, number: int) -> RouteSource:
-        """The source that makes the instance of that number."""
+    def source_for(self, number: int) -> RouteSource:
+        """Return the source that makes the instance with this number."""
         return self.sources[number % len(self.sources)]
 
 
 @dataclass(frozen=True)
 class InstanceSet:
-    """Instances of a family that never change: another choice gets another name."""
+    """A fixed set of instances of a family; a changed set gets another name."""
 
     name: str
-    """with its version at the end"""
+    """name, with a version at the end"""
     family: InstanceFamily
     numbers: range = TEST
+    """numbers of the instances"""
 
     def checksum(self, instances: int | None = None) -> str:
-        """A digest of all that the first instances (all) are, hidden things included."""
-        sink = hashlib.sha256()
+        """Return a digest of the first instances, hidden data included; None: of all instances."""
+        digest = hashlib.sha256()
         for number in self.numbers[:instances]:
-            _feed(sink, self.family.source.draw(number))
-        return sink.hexdigest()[:16]
+            _update_digest(digest, self.family.source.draw(number))
+        return digest.hexdigest()[:16]
 
 
-def _feed(sink: "hashlib._Hash", instance: RouteInstance) -> None:
+def _update_digest(digest: "hashlib._Hash", instance: RouteInstance) -> None:
     for array in (instance.arrival, instance.prizes, instance.before):
-        sink.update(array.tobytes())
-    sink.update(repr(instance.budget).encode())
+        digest.update(array.tobytes())
+    digest.update(repr(instance.budget).encode())
     if instance.hidden is not None:
-        sink.update(instance.hidden.failing.tobytes())
+        digest.update(instance.hidden.failing.tobytes())
         for change in instance.hidden.changes:
-            sink.update(repr(change.since).encode() + change.known.arrival.tobytes())
+            digest.update(repr(change.since).encode() + change.known.arrival.tobytes())
 
 
 _NOISE = RouteNoise(failing=0.2, blocked=2)
 
 TEST_SETS = {
-    one.name: one
-    for one in (
+    test_set.name: test_set
+    for test_set in (
         InstanceSet("random-20-v1", InstanceFamily()),
         InstanceSet("random-40-v1", InstanceFamily(40)),
         InstanceSet("ordered-20-v1", InstanceFamily(precedence=0.8)),
@@ -127,11 +133,11 @@ TEST_SETS = {
         InstanceSet("noisy-40-v1", InstanceFamily(40, noise=_NOISE)),
     )
 }
-"""By name. A set that is to be different gets a new version, and the old one stays."""
+"""Test sets by name. A changed set gets a new version, and the old one stays."""
 
 
-def find_set(name: str) -> InstanceSet:
-    """The test set of that name; ArgoError if there is none."""
+def find_test_set(name: str) -> InstanceSet:
+    """Return the test set with this name; raise ArgoError if there is none."""
     if name not in TEST_SETS:
-        raise NotFound(f"no test set `{name}`; there are: {', '.join(TEST_SETS)}")
+        raise NotFound(f"no test set `{name}`; choose one of: {', '.join(TEST_SETS)}")
     return TEST_SETS[name]

@@ -1,4 +1,4 @@
-"""Finds the travel times of the test sets' sites that are not kept yet, and keeps them.
+"""Command that computes and stores the missing travel times of the test sets' sites.
 
 python -m baselines.keep_times
 """
@@ -6,16 +6,16 @@ python -m baselines.keep_times
 import sys
 
 from baselines.families import TEST_SETS
-from baselines.kept_times import keep_times, kept_times
+from baselines.stored_times import load_site_times, store_site_times
 
 
 def main() -> None:
-    """Keeps the travel times of all sites of the test sets that are not kept yet."""
-    sites = {site for one in TEST_SETS.values() for site in one.family.sites} - {"random"}
+    """Store the travel times of all sites of the test sets that have none stored."""
+    sites = {site for s in TEST_SETS.values() for site in s.family.sites} - {"random"}
     for site in sorted(sites):
-        if kept_times(site) is None:
+        if load_site_times(site) is None:
             print(f"{site} …", file=sys.stderr, flush=True)
-            keep_times(site)
+            store_site_times(site)
 
 
 if __name__ == "__main__":

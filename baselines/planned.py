@@ -1,4 +1,4 @@
-"""Policies that plan the rest of the route, and go by their plan."""
+"""Policies that plan the rest of the route and follow their plan."""
 
 import numpy as np
 
@@ -8,22 +8,25 @@ from baselines.policy import Policy
 
 
 class PlannedPolicy(Policy):
-    """Plans at the beginning; with `again` also whenever what is seen is not what was planned for:
-    a reading failed, or travel times have changed. Holds the plan of the present episode."""
+    """A policy that plans at the start of an episode, and again after a deviation if it `replans`.
 
-    again = True
+    A deviation is a failed reading or a change of the travel times. The policy holds the plan of
+    the present episode; nodes of the plan that have become illegal are skipped.
+    """
 
-    def plan(self, observation: Observation) -> list[int]:
-        """The nodes to go to from now on, without the dock at the end."""
+    replans = True
+
+    def plan_route(self, observation: Observation) -> list[int]:
+        """Return the nodes to visit from now on, in their order, without the dock at the end."""
         raise NotImplementedError
 
     def begin(self, observation: Observation, budget: float, seed: int) -> None:
         self._budget, self._seed = budget, seed
-        self._prepare(observation)
+        self._make_plan(observation)
 
     def act(self, observation: Observation) -> int:
-        if self.again and self._surprised(observation):
-            self._prepare(observation)
+        if self.replans and self._deviates(observation):
+            self._make_plan(observation)
         while self._plan:
             node = self._plan.pop(0)
             if observation["mask"][node]:
@@ -31,12 +34,12 @@ class PlannedPolicy(Policy):
                 return node
         return DOCK
 
-    def _prepare(self, observation: Observation) -> None:
-        self._plan = self.plan(observation)
+    def _make_plan(self, observation: Observation) -> None:
+        self._plan = self.plan_route(observation)
         self._expected = observation["prize"].copy()
         self._matrix = observation["matrix"]
 
-    def _surprised(self, observation: Observation) -> bool:
+    def _deviates(self, observation: Observation) -> bool:
         return not (
             np.array_equal(observation["prize"], self._expected)
             and np.array_equal(observation["matrix"], self._matrix)

@@ -1,4 +1,4 @@
-"""Plots of the arena.
+"""Plots of compared policies, of a route, and of the search for a route.
 
 python -m baselines.plots ranking out/arena/results.json --out out/plots
 python -m baselines.plots gaps out/arena/results.json --out out/plots
@@ -22,47 +22,56 @@ from argo_compiler.base.errors import ArgoError, Invalid, Unavailable
 from argo_compiler.route import RouteProblem, suggest_route
 from argo_env.envs.route import RouteEnv
 from argo_env.files.folders import make_folder
-from baselines.comparison import PolicyComparison, Row
+from baselines.comparison import PolicyComparison, PolicyStatistics
 from baselines.episodes import EpisodeOutcome
-from baselines.families import InstanceSet, TurnTaking, find_set
+from baselines.families import AlternatingSources, InstanceSet, find_test_set
 from baselines.intervals import ConfidenceInterval
 from baselines.policy import Policy, make_policy
-from baselines.problem import HUNDREDTH, hindsight
+from baselines.problem import PRIZE_UNIT, hindsight_problem
 from baselines.references import BestKnown
 
-_FOUND, _BOUND, _BEHIND = "#1f5f99", "#b45309", "#64707c"
+_BEST, _BOUND, _DOMINATED = "#1f5f99", "#b45309", "#64707c"  # colours
 _TICKS = (-20, -10, -5, -2, 0, 2, 5, 10, 20, 50)  # %
 
 
 def plot_ranking(results: Path, folder: Path) -> list[Path]:
-    """For each test set in a `results.json`, each policy by its time and its gap to the best known
-    routes, with the Pareto front. Raises ArgoError if it is no such file."""
+    """Plot processor time and gap to the best known routes of each policy, with the Pareto front.
+
+    Returns the pictures in `folder`, one for each test set in the file `results`. Raises ArgoError
+    if that is not a `results.json` of `python -m baselines.evaluate`.
+    """
     return [
-        _ranking(one, folder / f"ranking-{one.test_set}.png") for one in read_comparisons(results)
+        _plot_ranking(comparison, folder / f"ranking-{comparison.test_set}.png")
+        for comparison in read_comparisons(results)
     ]
 
 
 def plot_gaps(results: Path, folder: Path) -> list[Path]:
-    """A box plot for each test set in a `results.json`: by what share of the best known route's
-    prize each policy is below it, instance by instance. Raises ArgoError if it is no such file."""
+    """Draw box plots of the gap of each policy to the best known route of each instance.
+
+    Returns the pictures in `folder`, one for each test set in the file `results`. Raises ArgoError
+    if that is not a `results.json` of `python -m baselines.evaluate`.
+    """
     return [
-        _box_plot(one.test_set, _gaps(one), folder / f"gaps-{one.test_set}.png")
-        for one in read_comparisons(results)
+        _box_plot(
+            comparison.test_set, _gaps(comparison), folder / f"gaps-{comparison.test_set}.png"
+        )
+        for comparison in read_comparisons(results)
     ]
 
 
-def _ranking(comparison: PolicyComparison, picture: Path) -> Path:
+def _plot_ranking(comparison: PolicyComparison, picture: Path) -> Path:
     figure, axes = plt.subplots(figsize=(8, 4.5), layout="constrained")
-    front = comparison.front
+    front = comparison.pareto_front
     last = 10 * max(row.seconds.value for row in comparison.rows)
     axes.step(
         [*(row.seconds.value for row in front), last],
         [100 * row.gap.value for row in (*front, front[-1])],
-        where="post", color=_FOUND, linewidth=1, zorder=1,
+        where="post", color=_BEST, linewidth=1, zorder=1,
         label="Pareto front: no other wins as much in less time",
     )  # fmt: skip
     for row in comparison.rows:
-        gap, colour = row.gap, _FOUND if row in front else _BEHIND
+        gap, colour = row.gap, _BEST if row in front else _DOMINATED
         axes.errorbar(
             row.seconds.value, 100 * gap.value, color=colour, marker="o", capsize=2, linewidth=1,
             yerr=[[100 * (gap.value - gap.low)], [100 * (gap.high - gap.value)]],
@@ -72,7 +81,7 @@ def _ranking(comparison: PolicyComparison, picture: Path) -> Path:
             xytext=(6, 5 if row in front else -11), textcoords="offset points", fontsize=8,
             color=colour,
         )  # fmt: skip
-    _best_known_lines(axes, comparison)
+    _draw_best_known(axes, comparison)
     axes.set_xscale("log")
     axes.set_xlim(right=last)
     axes.set_yscale("symlog", linthresh=5.0)
@@ -85,11 +94,11 @@ def _ranking(comparison: PolicyComparison, picture: Path) -> Path:
     axes.set_title(f"{comparison.test_set}, {comparison.instances} instances", fontsize=10)
     axes.grid(alpha=0.3)
     axes.legend(loc="lower right", fontsize=8)
-    return _saved(figure, picture)
+    return _save(figure, picture)
 
 
-def _best_known_lines(axes: Axes, comparison: PolicyComparison) -> None:
-    """At the best known routes; and above, what is not proven to be out of reach."""
+def _draw_best_known(axes: Axes, comparison: PolicyComparison) -> None:
+    """Draw a line at the best known routes, and shade the gaps that the bounds leave possible."""
     open_ = 100 * comparison.open
     proven = f"proven for {comparison.proven} of {comparison.instances}"
     axes.axhline(0.0, color=_BOUND, linewidth=1, label=f"best known routes ({proven})")
@@ -99,10 +108,12 @@ def _best_known_lines(axes: Axes, comparison: PolicyComparison) -> None:
 
 
 def read_comparisons(results: Path) -> list[PolicyComparison]:
-    """What `python -m baselines.evaluate --out DIR` wrote as `results.json`. Raises ArgoError if it
-    is no such file."""
+    """Return the comparisons in a `results.json` of `python -m baselines.evaluate --out DIR`.
+
+    Raises ArgoError if it can't be read or is no such file.
+    """
     try:
-        return [_comparison(one) for one in json.loads(results.read_text(encoding="utf-8"))]
+        return [_to_comparison(data) for data in json.loads(results.read_text(encoding="utf-8"))]
     except OSError as error:
         raise Unavailable(f"{results} can't be read: {error.strerror}") from None
     except (ValueError, KeyError, TypeError):
@@ -112,34 +123,37 @@ def read_comparisons(results: Path) -> list[PolicyComparison]:
         ) from None
 
 
-def _comparison(data: dict[str, Any]) -> PolicyComparison:
-    """Lists are read as tuples."""
+def _to_comparison(data: dict[str, Any]) -> PolicyComparison:
+    """Return a comparison from its JSON; lists become tuples."""
     rows = [
         {name: ConfidenceInterval(**part) for name, part in row.items() if name != "policy"}
         for row in data["rows"]
     ]
     parts = {
         "rows": tuple(
-            Row(policy=row["policy"], **figures)
-            for row, figures in zip(data["rows"], rows, strict=True)
+            PolicyStatistics(policy=row["policy"], **intervals)
+            for row, intervals in zip(data["rows"], rows, strict=True)
         ),
         "best": tuple(BestKnown(**one | {"route": tuple(one["route"])}) for one in data["best"]),
         "outcomes": {
-            name: tuple(EpisodeOutcome(**one | {"route": tuple(one["route"])}) for one in found)
-            for name, found in data["outcomes"].items()
+            name: tuple(EpisodeOutcome(**one | {"route": tuple(one["route"])}) for one in outcomes)
+            for name, outcomes in data["outcomes"].items()
         },
     }
     return PolicyComparison(**data | parts)
 
 
 def _gaps(comparison: PolicyComparison) -> dict[str, list[float]]:
-    """Of each policy, in %, the best on average first; instances without a prize are left out."""
+    """Return the gaps of each policy in %, the policy with the lowest mean first.
+
+    Instances whose best known route has no prize are left out.
+    """
     best = [reference.prize for reference in comparison.best]
-    found = {
+    gaps = {
         policy: [100 * (1 - o.prize / b) for o, b in zip(outcomes, best, strict=True) if b > 0]
         for policy, outcomes in comparison.outcomes.items()
     }
-    return dict(sorted(found.items(), key=lambda item: float(np.mean(item[1]))))
+    return dict(sorted(gaps.items(), key=lambda item: float(np.mean(item[1]))))
 
 
 def _box_plot(name: str, gaps: dict[str, list[float]], picture: Path) -> Path:
@@ -151,7 +165,7 @@ def _box_plot(name: str, gaps: dict[str, list[float]], picture: Path) -> Path:
         showmeans=True,
         widths=0.6,
         medianprops={"color": _BOUND},
-        meanprops={"marker": "D", "markerfacecolor": _FOUND, "markeredgecolor": _FOUND,
+        meanprops={"marker": "D", "markerfacecolor": _BEST, "markeredgecolor": _BEST,
                    "markersize": 4},
         flierprops={"marker": ".", "markersize": 4, "markeredgecolor": "#64707c"},
     )  # fmt: skip
@@ -160,15 +174,25 @@ def _box_plot(name: str, gaps: dict[str, list[float]], picture: Path) -> Path:
     axes.set_xlabel("gap to the best known route, % of its prize (line: median, diamond: mean)")
     axes.set_title(f"{name}, {len(next(iter(gaps.values())))} instances", fontsize=10)
     axes.grid(axis="x", alpha=0.3)
-    return _saved(figure, picture)
+    return _save(figure, picture)
 
 
 def plot_convergence(name: str, problem: RouteProblem, time_limit: float, picture: Path) -> Path:
-    """The prize of the best route so far and what no route can exceed, over the time of search."""
+    """Plot the best prize so far and the upper bound on the prize over the time of the search.
+
+    Args:
+        name: name of the instance, for the title.
+        problem: the route problem.
+        time_limit: time limit of the search in s.
+        picture: file to write.
+
+    Raises:
+        ArgoError: if the optimiser returns no history of its search.
+    """
     suggestion = suggest_route(problem, time_limit)
     history = suggestion.history
     if not history:
-        raise Invalid(f"{name}: the optimiser says nothing of its search, there is no history")
+        raise Invalid(f"{name}: the optimiser returned no history of its search to plot")
     first, last = max(history[0].time, 1e-3), max(history[-1].time, 1e-3)
     everything = sum(visit.prize for visit in problem.visits)
     bounds = [(first / 2, everything), *((point.time, point.prize_bound) for point in history)]
@@ -178,10 +202,10 @@ def plot_convergence(name: str, problem: RouteProblem, time_limit: float, pictur
     figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
     for points, colour, marker, label in (
         (bounds, _BOUND, "", "no route wins more"),
-        (prizes, _FOUND, ".", "best route so far"),
+        (prizes, _BEST, ".", "best route so far"),
     ):
         times = [max(time, 1e-3) for time, _ in points]
-        values = [HUNDREDTH * value for _, value in points]
+        values = [PRIZE_UNIT * value for _, value in points]
         axes.step(times, values, where="post", color=colour, marker=marker, label=label)
     axes.set_xscale("log")
     axes.set_xlabel("s since the search began")
@@ -191,14 +215,14 @@ def plot_convergence(name: str, problem: RouteProblem, time_limit: float, pictur
     axes.set_title(title, fontsize=10)
     axes.grid(alpha=0.3)
     axes.legend()
-    return _saved(figure, picture)
+    return _save(figure, picture)
 
 
-def draw_tour(tests: InstanceSet, policy: Policy, number: int, picture: Path) -> Path:
-    """The route of a policy on the plans of the floors."""
-    source = tests.family.source
-    if isinstance(source, TurnTaking):
-        source = source.of(number)
+def draw_tour(test_set: InstanceSet, policy: Policy, number: int, picture: Path) -> Path:
+    """Draw the route of a policy on the floor plans, on the instance with this number."""
+    source = test_set.family.source
+    if isinstance(source, AlternatingSources):
+        source = source.source_for(number)
     env = RouteEnv(source=source, full=True, render_mode="rgb_array")
     observation, _ = env.reset(options={"instance": number})
     policy.begin(observation, env.instance.budget, 0)
@@ -211,7 +235,7 @@ def draw_tour(tests: InstanceSet, policy: Policy, number: int, picture: Path) ->
     return picture
 
 
-def _saved(figure: Any, picture: Path) -> Path:
+def _save(figure: Any, picture: Path) -> Path:
     make_folder(picture.parent)
     figure.savefig(picture, dpi=110)
     plt.close(figure)
@@ -219,29 +243,29 @@ def _saved(figure: Any, picture: Path) -> Path:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """The exit status: 2 if there is nothing to draw."""
+    """Run the command; return its exit status, 2 after an error that is reported."""
     parser = argparse.ArgumentParser(
         prog="python -m baselines.plots",
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     kinds = parser.add_subparsers(dest="kind", required=True)
-    ranking = kinds.add_parser("ranking", help="time and gap of each policy")
-    gaps = kinds.add_parser("gaps", help="box plots of gaps")
+    ranking = kinds.add_parser("ranking", help="plot time and gap of each policy")
+    gaps = kinds.add_parser("gaps", help="draw box plots of the gaps")
     for kind in (ranking, gaps):
         kind.add_argument("results", type=Path, metavar="RESULTS.json")
-    tour = kinds.add_parser("tour", help="a policy's route on the floors")
+    tour = kinds.add_parser("tour", help="draw a policy's route on the floor plans")
     tour.add_argument("--policy", default="portfolio", metavar="NAME")
-    convergence = kinds.add_parser("convergence", help="best prize and bound over time")
+    convergence = kinds.add_parser("convergence", help="plot best prize and bound over time")
     convergence.add_argument("--time-limit", type=float, default=20.0, metavar="S")
     for kind in (tour, convergence):
         kind.add_argument("--family", default="random-20-v1", metavar="NAME")
         kind.add_argument("--instance", type=int, default=1_000_000, metavar="NUMBER")
     for kind in (ranking, gaps, tour, convergence):
         kind.add_argument("--out", type=Path, default=Path("out/plots"), metavar="DIR")
-    given = parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
     try:
-        for picture in _draw(given):
+        for picture in _draw(options):
             print(picture)
     except ArgoError as error:
         print(f"error: {error}", file=sys.stderr)
@@ -249,23 +273,25 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def _draw(given: argparse.Namespace) -> list[Path]:
-    if given.kind == "ranking":
-        return plot_ranking(given.results, given.out)
-    if given.kind == "gaps":
-        return plot_gaps(given.results, given.out)
-    tests, number = find_set(given.family), given.instance
-    if number not in tests.numbers:
+def _draw(options: argparse.Namespace) -> list[Path]:
+    """Draw the pictures that the options ask for; return their files."""
+    if options.kind == "ranking":
+        return plot_ranking(options.results, options.out)
+    if options.kind == "gaps":
+        return plot_gaps(options.results, options.out)
+    test_set, number = find_test_set(options.family), options.instance
+    if number not in test_set.numbers:
         raise Invalid(
-            f"test set {tests.name} has the instances {tests.numbers[0]} to {tests.numbers[-1]}, "
-            f"not {number}"
+            f"test set {test_set.name} has the instances {test_set.numbers[0]} to "
+            f"{test_set.numbers[-1]}, not {number}"
         )
-    if given.kind == "tour":
-        picture = given.out / f"tour-{tests.name}-{number}-{given.policy.replace(':', '-')}.png"
-        return [draw_tour(tests, make_policy(given.policy), number, picture)]
-    problem = hindsight(tests.family.source.draw(number)).problem
-    picture = given.out / f"convergence-{tests.name}-{number}.png"
-    return [plot_convergence(f"{tests.name}, {number}", problem, given.time_limit, picture)]
+    if options.kind == "tour":
+        policy = options.policy.replace(":", "-")
+        picture = options.out / f"tour-{test_set.name}-{number}-{policy}.png"
+        return [draw_tour(test_set, make_policy(options.policy), number, picture)]
+    problem = hindsight_problem(test_set.family.source.draw(number)).problem
+    picture = options.out / f"convergence-{test_set.name}-{number}.png"
+    return [plot_convergence(f"{test_set.name}, {number}", problem, options.time_limit, picture)]
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What a policy is, and which there are."""
+"""Protocol of policies, and the policies that can be chosen by name."""
 
 from collections.abc import Callable
 from importlib import import_module
@@ -10,24 +10,27 @@ from argo_env.envs.observations import Observation
 
 
 class Policy(Protocol):
-    """Chooses where to go next, one episode of `argo/Route-v0` after the other.
+    """Protocol of a policy, which chooses the next node in episodes of `argo/Route-v0`.
 
-    It sees what the environment shows with `full=True`, and nothing else: `matrix` has the travel
-    times as they are known now, `prize` what is still to be had, `before` the order that is asked
-    for, `place` the row where the robot is, `mask` what is legal. Node 0 is the dock.
+    Its only input is the observation of the environment with `full=True`: among others `matrix`,
+    the travel times as they are known now; `prize`, the prizes that can still be won; `before`, the
+    precedence constraints; `place`, the row of the robot's node; and `mask`, the legal nodes. Node
+    0 is the dock.
     """
 
     name: str
 
     def begin(self, observation: Observation, budget: float, seed: int) -> None:
-        """Before the first decision: the first observation, and the budget (s) that all times in
-        observations are shares of. Whatever is drawn at random follows from the seed.
+        """Prepare for an episode, before its first decision; by default do nothing.
 
-        Does nothing unless a policy has something to prepare.
+        Args:
+            observation: first observation of the episode.
+            budget: time budget in s; times in observations are shares of it.
+            seed: seed of all random decisions.
         """
 
     def act(self, observation: Observation) -> int:
-        """The node to go to; an illegal one counts as the dock, which ends the episode."""
+        """Return the next node; an illegal one counts as the dock, which ends the episode."""
         ...
 
 
@@ -42,12 +45,12 @@ POLICIES: dict[str, str | Callable[[], Policy]] = {
     "learned": "baselines.learned.agent:LearnedPolicy.load",
     "learned-sampled": "baselines.learned.agent:SampledPolicy.load",
 }
-"""By name, what makes the policy: a class, a function, or `module:name` of one. A new policy is one
-line here, or `POLICIES["mine"] = Mine` in a program of one's own."""
+"""Factory of each policy, by name: a class, a function, or `module:name` of one. A new policy needs
+one line here, or `POLICIES["mine"] = Mine` in the program that uses it."""
 
 
 def make_policy(name: str) -> Policy:
-    """The policy of that name, or the one that `module:name` makes.
+    """Return a new policy, by its name or by `module:name` of its factory.
 
     Raises ArgoError if there is none.
     """
@@ -57,11 +60,11 @@ def make_policy(name: str) -> Policy:
     module, _, attribute = maker.partition(":")
     if not attribute:
         raise NotFound(
-            f"no policy `{name}`; there are: {', '.join(POLICIES)}; one of your own is "
-            "`module:class`"
+            f"no policy `{name}`; choose one of: {', '.join(POLICIES)}; name a policy of your own "
+            "as `module:class`"
         )
     try:
-        made = attrgetter(attribute)(import_module(module))
+        factory = attrgetter(attribute)(import_module(module))
     except (ImportError, AttributeError) as error:
-        raise NotFound(f"policy `{name}`: there is no `{maker}` ({error})") from None
-    return cast("Policy", made())
+        raise NotFound(f"policy `{name}`: `{maker}` can't be loaded ({error})") from None
+    return cast("Policy", factory())

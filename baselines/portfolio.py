@@ -1,41 +1,41 @@
-"""The optimiser as a policy. Its limit is one of work: so it finds the same routes each time, on a
-slow or a busy machine as well."""
+"""Policies that follow routes of the optimiser.
+
+Its limit is one of work, not of time, so it finds the same routes on a slow or busy machine.
+"""
 
 from argo_compiler.route import suggest_route
 from argo_env.envs.observations import Observation
 from baselines.planned import PlannedPolicy
-from baselines.problem import problem_of
+from baselines.problem import problem_from_observation
 
 WORK_LIMIT = 5.0
-"""for a plan, in nominal s of one core"""
+"""work limit of one plan, in nominal s of one core"""
 
 
 class Portfolio(PlannedPolicy):
-    """Drives the best route that is found at the beginning, whatever happens on the way. What has
-    become illegal is left out."""
+    """Policy that drives the best route found at the start, without nodes that become illegal."""
 
     name = "portfolio"
-    again = False
+    replans = False
     work_limit = WORK_LIMIT
 
-    def plan(self, observation: Observation) -> list[int]:
-        """See Planned."""
-        found = problem_of(observation, self._budget)
+    def plan_route(self, observation: Observation) -> list[int]:
+        open_problem = problem_from_observation(observation, self._budget)
         suggestion = suggest_route(
-            found.problem, time_limit=None, seed=self._seed, work_limit=self.work_limit
+            open_problem.problem, time_limit=None, seed=self._seed, work_limit=self.work_limit
         )
-        return found.order_of(suggestion.order)
+        return open_problem.to_nodes(suggestion.order)
 
 
 class QuickPortfolio(Portfolio):
-    """The same with a fifth of the work."""
+    """`Portfolio` with a fifth of the work limit."""
 
     name = "portfolio-1s"
     work_limit = WORK_LIMIT / 5
 
 
 class ResolvedPortfolio(Portfolio):
-    """Plans the rest of the route anew when something has gone otherwise than planned."""
+    """`Portfolio` that plans the rest of the route again when an observation deviates."""
 
     name = "portfolio-resolved"
-    again = True
+    replans = True

@@ -1,4 +1,4 @@
-"""What a policy sees, as a route problem: what is left to do, from where the robot is."""
+"""Route problems of observations: the checkpoints that are still open, from the robot's node."""
 
 from dataclasses import dataclass
 
@@ -9,31 +9,36 @@ from argo_compiler.route import Objective, Precedence, RouteProblem, Visit
 from argo_env.envs.observations import Observation
 from argo_env.envs.route_instance import DOCK, TICK, RouteInstance
 
-HUNDREDTH = 0.01
-"""what a prize of 1 in a problem is worth in the environment"""
+PRIZE_UNIT = 0.01
+"""prize in the environment that corresponds to a prize of 1 in a route problem"""
 
 
 @dataclass(frozen=True)
 class OpenProblem:
-    """A problem of the checkpoints that are still open."""
+    """A route problem of the checkpoints that are still open."""
 
     problem: RouteProblem
-    """times in ticks (`TICK` s); prizes in hundredths; all visits optional"""
+    """the problem: times in ticks (`TICK` s), prizes in hundredths, all visits optional"""
     nodes: tuple[int, ...]
-    """the node of each visit"""
+    """node of each visit"""
 
-    def order_of(self, visits: tuple[int, ...]) -> list[int]:
-        """Visits as nodes."""
+    def to_nodes(self, visits: tuple[int, ...]) -> list[int]:
+        """Return the nodes of visits, in the same order."""
         return [self.nodes[visit] for visit in visits]
 
 
-def problem_of(
+def problem_from_observation(
     observation: Observation, budget: float, objective: Objective = Objective.DURATION
 ) -> OpenProblem:
-    """The problem that an observation (with `full=True`) shows, with the budget (s) of its route.
+    """Return the route problem of an observation with `full=True`.
 
-    Nothing is lost: times in observations are whole ticks as shares of the budget. A checkpoint
-    that has no prize any more was visited.
+    The conversion loses nothing: times in observations are whole ticks as shares of the budget. A
+    checkpoint without a prize counts as visited.
+
+    Args:
+        observation: the observation.
+        budget: time budget of the whole route in s.
+        objective: objective of the route problem.
     """
     ticks = round(budget / TICK)
     travel = _ticks(observation["matrix"], ticks)
@@ -43,10 +48,13 @@ def problem_of(
     return _problem(travel[rows], home[rows[:-1]], rows, observation, left, objective)
 
 
-def hindsight(instance: RouteInstance) -> OpenProblem:
-    """The problem of somebody who knows beforehand which readings fail, and stays until one is
-    had; stairs are never blocked. No route on the instance wins more than its optimum, as a later
-    visit takes as long as staying does, and blocked stairs only make ways longer."""
+def hindsight_problem(instance: RouteInstance) -> OpenProblem:
+    """Return the route problem of a robot that knows in advance which readings fail.
+
+    It stays at a checkpoint until a reading succeeds, and no stairs are blocked. No route on the
+    instance wins more than the optimum of this problem: a repeated visit takes at least as long as
+    staying does, and blocked stairs only make paths longer.
+    """
     ticks = round(instance.budget / TICK)
     travel = np.minimum(instance.arrival.astype(np.float64) / TICK, ticks + 1)
     if instance.hidden is not None:
@@ -65,13 +73,21 @@ def _problem(
     left: int,
     objective: Objective,
 ) -> OpenProblem:
-    """`travel` with a row for each of `rows`, the last one where the robot is, and a column for
-    each node."""
+    """Return the route problem of the nodes `rows`, of which the last is the robot's position.
+
+    Args:
+        travel: times in ticks: a row for each of `rows`, a column for each node.
+        home: times in ticks to the dock, from each of `rows` but the last.
+        rows: checkpoints that are open, then the row of the robot's position.
+        observation: parts `prize` and `before` of an observation.
+        left: ticks that are left.
+        objective: objective of the route problem.
+    """
     ends = travel[:, [*rows[:-1], DOCK]].copy()
     ends[:-1, -1] = home
     np.fill_diagonal(ends[:, :-1], 0)
     nodes = rows[:-1]
-    prizes = np.rint(observation["prize"][nodes] / HUNDREDTH).astype(int).tolist()
+    prizes = np.rint(observation["prize"][nodes] / PRIZE_UNIT).astype(int).tolist()
     visits = tuple(
         Visit(f"checkpoint {node}", mandatory=False, prize=prize)
         for node, prize in zip(nodes, prizes, strict=True)
@@ -88,4 +104,5 @@ def _problem(
 
 
 def _ticks(shares: NDArray[np.float32], ticks: int) -> NDArray[np.int64]:
+    """Return times in ticks from shares of a budget of `ticks`."""
     return np.rint(shares.astype(np.float64) * ticks).astype(np.int64)

@@ -1,14 +1,14 @@
-"""The best routes of the test sets that are known, which policies are measured by.
+"""Best known routes of the test sets, the references with which policies are compared.
 
-    python -m baselines.references [TEST_SET ...]            # look for better ones, keep them
+    python -m baselines.references [TEST_SET ...]            # search for better routes, store them
     python -m baselines.references random-40-v1 --results out/arena/results.json
 
-What is known never gets worse: of each instance the best is kept of the route that was known, those
-of several searches of the optimiser, of insertion, of policies (`--policy`), and of policies that
-were compared before (`--results`). What is proven already is not searched again.
+References never get worse. For each instance the best of these routes is stored: the known one, the
+routes of several searches of the optimiser, of insertion, of policies (`--policy`), and of earlier
+comparisons (`--results`). Instances with a proof are not searched again.
 
-For instances with noise they are those of somebody who knows beforehand which readings fail, and
-for whom no stairs are ever blocked: no policy can win more, and most can't win as much.
+On instances with noise the references assume that it is known in advance which readings fail, and
+that no stairs are ever blocked: no policy can win more, and most can't win as much.
 """
 
 import argparse
@@ -28,27 +28,27 @@ from argo_compiler.route import RouteProblem, RouteSuggestion, Tour, suggest_rou
 from argo_compiler.route.evaluation import evaluate
 from argo_env.envs.route_instance import DOCK
 from baselines.episodes import play
-from baselines.families import TEST_SETS, InstanceSet, find_set
+from baselines.families import TEST_SETS, InstanceSet, find_test_set
 from baselines.heuristics.insertion import insert_and_improve
 from baselines.policy import make_policy
-from baselines.problem import HUNDREDTH, hindsight
+from baselines.problem import PRIZE_UNIT, hindsight_problem
 
 _FOLDER = "data"
-_FREE = 0.25  # of the time, for the problem without the order that is asked for
+_RELAXED_SHARE = 0.25  # share of the time for the relaxation without precedence constraints
 Route = tuple[int, ...]
 """nodes in their order, without the dock"""
 
 
 @dataclass(frozen=True)
 class BestKnown:
-    """What is known of the best route on one instance."""
+    """Best known route of one instance, with a bound."""
 
     prize: float
-    """of the best route that was found"""
+    """prize of the best known route"""
     bound: float
-    """no route wins more"""
+    """upper bound on the prize of any route"""
     time: float = 0.0
-    """s until that route is docked"""
+    """time in s when the robot is docked on the best known route"""
     route: Route = ()
 
     @property
@@ -58,204 +58,250 @@ class BestKnown:
 
 @dataclass(frozen=True)
 class Effort:
-    """How long better routes are looked for on one instance, and where."""
+    """Effort that the search for better routes spends on one instance."""
 
     seconds: float
-    """of processor time that the optimiser has in all its searches"""
+    """processor time in s that all searches of the optimiser share"""
     searches: int = 2
-    """of the optimiser, with a seed each"""
+    """number of searches of the optimiser, each with its own seed"""
     policies: tuple[str, ...] = ()
-    """whose routes are tried as well"""
+    """names of policies whose routes are tried as well"""
 
 
 @lru_cache(maxsize=16)
-def references(name: str) -> tuple[BestKnown, ...]:
-    """Those of the test set of that name, in the order of its numbers.
+def load_references(name: str) -> tuple[BestKnown, ...]:
+    """Return the references of a test set, in the order of its instances.
 
-    Raises ArgoError if there are none, or they are not those of the test set as it is now.
+    Raises ArgoError if there are none, or they belong to another version of the test set.
     """
-    tests = find_set(name)
-    found = resources.files("baselines").joinpath(_FOLDER, f"{name}.json")
-    if not found.is_file():
+    test_set = find_test_set(name)
+    path = resources.files("baselines").joinpath(_FOLDER, f"{name}.json")
+    if not path.is_file():
         raise NotFound(
             f"test set {name} has no references: `python -m baselines.references {name}` finds them"
         )
-    checksum, known = _parsed(found.read_text(encoding="utf-8"))
-    if checksum != tests.checksum():
+    checksum, known = _parse(path.read_text(encoding="utf-8"))
+    if checksum != test_set.checksum():
         raise Conflict(
-            f"test set {name} is no longer what its references were found for (checksum "
-            f"{tests.checksum()}, not {checksum}): give the changed set another version"
+            f"test set {name} has changed since its references were found (checksum "
+            f"{test_set.checksum()}, not {checksum}): give the changed set another version"
         )
     return known
 
 
-def improved(
-    tests: InstanceSet,
+def improve_reference(
+    test_set: InstanceSet,
     number: int,
     known: BestKnown | None,
     effort: Effort,
     routes: Iterable[Route] = (),
 ) -> BestKnown:
-    """What is known of one instance after another search, in which these routes are tried too; it
-    is not searched where the best route is proven.
+    """Return the reference of an instance after another search.
 
-    Raises ArgoError if a route wins more than is said to be possible.
+    An instance whose best known route is proven optimal is not searched.
+
+    Args:
+        test_set: test set of the instance.
+        number: number of the instance.
+        known: present reference; None if there is none.
+        effort: effort of the search.
+        routes: further routes that are tried.
+
+    Raises:
+        ArgoError: if a route wins more than the bound, which is a defect of the optimiser.
     """
-    problem = hindsight(tests.family.source.draw(number)).problem
-    everything = round(HUNDREDTH * sum(visit.prize for visit in problem.visits), 2)
-    best = _best(problem, known or BestKnown(0.0, everything), routes)
+    problem = hindsight_problem(test_set.family.source.draw(number)).problem
+    everything = round(PRIZE_UNIT * sum(visit.prize for visit in problem.visits), 2)
+    best = _better_reference(problem, known or BestKnown(0.0, everything), routes)
     if not (best.proven and best.route):
-        best = _best(problem, best, _simple_routes(tests, number, problem, effort))
+        best = _better_reference(problem, best, _policy_routes(test_set, number, problem, effort))
         for seed in range(effort.searches):
             if best.proven and best.route:
                 break
-            for bound, order in _searched(problem, effort.seconds / effort.searches, seed):
-                best = _best(problem, best, [tuple(visit + 1 for visit in order)])
-                best = replace(best, bound=min(best.bound, round(HUNDREDTH * bound, 2)))
+            for bound, order in _search(problem, effort.seconds / effort.searches, seed):
+                best = _better_reference(problem, best, [tuple(visit + 1 for visit in order)])
+                best = replace(best, bound=min(best.bound, round(PRIZE_UNIT * bound, 2)))
     if best.prize > best.bound:
         raise Invalid(
-            f"test set {tests.name}, instance {number}: a route wins {best.prize}, but none is "
-            f"said to win more than {best.bound}: the optimiser is wrong"
+            f"test set {test_set.name}, instance {number}: a route wins {best.prize}, more than "
+            f"the upper bound {best.bound}: the optimiser is wrong"
         )
     return best
 
 
-def improve(
-    tests: InstanceSet,
+def update_references(
+    test_set: InstanceSet,
     file: Path,
     effort: Effort,
     routes: Mapping[int, Sequence[Route]] | None = None,
     processes: int = 1,
 ) -> None:
-    """Writes what is known of a test set after another search; `routes` are tried by the number of
-    their instance. What was known of another one by the same name counts for nothing."""
-    checksum = tests.checksum()
-    before: Sequence[BestKnown | None] = [None] * len(tests.numbers)
+    """Search for better routes of a test set and write its references to a file.
+
+    References in the file that belong to another test set with the same name are discarded.
+
+    Args:
+        test_set: the test set.
+        file: file of its references; it need not exist.
+        effort: effort of the search for each instance.
+        routes: further routes that are tried, by the number of their instance.
+        processes: number of instances that are searched at a time.
+    """
+    checksum = test_set.checksum()
+    before: Sequence[BestKnown | None] = [None] * len(test_set.numbers)
     if file.is_file():
-        had, known = _parsed(file.read_text(encoding="utf-8"))
-        before = known if had == checksum else before
-    found = []
+        old_checksum, known = _parse(file.read_text(encoding="utf-8"))
+        before = known if old_checksum == checksum else before
+    after = []
     with ProcessPoolExecutor(processes) as pool:
         tasks = [
-            pool.submit(improved, tests, number, one, effort, (routes or {}).get(number, ()))
-            for number, one in zip(tests.numbers, before, strict=True)
+            pool.submit(
+                improve_reference, test_set, number, old, effort, (routes or {}).get(number, ())
+            )
+            for number, old in zip(test_set.numbers, before, strict=True)
         ]
-        for number, one, task in zip(tests.numbers, before, tasks, strict=True):
-            found.append(task.result())
-            print(f"{tests.name} {number}: {_change(one, found[-1])}", file=sys.stderr, flush=True)
-    lines = ",\n".join(json.dumps(asdict(one)) for one in found)
+        for number, old, task in zip(test_set.numbers, before, tasks, strict=True):
+            after.append(task.result())
+            print(
+                f"{test_set.name} {number}: {_describe_change(old, after[-1])}",
+                file=sys.stderr,
+                flush=True,
+            )
+    lines = ",\n".join(json.dumps(asdict(reference)) for reference in after)
     text = f'{{"checksum": {json.dumps(checksum)}, "instances": [\n{lines}\n]}}\n'
     write_atomically(file, text)
 
 
-def routes_of(results: Sequence[Path], name: str) -> dict[int, list[Route]]:
-    """The routes on a test set in files `results.json` of `python -m baselines.evaluate`, by the
-    number of the instance. Raises ArgoError if there is no such file."""
-    found: dict[int, list[Route]] = {}
+def read_routes(results: Sequence[Path], name: str) -> dict[int, list[Route]]:
+    """Return the routes on a test set in result files, by the number of the instance.
+
+    Args:
+        results: files `results.json` of `python -m baselines.evaluate`.
+        name: name of the test set.
+
+    Raises:
+        ArgoError: if a file can't be read or is no such file.
+    """
+    routes: dict[int, list[Route]] = {}
     for path in results:
         try:
             for comparison in json.loads(path.read_text(encoding="utf-8")):
                 if comparison["test_set"] == name:
                     for outcome in (o for one in comparison["outcomes"].values() for o in one):
-                        found.setdefault(outcome["instance"], []).append(_once(outcome["route"]))
+                        routes.setdefault(outcome["instance"], []).append(
+                            _last_visits(outcome["route"])
+                        )
         except OSError as error:
             raise NotFound(f"{path} can't be read: {error.strerror}") from None
         except (ValueError, KeyError, TypeError):
             raise Invalid(f"{path} is no results.json of `python -m baselines.evaluate`") from None
-    return found
+    return routes
 
 
-def _best(problem: RouteProblem, known: BestKnown, routes: Iterable[Route]) -> BestKnown:
-    """What is known after these routes, of which those that are not feasible count for nothing."""
+def _better_reference(
+    problem: RouteProblem, known: BestKnown, routes: Iterable[Route]
+) -> BestKnown:
+    """Return the reference after trying these routes; infeasible ones are ignored.
+
+    Of two routes with the same prize, the one that is docked earlier is better.
+    """
     for route in routes:
         value = evaluate(problem, Tour(tuple(node - 1 for node in route)))
-        prize, ends = round(HUNDREDTH * value.prize, 2), value.duration * problem.unit
-        worth, least = (prize, -ends), (known.prize, -known.time if known.route else -float("inf"))
-        if value.feasible and worth > least:
+        prize, ends = round(PRIZE_UNIT * value.prize, 2), value.duration * problem.unit
+        old_key = (known.prize, -known.time if known.route else -float("inf"))
+        if value.feasible and (prize, -ends) > old_key:
             known = replace(known, prize=prize, time=ends, route=route)
     return known
 
 
-def _searched(
+def _search(
     problem: RouteProblem, seconds: float, seed: int
 ) -> Iterator[tuple[int, tuple[int, ...]]]:
-    """Bounds of the prize, in hundredths, and orders that the optimiser finds. Some of its solvers
-    know no order that is asked for: they search the problem without it, and what a route of theirs
-    must not visit where it does is visited elsewhere, or not at all."""
-    share = 1.0 - _FREE if problem.precedences else 1.0
-    found = _suggested(problem, share * seconds, seed)
-    yield found.prize_bound, found.order
-    if problem.precedences and not found.proven:
-        free = _suggested(replace(problem, precedences=()), _FREE * seconds, seed)
-        yield free.prize_bound, insert_and_improve(problem, free.order)
+    """Yield bounds on the prize, in hundredths, and orders that the optimiser finds.
+
+    Some of its solvers do not support precedence constraints. So without a proof, the relaxation
+    without these constraints is solved too. Its bound is valid for the full problem; from its
+    route, insertion drops the visits that violate a constraint, and inserts what fits.
+    """
+    share = 1.0 - _RELAXED_SHARE if problem.precedences else 1.0
+    suggestion = _suggest(problem, share * seconds, seed)
+    yield suggestion.prize_bound, suggestion.order
+    if problem.precedences and not suggestion.proven:
+        relaxed = _suggest(replace(problem, precedences=()), _RELAXED_SHARE * seconds, seed)
+        yield relaxed.prize_bound, insert_and_improve(problem, relaxed.order)
 
 
-def _suggested(problem: RouteProblem, seconds: float, seed: int) -> RouteSuggestion:
+def _suggest(problem: RouteProblem, seconds: float, seed: int) -> RouteSuggestion:
     return suggest_route(problem, seconds, seed, explain=False, clock=time.process_time)
 
 
-def _simple_routes(
-    tests: InstanceSet, number: int, problem: RouteProblem, effort: Effort
+def _policy_routes(
+    test_set: InstanceSet, number: int, problem: RouteProblem, effort: Effort
 ) -> Iterator[Route]:
+    """Yield the route of insertion and those of the policies of the effort."""
     yield tuple(visit + 1 for visit in insert_and_improve(problem))
-    alone = InstanceSet(tests.name, tests.family, range(number, number + 1))
+    instance = InstanceSet(test_set.name, test_set.family, range(number, number + 1))
     for name in effort.policies:
-        for outcome in play(make_policy(name), alone, 1):
-            yield _once(outcome.route)
+        for outcome in play(make_policy(name), instance, 1):
+            yield _last_visits(outcome.route)
 
 
-def _once(route: Sequence[int]) -> Route:
-    """The nodes of a policy's route, each where it is visited for the last time: only there its
-    reading succeeded."""
+def _last_visits(route: Sequence[int]) -> Route:
+    """Return the nodes of a policy's route in the order of their last visits, without the dock.
+
+    Only the last visit of a node gave a reading.
+    """
     return tuple(dict.fromkeys(node for node in reversed(route) if node != DOCK))[::-1]
 
 
-def _parsed(text: str) -> tuple[str, tuple[BestKnown, ...]]:
+def _parse(text: str) -> tuple[str, tuple[BestKnown, ...]]:
+    """Return the checksum of the test set and the references in the text of a file."""
     data = json.loads(text)
     known = (BestKnown(**one | {"route": tuple(one["route"])}) for one in data["instances"])
     return data["checksum"], tuple(known)
 
 
-def _change(before: BestKnown | None, now: BestKnown) -> str:
-    most = "proven" if now.proven else f"at most {now.bound:.2f}"
+def _describe_change(before: BestKnown | None, now: BestKnown) -> str:
+    bound = "proven" if now.proven else f"at most {now.bound:.2f}"
     if before is None or before.prize == now.prize:
-        return f"{now.prize:.2f}, {most}"
-    return f"{before.prize:.2f} → {now.prize:.2f}, {most}"
+        return f"{now.prize:.2f}, {bound}"
+    return f"{before.prize:.2f} → {now.prize:.2f}, {bound}"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """The exit status: 2 if something that was asked for is not there."""
+    """Run the command; return its exit status, 2 after an error that is reported."""
     parser = argparse.ArgumentParser(
         prog="python -m baselines.references",
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("names", nargs="*", metavar="TEST_SET", help="default: all")
+    parser.add_argument("names", nargs="*", metavar="TEST_SET", help="test sets; default all")
     parser.add_argument("--seconds", type=float, default=8.0, metavar="S",
-                        help="of processor time for an instance; default 8")  # fmt: skip
+                        help="processor time for each instance; default 8")  # fmt: skip
     parser.add_argument("--searches", type=int, default=2, metavar="N",
-                        help="that share it; 0: the optimiser is not asked; default 2")  # fmt: skip
+                        help="number of searches of the optimiser that share this time; 0: no "
+                        "search; default 2")  # fmt: skip
     parser.add_argument("--policy", nargs="*", default=[], metavar="NAME",
-                        help="whose routes are tried as well")  # fmt: skip
+                        help="policies whose routes are tried as well")  # fmt: skip
     parser.add_argument("--results", nargs="*", type=Path, default=[], metavar="RESULTS.json",
-                        help="whose routes are tried as well")  # fmt: skip
+                        help="results whose routes are tried as well")  # fmt: skip
     parser.add_argument("--processes", type=int, default=1, metavar="N",
-                        help="instances that are searched at a time; default 1")  # fmt: skip
-    given = parser.parse_args(arguments)
+                        help="number of instances searched at a time; default 1")  # fmt: skip
+    options = parser.parse_args(arguments)
     folder = Path(__file__).parent / _FOLDER
-    effort = Effort(given.seconds, given.searches, tuple(given.policy))
+    effort = Effort(options.seconds, options.searches, tuple(options.policy))
     try:
-        for name, number, least in (
-            ("searches", given.searches, 0),
-            ("processes", given.processes, 1),
+        for name, number, minimum in (
+            ("searches", options.searches, 0),
+            ("processes", options.processes, 1),
         ):
-            if number < least:
-                raise Invalid(f"--{name} is {number}, and has to be at least {least}")
-        if not given.seconds > 0.0:
-            raise Invalid(f"--seconds is {given.seconds:g}, and has to be positive")
-        for name in given.names or TEST_SETS:
-            tests, routes = find_set(name), routes_of(given.results, name)
-            improve(tests, folder / f"{name}.json", effort, routes, given.processes)
+            if number < minimum:
+                raise Invalid(f"--{name} is {number}: give a number of at least {minimum}")
+        if not options.seconds > 0.0:
+            raise Invalid(f"--seconds is {options.seconds:g}: give a positive number")
+        for name in options.names or TEST_SETS:
+            test_set, routes = find_test_set(name), read_routes(options.results, name)
+            update_references(test_set, folder / f"{name}.json", effort, routes, options.processes)
     except ArgoError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

@@ -1,30 +1,33 @@
-"""What takes long, in lines: training, and policies on many instances."""
+"""Progress of long computations, printed in lines: training, and policies on many instances."""
 
 import time
 from collections.abc import Callable
 
-EVERY = 10.0
-"""s between lines"""
+LINE_INTERVAL = 10.0
+"""least time in s between two lines"""
 
 
 class StageLines:
-    """Hears of stages. Says now and then what goes on, how far it is, and how long it takes yet."""
+    """Listener to stages, which writes the present stage, its progress and its remaining time.
+
+    It holds the present stage, and the times of its beginning and of the last line.
+    """
 
     def __init__(
         self, write: Callable[[str], None], clock: Callable[[], float] = time.monotonic
     ) -> None:
-        """The clock gives s."""
+        """Take a function that writes a line, and a clock in s."""
         self._write = write
         self._clock = clock
         self._begun = self._written = clock()
         self._stage: str | None = None
 
     def __call__(self, stage: str | None, share: float | None, detail: str) -> None:
-        """Hears of a stage, or of the end of all."""
+        """Write a line about the stage if the last line was long enough ago; see StageListener."""
         now = self._clock()
         if stage != self._stage:
             self._stage, self._begun = stage, now
-        if stage is None or now - self._written < EVERY:
+        if stage is None or now - self._written < LINE_INTERVAL:
             return
         self._written = now
         parts = [] if share is None else [f"{share:.0%}"]

@@ -1,1 +1,1 @@
-"""Simple rules to visit checkpoints by: what everything else has to beat."""
+"""Heuristics that choose routes: the standard of comparison for all other policies."""

@@ -1,4 +1,4 @@
-"""Rules that choose the next checkpoint by what is seen of each of them now."""
+"""Greedy rules, which choose the next checkpoint by the current observation of each one."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from baselines.policy import Policy
 
 
 class GivenOrder(Policy):
-    """Goes to the legal checkpoint of the lowest number."""
+    """Policy that chooses the legal checkpoint with the lowest number."""
 
     name = "given-order"
 
@@ -18,7 +18,7 @@ class GivenOrder(Policy):
 
 
 class NearestNeighbour(Policy):
-    """Goes to the legal checkpoint whose visit ends first."""
+    """Policy that chooses the legal checkpoint whose visit ends first."""
 
     name = "nearest-neighbour"
 
@@ -29,11 +29,14 @@ class NearestNeighbour(Policy):
 
 
 class PrizeOverTime(Policy):
-    """Goes to the legal checkpoint with the most prize for each second until its visit ends."""
+    """Policy that chooses the legal checkpoint with the highest prize per time.
+
+    The time is that until its visit ends.
+    """
 
     name = "prize-over-time"
 
     def act(self, observation: Observation) -> int:
         rate = observation["prize"] / np.maximum(observation["travel"], np.float32(1e-9))
-        # The dock has no prize, and is taken where there is nothing else.
+        # The dock has no prize, so it is chosen only if no checkpoint is legal.
         return int(np.argmax(np.where(observation["mask"], rate, 0.0)))

@@ -1,4 +1,4 @@
-"""The commands of the arena, end to end, and their statistics."""
+"""The commands that compare and plot policies, end to end, and their statistics."""
 
 import csv
 import json
@@ -10,7 +10,7 @@ from PIL import Image
 
 from argo_env.envs.route_sources import TEST
 from baselines import evaluate, plots
-from baselines.comparison import compare
+from baselines.comparison import compare_policies
 from baselines.episodes import EpisodeOutcome
 from baselines.families import TEST_SETS
 from baselines.intervals import Bootstrap
@@ -21,7 +21,7 @@ FAST = ["given-order", "insertion"]
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory):
-    """The folder that a comparison of two policies on two instances wrote."""
+    """Compare two policies on two instances of two test sets, and return the folder."""
     folder = tmp_path_factory.mktemp("arena") / "new"
     arguments = ["--instances", "2", "--out", str(folder), "--policy", *FAST]
     assert evaluate.main([*arguments, "--family", "random-20-v1", "noisy-20-v1"]) == 0
@@ -31,10 +31,10 @@ def results(tmp_path_factory):
 def test_the_table_is_printed(capsys):
     assert evaluate.main(["--instances", "2", "--policy", *FAST]) == 0
     printed = capsys.readouterr().out
-    words = "random-20-v1: 2 instances, the best known route proven to be the best for 2"
-    for said in (words, "gap vs best", "s/instance", *FAST):
-        assert said in printed
-    assert "above the best known" not in printed  # nothing is open
+    title = "random-20-v1: 2 instances, the best known route is proven optimal for 2"
+    for text in (title, "gap vs best", "s/instance", *FAST):
+        assert text in printed
+    assert "above the best known" not in printed  # all are proven
     assert printed.index("insertion") < printed.index("given-order")  # the best comes first
 
 
@@ -80,23 +80,23 @@ def test_equal_arguments_give_equal_results(results, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--family", "random-21"], "no test set `random-21`; there are: random-20-v1"),
+        (["--family", "random-21"], "no test set `random-21`; choose one of: random-20-v1"),
         (["--policy", "best"], "no policy `best`"),
-        (["--instances", "101"], "--instances is 101, and has to be 1 to 100"),
+        (["--instances", "101"], "--instances is 101: give a number from 1 to 100"),
         (["--instances", "0"], "--instances is 0"),
         (["--seed", "-1"], "--seed is -1"),
     ],
 )
-def test_what_is_not_there_is_told_in_one_line(arguments, words, capsys):
+def test_a_wrong_argument_is_reported_in_one_line(arguments, words, capsys):
     assert evaluate.main([*arguments, "--policy", *FAST] if "--policy" not in arguments
                          else arguments) == 2  # fmt: skip
-    said = capsys.readouterr().err
-    assert words in said
-    assert said.count("\n") == 1
+    error = capsys.readouterr().err
+    assert words in error
+    assert error.count("\n") == 1
 
 
-def compared(prizes_and_seconds, best):
-    """Policies by name, with the prize on each instance and the seconds that each takes."""
+def comparison_of(prizes_and_seconds, best):
+    """Compare policies, given by name with the prize on each instance and the processor time."""
     outcomes = {
         name: tuple(
             EpisodeOutcome(number, prize, 100.0, True, 3, seconds, (1, 0))
@@ -104,13 +104,13 @@ def compared(prizes_and_seconds, best):
         )
         for name, (prizes, seconds) in prizes_and_seconds.items()
     }
-    return compare(TEST_SETS["random-20-v1"], outcomes, best, 0)
+    return compare_policies(TEST_SETS["random-20-v1"], outcomes, best, 0)
 
 
 KNOWN = (BestKnown(4.0, 5.0), BestKnown(6.0, 6.0))
 
 
-def test_the_front_has_who_is_not_beaten_in_less_time():
+def test_the_pareto_front_has_the_policies_that_no_faster_one_equals():
     policies = {
         "slow": ([4.0, 6.0], 2.0),
         "slower": ([4.0, 6.0], 3.0),
@@ -119,36 +119,36 @@ def test_the_front_has_who_is_not_beaten_in_less_time():
         "bad": ([1.0, 1.0], 0.1),
         "quick": ([3.0, 5.0], 0.1),
     }
-    comparison = compared(policies, KNOWN)
-    assert [row.policy for row in comparison.front] == ["rule", "quick", "slow"]
-    stars = {line[1]: line[0] for line in evaluate.lines(comparison)}
+    comparison = comparison_of(policies, KNOWN)
+    assert [row.policy for row in comparison.pareto_front] == ["rule", "quick", "slow"]
+    stars = {row[1]: row[0] for row in evaluate.table_rows(comparison)}
     assert {name for name, star in stars.items() if star == "*"} == {"rule", "quick", "slow"}
 
 
-def test_what_is_not_proven_is_said():
-    comparison = compared({"mine": ([4.0, 6.0], 1.0)}, KNOWN)
+def test_the_title_states_missing_proofs():
+    comparison = comparison_of({"mine": ([4.0, 6.0], 1.0)}, KNOWN)
     assert (comparison.proven, comparison.open) == (1, pytest.approx(0.1))
-    said = evaluate.title(comparison)
-    assert "proven to be the best for 1; no routes win more than 10.0 % above" in said
-    assert not evaluate.warnings(comparison)
+    title = evaluate.comparison_title(comparison)
+    assert "is proven optimal for 1; no routes win more than 10.0 % above" in title
+    assert not evaluate.reference_warnings(comparison)
 
 
-def test_a_policy_that_beats_the_best_known_is_told(monkeypatch, capsys):
-    comparison = compared({"mine": ([4.5, 6.0], 1.0), "other": ([4.0, 5.0], 1.0)}, KNOWN)
-    (warning,) = evaluate.warnings(comparison)
+def test_a_policy_that_beats_the_best_known_is_reported(monkeypatch, capsys):
+    comparison = comparison_of({"mine": ([4.5, 6.0], 1.0), "other": ([4.0, 5.0], 1.0)}, KNOWN)
+    (warning,) = evaluate.reference_warnings(comparison)
     assert "mine BEATS the best known routes of random-20-v1 on 1 of 2 instances" in warning
     assert "first 1000000: 4.50, known 4.00" in warning
-    assert "mine BEATS" in evaluate.markdown(comparison)
-    # Insertion is better than a route of 1.
+    assert "mine BEATS" in evaluate.to_markdown(comparison)
+    # Insertion wins more than a prize of 1.
     stale = tuple(BestKnown(1.0, 99.0) for _ in range(100))
-    monkeypatch.setattr(evaluate, "references", lambda _: stale)
+    monkeypatch.setattr(evaluate, "load_references", lambda _: stale)
     assert evaluate.main(["--instances", "2", "--policy", "insertion"]) == 0
     assert "WARNING: insertion BEATS" in capsys.readouterr().err
 
 
-def test_results_are_read_as_they_were(tmp_path):
-    comparison = compared({"mine": ([4.0, 6.0], 1.0)}, KNOWN)
-    evaluate.write([comparison], tmp_path)
+def test_results_are_read_as_they_were_written(tmp_path):
+    comparison = comparison_of({"mine": ([4.0, 6.0], 1.0)}, KNOWN)
+    evaluate.write_results([comparison], tmp_path)
     assert plots.read_comparisons(tmp_path / "results.json") == [comparison]
 
 
@@ -156,7 +156,7 @@ def test_intervals_are_those_of_the_mean():
     values = np.random.default_rng(0).normal(5.0, 2.0, 400)
     interval = Bootstrap(400).mean(values)
     assert interval.value == pytest.approx(values.mean())
-    # As wide as the normal distribution says.
+    # The width is that of the normal approximation.
     half = 1.96 * values.std() / math.sqrt(400)
     assert interval.high - interval.value == pytest.approx(half, rel=0.1)
     assert interval.value - interval.low == pytest.approx(half, rel=0.1)
@@ -165,14 +165,14 @@ def test_intervals_are_those_of_the_mean():
 def test_intervals_of_differences_are_paired():
     values = np.random.default_rng(0).normal(5.0, 2.0, 100)
     bootstrap = Bootstrap(100)
-    apart = bootstrap.mean(values + 0.5).value - bootstrap.mean(values).value
+    unpaired = bootstrap.mean(values + 0.5).value - bootstrap.mean(values).value
     difference = bootstrap.mean((values + 0.5) - values)
-    assert difference.low == pytest.approx(difference.high) == pytest.approx(apart)
+    assert difference.low == pytest.approx(difference.high) == pytest.approx(unpaired)
     assert bootstrap.ratio(0.1 * values, values).low == pytest.approx(0.1)
     assert bootstrap.ratio(np.zeros(100), np.zeros(100)).value == 0.0
 
 
-def picture(path):
+def read_picture(path):
     with Image.open(path) as image:
         return np.asarray(image.convert("RGB"))
 
@@ -186,10 +186,10 @@ def test_plots_are_drawn(results, tmp_path, capsys):
     drawn = capsys.readouterr().out.split()
     assert len(drawn) == 6
     for path in drawn:
-        assert picture(path).std() > 5.0
+        assert read_picture(path).std() > 5.0
 
 
-def test_a_file_is_no_folder_for_results(tmp_path, capsys):
+def test_a_file_in_place_of_the_results_folder_is_an_error(tmp_path, capsys):
     (tmp_path / "file").write_text("")
     arguments = ["--policy", "given-order", "--instances", "1", "--out", str(tmp_path / "file")]
     assert evaluate.main(arguments) == 2
@@ -205,8 +205,8 @@ def test_a_file_is_no_folder_for_results(tmp_path, capsys):
         (["tour", "--policy", "best"], "no policy `best`"),
     ],
 )
-def test_what_can_not_be_drawn_is_told_in_one_line(arguments, words, capsys):
+def test_an_impossible_plot_is_reported_in_one_line(arguments, words, capsys):
     assert plots.main(arguments) == 2
-    said = capsys.readouterr().err
-    assert words in said
-    assert said.count("\n") == 1
+    error = capsys.readouterr().err
+    assert words in error
+    assert error.count("\n") == 1

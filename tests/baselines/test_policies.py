@@ -1,4 +1,4 @@
-"""Policies: all that are registered keep to the rules on all kinds of instances."""
+"""Policies: all registered ones obey the rules on all kinds of instances."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from baselines.episodes import play
 from baselines.families import TEST_SETS, InstanceFamily, InstanceSet
 from baselines.heuristics.greedy import GivenOrder
 from baselines.policy import POLICIES, Policy, make_policy
-from baselines.problem import hindsight
+from baselines.problem import hindsight_problem
 
 NUMBERS = range(1_000_000, 1_000_100)
 KINDS = {
@@ -24,56 +24,56 @@ KINDS = {
 }
 
 
-def gains(policy, kind, count):
-    """The prizes of a policy on the first instances of a kind, and the best possible ones."""
-    tests = InstanceSet(kind, KINDS[kind], NUMBERS)
+def won_and_best_prizes(policy, kind, count):
+    """Return a policy's prizes on the first instances of a kind, and the best possible ones."""
+    test_set = InstanceSet(kind, KINDS[kind], NUMBERS)
     best = [
-        suggest_route(hindsight(tests.family.source.draw(number)).problem).prize / 100
+        suggest_route(hindsight_problem(test_set.family.source.draw(number)).problem).prize / 100
         for number in NUMBERS[:count]
     ]
-    return [outcome.prize for outcome in play(policy, tests, count)], best
+    return [outcome.prize for outcome in play(policy, test_set, count)], best
 
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("name", POLICIES)
-def test_policies_keep_to_the_rules(name, kind):
+def test_policies_obey_the_rules(name, kind):
     policy = make_policy(name)
     assert policy.name == name
-    tests = InstanceSet(kind, KINDS[kind], NUMBERS)
+    test_set = InstanceSet(kind, KINDS[kind], NUMBERS)
     count = 3
-    outcomes = list(play(policy, tests, count, seed=1))
+    outcomes = list(play(policy, test_set, count, seed=1))
     for outcome in outcomes:
-        instance = tests.family.source.draw(outcome.instance)
+        instance = test_set.family.source.draw(outcome.instance)
         score = score_route(instance, outcome.route)
         assert score.illegal is None
         assert (score.prize, score.time) == (outcome.prize, outcome.time)
         assert outcome.feasible == (not score.late)
         assert outcome.feasible or kind == "noisy"
         assert outcome.decisions == len(outcome.route)
-        # No loitering: it stays out as long as there is something to win by what it knows.
+        # A policy does not dock while it knows of a prize that it can still win.
         assert score.prize > 0 or kind in {"tight", "noisy"}
 
 
 @pytest.mark.parametrize("name", POLICIES)
 def test_policies_are_never_better_than_the_best(name):
     for kind in ("plain", "noisy"):
-        prizes, best = gains(make_policy(name), kind, 3)
-        assert all(prize <= most + 1e-9 for prize, most in zip(prizes, best, strict=True))
+        prizes, best = won_and_best_prizes(make_policy(name), kind, 3)
+        assert all(prize <= bound + 1e-9 for prize, bound in zip(prizes, best, strict=True))
 
 
 def test_the_portfolio_is_the_best():
     for name in ("portfolio", "portfolio-1s", "portfolio-resolved"):
-        prizes, best = gains(make_policy(name), "ordered", 8)
+        prizes, best = won_and_best_prizes(make_policy(name), "ordered", 8)
         assert prizes == pytest.approx(best)
 
 
-def test_solving_again_helps_where_plans_break():
+def test_solving_again_helps_after_deviations():
     names = ("portfolio", "portfolio-resolved")
-    once, again = (sum(gains(make_policy(name), "noisy", 12)[0]) for name in names)
+    once, again = (sum(won_and_best_prizes(make_policy(name), "noisy", 12)[0]) for name in names)
     assert again > once
 
 
-def test_solving_again_happens_only_when_something_is_new(monkeypatch):
+def test_a_route_is_solved_again_only_after_a_deviation(monkeypatch):
     solved = []
 
     def count(problem, **limits):
@@ -85,11 +85,11 @@ def test_solving_again_happens_only_when_something_is_new(monkeypatch):
         solved.clear()
         list(play(make_policy("portfolio-resolved"), InstanceSet(kind, KINDS[kind], NUMBERS), 4))
         assert (len(solved) > 4) == again
-        # A limit of work: what is found does not depend on how busy the machine is.
+        # The limit is one of work, so the routes do not depend on how busy the machine is.
         assert all(one["time_limit"] is None and one["work_limit"] > 0.0 for one in solved)
 
 
-def test_simple_rules_choose_what_they_say():
+def test_greedy_rules_choose_as_documented():
     observation = {
         "mask": np.array([1, 0, 1, 1], np.int8),
         "travel": np.array([0.1, 0.0, 0.2, 0.3], np.float32),
@@ -104,17 +104,17 @@ def test_simple_rules_choose_what_they_say():
     assert {make_policy(name).act(nothing) for name in chosen} == {0}
 
 
-def test_insertion_is_better_than_simple_rules():
-    tests = TEST_SETS["random-20-v1"]
+def test_insertion_is_better_than_greedy_rules():
+    test_set = TEST_SETS["random-20-v1"]
     mean = {
-        name: np.mean([o.prize for o in play(make_policy(name), tests, 30)])
+        name: np.mean([o.prize for o in play(make_policy(name), test_set, 30)])
         for name in ("given-order", "nearest-neighbour", "prize-over-time", "insertion")
     }
     assert sorted(mean, key=mean.get) == list(mean)
 
 
 class Stubborn(Policy):
-    """Always goes to the same checkpoint, legal or not."""
+    """Policy that always chooses the same checkpoint, legal or not."""
 
     name = "stubborn"
 
@@ -127,7 +127,7 @@ def test_an_illegal_action_is_not_feasible():
     assert not any(outcome.feasible for outcome in outcomes)
 
 
-def test_an_action_that_is_no_node_is_told_with_the_policys_name():
+def test_an_action_that_is_no_node_is_an_error_with_the_policys_name():
     class Lost(Stubborn):
         name = "lost"
 
@@ -138,21 +138,21 @@ def test_an_action_that_is_no_node_is_told_with_the_policys_name():
         list(play(Lost(), InstanceSet("plain", KINDS["plain"], NUMBERS), 1))
 
 
-def test_a_policy_of_ones_own(monkeypatch):
+def test_a_policy_outside_argo_is_made_by_name(monkeypatch):
     monkeypatch.setitem(POLICIES, "mine", Stubborn)
     assert make_policy("mine").name == "stubborn"
-    made = make_policy("baselines.heuristics.greedy:GivenOrder")
-    assert isinstance(made, GivenOrder)
+    policy = make_policy("baselines.heuristics.greedy:GivenOrder")
+    assert isinstance(policy, GivenOrder)
 
 
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("greedy", "no policy `greedy`; there are: given-order, .*module:class"),
+        ("greedy", "no policy `greedy`; choose one of: given-order, .*module:class"),
         ("nowhere:Policy", "nowhere"),
         ("baselines.policy:Nothing", "Nothing"),
     ],
 )
-def test_a_policy_that_is_not_there_is_refused(name, words):
+def test_an_unknown_policy_is_an_error(name, words):
     with pytest.raises(ArgoError, match=words):
         make_policy(name)

@@ -1,8 +1,7 @@
-"""The travel times of the test sets' sites, kept so that test sets stay as they are.
+"""Stored travel times of the test sets' sites, so that the test sets never change.
 
-`python -m baselines.keep_times` finds those that are missing, and keeps them. A change of
-the navigator would change them; then the test sets would need new versions, and what was measured
-before could not be compared.
+Otherwise a change of the navigator would change them, and earlier results could not be compared
+with later ones. `python -m baselines.keep_times` computes and stores those that are missing.
 """
 
 import re
@@ -18,19 +17,19 @@ _FOLDER = "data"
 
 
 @lru_cache(maxsize=16)
-def kept_times(scenario: str) -> SiteTimes | None:
-    """The travel times that are kept of a site; None if there are none."""
-    found = resources.files("baselines").joinpath(_FOLDER, _file_name(scenario))
-    if not found.is_file():
+def load_site_times(scenario: str) -> SiteTimes | None:
+    """Return the stored travel times of a site; None if there are none."""
+    path = resources.files("baselines").joinpath(_FOLDER, _file_name(scenario))
+    if not path.is_file():
         return None
-    with found.open("rb") as file, np.load(file) as parts:
+    with path.open("rb") as file, np.load(file) as parts:
         return SiteTimes(
             parts["times"], parts["places"], int(parts["floors"]), float(parts["measuring_time"])
         )
 
 
-def keep_times(scenario: str) -> None:
-    """Finds a site's travel times and writes them to where they are kept, in a checkout."""
+def store_site_times(scenario: str) -> None:
+    """Compute the travel times of a site and write them into `baselines/data` of a checkout."""
     folder = Path(__file__).parent / _FOLDER
     folder.mkdir(exist_ok=True)
     site = site_times(scenario)

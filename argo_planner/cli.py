@@ -135,11 +135,11 @@ def argo(
     ] = False,
 ) -> None:
     """Turn a written inspection mission into a checked plan and drive it through a site."""
-    from argo_planner.terminal.stage_display import stages_shown  # `argo --help` needs no stages
+    from argo_planner.terminal.stage_display import show_stages  # `argo --help` needs no stages
 
     collect_again(seldom=context.invoked_subcommand in _SHORT)
     set_verbosity(verbose, quiet)
-    context.with_resource(stages_shown())
+    context.with_resource(show_stages())
 
 
 def main() -> None:
@@ -167,9 +167,9 @@ def _carry_out() -> int:
     except BaseException as error:
         ignore_signals()  # the first one may have come before they were ignored
         reported = isinstance(error, SystemExit) and error.code not in {None, 0}
-        if raised.came is not None and not reported:  # a library may have raised another error
+        if raised.received is not None and not reported:  # a library may have raised another error
             print("argo: interrupted", file=sys.stderr)
-            return raised.came.status
+            return raised.received.status
         return _report_error(error)
     return 0
 
@@ -179,9 +179,9 @@ def _report_error(error: BaseException) -> int:
     if isinstance(error, SystemExit) and isinstance(error.code, int):
         return error.code
     if isinstance(error, ArgoError):
-        from argo_planner.terminal.words import said
+        from argo_planner.terminal.words import error_text
 
-        print(said(error, "argo: "), file=sys.stderr)
+        print(error_text(error, "argo: "), file=sys.stderr)
         return 2
     raise error
 

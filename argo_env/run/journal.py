@@ -163,7 +163,7 @@ def require_free(path: Path, replace: bool = False) -> None:
             os.close(file)
     elif os.path.exists(path):
         raise Conflict(
-            f"{path}: is there already: resume that run, or choose another",
+            f"{path}: already exists: resume that run, or choose another path",
             remedies=(Remedy.RESUME,),
             about=str(path),
         )

@@ -6,8 +6,8 @@ from typing import Annotated
 import typer
 
 from argo_env.planning.opening import open_site
-from argo_planner.terminal.files import check_outputs, read_upload, say_written, write_content
-from argo_planner.terminal.importing import import_shown
+from argo_planner.terminal.files import check_outputs, print_written, read_upload, write_content
+from argo_planner.terminal.importing import import_and_warn
 from argo_planner.terminal.options import EndArea, Force, Optimise, SiteOption, Source, StartArea
 from argo_planner.use_cases.compiling import compile_mission as compile_imported
 
@@ -27,14 +27,14 @@ def compile_mission(
     """Convert a mission to its state machine, and write that as JSON."""
     check_outputs([source, site], [output, mermaid], force=force)
     opened = open_site(site)
-    imported = import_shown(read_upload(source), opened, start_area, end_area)
+    imported = import_and_warn(read_upload(source), opened, start_area, end_area)
     if optimise:
-        from argo_planner.terminal.reordering import optimise_shown  # brings the solvers
+        from argo_planner.terminal.reordering import optimise_and_show  # brings the solvers
 
-        imported, _ = optimise_shown(imported, opened)
+        imported, _ = optimise_and_show(imported, opened)
     compiled = compile_imported(imported)
     write_content(output, compiled.json)
     if mermaid:
         write_content(mermaid, compiled.mermaid)
     machine = compiled.machine
-    say_written(output, f"{len(machine.leaves)} tasks, {len(machine.composites) - 1} groups")
+    print_written(output, f"{len(machine.leaves)} tasks, {len(machine.composites) - 1} groups")

@@ -37,9 +37,9 @@ from argo_env.evaluation.score import read_scoring
 from argo_env.evaluation.store import RowStore
 from argo_env.files.folders import check_folder
 from argo_env.run.drives_and_sensors import DRIVES, IDEAL, SENSORS
-from argo_planner.terminal.completion import among
+from argo_planner.terminal.completion import offer_names
 from argo_planner.terminal.evaluation_display import EvaluationDisplay
-from argo_planner.terminal.evaluation_request import asked_for, refuse_others
+from argo_planner.terminal.evaluation_request import read_request, require_comparison_only
 from argo_planner.terminal.evaluation_tables import show_comparison, show_means, show_results
 from argo_planner.terminal.files import check_outputs, read_upload
 from argo_planner.terminal.options import EndArea, Force, SiteOption, StartArea
@@ -65,13 +65,14 @@ def evaluate(
     drive: Annotated[
         str,
         typer.Option(
-            help=f"what moves the robot: {', '.join(DRIVES)}", autocompletion=among(DRIVES)
+            help=f"what moves the robot: {', '.join(DRIVES)}", autocompletion=offer_names(DRIVES)
         ),
     ] = "route",
     sensor: Annotated[
         str,
         typer.Option(
-            help=f"what reads the checkpoints: {', '.join(SENSORS)}", autocompletion=among(SENSORS)
+            help=f"what reads the checkpoints: {', '.join(SENSORS)}",
+            autocompletion=offer_names(SENSORS),
         ),
     ] = IDEAL,
     faults: Annotated[
@@ -106,7 +107,7 @@ def evaluate(
             metavar="DRIVE",
             help="a cheap drive, such as route, whose runs help to estimate what those of --drive "
             "bring, if that pays",
-            autocompletion=among(DRIVES),
+            autocompletion=offer_names(DRIVES),
         ),
     ] = None,
     start_area: StartArea = None,
@@ -115,7 +116,7 @@ def evaluate(
         str,
         typer.Option(
             help=f"what has the workers: {', '.join(BACKENDS)}",
-            autocompletion=among(tuple(BACKENDS)),
+            autocompletion=offer_names(tuple(BACKENDS)),
         ),
     ] = PROCESSES,
     workers: Annotated[
@@ -157,13 +158,13 @@ def evaluate(
     """Estimate the success rate of missions by many runs, or compare two evaluations."""
     console = Console(highlight=False)
     if compare is not None:
-        refuse_others(context, sources)
+        require_comparison_only(context, sources)
         _compare(*compare, plans or [], out, report, force, console)
         return
     if plans:
         raise Invalid("--plan says which plans --compare is about: give it with that")
     rules = read_scoring(scoring)
-    file, folder, content = asked_for(
+    file, folder, content = read_request(
         context, sources or [], seeds, site, drive, sensor, faults, policy, require, width,
         control, start_area, end_area,
     )  # fmt: skip

@@ -8,15 +8,15 @@ import typer
 
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_env.planning.opening import open_site
-from argo_planner.terminal.completion import among
+from argo_planner.terminal.completion import offer_names
 from argo_planner.terminal.files import (
     STANDARD_OUTPUT,
     check_outputs,
+    print_written,
     read_upload,
-    say_written,
     write_content,
 )
-from argo_planner.terminal.importing import import_shown
+from argo_planner.terminal.importing import import_and_warn
 from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
 from argo_planner.use_cases.exporting import FORMATS, is_folder, require_format
 from argo_planner.use_cases.exporting import export_mission as export_imported
@@ -27,7 +27,7 @@ def export_mission(
     to: Annotated[
         str,
         typer.Option(
-            "--to", metavar="FORMAT", help=", ".join(FORMATS), autocompletion=among(FORMATS)
+            "--to", metavar="FORMAT", help=", ".join(FORMATS), autocompletion=offer_names(FORMATS)
         ),
     ],
     output: Annotated[
@@ -50,9 +50,9 @@ def export_mission(
     else:
         check_outputs([source, site], [output], force=force)
     opened = open_site(site)
-    imported = import_shown(read_upload(source), opened, start_area, end_area)
+    imported = import_and_warn(read_upload(source), opened, start_area, end_area)
     exported = export_imported(imported, opened, to)
     if isinstance(exported.content, Mapping):
         check_outputs([], folders=[(output, exported.content)], force=force)
     write_content(output, exported.content)
-    say_written(output, exported.description)
+    print_written(output, exported.description)

@@ -7,7 +7,7 @@ import typer
 
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.files import STANDARD_OUTPUT, check_outputs, read_upload, write_content
-from argo_planner.terminal.importing import import_shown
+from argo_planner.terminal.importing import import_and_warn
 from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
 from argo_planner.use_cases.exporting import as_script
 
@@ -25,5 +25,5 @@ def format_mission(
     """Write a mission as a script in a standard form; importing it gives the same mission."""
     check_outputs([source, site], [output], force=force)
     opened = open_site(site)
-    script = as_script(import_shown(read_upload(source), opened, start_area, end_area), opened)
+    script = as_script(import_and_warn(read_upload(source), opened, start_area, end_area), opened)
     write_content(output or STANDARD_OUTPUT, script)

@@ -11,12 +11,12 @@ from argo_env.planning.opening import open_site
 from argo_planner.terminal.files import (
     STANDARD_OUTPUT,
     check_outputs,
+    print_written,
     read_upload,
     require_mission_output,
-    say_written,
     write_content,
 )
-from argo_planner.terminal.importing import import_shown, show_reading
+from argo_planner.terminal.importing import import_and_warn, show_explanation
 from argo_planner.terminal.options import EndArea, Force, SiteOption, StartArea
 from argo_planner.terminal.verbosity import is_quiet
 from argo_planner.use_cases.importing import SourceKind, kind_of
@@ -41,8 +41,8 @@ def import_script(
     if output != STANDARD_OUTPUT:
         require_mission_output(output)
     opened = open_site(site)
-    imported = import_shown(upload, opened, start_area, end_area)
+    imported = import_and_warn(upload, opened, start_area, end_area)
     write_content(output, mission_text(imported.mission))
-    say_written(output, ", ".join(task.name for task in imported.mission.tasks))
+    print_written(output, ", ".join(task.name for task in imported.mission.tasks))
     if output != STANDARD_OUTPUT and not is_quiet():
-        show_reading(imported, opened)
+        show_explanation(imported, opened)

@@ -14,7 +14,7 @@ from argo_compiler.base.extras import install_line
 from argo_compiler.il import Mission
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.files import read_upload
-from argo_planner.terminal.importing import import_shown
+from argo_planner.terminal.importing import import_and_warn
 from argo_planner.terminal.options import EndArea, SiteOption, StartArea
 from argo_planner.terminal.verbosity import is_quiet
 
@@ -59,7 +59,7 @@ def plan_mission(
     opened = open_site(site).prepare()
     imported = None
     if source is not None:
-        imported = import_shown(read_upload(source), opened, start_area, end_area).mission
+        imported = import_and_warn(read_upload(source), opened, start_area, end_area).mission
     token = AccessToken(kept_secret(folder))
     try:
         listening = listen("127.0.0.1", _PORT if port is None else port)

@@ -16,9 +16,9 @@ from argo_env.recording.reader import Recording, read_recording
 from argo_env.robot.spec import load_robot
 from argo_planner.terminal.conclusion import Conclusion
 from argo_planner.terminal.files import check_outputs
-from argo_planner.terminal.kept import Kept, require_no_unfinished
 from argo_planner.terminal.options import Force, Render, Report
-from argo_planner.terminal.signals import first_signal_deferred
+from argo_planner.terminal.signals import defer_first_signal
+from argo_planner.terminal.stored_run import StoredRun, require_no_unfinished_run
 from argo_planner.terminal.verbosity import is_quiet
 from argo_planner.use_cases.reporting import REPORT_FILES
 
@@ -33,7 +33,7 @@ def replay(
 ) -> None:
     """Show the results of a recorded run; its report and film can be made again."""
     if not force:
-        require_no_unfinished(report)
+        require_no_unfinished_run(report)
     check_outputs([recording], [render], [(report, REPORT_FILES)], force)
     if render:
         check_film(render)
@@ -55,10 +55,10 @@ def replay(
         )
     count = sum(found.messages.values())
     took = f"Reading {count} messages took {time.monotonic() - begun:.1f} s."
-    with first_signal_deferred() as interruption:
-        Conclusion(report, render, Kept(recording=recording, force=force), interruption).conclude(
-            record, found.site, load_robot(record.robot), took
-        )
+    with defer_first_signal() as interruption:
+        Conclusion(
+            report, render, StoredRun(recording=recording, force=force), interruption
+        ).conclude(record, found.site, load_robot(record.robot), took)
 
 
 def _show_rest(recording: Recording) -> None:

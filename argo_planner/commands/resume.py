@@ -19,10 +19,15 @@ from argo_env.run.spec import logged_events
 from argo_planner.terminal.conclusion import Conclusion
 from argo_planner.terminal.events import KINDS, READING_FORM, parse_events
 from argo_planner.terminal.files import check_outputs
-from argo_planner.terminal.kept import JOURNAL, Kept, is_reported, require_no_unfinished
 from argo_planner.terminal.options import Force, Report
-from argo_planner.terminal.run_display import carry_out_shown
-from argo_planner.terminal.signals import first_signal_deferred
+from argo_planner.terminal.run_display import run_with_display
+from argo_planner.terminal.signals import defer_first_signal
+from argo_planner.terminal.stored_run import (
+    JOURNAL,
+    StoredRun,
+    is_report_of,
+    require_no_unfinished_run,
+)
 from argo_planner.terminal.verbosity import is_quiet
 from argo_planner.use_cases.reporting import REPORT_FILES
 
@@ -68,8 +73,8 @@ def resume_run(
     with open_journal(journal) as book:
         if report and not force:
             if os.path.realpath(report / JOURNAL) != os.path.realpath(journal):
-                require_no_unfinished(report)
-            if not is_reported(book, report):
+                require_no_unfinished_run(report)
+            if not is_report_of(book, report):
                 check_outputs([journal], (), [(report, REPORT_FILES)])
         if events:
             book.require_not_ended()
@@ -83,11 +88,11 @@ def resume_run(
         else:
             site.prepare()
             console.print(f"The run goes on at {at:g} s.")
-        with first_signal_deferred() as interruption:
-            conclusion = Conclusion(report, render, Kept(journal, force=force), interruption)
+        with defer_first_signal() as interruption:
+            conclusion = Conclusion(report, render, StoredRun(journal, force=force), interruption)
             begun = time.monotonic()
-            with conclusion.telling_the_way_on():
-                record, recorded = carry_out_shown(
+            with conclusion.hint_on_interruption():
+                record, recorded = run_with_display(
                     book.header.spec.mission.max_duration,
                     recording,
                     Path(book.header.spec.source) if book.header.spec.source else None,

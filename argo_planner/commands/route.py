@@ -19,10 +19,10 @@ from argo_env.files.yaml_messages import error_message
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_planner.terminal.certificate_lines import show_certificate
 from argo_planner.terminal.files import check_outputs, read_upload, require_mission_output
-from argo_planner.terminal.importing import import_shown
+from argo_planner.terminal.importing import import_and_warn
 from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
-from argo_planner.terminal.order_tables import show, show_risk, written_lines
-from argo_planner.terminal.words import order_said, said
+from argo_planner.terminal.order_tables import reordering_lines, show_order, show_risk
+from argo_planner.terminal.words import error_text, name_keep_order_option
 from argo_planner.use_cases.importing import SourceKind, kind_of, refuse_areas
 from argo_planner.use_cases.no_order import require_order
 from argo_planner.use_cases.routing import (
@@ -105,7 +105,7 @@ def suggest_order(
     opened = open_site(site)
     if pictures:
         _check_pictures(pictures, opened, force)
-    imported = import_shown(upload, opened, start_area, end_area)
+    imported = import_and_warn(upload, opened, start_area, end_area)
     if robust:
         require_limit(imported.mission, wanted)
     found = suggest(imported, opened, wanted, time_limit=time_limit, seed=seed)
@@ -116,14 +116,14 @@ def suggest_order(
         found = suggest_robust(found, spread, time_limit, seed)
         _require_order(source, found, console, verify)
     reordered = found.mission if output else None  # now: not every order can be written
-    show(found, console)
+    show_order(found, console)
     if verify:
         _verify(found, console)
     if robust or risk:
         show_risk(found, spread, seed, console)
     if output and reordered:
         write_mission(reordered, output)
-        for line in written_lines(found, reordered, opened, output):
+        for line in reordering_lines(found, reordered, opened, output):
             console.print(line, soft_wrap=True, markup=False)
     if pictures:
         _draw(found, opened, pictures, console)
@@ -164,7 +164,7 @@ def _require_order(source: Path, found: Suggested, console: Console, verify: boo
     try:
         require_order(found, str(source))
     except Conflict as error:
-        console.print(order_said(said(error)), soft_wrap=True, markup=False)
+        console.print(name_keep_order_option(error_text(error)), soft_wrap=True, markup=False)
         if verify:
             _verify(found, console)
         raise typer.Exit(2) from None

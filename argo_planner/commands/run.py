@@ -21,12 +21,11 @@ from argo_env.run.run_setup import check_spec
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec, logged_events
 from argo_env.run.validation import check_run
-from argo_planner.terminal.completion import among
+from argo_planner.terminal.completion import offer_names
 from argo_planner.terminal.conclusion import Conclusion
 from argo_planner.terminal.events import KINDS, READING_FORM, parse_events, parse_values
 from argo_planner.terminal.files import check_outputs, read_upload
-from argo_planner.terminal.importing import import_shown
-from argo_planner.terminal.kept import JOURNAL, Kept, require_no_unfinished
+from argo_planner.terminal.importing import import_and_warn
 from argo_planner.terminal.options import (
     EndArea,
     Force,
@@ -36,11 +35,12 @@ from argo_planner.terminal.options import (
     SiteOption,
     Source,
     StartArea,
-    dashed,
     given_options,
+    option_name,
 )
-from argo_planner.terminal.run_display import carry_out_shown
-from argo_planner.terminal.signals import first_signal_deferred
+from argo_planner.terminal.run_display import run_with_display
+from argo_planner.terminal.signals import defer_first_signal
+from argo_planner.terminal.stored_run import JOURNAL, StoredRun, require_no_unfinished_run
 from argo_planner.use_cases.reporting import REPORT_FILES
 from argo_planner.use_cases.running import (
     NO_MISSION,
@@ -75,7 +75,7 @@ class _Outputs:
     def check(self, *inputs: Path | str | None) -> None:
         """Raises ArgoError where something can't be written, or is one of the inputs."""
         if not self.force:
-            require_no_unfinished(self.report, self.journal)
+            require_no_unfinished_run(self.report, self.journal)
         check_outputs(
             [self.source, *inputs],
             [self.render, self.recording, self.journal],
@@ -113,13 +113,14 @@ def run(
     drive: Annotated[
         str,
         typer.Option(
-            help=f"what moves the robot: {', '.join(DRIVES)}", autocompletion=among(DRIVES)
+            help=f"what moves the robot: {', '.join(DRIVES)}", autocompletion=offer_names(DRIVES)
         ),
     ] = "kinematic",
     sensor: Annotated[
         str,
         typer.Option(
-            help=f"what reads the checkpoints: {', '.join(SENSORS)}", autocompletion=among(SENSORS)
+            help=f"what reads the checkpoints: {', '.join(SENSORS)}",
+            autocompletion=offer_names(SENSORS),
         ),
     ] = "ideal",
     optimise: Optimise = False,
@@ -193,24 +194,24 @@ def run(
         opened = open_site(site)
         spec = spec.model_copy(update={"site": opened.reference})
         check_spec(spec, opened.site, said)  # before it is long
-        imported = import_shown(upload, opened, start_area, end_area)
+        imported = import_and_warn(upload, opened, start_area, end_area)
         reordering = None
         if optimise:
-            from argo_planner.terminal.reordering import optimise_shown  # brings the solvers
+            from argo_planner.terminal.reordering import optimise_and_show  # brings the solvers
 
-            imported, reordering = optimise_shown(imported, opened)
+            imported, reordering = optimise_and_show(imported, opened)
         spec = with_mission(spec, imported, reordering)
         checked = check_run(spec, opened, settings=False)
     if report:
         make_folder(report)  # now: what is refused before leaves none behind
     opened.prepare()
     loaded = time.monotonic()
-    with first_signal_deferred() as interruption:
+    with defer_first_signal() as interruption:
         conclusion = Conclusion(
-            report, render, Kept(outputs.keeping, recording, force), interruption
+            report, render, StoredRun(outputs.keeping, recording, force), interruption
         )
-        with conclusion.telling_the_way_on():
-            record, recorded = carry_out_shown(
+        with conclusion.hint_on_interruption():
+            record, recorded = run_with_display(
                 checked.spec.mission.max_duration,
                 recording,
                 source,
@@ -243,5 +244,5 @@ def _refuse_decided(context: typer.Context, source: Path) -> None:
     for name in given_options(context):
         if name in _DECIDED:
             raise Invalid(
-                f"{source}: is the spec of a run, in which {dashed(name)} is decided already"
+                f"{source}: is the spec of a run, in which {option_name(name)} is decided already"
             )

@@ -9,7 +9,7 @@ import typer
 from argo_compiler.base.errors import ArgoError, Invalid, located
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_planner.terminal import completion
-from argo_planner.terminal.files import check_outputs, say_written, write_content
+from argo_planner.terminal.files import check_outputs, print_written, write_content
 from argo_planner.terminal.options import Force
 from argo_planner.use_cases.sites import (
     check_site,
@@ -26,7 +26,7 @@ def show_sites(
         typer.Argument(
             metavar="SITE",
             help="a site to check: its name, its .yaml, or generated:…",
-            autocompletion=completion.sites,
+            autocompletion=completion.offer_sites,
         ),
     ] = None,
     output: Annotated[
@@ -57,7 +57,7 @@ def show_sites(
     report = check_site(opened)
     if picture:
         write_content(picture, draw_report(opened, report))
-        say_written(picture, "written, the site's floors")
+        print_written(picture, "written, the site's floors")
     for note in report.notes:
         print(f"{site}: note: {note}")
     for error in report.errors:

@@ -1,1 +1,1 @@
-"""What a person gives and sees on the terminal: options, files, tables, progress, messages."""
+"""Input and output on the terminal: options, files, tables, progress, messages."""

@@ -1,4 +1,4 @@
-"""What could be verified of a suggested order, on the terminal."""
+"""Lines on the terminal that say which claims about a suggested order are verified."""
 
 from collections.abc import Iterator
 
@@ -18,35 +18,38 @@ _BEGINNINGS = {
 
 
 def show_certificate(found: Suggested, certificate: Certificate, console: Console) -> None:
-    """Prints a line for each claim that says something of this mission."""
+    """Print a line for each claim that tells something about this mission."""
     for line in _lines(found, certificate):
         console.print(escape(line), soft_wrap=True)
 
 
 def _lines(found: Suggested, certificate: Certificate) -> Iterator[str]:
     for one in certificate.claims:
-        if one.judgement is Judgement.REFUTED or not _goes_without_saying(found, one):
-            what = _claimed(found, one.claim)
-            yield f"{_BEGINNINGS[one.judgement]}: {what} ({_why(found, one)})"
+        if one.judgement is Judgement.REFUTED or not _adds_nothing(found, one):
+            claim = _claim_text(found, one.claim)
+            yield f"{_BEGINNINGS[one.judgement]}: {claim} ({_reason_text(found, one)})"
     if certificate.refuted:
-        yield "That is a defect of Argo: please report it, with the mission and what you asked for"
+        yield "This is a defect of Argo: please report it with the mission and the command line"
 
 
-def _goes_without_saying(found: Suggested, one: CheckedClaim) -> bool:
-    """The best order proves the bounds as well; without one, or anything optional, they say
-    nothing."""
+def _adds_nothing(found: Suggested, one: CheckedClaim) -> bool:
+    """Return True if a claim about a bound tells nothing.
+
+    The proof of the best order includes both bounds, and without an order they have no meaning. The
+    bound on the prize has none either if no task is optional.
+    """
     if one.claim is Claim.PRIZE_BOUND and not found.planned.problem.selective:
         return True
     of_bounds = one.claim in (Claim.PRIZE_BOUND, Claim.BOUND)
     return of_bounds and (found.suggestion.proven or found.suggestion.route is None)
 
 
-def _claimed(found: Suggested, claim: Claim) -> str:
+def _claim_text(found: Suggested, claim: Claim) -> str:
     made = found.suggestion
     match claim:
         case Claim.ROUTE:
             takes = evaluate(found.planned.problem, found.route).duration
-            return f"the order keeps to everything and takes {clock(found.seconds(takes))}"
+            return f"the order meets all requirements and takes {clock(found.seconds(takes))}"
         case Claim.PRIZE_BOUND:
             return f"no order is worth more than {made.prize_bound}"
         case Claim.BOUND:
@@ -55,20 +58,20 @@ def _claimed(found: Suggested, claim: Claim) -> str:
         case Claim.BEST:
             return "no order is better"
         case Claim.NONE:
-            return f"no order meets all that is asked for{found.planned.if_assumed}"
+            return f"no order meets all requirements{found.planned.if_assumed}"
         case Claim.SUBSET:
-            return "without any one of these there is an order"
+            return "there is an order if any one of these is left out"
 
 
-def _why(found: Suggested, one: CheckedClaim) -> str:
+def _reason_text(found: Suggested, one: CheckedClaim) -> str:
     if one.counterexample is not None:
         worth = evaluate(found.planned.problem, one.counterexample)
         names = (found.planned.visits.names[visit] for visit in one.counterexample.order)
         takes = clock(found.seconds(worth.duration))
-        return f"{', '.join(names)}: worth {worth.prize}, and takes {takes}"
+        return f"counterexample: {', '.join(names)}; it is worth {worth.prize} and takes {takes}"
     if one.shown is None:
         return one.why
     most, least = one.shown
     if most > found.suggestion.prize:
-        return f"{one.why}: by it, one may be worth {most}"
-    return f"{one.why}: by it, one may take {clock(found.seconds(least))}"
+        return f"{one.why}: it only shows that none is worth more than {most}"
+    return f"{one.why}: it only shows that none takes less than {clock(found.seconds(least))}"

@@ -1,20 +1,20 @@
-"""What a shell offers for options whose values are names."""
+"""Values that a shell completes for options whose values are names."""
 
 from collections.abc import Callable, Iterable
 
 from argo_env import site_names
 
 
-def among(names: Iterable[str]) -> Callable[[str], list[str]]:
-    """Offers those of the names that begin with what is there."""
+def offer_names(names: Iterable[str]) -> Callable[[str], list[str]]:
+    """Return a function that lists the names which begin with the text typed so far."""
     known = tuple(names)
 
-    def offer(incomplete: str) -> list[str]:
+    def matching_names(incomplete: str) -> list[str]:
         return [name for name in known if name.startswith(incomplete)]
 
-    return offer
+    return matching_names
 
 
-def sites(incomplete: str) -> list[str]:
-    """Offers the sites that Argo ships; of a site's file the shell completes the path."""
-    return among(site_names())(incomplete)
+def offer_sites(incomplete: str) -> list[str]:
+    """Return the shipped sites that match; the shell itself completes the path of a site's file."""
+    return offer_names(site_names())(incomplete)

@@ -1,4 +1,4 @@
-"""The end of a run, as a person sees it: its results are written, then shown."""
+"""The end of a run on the terminal: the results are written first, then shown."""
 
 import sys
 from collections.abc import Iterator
@@ -17,107 +17,117 @@ from argo_env.robot.spec import RobotSpec
 from argo_env.run.record import RunRecord
 from argo_env.site import Site
 from argo_planner.terminal.files import write_content
-from argo_planner.terminal.kept import Kept
 from argo_planner.terminal.record_tables import show_record
 from argo_planner.terminal.run_display import progress_bar
 from argo_planner.terminal.signals import Interrupted, SignalWatch
+from argo_planner.terminal.stored_run import StoredRun
 from argo_planner.terminal.verbosity import is_quiet
-from argo_planner.terminal.words import said
+from argo_planner.terminal.words import error_text
 from argo_planner.use_cases.reporting import report_files
 
 
 @dataclass(frozen=True)
 class Conclusion:
-    """What is made of a run when it has ended, or was interrupted."""
+    """Results to write and show after a run has ended or was interrupted."""
 
     report: Path | None
     render: Path | None
-    kept: Kept
+    stored: StoredRun
     interruption: SignalWatch
-    """that of the process, the first of which lets it come to a good end"""
+    """signals of the process; the first one lets the run stop in good order"""
 
     def conclude(self, record: RunRecord, site: Site, robot: RobotSpec, took: str) -> None:
-        """Writes what was asked for, then shows the results, so that whoever stops reading them
-        loses nothing. Exits with status 1 if the run is no success, with 2 if something can't be
-        written, and as the signal has it if one has kept the run or its results from their end."""
-        came = self.interruption.came
-        if came and self.report and not is_quiet():
-            print("argo: writing the report; Ctrl-C once more ends at once", file=sys.stderr)
-        told: list[str] = []
+        """Write report and film, then show the results.
+
+        In this order, a reader who closes the output early loses nothing. `took` is the line that
+        says how long the run took.
+
+        Raises:
+            Exit: Status 1: the run was no success. Status 2: a result could not be written. The
+                status of the signal: it has interrupted the run or the writing of its results.
+        """
+        received = self.interruption.received
+        if received and self.report and not is_quiet():
+            print("argo: writing the report; press Ctrl-C again to stop at once", file=sys.stderr)
+        lines: list[str] = []
         errors: list[ArgoError] = []
-        left: list[Path] = []
-        for place, write in ((self.report, self._report), (self.render, self._film)):
-            if place is None:
+        unwritten: list[Path] = []
+        for path, write in ((self.report, self._write_report), (self.render, self._write_film)):
+            if path is None:
                 continue
             try:
-                told.append(write(place, record, site, robot))
+                lines.append(write(path, record, site, robot))
             except ArgoError as error:
                 errors.append(error)
-                left.append(place)
+                unwritten.append(path)
             except Interrupted as interrupted:
-                came = interrupted
-                left.append(place)
+                received = interrupted
+                unwritten.append(path)
         console = Console()
         show_record(record, console)
         if not is_quiet():
             console.print(took, soft_wrap=True)
-        for line in told:
+        for line in lines:
             console.print(escape(line), soft_wrap=True)
         for failure in errors:
-            print(said(failure, "argo: "), file=sys.stderr)
-        came = came or self.interruption.came
-        if came and not record.result.ended:
-            way_on = self.kept.way_on(self.report, self.render)
-            print(f"argo: interrupted at {record.result.duration:.0f} s; {way_on}", file=sys.stderr)
-        elif left:
-            self._say_what_is_left(left)
+            print(error_text(failure, "argo: "), file=sys.stderr)
+        received = received or self.interruption.received
+        if received and not record.result.ended:
+            hint = self.stored.continuation_hint(self.report, self.render)
+            print(f"argo: interrupted at {record.result.duration:.0f} s; {hint}", file=sys.stderr)
+        elif unwritten:
+            self._print_unwritten(unwritten)
         if errors:
             raise typer.Exit(2)
-        if came and (left or not record.result.ended):
-            raise typer.Exit(came.status)
+        if received and (unwritten or not record.result.ended):
+            raise typer.Exit(received.status)
         if not record.result.success:
             raise typer.Exit(1)
 
     @contextmanager
-    def telling_the_way_on(self) -> Iterator[None]:
-        """Says how the run goes on where it is interrupted for good."""
+    def hint_on_interruption(self) -> Iterator[None]:
+        """Print how to continue the run if a second signal ends it within this context."""
         try:
             yield
         except Interrupted as interrupted:
-            way_on = self.kept.way_on(self.report, self.render)
-            print(f"argo: interrupted; {way_on}", file=sys.stderr)
+            hint = self.stored.continuation_hint(self.report, self.render)
+            print(f"argo: interrupted; {hint}", file=sys.stderr)
             raise typer.Exit(interrupted.status) from None
 
-    def _report(self, folder: Path, record: RunRecord, site: Site, robot: RobotSpec) -> str:
+    def _write_report(self, folder: Path, record: RunRecord, site: Site, robot: RobotSpec) -> str:
         write_content(folder, report_files(record, site, robot))
         return f"Report: {folder / PAGE}"
 
-    def _film(self, file: Path, record: RunRecord, site: Site, robot: RobotSpec) -> str:
+    def _write_film(self, file: Path, record: RunRecord, site: Site, robot: RobotSpec) -> str:
         self.interruption.require_none()
         from argo_env.pictures import write_film
 
         with progress_bar() as progress:
             bar = progress.add_task("filming", total=1.0)
 
-            def go_on(share: float) -> None:
+            def report_progress(share: float) -> None:
                 self.interruption.require_none()
                 progress.update(bar, completed=share)
 
             try:
                 write_film(
-                    record, site_with_faults(site, record.faults), robot, file, progress=go_on
+                    record,
+                    site_with_faults(site, record.faults),
+                    robot,
+                    file,
+                    progress=report_progress,
                 )
             except ArgoError:
-                # The encoder gets Ctrl-C as well.
+                # Ctrl-C reaches the encoder too, which then fails.
                 self.interruption.require_none()
                 raise
         return f"Film: {file}"
 
-    def _say_what_is_left(self, left: list[Path]) -> None:
-        names = " and ".join(map(str, left))
-        command = self.kept.command(
-            self.report if self.report in left else None,
-            self.render if self.render in left else None,
+    def _print_unwritten(self, unwritten: list[Path]) -> None:
+        names = " and ".join(map(str, unwritten))
+        command = self.stored.continuation_command(
+            self.report if self.report in unwritten else None,
+            self.render if self.render in unwritten else None,
         )
-        way = f"; made by: {command}" if command else ", and the run was not kept"
-        print(f"argo: not written: {names}{way}", file=sys.stderr)
+        retry = f"to try again: {command}" if command else "the run was not stored for another try"
+        print(f"argo: not written: {names}; {retry}", file=sys.stderr)

@@ -1,4 +1,4 @@
-"""What a person sees of an evaluation while it goes on: a bar, the outcomes and the rate."""
+"""Display of a running evaluation: a progress bar, the outcomes and the success rate."""
 
 import sys
 import time
@@ -16,12 +16,12 @@ from argo_env.formatting import clock
 from argo_planner.terminal.verbosity import is_quiet
 
 EVERY = 10.0
-"""s between lines where standard error is no terminal"""
-_REDRAWN = 0.2  # s
+"""s between two lines if standard error is no terminal"""
+_REDRAW_INTERVAL = 0.2  # s
 
 
 class EvaluationDisplay(Closing):
-    """The progress on standard error: a bar on a terminal, and else a line now and then."""
+    """Progress on standard error: a bar on a terminal, otherwise a line every 10 s."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
@@ -29,25 +29,25 @@ class EvaluationDisplay(Closing):
         self._progress = Progress(
             BarColumn(),
             MofNCompleteColumn(),
-            TextColumn("{task.fields[said]}"),
+            TextColumn("{task.fields[status]}"),
             console=self._console,
             transient=True,
             disable=is_quiet() or not sys.stderr.isatty(),
         )
-        self._bar = self._progress.add_task("", total=None, said="")
+        self._bar = self._progress.add_task("", total=None, status="")
         self._shown = -EVERY
 
     def show(self, progress: EvaluationProgress) -> None:
-        """Shows how far it is, unless it has just been shown."""
+        """Show the progress, unless it was shown a short time ago."""
         terminal = sys.stderr.isatty()
         now = self._clock()
-        if is_quiet() or now - self._shown < (_REDRAWN if terminal else EVERY):
+        if is_quiet() or now - self._shown < (_REDRAW_INTERVAL if terminal else EVERY):
             return
         first, self._shown = self._shown < 0, now
-        text = said(progress)
+        text = progress_text(progress)
         if terminal:
             self._progress.update(
-                self._bar, total=progress.max_runs, completed=progress.completed_runs, said=text
+                self._bar, total=progress.max_runs, completed=progress.completed_runs, status=text
             )
         elif not first:
             self._console.print(f"{progress.completed_runs} of {progress.max_runs} runs, {text}")
@@ -57,12 +57,12 @@ class EvaluationDisplay(Closing):
         return self
 
     def close(self) -> None:
-        """Ends the display."""
+        """End the display."""
         self._progress.stop()
 
 
-def said(progress: EvaluationProgress) -> str:
-    """The rate, what did not succeed, and the time that is left, in words."""
+def progress_text(progress: EvaluationProgress) -> str:
+    """Return the success rate, the counts of other outcomes, and the time left, in words."""
     outcomes = progress.all_outcomes
     rate = quick_rate(outcomes)
     parts = []

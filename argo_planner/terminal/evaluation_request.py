@@ -1,4 +1,4 @@
-"""What the command line asks `argo evaluate` for: a file, or missions with options."""
+"""The evaluation that the command line of `argo evaluate` describes: a file, or missions."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -11,7 +11,7 @@ from argo_compiler.files.loading import read_bytes
 from argo_env.evaluation.case import AS_WRITTEN, NO_FAULTS
 from argo_env.evaluation.file import MAX_BYTES, EvaluationFile, MissionEntry, decode_evaluation
 from argo_env.files.yaml_messages import error_message
-from argo_planner.terminal.options import dashed, given_options
+from argo_planner.terminal.options import given_options, option_name
 
 _YAML = (".yaml", ".yml")
 _OF_COMPARISON = ("compare", "plans", "out", "report", "force")
@@ -19,24 +19,26 @@ _OF_FILE = (
     "seeds", "site", "drive", "sensor", "faults", "policy", "require", "width", "control",
     "start_area", "end_area",
 )  # fmt: skip
-"""options that say what is evaluated, as an evaluation's file does"""
+"""options that an evaluation file replaces"""
 _OPTIONS = {
     "sites": "--site", "drives": "--drive", "sensors": "--sensor", "policies": "--policy",
     "stop": "--width",
 }  # fmt: skip
-"""by fields of an evaluation's file, where they have another name"""
+"""options by field of an evaluation file, for fields with another name"""
 
 
-def refuse_others(context: typer.Context, sources: list[Path] | None) -> None:
-    """Raises Invalid for what a comparison has no use for."""
+def require_comparison_only(context: typer.Context, sources: list[Path] | None) -> None:
+    """Raise Invalid for missions and options that `--compare` does not use."""
     if sources:
-        raise Invalid("--compare is about evaluations that are there: give no missions")
+        raise Invalid(
+            "--compare compares two stored evaluations and runs nothing: leave the missions out"
+        )
     for option in given_options(context):
         if option not in _OF_COMPARISON:
-            raise Invalid(f"--compare runs nothing, and has no use for {dashed(option)}")
+            raise Invalid(f"--compare runs nothing: leave {option_name(option)} out")
 
 
-def asked_for(
+def read_request(
     context: typer.Context,
     sources: list[Path],
     seeds: str,
@@ -51,19 +53,29 @@ def asked_for(
     start_area: int | None,
     end_area: int | None,
 ) -> tuple[EvaluationFile, Path, bytes]:
-    """What is to be evaluated, the folder that its paths begin in, and the text of its file."""
+    """Return the evaluation, the folder its paths are relative to, and the content of its file.
+
+    The content is empty if missions are given instead of a file.
+
+    Raises:
+        Invalid: The arguments are no file and no missions, or do not go together.
+        ArgoError: The file can't be read.
+    """
     if not sources:
-        raise Invalid("give an evaluation's file, or missions; see `argo evaluate --help`")
+        raise Invalid("name an evaluation file or missions; see `argo evaluate --help`")
     described = [source for source in sources if source.suffix in _YAML]
     if described:
         path = described[0]
         if len(sources) > 1:
-            raise Invalid(f"{path}: an evaluation's file stands alone: give nothing else")
+            raise Invalid(
+                f"{path}: is an evaluation file, which names its missions itself: leave the other "
+                "arguments out"
+            )
         for option in given_options(context):
             if option in _OF_FILE:
                 raise Invalid(
-                    f"{path}: says what is evaluated, and {dashed(option)} would say it again: "
-                    "write it into the file"
+                    f"{path}: is an evaluation file: write {option_name(option)} into the file "
+                    "instead of the command line"
                 )
         content = read_bytes(path, "evaluation", MAX_BYTES)
         return decode_evaluation(content, str(path)), path.parent, content
@@ -93,5 +105,5 @@ def _validated(data: Mapping[str, object]) -> EvaluationFile:
     except ValidationError as error:
         fault = error.errors(include_url=False)[0]
         field = str(fault["loc"][0]) if fault["loc"] else ""
-        option = _OPTIONS.get(field, dashed(field))
+        option = _OPTIONS.get(field, option_name(field))
         raise Invalid(f"{option}: {error_message(fault, fault['loc'])}") from None

@@ -1,4 +1,4 @@
-"""What came of an evaluation, on the terminal."""
+"""Tables and lines on the terminal for the results of an evaluation."""
 
 import math
 import shlex
@@ -22,7 +22,7 @@ from argo_env.evaluation.score import ScoringRules, mean_score
 from argo_env.formatting import clock
 
 _STYLES = {Decision.MET: "bold green", Decision.MISSED: "bold red", Decision.OPEN: "bold yellow"}
-_NAMED = 10  # failing runs that are shown
+_MAX_LISTED = 10  # failed runs that are listed
 
 
 def show_results(
@@ -31,18 +31,24 @@ def show_results(
     console: Console,
     scoring: ScoringRules,
 ) -> None:
-    """Prints the rates by plan, by faults and by seeds, how missions score, what is shown of the
-    requirements, and how each failing run is made again."""
+    """Print rates, scores, failed runs with the commands that repeat them, and verdicts.
+
+    Args:
+        results: results of the evaluation
+        failing: files with the specs of failed runs, by the keys of their rows
+        console: where to print
+        scoring: how missions score
+    """
     console.print(_plans(results))
     for plan in results.plan.plans:
         if results.plan.strata:
-            continue  # its runs don't count alike
+            continue  # its runs have different weights
         score = mean_score(results.rows_for(plan), scoring)
         if math.isnan(score.value):
             continue
         several = len(results.plan.plans) > 1
         name = f"{plan.label(results.plan.plans)}: score" if several else "Score"
-        # Equal scores say nothing of how far others are from them.
+        # If all scores are equal, their interval has no width and would look too certain.
         varies = score.low < score.high
         between = f" ({score.low:.1f} to {score.high:.1f})" if varies else ""
         console.print(
@@ -59,7 +65,7 @@ def show_results(
         console.print(escape(line), soft_wrap=True)
     worlds, planned = len({row.seed for row in results.rows}), len(results.plan.seeds)
     if worlds < planned and not results.plan.strata:
-        console.print(f"{worlds} of {planned} worlds were enough: what it stops for is reached.")
+        console.print(f"Stopped after {worlds} of {planned} worlds, which were enough.")
     for verdict in results.verdicts:
         style = _STYLES[verdict.verdict]
         of = f" for {verdict.plan.label(results.plan.plans)}" if len(results.plan.plans) > 1 else ""
@@ -70,32 +76,34 @@ def show_results(
             soft_wrap=True,
         )
     if any(verdict.verdict is Decision.OPEN for verdict in results.verdicts):
-        console.print("What is not decided takes more worlds: give more --seeds.")
+        console.print("A requirement that is not decided needs more worlds: give more --seeds.")
 
 
 def show_means(means: Sequence[ControlledMean], drive: str | None, console: Console) -> None:
-    """Prints what cheap runs of a drive have helped."""
+    """Print means that were estimated with the help of runs with a cheap drive."""
     if drive is not None and not means:
-        console.print(f"Too few worlds could be run with the drive {drive} to see what it helps.")
+        console.print(f"Too few worlds could be run to use the drive {drive} for the estimates.")
     for mean in means:
         control = mean.control
         console.print(
-            f"{mean.quantity.capitalize()} beside the drive {drive}: correlation "
-            f"{control.correlation:.2f}, a run costs {_percent(control.cost)} of one"
-            + ("" if control.pays else "; it does not pay"),
+            f"{mean.quantity.capitalize()} with the help of the drive {drive}: correlation "
+            f"{control.correlation:.2f}, its runs take {_percent(control.cost)} of the time"
+            + ("" if control.pays else "; using it does not pay off"),
             soft_wrap=True,
         )
         shown = _percent if mean.quantity == "success" else _seconds
         if mean.controlled is None:
             if control.pays:
-                console.print("  too few successes or failures for an interval with its help")
+                console.print(
+                    "  too few successes or failures to compute an interval with its help"
+                )
             continue
-        for estimate, by in (
+        for estimate, basis in (
             (mean.uncontrolled, f"{mean.expensive} worlds alone"),
-            (mean.controlled, f"these and {mean.cheap} cheap ones"),
+            (mean.controlled, f"these and {mean.cheap} worlds with the drive {drive}"),
         ):
             between = f"{shown(estimate.low)} to {shown(estimate.high)}"
-            console.print(f"  by {by}: {shown(estimate.value)} ({between})", soft_wrap=True)
+            console.print(f"  from {basis}: {shown(estimate.value)} ({between})", soft_wrap=True)
 
 
 def _seconds(s: float) -> str:
@@ -133,12 +141,10 @@ def _plans(results: EvaluationResults) -> Table:
     if IntervalMethod.SEQUENCE in methods:
         notes += ["* " + " ".join(why_sequence(results, several))]
     elif IntervalMethod.STRATA in methods:
-        notes.append("* put together by the probabilities of faults")
+        notes.append("* weighted by the probabilities of the faults")
     if results.lost:
-        worlds = ", nor are their worlds in that of the plan" if several else ""
-        notes.append(
-            f"errors and runs that died say nothing of the plan: they are in no rate{worlds}"
-        )
+        worlds = ", and their worlds are not in the rate of the plan" if several else ""
+        notes.append(f"runs with errors and runs that died are in no rate{worlds}")
     table.caption = "\n".join(notes) or None
     return table
 
@@ -167,22 +173,22 @@ def _failing(results: EvaluationResults, files: Mapping[str, Path]) -> Iterator[
     rows = results.failing
     if not rows:
         return
-    yield f"{len(rows)} of {len(results.rows)} runs are no success; each is made again alone by:"
-    for row in rows[:_NAMED]:
-        said = "" if row.is_completed else f"{row.outcome}: "
+    yield f"{len(rows)} of {len(results.rows)} runs did not succeed; to repeat one alone:"
+    for row in rows[:_MAX_LISTED]:
+        outcome = "" if row.is_completed else f"{row.outcome}: "
         plan = f"{row.plan.label(results.plan.plans)}, " if len(results.plan.plans) > 1 else ""
-        yield f"  {plan}seed {row.seed}, {results.faults_for(row)}: {said}{row.reason}"
+        yield f"  {plan}seed {row.seed}, {results.faults_for(row)}: {outcome}{row.reason}"
         if row.key in files:
             yield f"    argo run {shlex.quote(str(files[row.key]))} --report out/{row.key[:8]}"
-    if len(rows) > _NAMED and files:
+    if len(rows) > _MAX_LISTED and files:
         folder = next(iter(files.values())).parent
-        yield f"  and {len(rows) - _NAMED} more, in {folder}"
+        yield f"  and {len(rows) - _MAX_LISTED} more, in {folder}"
 
 
 def show_comparison(compared: PlanComparison, console: Console) -> None:
-    """Prints which of two plans is better, and how sure that is."""
+    """Print which of two plans is better, and how certain that is."""
     pairs = compared.successes
-    table = Table(title="The same worlds, pair by pair", title_justify="left")
+    table = Table(title="A minus B, in the same worlds", title_justify="left")
     table.add_column("")
     for name in ("difference", "95 % interval", "by chance", "pairs"):
         table.add_column(name, justify="right")
@@ -212,18 +218,20 @@ def show_comparison(compared: PlanComparison, console: Console) -> None:
     console.print(f"[bold]{escape(compared.conclusion)}[/]", soft_wrap=True)
     if compared.has_one_pair_per_world and not compared.any_time:
         console.print(
-            f"So many pairs show a difference of 5 % with a probability of "
+            f"With this number of pairs, a difference of 5 % is detected with a probability of "
             f"{100 * compared.power(0.05):.0f} %, one of 2 % with "
             f"{100 * compared.power(0.02):.0f} %.",
             soft_wrap=True,
         )
     if compared.lost:
-        console.print(f"{compared.lost} pairs could not be carried out, and do not count.")
+        console.print(
+            f"{compared.lost} pairs have a run that could not be carried out, and do not count."
+        )
     if any(compared.unpaired):
         a, b = compared.unpaired
         console.print(
-            f"{a} runs of A and {b} of B have no partner in the same world with the same faults, "
-            "and do not count.",
+            f"{a} runs of A and {b} of B have no counterpart in the same world with the same "
+            "faults, and do not count.",
             soft_wrap=True,
         )
 
@@ -233,7 +241,7 @@ def _difference(found: Difference, scale: float, unit: str) -> tuple[str, str]:
         return "", ""
     value, low, high = (scale * v for v in (found.value, found.low, found.high))
     if low == high:
-        return f"{value:+.1f} {unit}", "in each world"
+        return f"{value:+.1f} {unit}", "equal everywhere"
     return f"{value:+.1f} {unit}", f"{low:+.1f} to {high:+.1f} {unit}"
 
 

@@ -1,4 +1,4 @@
-"""What the options of `argo run` and `argo resume` say of events and values."""
+"""Parsing of the options `--event` and `--value`."""
 
 import math
 
@@ -7,13 +7,17 @@ from argo_compiler.hfsm import Event
 from argo_planner.use_cases.running import EVENTS, READING, event_named
 
 KINDS = ", ".join(EVENTS)
-"""what may stand for KIND in `--event TIME=KIND`, beside `READING_FORM`"""
+"""kinds of events in `--event TIME=KIND`, apart from `READING_FORM`"""
 READING_FORM = f"{READING}:ID=VALUE"
-"""for a value that somebody tells"""
+"""kind of event for a value that a person reports"""
 
 
 def parse_events(options: list[str]) -> list[tuple[float, Event]]:
-    """What `--event TIME=KIND` says, by time; ArgoError if it is said otherwise."""
+    """Return the events of options `TIME=KIND`, with their times in s, in order of time.
+
+    Raises:
+        ArgoError: An option has another form, or there is no such kind.
+    """
     events = []
     for option in options:
         at, equals, name = option.partition("=")
@@ -31,7 +35,12 @@ def parse_events(options: list[str]) -> list[tuple[float, Event]]:
 
 
 def parse_values(options: list[str]) -> dict[int, float]:
-    """What `--value ID=VALUE` says; ArgoError if it is said otherwise, or twice of one id."""
+    """Return the values of options `ID=VALUE`, by checkpoint.
+
+    Raises:
+        Invalid: An option has another form.
+        Conflict: A checkpoint has two values.
+    """
     values: dict[int, float] = {}
     for option in options:
         id, _, value = option.partition("=")

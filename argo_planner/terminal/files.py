@@ -1,4 +1,4 @@
-"""What the commands read and write: uploads from files and folders, and results."""
+"""Files that the commands read and write."""
 
 import os
 import sys
@@ -20,13 +20,16 @@ from argo_env.files.folders import check_folder
 from argo_planner.use_cases.importing import Upload
 
 STANDARD_OUTPUT = Path("-")
-"""what is named where a result is to be shown, not kept"""
+"""path that stands for standard output"""
 
 
 def read_upload(source: Path) -> Upload:
-    """A script, a mission's file or a bag; what it is, is for the use cases.
+    """Read a script, a mission file or a bag; the use cases find out which of them it is.
 
-    Raises ArgoError if it can't be read.
+    A bag is not read here; its upload holds the path.
+
+    Raises:
+        ArgoError: The file can't be read.
     """
     if is_bag(source):
         return Upload(str(source), source)
@@ -41,11 +44,16 @@ def check_outputs(
     folders: Iterable[tuple[Path | None, Iterable[str]]] = (),
     force: bool = False,
 ) -> None:
-    """Raises ArgoError where a command would write over what it reads, twice to one place, to where
-    nothing can be written, or, without `force`, over what is there already. To be called first.
+    """Raise ArgoError if the outputs of a command can't be written; to be called first.
 
-    A text among the inputs is a site: its file, if it is one. The `folders` come with the names
-    that are to be written in them.
+    That is the case if an output is also an input, if two outputs have the same path, if a path
+    can't be written to, or if a file exists and `force` is not set.
+
+    Args:
+        inputs: files that are read; a text is the name or the file of a site
+        files: files to be written
+        folders: folders to be written, each with the names of the files in it
+        force: whether existing files may be replaced
     """
     single = [file for file in files if file is not None and not is_stream(file)]
     several: list[Path] = []
@@ -63,7 +71,7 @@ def check_outputs(
             check_writable(output)
         if os.path.exists(output) and not force:
             raise Conflict(
-                f"{output}: is there already: choose another place, or replace it",
+                f"{output}: already exists: choose another path, or replace it",
                 remedies=(Remedy.REPLACE,),
             )
 
@@ -76,23 +84,30 @@ def _keep_apart(inputs: Iterable[Path | str | None], outputs: Iterable[Path]) ->
     }
     written: set[str] = set()
     for output in outputs:
-        place = os.path.realpath(output)
-        if place in read:
-            raise Conflict(f"{output} is the input as well; choose another place to write to")
-        if place in written:
-            raise Conflict(f"{output} is to be written twice; choose another place for one of them")
-        written.add(place)
+        path = os.path.realpath(output)
+        if path in read:
+            raise Conflict(f"{output} is the input as well; choose another path for the output")
+        if path in written:
+            raise Conflict(
+                f"{output} is to be written twice; choose another path for one of the outputs"
+            )
+        written.add(path)
 
 
 def require_mission_output(output: Path) -> None:
-    """Raises Invalid where a mission that is written there could not be read again."""
+    """Raise Invalid unless the file name of a mission ends in `.json`, as reading requires."""
     if output.suffix.lower() != ".json":
         raise Invalid(f"{output}: a mission is written as JSON; name a file that ends in .json")
 
 
 def write_content(path: Path, content: str | bytes | Mapping[str, bytes]) -> None:
-    """Writes a file, or a folder of files, to their place or to standard output, text as UTF-8 with
-    Unix line ends; ArgoError if that is impossible."""
+    """Write a file, a folder of files, or to standard output.
+
+    Text is written as UTF-8 with Unix line ends.
+
+    Raises:
+        Unavailable: The path can't be written to.
+    """
     try:
         if isinstance(content, Mapping):
             write_folder(path, content)
@@ -106,8 +121,8 @@ def write_content(path: Path, content: str | bytes | Mapping[str, bytes]) -> Non
         sys.stdout.buffer.write(content)
 
 
-def say_written(path: Path, text: str) -> None:
-    """Says in a line what was written, but where that was shown itself."""
+def print_written(path: Path, text: str) -> None:
+    """Print a line about a written file, unless the content went to standard output."""
     if path != STANDARD_OUTPUT:
         from rich.console import Console  # slow to import, and most commands show their result
 

@@ -1,27 +1,27 @@
-"""Missions as the commands take them: read from a file, with their warnings shown."""
+"""Import of missions with their warnings on the terminal."""
 
 import sys
 
 from argo_compiler.diagnostics import DiagnosticError, to_text
 from argo_env.planning.opening import OpenedSite
 from argo_planner.terminal.verbosity import is_quiet
-from argo_planner.terminal.words import with_options
+from argo_planner.terminal.words import name_options
 from argo_planner.use_cases.explaining import reading_of, write_reading
 from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
 
 
-def import_shown(
+def import_and_warn(
     upload: Upload, site: OpenedSite, start_area: int | None, end_area: int | None
 ) -> ImportedMission:
-    """The mission of an upload. Warnings are shown. Raises ArgoError as `import_mission` does."""
+    """Import a mission and print its warnings; raise what `import_mission` raises."""
     imported = import_mission(upload, site, start_area, end_area)
     if imported.warnings and not is_quiet():
-        print(to_text(with_options(imported.warnings), upload.name), file=sys.stderr)
+        print(to_text(name_options(imported.warnings), upload.name), file=sys.stderr)
     return imported
 
 
-def show_reading(imported: ImportedMission, site: OpenedSite) -> None:
-    """What was understood of a mission, in plain sentences; what can't be said so is named."""
+def show_explanation(imported: ImportedMission, site: OpenedSite) -> None:
+    """Print a mission in plain sentences, or diagnostics for what no script can express."""
     try:
         print(write_reading(reading_of(imported, site)), end="")
     except DiagnosticError as error:

@@ -11,39 +11,42 @@ Source = Annotated[
     Path,
     typer.Argument(
         metavar="SCRIPT|MISSION",
-        help="a mission script, a mission's .json, or a bag",
+        help="script, mission (.json) or ROS bag",
     ),
 ]
 SiteOption = Annotated[
     str,
     typer.Option(
         "--site",
-        help="a site's name, a path to its .yaml, or generated:floors=3,seed=7",
-        autocompletion=completion.sites,
+        help="site: its name, the path of its .yaml, or generated:floors=3,seed=7",
+        autocompletion=completion.offer_sites,
     ),
 ]
 Optimise = Annotated[
     bool,
-    typer.Option("--optimise", help="put the tasks in the best order first; see `argo route`"),
+    typer.Option("--optimise", help="put the tasks in the best order first, as `argo route` does"),
 ]
 StartArea = Annotated[
-    int | None, typer.Option("--start-area", help="the starting area, where the script leaves it")
+    int | None,
+    typer.Option("--start-area", help="number of the starting area, if the script names none"),
 ]
 EndArea = Annotated[
-    int | None, typer.Option("--end-area", help="the area to end in, where the script leaves it")
+    int | None,
+    typer.Option("--end-area", help="number of the area to end in, if the script names none"),
 ]
 Strict = Annotated[bool, typer.Option("--strict", help="exit with status 1 if there are warnings")]
 Report = Annotated[
-    Path | None, typer.Option("--report", metavar="DIR", help="folder for the report")
+    Path | None, typer.Option("--report", metavar="DIR", help="write a report into this folder")
 ]
 Render = Annotated[
-    Path | None, typer.Option("--render", metavar="FILE.mp4|FILE.gif", help="film the run")
+    Path | None,
+    typer.Option("--render", metavar="FILE.mp4|FILE.gif", help="write a film of the run"),
 ]
-Force = Annotated[bool, typer.Option("--force", help="replace files that are there already")]
+Force = Annotated[bool, typer.Option("--force", help="replace existing files")]
 
 
 def given_options(context: typer.Context) -> list[str]:
-    """The names of the parameters of a command that its command line has, but for arguments."""
+    """Return the parameter names of the options that the command line contains."""
     arguments = {p.name for p in context.command.params if p.param_type_name == "argument"}
     sources = ((name, context.get_parameter_source(name)) for name in context.params)
     return [
@@ -53,6 +56,6 @@ def given_options(context: typer.Context) -> list[str]:
     ]
 
 
-def dashed(name: str) -> str:
-    """A parameter's name as that of an option."""
+def option_name(name: str) -> str:
+    """Return the option that belongs to a parameter."""
     return "--" + name.replace("_", "-")

@@ -1,4 +1,4 @@
-"""A mission's best order on the terminal."""
+"""Table and lines on the terminal for the best order of a mission."""
 
 from collections.abc import Iterator
 from itertools import chain
@@ -16,43 +16,44 @@ from argo_compiler.route.robust_spread import TravelSpread
 from argo_compiler.route.tour_pauses import TourPause, pauses
 from argo_env.formatting import clock
 from argo_env.planning.opening import OpenedSite
-from argo_planner.terminal.words import order_said
+from argo_planner.terminal.words import name_keep_order_option
 from argo_planner.use_cases.routing import Suggested, completions, too_long
 
-_BROKEN = 3  # requirements that the written order does not keep to, as far as they are shown
-_SHOWN = 12  # orders to keep that are shown
+_MAX_VIOLATIONS = 3  # violations of the written order that are listed
+_MAX_PRECEDENCES = 12  # precedences that are listed
 
 
 def show_risk(found: Suggested, spread: TravelSpread, seed: int, console: Console) -> None:
-    """Prints how probable it is that both orders keep to all limits."""
+    """Print how probable it is that the written and the suggested order keep all time limits."""
     problem = found.planned.problem
     both = completions(found, spread, seed)
     for name, done in zip(("As written", "Suggested"), both, strict=True):
-        text = f"{name}: within all limits with {done.probability:.1%}"
+        text = f"{name}: in time with a probability of {done.probability:.1%}"
         if done.duration < float("inf"):
             mean, most = (clock(x * problem.unit) for x in (done.duration, done.duration_95))
-            text += f" ({done.low:.1%} to {done.high:.1%}); {mean} on average, {most} in 95 %"
+            text += f" ({done.low:.1%} to {done.high:.1%}); {mean} on average, "
+            text += f"at most {most} in 95 % of the cases"
         console.print(escape(text), soft_wrap=True)
-    console.print(escape(f"Spread: {spread.source}"), soft_wrap=True)
+    console.print(escape(f"Spread of the travel times: {spread.source}"), soft_wrap=True)
 
 
-def show(found: Suggested, console: Console) -> None:
-    """Prints the suggested order beside the written one, and what is known of it."""
+def show_order(found: Suggested, console: Console) -> None:
+    """Print the suggested order next to the written one, with its times and proof."""
     console.print(_table(found))
     for line in _lines(found):
         console.print(escape(line), soft_wrap=True)
 
 
-def written_lines(
+def reordering_lines(
     found: Suggested, mission: Mission, site: OpenedSite, output: Path
 ) -> Iterator[str]:
-    """What is said of a mission that was written in its new order."""
+    """Yield the lines about a mission that was written in its new order."""
     yield f"Mission: {output}"
     limit = mission.max_duration
     if limit is not None and limit != found.planned.mission.max_duration:
-        yield f"Its maximum duration is the budget now: {time_words(limit)}"
+        yield f"Its maximum duration is now the budget: {time_words(limit)}"
     if wrong := too_long(mission, site):
-        yield f"Note: on its own ways {wrong}: choose the order for less time"
+        yield f"Note: with its exact travel times, {wrong}: search with a smaller budget"
 
 
 def _table(found: Suggested) -> Table:
@@ -95,31 +96,31 @@ def _lines(found: Suggested) -> Iterator[str]:
     planned, suggestion = found.planned, found.suggestion
     problem, worth = planned.problem, evaluate(planned.problem, found.route)
     new, old = found.seconds(worth.duration), found.seconds(found.written.duration)
-    yield f"As written: {clock(old)}" + _broken(found)
+    yield f"As written: {clock(old)}" + _violations_text(found)
     change = f", {clock(abs(old - new))} {'less' if new <= old else 'more'}" if new != old else ""
     share = f" ({(old - new) / old:.0%})" if new < old and old > 0.0 else ""
     yield f"Suggested:  {clock(new)}{change}{share}"
     if suggestion.dropped:
         done, of = len(suggestion.order), problem.size
         names = ", ".join(planned.visits.names[visit] for visit in suggestion.dropped)
-        limit = problem.words.get("max_duration", "what is asked for")
+        limit = problem.words.get("max_duration", "requirements")
         yield f"{done} of {of} tasks within the {limit}; left out: {names}"
     yield _proof(found)
     for pause in chain.from_iterable(pauses(problem, found.route).values()):
-        unsaid = "" if pause.charger is None else "; no mission says that, so -o can't write it"
-        yield f"Pause: {_pause(found, pause)}{unsaid}"
+        refused = "" if pause.charger is None else "; no mission can charge, so -o can't write it"
+        yield f"Pause: {_pause(found, pause)}{refused}"
     for words in late_visits(planned, found.route):
         yield f"Note: {words}"
     if planned.mission.order is Order.PRECISE:
-        yield "The mission asks for a precise order: nothing may change places."
+        yield "The mission requires its precise order: no task may change its place."
     for name, late in _unreached(found):
         members = ", ".join(planned.visits.names[visit] for visit in late)
-        yield f"Note: the time of {name} is over before {members}: the way there counts"
+        yield f"Note: the time of {name} is over before {members}: it includes the drive there"
     kept = list(dict.fromkeys(p.words for p in problem.precedences))
-    for words in kept[:_SHOWN]:
-        yield f"Kept: {order_said(words)}"
-    if len(kept) > _SHOWN:
-        yield f"Kept: {len(kept) - _SHOWN} more"
+    for words in kept[:_MAX_PRECEDENCES]:
+        yield f"Kept: {name_keep_order_option(words)}"
+    if len(kept) > _MAX_PRECEDENCES:
+        yield f"Kept: {len(kept) - _MAX_PRECEDENCES} more"
     for reason in planned.reasons:
         yield f"Note: {reason}"
     for reason in suggestion.reasons:
@@ -127,8 +128,10 @@ def _lines(found: Suggested) -> Iterator[str]:
 
 
 def _unreached(found: Suggested) -> Iterator[tuple[str, list[int]]]:
-    """Groups that their time ends before all of their tasks have been reached once, and those tasks
-    that it ends before, as visits."""
+    """Yield groups whose time is over before each of their tasks was reached once.
+
+    Each comes with the visits of the tasks that are not reached.
+    """
     planned, route = found.planned, found.route
     problem, order = planned.problem, found.route.order
     arrivals = dict(zip(order, evaluate(problem, route).arrivals, strict=True))
@@ -153,20 +156,19 @@ def _pause(found: Suggested, pause: TourPause) -> str:
     return f"wait {how_long} for {found.planned.visits.names[pause.visit]}"
 
 
-def _broken(found: Suggested) -> str:
-    """What the written order does not keep to."""
+def _violations_text(found: Suggested) -> str:
+    """Return a clause that names the requirements which the written order violates."""
     limit = found.planned.problem.words.get("max_duration", "")
     broken = [
-        # Else in the problem's units.
-        limit
+        limit  # in place of the violation's text, which has the problem's units
         if violation.startswith("it takes ")
         else violation.replace(" begins at ", "'s time window|").partition("|")[0]
         for violation in dict.fromkeys(found.written.violations)
     ]
     if not broken:
         return ""
-    more = f" and {len(broken) - _BROKEN} more" if len(broken) > _BROKEN else ""
-    return f", which does not keep to: {'; '.join(broken[:_BROKEN])}{more}"
+    more = f" and {len(broken) - _MAX_VIOLATIONS} more" if len(broken) > _MAX_VIOLATIONS else ""
+    return f", which violates: {'; '.join(broken[:_MAX_VIOLATIONS])}{more}"
 
 
 def _proof(found: Suggested) -> str:
@@ -176,8 +178,9 @@ def _proof(found: Suggested) -> str:
         return f"Proven: no order is better{method}"
     if suggestion.prize < suggestion.prize_bound:
         return (
-            f"Not proven: worth {suggestion.prize}, and none is worth more than "
+            f"Not proven: worth {suggestion.prize}, and no order is worth more than "
             f"{suggestion.prize_bound}{method}"
         )
     bound = clock(found.seconds(suggestion.bound))
-    return f"Not proven: no order takes less than {bound}, {suggestion.gap or 0.0:.1%} less{method}"
+    gap = f"{suggestion.gap or 0.0:.1%} less than this one"
+    return f"Not proven: no order takes less than {bound}, {gap}{method}"

@@ -1,7 +1,7 @@
-"""Standard output and standard error that a command can do without.
+"""Standard output and standard error whose failure does not stop a command.
 
-A reader may close them, as `| head` does, and a disk may be full. The command goes on then, so that
-what it writes elsewhere is written; how it ends is for whoever started it.
+A reader may close them, as `| head` does, or the disk may be full. The command continues, so that
+it writes its files; the caller decides which exit status it has.
 """
 
 import io
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Output(io.FileIO):
-    """Takes all that is written, also when it can be written no longer. Holds why."""
+    """Stream that drops data after its first failure. Holds that failure."""
 
     failure: OSError | None = None
 
@@ -28,23 +28,23 @@ class Output(io.FileIO):
 
 
 def guard_output() -> Output:
-    """Standard output, guarded as standard error is from now on."""
+    """Replace standard output and standard error by guarded ones, and return the former."""
     output, sys.stdout = _guarded(sys.stdout)
     _, sys.stderr = _guarded(sys.stderr)
     return output
 
 
 def _guarded(stream: TextIO | None) -> tuple[Output, io.TextIOWrapper]:
-    if stream is None:  # closed by whoever wants no output
+    if stream is None:  # closed by the caller, who wants no output
         output = Output(os.open(os.devnull, os.O_WRONLY), "wb")
         return output, io.TextIOWrapper(io.BufferedWriter(output))
     assert isinstance(stream, io.TextIOWrapper)
     output = Output(stream.fileno(), "wb", closefd=False)
     return output, io.TextIOWrapper(
-        # Where Python was asked not to buffer, there is nothing between them.
+        # If Python was asked not to buffer, nothing may buffer here either.
         output if stream.write_through else io.BufferedWriter(output),
         encoding=stream.encoding,
-        errors="backslashreplace",  # names need not be of a terminal's letters
+        errors="backslashreplace",  # a terminal may lack letters of a name
         line_buffering=stream.line_buffering,
         write_through=stream.write_through,
     )

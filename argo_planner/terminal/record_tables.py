@@ -1,4 +1,4 @@
-"""The record of a run on the terminal."""
+"""Tables and lines on the terminal for the record of a run."""
 
 from collections.abc import Iterator
 
@@ -12,12 +12,12 @@ from argo_env.run.record import RunRecord, WindowOutcome
 from argo_env.run.verdict_line import Tone
 
 _WIDE = 100
-"""characters of a terminal that has room for what not everyone needs"""
+"""width in characters from which a terminal shows the column with measuring times"""
 _STYLES = {Tone.GOOD: "bold green", Tone.NOTICE: "bold yellow", Tone.BAD: "bold red"}
 
 
 def show_record(record: RunRecord, console: Console) -> None:
-    """Prints what was measured, what each task took, what was noticed, and how the run went."""
+    """Print the readings, the tasks, findings and contacts, and the verdict."""
     console.print(_readings(record))
     measuring = console.width >= _WIDE and any(t.measuring_duration for t in record.tasks)
     console.print(_tasks(record, measuring))
@@ -25,13 +25,13 @@ def show_record(record: RunRecord, console: Console) -> None:
     limit = f" of at most {clock(result.max_duration)}" if result.max_duration else ""
     touches = f"{len(record.contacts)} contact{'s' if len(record.contacts) != 1 else ''}"
     not_docked = "not docked" if result.ended else "not docked yet"
-    docked = {True: "docked", False: not_docked, None: "no docking asked for"}[result.docked]
+    docked = {True: "docked", False: not_docked, None: "docking not required"}[result.docked]
     console.print(
         f"{clock(result.duration)}{limit}, {result.distance:.1f} m, "
         f"{result.climbed:.1f} m climbed, {touches}, {docked}",
         soft_wrap=True,
     )
-    for line in _noticed(record):
+    for line in _problem_lines(record):
         console.print(f"  {escape(line)}", style="yellow", soft_wrap=True)
     headline = record.headline
     console.print(
@@ -39,8 +39,8 @@ def show_record(record: RunRecord, console: Console) -> None:
     )
 
 
-def _noticed(record: RunRecord) -> Iterator[str]:
-    """A line for each thing that the headline counts, and for faults that did not happen."""
+def _problem_lines(record: RunRecord) -> Iterator[str]:
+    """Yield a line for all that the headline counts, and for faults that did not happen."""
     for finding in record.findings:
         detail = "" if finding.is_reading or not finding.detail else f": {finding.detail}"
         yield ", ".join(filter(None, (finding.in_words, finding.whereabouts))) + detail
@@ -74,8 +74,10 @@ def _readings(record: RunRecord) -> Table:
 
 
 def _tasks(record: RunRecord, measuring: bool) -> Table:
-    """One row for each task and for what was waited for, in the order in which they first began;
-    repeated ones are taken together. With `measuring`, how much of the time went into that."""
+    """Return a table with a row for each task and each kind of wait, in order of their first start.
+
+    Repetitions share a row. With `measuring`, a column shows how long the robot measured.
+    """
     table = Table(title="Tasks", title_justify="left")
     table.add_column("task")
     names = ("times", "first at", "time", *(["measuring"] if measuring else []))
@@ -89,7 +91,7 @@ def _tasks(record: RunRecord, measuring: bool) -> Table:
 
 
 def _task_rows(record: RunRecord) -> Iterator[tuple[float, tuple[str, ...]]]:
-    """The rows with the times (s) of the first begins."""
+    """Yield the rows of tasks, each with the time in s of its first start."""
     missed = _missed(record)
     for name in dict.fromkeys([*(t.task for t in record.tasks), *(name for name, _ in missed)]):
         runs = [t for t in record.tasks if t.task == name]
@@ -114,7 +116,10 @@ def _task_rows(record: RunRecord) -> Iterator[tuple[float, tuple[str, ...]]]:
 
 
 def _missed(record: RunRecord) -> list[tuple[str, float]]:
-    """The visits in which no action ran, as the time window was over, and when (s) they began."""
+    """Return the tasks whose window was over when they were reached, with these times in s.
+
+    In such a visit no action ran.
+    """
     waited = {wait.task for wait in record.waits}
     return [
         (one.task, one.visited)
@@ -125,7 +130,7 @@ def _missed(record: RunRecord) -> list[tuple[str, float]]:
 
 
 def _wait_rows(record: RunRecord) -> Iterator[tuple[float, tuple[str, ...]]]:
-    """The rows with the times (s) of the first begins."""
+    """Yield the rows of waits, each with the time in s of its first start."""
     found = waits(record)
     for what in dict.fromkeys(wait.what for wait in found):
         same = [wait for wait in found if wait.what == what]

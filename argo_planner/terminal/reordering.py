@@ -1,4 +1,4 @@
-"""Missions that are put in their best order before they are compiled or run."""
+"""Option `--optimise`: the best order before a mission is compiled or run."""
 
 from dataclasses import replace
 
@@ -9,30 +9,31 @@ from argo_compiler.base.errors import Conflict
 from argo_env.formatting import clock
 from argo_env.planning.opening import OpenedSite
 from argo_env.run.record import Reordering
-from argo_planner.terminal.words import said_elsewhere
+from argo_planner.terminal.words import order_error_text
 from argo_planner.use_cases.importing import ImportedMission
 from argo_planner.use_cases.no_order import require_order
 from argo_planner.use_cases.routing import suggest_order
 
 
-def optimise_shown(
+def optimise_and_show(
     imported: ImportedMission, site: OpenedSite
 ) -> tuple[ImportedMission, Reordering]:
-    """The mission in its best order, and what is said of it. Shows how much time that saves.
+    """Return the mission in its best order, and a description of it; print the predicted time.
 
-    Raises ArgoError if its order can't be changed, or there is none that meets all that it asks
-    for.
+    Raises:
+        ArgoError: The order can't be changed, or no order meets all requirements of the mission.
     """
     found = suggest_order(imported, site)
     try:
         require_order(found, imported.source_name)
     except Conflict as error:
-        raise Conflict(said_elsewhere(error, imported.source_name)) from None
-    done = found.reordering
-    order = ", ".join(done.order)
+        raise Conflict(order_error_text(error, imported.source_name)) from None
+    reordering = found.reordering
+    order = ", ".join(reordering.order)
     text = (
-        f"Order: {order}\nPredicted: {clock(done.duration)}, as written "
-        f"{clock(done.written_duration)}{'; no order is better' if done.proven else ''}"
+        f"Order: {order}\nPredicted: {clock(reordering.duration)}, as written "
+        f"{clock(reordering.written_duration)}"
+        f"{'; no order is better' if reordering.proven else ''}"
     )
     Console(highlight=False).print(escape(text), soft_wrap=True)
-    return replace(imported, mission=found.mission), done
+    return replace(imported, mission=found.mission), reordering

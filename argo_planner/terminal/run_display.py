@@ -1,4 +1,4 @@
-"""What a person sees of a run while it goes on: its progress and readings."""
+"""Display of a run in progress: a bar, readings and findings."""
 
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
@@ -22,52 +22,52 @@ from argo_planner.terminal.verbosity import is_quiet
 
 
 class RunDisplay(Observer, Closing):
-    """The progress on standard error. Holds the bar; use it as a context."""
+    """Progress of a run on standard error. Holds the bar; use it as a context."""
 
     def __init__(self, total: float | None) -> None:
-        """`total`: the mission's longest duration (s), if it has one."""
+        """Prepare a bar for a mission of at most `total` s; None: it has no limit."""
         self._progress = progress_bar()
-        self._bar = self._progress.add_task("setting off", total=total)
+        self._bar = self._progress.add_task("starting", total=total)
         self._site: Site | None = None
 
     def on_begin(self, setup: RunSetup, spec: RunSpec) -> None:  # noqa: ARG002
-        """The run is about to begin on this site."""
+        """Store the site of the run, which is about to begin."""
         self._site = setup.navigator.site
 
     def on_step(self, now: float, action: RobotAction | None) -> None:
-        """Shows the time (s) and the task under way."""
-        task = action.task.name if action else "waits"
+        """Show the time in s and the current task."""
+        task = action.task.name if action else "waiting"
         self._progress.update(self._bar, completed=now, description=task)
 
     def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
-        """Shows what was told and sensed."""
-        told = entry.reported_anomalies(self._site) if self._site else ()
+        """Print reported anomalies and values, and what the robot has sensed."""
+        reported = entry.reported_anomalies(self._site) if self._site else ()
         for value in entry.given_values(self._site) if self._site else ():
-            self._say(f"{value.t!r} s: {value.in_words}")
-        for news in (*told, *entry.sensed):
+            self._print(f"{value.t!r} s: {value.in_words}")
+        for news in (*reported, *entry.sensed):
             self.announce(news)
 
     def announce(self, news: Reading | Anomaly) -> None:
-        """Shows a reading or a finding in a line of its own, which stays."""
+        """Print a reading or a finding as a line that stays."""
         if isinstance(news, Reading):
             text = (
                 f"{news.t!r} s: {news.task}: {news.name} (#{news.checkpoint}) shows "
                 f"{news.value!r} {news.unit}"
             )
         else:
-            how = "told" if news.is_reported else "found"
-            said = filter(None, (how, news.kind.replace("_", " "), news.detail))
-            text = f"{news.t!r} s: {': '.join(said)}"
+            origin = "reported" if news.is_reported else "detected"
+            parts = filter(None, (origin, news.kind.replace("_", " "), news.detail))
+            text = f"{news.t!r} s: {': '.join(parts)}"
             if place := news.whereabouts:
                 text += f", {place}"
-        self._say(text)
+        self._print(text)
 
-    def _say(self, text: str) -> None:
+    def _print(self, text: str) -> None:
         if not is_quiet():
             self._progress.console.print(escape(text), soft_wrap=True, highlight=False)
 
     def warn(self, text: str) -> None:
-        """Shows what the run goes on without, in lines of their own, which stay."""
+        """Print a warning that stays, such as the loss of the recording."""
         self._progress.console.print(
             f"[bold yellow]Warning[/]: {escape(text)}", soft_wrap=True, highlight=False
         )
@@ -77,26 +77,32 @@ class RunDisplay(Observer, Closing):
         return self
 
     def close(self) -> None:
-        """Ends the display; what it has shown stays."""
+        """End the display; printed lines stay."""
         self._progress.stop()
 
 
-def carry_out_shown(
+def run_with_display(
     total: float | None,
     recording: Path | None,
     source: Path | None,
     carry_out: Callable[[Sequence[Observer]], RunRecord],
 ) -> tuple[RunRecord, str]:
-    """A run that is carried out with the observers which show its progress and record it, and a
-    line about the recording, empty without one.
+    """Carry out a run with a display and, if wanted, a recording.
 
-    `total`: as of RunDisplay; `source`: the file that the mission was read from.
+    Args:
+        total: longest duration of the mission in s; None: it has no limit
+        recording: file to record into; None: the run is not recorded
+        source: file that the mission was read from
+        carry_out: function that carries out the run with observers
+
+    Returns:
+        The record of the run, and a line about the recording, empty without one.
     """
     with ExitStack() as stack:
         display = stack.enter_context(RunDisplay(total))
         if recording is None:
             return carry_out([display]), ""
-        # What this needs is not there without the extra.
+        # Needs an extra that may not be installed.
         from argo_env.recording.files import recording_to
 
         recorder = stack.enter_context(recording_to(recording, source, display.warn))
@@ -105,7 +111,7 @@ def carry_out_shown(
 
 
 def progress_bar() -> Progress:
-    """A bar on standard error, gone when it ends; nothing where only results are to be shown."""
+    """Return a bar on standard error that vanishes at its end; with `--quiet` it is not shown."""
     return Progress(
         TextColumn("{task.description:<24}"),
         BarColumn(),

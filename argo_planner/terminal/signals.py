@@ -1,7 +1,7 @@
 """Signals that ask the process to end: Ctrl-C (SIGINT), SIGTERM, and a closed terminal (SIGHUP).
 
-Imported before anything else, so it brings next to nothing. A signal that whoever started the
-process has it ignore, as `nohup` does, stays ignored.
+This module is imported before anything else, so it imports very little. A signal that is ignored
+when the process starts, as with `nohup`, stays ignored.
 """
 
 import os
@@ -13,98 +13,100 @@ from types import FrameType
 
 _NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 _AGAIN = 0.01
-"""s until an interruption that was lost is tried again"""
+"""s until an interruption that could not be raised is raised again"""
 
 _Handler = Callable[[int, FrameType | None], object]
 
 
 class Interrupted(BaseException):
-    """A signal asks the process to end. No Exception, so that nobody takes it for an error."""
+    """A signal that asks the process to end; no Exception, so that no handler takes it for one."""
 
     def __init__(self, number: int) -> None:
         super().__init__(f"signal {number}")
         self.status = 128 + number
-        """that the process exits with, as shells tell it"""
+        """exit status of the process: 128 and the number of the signal, as in shells"""
 
 
 class SignalWatch:
-    """Whether a signal has come. Holds it."""
+    """Function that returns True if a signal was received. Holds the signal."""
 
     def __init__(self) -> None:
-        self.came: Interrupted | None = None
+        self.received: Interrupted | None = None
 
     def __call__(self) -> bool:
-        return self.came is not None
+        return self.received is not None
 
     def require_none(self) -> None:
-        """Raises Interrupted if one has come."""
-        if self.came is not None:
-            raise self.came
+        """Raise Interrupted if a signal was received."""
+        if self.received is not None:
+            raise self.received
 
 
 def end_at_once() -> None:
-    """From now on a signal ends the process with a line: for as long as it has done nothing."""
-    _answer(_end)
+    """Let signals end the process at once with a message, as long as it has done nothing."""
+    _set_handler(_end)
 
 
 def ignore_signals() -> None:
-    """From now on signals change nothing: for when all is done, and the process is ending."""
+    """Ignore signals from now on, as all work is done and the process is ending."""
     for number in _NUMBERS:
         signal.signal(number, signal.SIG_IGN)
 
 
 def raise_interrupted(raised: SignalWatch) -> None:
-    """Let a signal raise Interrupted from now on, wherever the program is, and note it in `raised`.
+    """Let signals raise Interrupted from now on, anywhere in the program, and store it in `raised`.
 
-    The first one may come before this has returned. A library may make another exception of it, so
-    whoever catches one asks `raised`.
+    The first signal may arrive before this function has returned. A library may turn Interrupted
+    into another exception, so code that catches exceptions has to check `raised`.
     """
 
     def interrupt(number: int, _: FrameType | None) -> None:
-        raised.came = Interrupted(number)
-        raise raised.came
+        raised.received = Interrupted(number)
+        raise raised.received
 
-    def unraisable(said: "sys.UnraisableHookArgs") -> None:
-        """Python can't raise what comes up in a destructor or such, and would print it."""
-        if raised.came is None:
-            sys.__unraisablehook__(said)
-        elif isinstance(said.exc_value, Interrupted):
-            number = said.exc_value.status - 128
+    def raise_later(unraisable: "sys.UnraisableHookArgs") -> None:
+        """Raise a lost Interrupted again soon; Python can't raise it in a destructor."""
+        if raised.received is None:
+            sys.__unraisablehook__(unraisable)
+        elif isinstance(unraisable.exc_value, Interrupted):
+            number = unraisable.exc_value.status - 128
             signal.signal(signal.SIGALRM, lambda _, frame: interrupt(number, frame))
             signal.setitimer(signal.ITIMER_REAL, _AGAIN)
 
-    sys.unraisablehook = unraisable
-    _answer(interrupt)
+    sys.unraisablehook = raise_later
+    _set_handler(interrupt)
 
 
 @contextmanager
-def first_signal_deferred() -> Iterator[SignalWatch]:
-    """Within the context the first signal is only noted, and what it gives says so; the next one is
-    answered as before."""
+def defer_first_signal() -> Iterator[SignalWatch]:
+    """Yield a SignalWatch that receives the first signal; the next one acts as before the context.
+
+    In another thread than the main one, no signal is received.
+    """
     deferred = SignalWatch()
     before = {number: signal.getsignal(number) for number in _NUMBERS}
 
-    def restore() -> None:
+    def restore_handlers() -> None:
         for number, handler in before.items():
             signal.signal(number, handler)
 
-    def note(number: int, _: FrameType | None) -> None:
-        deferred.came = Interrupted(number)
-        restore()
+    def store_signal(number: int, _: FrameType | None) -> None:
+        deferred.received = Interrupted(number)
+        restore_handlers()
 
     try:
-        _answer(note)
-    except ValueError:  # not in the main thread, where signals are answered
+        _set_handler(store_signal)
+    except ValueError:  # not in the main thread, the only one that may set handlers
         yield deferred
         return
     try:
         yield deferred
     finally:
-        restore()
+        restore_handlers()
 
 
-def _answer(handler: _Handler) -> None:
-    """Raises ValueError but in the main thread."""
+def _set_handler(handler: _Handler) -> None:
+    """Set a handler for signals that are not ignored; raise ValueError outside the main thread."""
     for number in _NUMBERS:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, handler)

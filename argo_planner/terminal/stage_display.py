@@ -1,4 +1,4 @@
-"""What takes more than two seconds is shown on standard error: what it is, and how far it is."""
+"""Display of work that takes more than two seconds, on standard error, with its progress."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -9,22 +9,22 @@ from typing import TYPE_CHECKING
 from argo_compiler.base.stages import listen_to_stages
 from argo_planner.terminal.verbosity import is_quiet
 
-# Most commands are done before there is anything to show.
+# Slow to import, and most commands end before anything is shown.
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.progress import Progress
 
 AFTER = 2.0
-"""s that something has to take until it is shown"""
+"""s after which a stage is shown"""
 EVERY = 10.0
-"""s between lines where standard error is no terminal"""
-_GAP = 1.0  # s of other work between two stages, after which the first line is waited for again
+"""s between two lines if standard error is no terminal"""
+_GAP = 1.0  # s between two stages after which the wait for the first line begins anew
 _TICK = 0.25  # s
 
 
 @contextmanager
-def stages_shown() -> Iterator[None]:
-    """Within this, stages that last are shown."""
+def show_stages() -> Iterator[None]:
+    """Show stages that take long within this context."""
     display = StageDisplay()
     try:
         with listen_to_stages(display):
@@ -34,8 +34,9 @@ def stages_shown() -> Iterator[None]:
 
 
 class StageDisplay:
-    """Shows stages: a bar on a terminal, which goes away at their end, and else a line now and
-    then. A thread of its own looks what goes on, as the work itself may not say anything for long.
+    """Display of stages: a bar on a terminal, which vanishes at their end, otherwise lines.
+
+    A separate thread refreshes it, since the work itself may report nothing for a long time.
     """
 
     def __init__(
@@ -44,8 +45,13 @@ class StageDisplay:
         clock: Callable[[], float] = time.monotonic,
         watched: bool = True,
     ) -> None:
-        """The clock gives s. Without a console, it is standard error; `watched`: by a thread, else
-        by whoever calls `look`."""
+        """Prepare the display; nothing is shown yet.
+
+        Args:
+            console: where to show the stages; None: on standard error
+            clock: function that returns the time in s
+            watched: whether a thread calls `refresh`; otherwise the caller has to
+        """
         self._console = console
         self._clock = clock
         self._watched = watched
@@ -61,7 +67,7 @@ class StageDisplay:
         self._bar: Progress | None = None
 
     def __call__(self, stage: str | None, share: float | None, detail: str) -> None:
-        """Hears of a stage, or of the end of all."""
+        """Receive the current stage, or None when all have ended."""
         with self._lock:
             now = self._clock()
             if stage is None:
@@ -73,10 +79,10 @@ class StageDisplay:
         if self._watched and self._thread is None:
             self._thread = Thread(target=self._watch, daemon=True)
             self._thread.start()
-        self.look()
+        self.refresh()
 
-    def look(self) -> None:
-        """Shows what goes on, if it is time to."""
+    def refresh(self) -> None:
+        """Show the current stage if it is time to."""
         with self._lock:
             now = self._clock()
             if self._stage is None or now - self._begun < AFTER or is_quiet():
@@ -90,11 +96,11 @@ class StageDisplay:
             elif now - self._written >= EVERY:
                 self._written = now
                 done = [] if self._share is None else [f"{self._share:.0%}"]
-                text = ", ".join([*self._said(), *done])
+                text = ", ".join([*self._texts(), *done])
                 self._console.print(f"{text} …", soft_wrap=True, highlight=False, markup=False)
 
     def close(self) -> None:
-        """Ends the display."""
+        """End the display."""
         self._closed.set()
         if self._thread is not None:
             self._thread.join()
@@ -103,7 +109,7 @@ class StageDisplay:
 
     def _watch(self) -> None:
         while not self._closed.wait(_TICK):
-            self.look()
+            self.refresh()
 
     def _show(self, console: "Console") -> None:
         if self._bar is None:
@@ -117,16 +123,16 @@ class StageDisplay:
                 transient=True,
                 redirect_stdout=False,  # results never go to standard error
             )
-            self._bar.add_task(", ".join(self._said()), total=None)
+            self._bar.add_task(", ".join(self._texts()), total=None)
             self._bar.start()
         self._bar.update(
             self._bar.task_ids[0],
-            description=", ".join(self._said()),
+            description=", ".join(self._texts()),
             total=None if self._share is None else 1.0,
             completed=self._share or 0.0,
         )
 
-    def _said(self) -> list[str]:
+    def _texts(self) -> list[str]:
         return [text for text in (self._stage, self._detail) if text]
 
     def _hide(self) -> None:

@@ -1,6 +1,6 @@
-"""How much the commands say beside their results: `-q`, `-v` and `-vv`.
+"""The options `-q`, `-v` and `-vv`: the amount of output apart from the results.
 
-The level of the libraries' loggers is what holds it. What they log goes to standard error.
+The level of the libraries' loggers stores it. Their log goes to standard error.
 """
 
 import logging
@@ -14,7 +14,7 @@ _LOGGER = logging.getLogger("argo_planner")
 
 
 class _ToStandardError(logging.Handler):
-    """Prints to what is standard error at the time, so that a progress bar stays below it."""
+    """Handler that looks up standard error for each line, so that a progress bar stays below."""
 
     def emit(self, record: logging.LogRecord) -> None:
         print(self.format(record), file=sys.stderr)
@@ -25,8 +25,12 @@ _HANDLER.setFormatter(logging.Formatter("%(levelname)s %(name)s: %(message)s"))
 
 
 def set_verbosity(verbose: int = 0, quiet: bool = False) -> None:
-    """From now on only results and errors are shown, or what is done as well: once in stages, twice
-    in detail."""
+    """Set what is shown from now on.
+
+    Args:
+        verbose: 1: also each stage of the work; 2: also its details
+        quiet: only results and errors; overrides `verbose`
+    """
     level = logging.ERROR if quiet else logging.WARNING
     if verbose and not quiet:
         level = logging.INFO if verbose == 1 else logging.DEBUG
@@ -38,40 +42,45 @@ def set_verbosity(verbose: int = 0, quiet: bool = False) -> None:
 
 
 def is_quiet() -> bool:
-    """Whether only results and errors are to be shown."""
+    """Return True if only results and errors are to be shown."""
     return not _LOGGER.isEnabledFor(logging.WARNING)
 
 
-def _more(value: int) -> None:
+def _set_verbose(value: int) -> None:
     if value:
         set_verbosity(verbose=value)
 
 
-def _less(value: bool) -> None:
+def _set_quiet(value: bool) -> None:
     if value:
         set_verbosity(quiet=True)
 
 
-# Said after a command's name these count from its own place on, so only what is said is set.
+# These options follow a command's name and override those before it, so only options that are
+# given are set.
 Verbose = Annotated[
     int,
     typer.Option(
         "-v",
         "--verbose",
         count=True,
-        callback=_more,
+        callback=_set_verbose,
         expose_value=False,
         show_default=False,
-        help="say what is done; -vv: in detail",
+        help="show what is being done; -vv: in detail",
     ),
 ]
 Quiet = Annotated[
     bool,
     typer.Option(
-        "-q", "--quiet", callback=_less, expose_value=False, help="show results and errors only"
+        "-q",
+        "--quiet",
+        callback=_set_quiet,
+        expose_value=False,
+        help="show results and errors only",
     ),
 ]
 
 
 def common_options(verbose: Verbose = 0, quiet: Quiet = False) -> None:
-    """Stands for the options that all commands have."""
+    """Declare the options that all commands have."""

@@ -1,4 +1,4 @@
-"""Messages of the libraries in the words of the command line: which option or command helps."""
+"""Error messages with the options and commands that help, as the libraries know no options."""
 
 import shlex
 from collections.abc import Iterable
@@ -10,7 +10,7 @@ from argo_compiler.base.listing import listed
 if TYPE_CHECKING:
     from argo_compiler.diagnostics import Diagnostic
 
-_WORDS = {
+_REMEDY_TEXTS = {
     Remedy.CHECK_MISSION: "argo check MISSION",
     Remedy.CHOOSE_AREAS: "--start-area and --end-area",
     Remedy.CHOOSE_START: "--start-area",
@@ -31,46 +31,52 @@ _WORDS = {
 }
 
 
-def said(error: ArgoError, prefix: str = "") -> str:
-    """The message of an error with the options and commands that help. The `prefix` goes before
-    what does not begin with the name of a file."""
-    # Slow to import, and most commands end well.
+def error_text(error: ArgoError, prefix: str = "") -> str:
+    """Return the message of an error, with the options and commands that help.
+
+    The `prefix` goes before a message that does not begin with the name of a file.
+    """
+    # Slow to import, and most commands have no error.
     from argo_compiler.diagnostics import DiagnosticError, to_text
 
     if isinstance(error, DiagnosticError):
-        return to_text(with_options(error.diagnostics), error.source_name)
-    return f"{prefix}{error}{_ways(error.remedies, error.about)}"
+        return to_text(name_options(error.diagnostics), error.source_name)
+    return f"{prefix}{error}{_remedies_text(error.remedies, error.about)}"
 
 
-def said_elsewhere(error: ArgoError, source: str) -> str:
-    """The message of an error about an order, where the command at hand has not the options that
-    help, but `argo route` has."""
-    ways = [f"argo route {shlex.quote(source)} {_WORDS[remedy]}" for remedy in error.remedies]
-    return f"{error} ({', '.join(ways)})" if ways else str(error)
+def order_error_text(error: ArgoError, source: str) -> str:
+    """Return the message of an error about an order, with the `argo route` commands that help.
+
+    It is for commands that do not have these options themselves.
+    """
+    commands = [
+        f"argo route {shlex.quote(source)} {_REMEDY_TEXTS[remedy]}" for remedy in error.remedies
+    ]
+    return f"{error} ({', '.join(commands)})" if commands else str(error)
 
 
-def order_said(text: str) -> str:
-    """What is said of an order, with the option that keeps it as it is written."""
+def name_keep_order_option(text: str) -> str:
+    """Return a text about an order in which the written order is followed by its option."""
     from argo_compiler.reorder.precedences import AS_WRITTEN
 
     return text.replace(AS_WRITTEN, f"{AS_WRITTEN} (--keep-order)")
 
 
-def with_options(diagnostics: Iterable["Diagnostic"]) -> tuple["Diagnostic", ...]:
-    """Diagnostics whose hints name the options that help."""
+def name_options(diagnostics: Iterable["Diagnostic"]) -> tuple["Diagnostic", ...]:
+    """Return the diagnostics with hints that name the options that help."""
     return tuple(d.model_copy(update={"hint": _hint(d)}) if d.remedies else d for d in diagnostics)
 
 
 def _hint(diagnostic: "Diagnostic") -> str:
     hint, choice = diagnostic.hint or "", diagnostic.choice
     if choice is None or not choice.values:
-        return f"{hint}{_ways(diagnostic.remedies)}".lstrip()
-    option = _WORDS[choice.remedy]
+        return f"{hint}{_remedies_text(diagnostic.remedies)}".lstrip()
+    option = _REMEDY_TEXTS[choice.remedy]
     chosen = listed([f"{option} {value}" for value in choice.values], "or")
     it = "it " if choice.remedy is Remedy.CHOOSE_SITE else ""
     return hint.replace(str(choice), f"choose {it}with {chosen}")
 
 
-def _ways(remedies: tuple[Remedy, ...], about: str = "") -> str:
-    ways = [_WORDS[remedy].format(about=shlex.quote(about)) for remedy in remedies]
-    return f" ({', '.join(ways)})" if ways else ""
+def _remedies_text(remedies: tuple[Remedy, ...], about: str = "") -> str:
+    texts = [_REMEDY_TEXTS[remedy].format(about=shlex.quote(about)) for remedy in remedies]
+    return f" ({', '.join(texts)})" if texts else ""

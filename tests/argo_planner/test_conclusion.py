@@ -7,8 +7,8 @@ import typer
 
 from argo_env.pictures import write_film
 from argo_planner.terminal.conclusion import Conclusion
-from argo_planner.terminal.kept import Kept
 from argo_planner.terminal.signals import Interrupted, SignalWatch
+from argo_planner.terminal.stored_run import StoredRun
 from argo_planner.use_cases.reporting import REPORT_FILES
 from tests.yard import fast_setup, measure, mission, run_with
 
@@ -26,9 +26,9 @@ def conclude(record, yard_site, tmp_path, monkeypatch, capsys):
     files = dict.fromkeys(REPORT_FILES, b"in short")
     monkeypatch.setattr("argo_planner.terminal.conclusion.report_files", lambda *_: files)
 
-    def end(report=None, render=None, kept=Kept(Path("run.journal")), came=None):  # noqa: B008
+    def end(report=None, render=None, kept=StoredRun(Path("run.journal")), came=None):  # noqa: B008
         interruption = SignalWatch()
-        interruption.came = came
+        interruption.received = came
         status = 0
         try:
             Conclusion(
@@ -58,15 +58,15 @@ def test_a_report_that_cannot_be_written(conclude):
     assert "MEASURE 1" in shown
     assert "Is a directory" in said
     assert said.endswith(
-        "argo: not written: report; made by: argo resume run.journal --report report\n"
+        "argo: not written: report; to try again: argo resume run.journal --report report\n"
     )
 
 
 def test_a_report_that_cannot_be_written_of_a_run_that_was_not_kept(conclude):
     Path("report/report.html").mkdir(parents=True)
-    status, _, said = conclude(report="report", kept=Kept())
+    status, _, said = conclude(report="report", kept=StoredRun())
     assert (status, said.splitlines()[-1]) == (
-        2, "argo: not written: report, and the run was not kept",
+        2, "argo: not written: report; the run was not stored for another try",
     )  # fmt: skip
 
 
@@ -76,7 +76,7 @@ def test_the_report_is_still_written_when_the_process_is_interrupted_and_the_fil
     assert "Report: report/report.html" in shown
     assert not Path("run.gif").exists()
     assert said.endswith(
-        "argo: not written: run.gif; made by: argo resume run.journal --render run.gif\n"
+        "argo: not written: run.gif; to try again: argo resume run.journal --render run.gif\n"
     )
 
 
@@ -95,7 +95,7 @@ def test_a_second_signal_ends_the_report(conclude, monkeypatch):
     status, shown, said = conclude("report", came=Interrupted(2))
     assert status == 130
     assert "MEASURE 1" in shown
-    assert said.endswith("made by: argo resume run.journal --report report\n")
+    assert said.endswith("to try again: argo resume run.journal --report report\n")
 
 
 def test_a_film_is_interrupted_between_two_pictures(conclude, monkeypatch):
@@ -108,18 +108,18 @@ def test_a_film_is_interrupted_between_two_pictures(conclude, monkeypatch):
         write_film(*arguments, progress=told, **options)
 
     monkeypatch.setattr("argo_env.pictures.write_film", filming)
-    status, shown, said = conclude(render="run.gif", kept=Kept(recording=Path("run.journal")))
+    status, shown, said = conclude(render="run.gif", kept=StoredRun(recording=Path("run.journal")))
     assert status == 130
     assert "MEASURE 1" in shown
-    assert said.endswith("made by: argo replay run.journal --render run.gif\n")
+    assert said.endswith("to try again: argo replay run.journal --render run.gif\n")
     assert [path.name for path in Path().iterdir()] == ["run.journal"]
 
 
 def test_what_makes_it_anew_replaces_what_the_run_was_to_replace(conclude):
     Path("run.gif").write_bytes(b"an older film")
     status, _, said = conclude(
-        render="run.gif", kept=Kept(Path("run.journal"), force=True), came=Interrupted(15)
+        render="run.gif", kept=StoredRun(Path("run.journal"), force=True), came=Interrupted(15)
     )
     assert status == 143
     assert Path("run.gif").read_bytes() == b"an older film"
-    assert said.endswith("made by: argo resume run.journal --render run.gif --force\n")
+    assert said.endswith("to try again: argo resume run.journal --render run.gif --force\n")

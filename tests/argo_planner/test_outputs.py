@@ -1,4 +1,4 @@
-"""No command writes over what it reads or what is there already, or two results to one place."""
+"""No command writes over what it reads or what already exists, or two results to one place."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, Remedy
 from argo_compiler.files.atomic_write import write_folder
-from argo_planner.terminal.words import said
+from argo_planner.terminal.words import error_text
 from tests.argo_compiler.files.test_atomic_write import contents
 from tests.argo_planner.conftest import argo
 from tests.conftest import examples
@@ -110,7 +110,7 @@ def test_nothing_that_is_there_is_changed_without_force(folder: Path, data) -> N
         before = contents(folder)
         result = invoke(command)
         assert isinstance(result.exception, Conflict), result.output
-        assert "is there already" in str(result.exception)
+        assert "already exists" in str(result.exception)
         assert any(str(result.exception).startswith(name) for name in there)
         assert contents(folder) == before
     finally:
@@ -124,8 +124,8 @@ def test_the_way_out_is_said() -> None:
     error = invoke("export m.json --to dot -o new.dot").exception
     assert isinstance(error, ArgoError)
     assert error.remedies == (Remedy.REPLACE,)
-    assert said(error) == (
-        "new.dot: is there already: choose another place, or replace it (--force)"
+    assert error_text(error) == (
+        "new.dot: already exists: choose another path, or replace it (--force)"
     )
 
 
@@ -211,4 +211,4 @@ def test_an_old_report_stays_whole_where_the_disk_is_full(room: int) -> None:
     assert result.exit_code == 2
     assert "MEASURE 1" in result.stdout
     assert "No space left on device" in result.stderr
-    assert result.stderr.endswith(f"made by: argo resume kept --report {report} --force\n")
+    assert result.stderr.endswith(f"to try again: argo resume kept --report {report} --force\n")

@@ -71,7 +71,7 @@ def test_what_does_not_fit_into_a_budget_is_left_out(argo, source, tmp_path):
         "-o", tmp_path / "new.json", "--risk", "simulated",
     )  # fmt: skip
     assert "within the budget 1 min; left out:" in said
-    assert "Suggested: within all limits with" in said
+    assert "Suggested: in time with a probability of" in said
     assert "MEASURE 2" in order_in(tmp_path / "new.json")
     assert len(order_in(tmp_path / "new.json")) < len(order_in(source))
 
@@ -85,8 +85,8 @@ def test_a_routed_mission_keeps_its_limit_and_names_what_was_left_out(argo, sour
         "route", source, "--budget", "65 s", "--requirements", wanted, "--before", "3, 1",
         "-o", new,
     )  # fmt: skip
-    assert "Its maximum duration is the budget now: 1 min 5 s" in said
-    assert "on its own ways" not in said
+    assert "Its maximum duration is now the budget: 1 min 5 s" in said
+    assert "exact travel times" not in said
     before, after = read_mission(source), read_mission(new)
     assert after.before == (("MEASURE 3", "MEASURE 1"),)
     assert after.left_out
@@ -110,7 +110,7 @@ def test_a_mission_that_is_too_long_on_its_own_ways_says_so_when_it_is_written(
     shown = argo("route", source, "--budget", "70 s", "-o", new)
     said = "the mission takes at least 1 min 12 s if nothing fails, longer than its maximum "
     said += "duration of 1 min 10 s"
-    assert f"Note: on its own ways {said}" in shown
+    assert f"Note: with its exact travel times, {said}" in shown
     assert said in argo("check", new, status=2)
 
 
@@ -124,12 +124,12 @@ def test_what_no_order_meets_says_which_command_has_the_way_out(argo, source, tm
 
 def test_what_is_said_of_an_order_can_be_verified(argo, source):
     said = argo("route", source, "--verify")
-    assert "Verified: the order keeps to everything and takes" in said
+    assert "Verified: the order meets all requirements and takes" in said
     assert "Verified: no order is better (all routes enumerated" in said
     assert "Wrong" not in said
     argo("route", source, "--verify", "--budget", "1s", status=2)
     said = argo("route", source, "--verify", "--keep-order", "--before", "1, 2", status=2)
-    assert "Verified: no order meets all that is asked for" in said
+    assert "Verified: no order meets all requirements" in said
 
 
 def test_an_order_that_is_wrongly_said_to_be_the_best_is_a_defect(argo, source, monkeypatch):
@@ -175,7 +175,7 @@ def test_a_refusal_says_that_waits_are_reckoned_with_their_limits(argo, tmp_path
     said = argo("route", tmp_path / "waiting.json", "--verify", status=2)
     assert "no order meets all of this if each WAIT takes its whole limit, though" in said
     assert "Note: 'W' is assumed to take its whole limit" in said
-    verified = "Verified: no order meets all that is asked for if each WAIT takes its whole limit ("
+    verified = "Verified: no order meets all requirements if each WAIT takes its whole limit ("
     assert verified in said
 
 

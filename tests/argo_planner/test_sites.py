@@ -152,7 +152,7 @@ def test_a_picture_shows_what_is_wrong_and_where(look_over, tmp_path, hall_yaml)
     assert drawn.height > 720, "the errors stand below the floors"
     assert reds(drawn) > 1000, "floor 2 is hatched"
     before = picture.read_bytes()
-    assert "is there already" in str(argo("sites", "darmstadt", "--picture", picture).exception)
+    assert "already exists" in str(argo("sites", "darmstadt", "--picture", picture).exception)
     assert picture.read_bytes() == before
     assert argo("sites", "darmstadt", "--picture", picture, "--force").exit_code == 0
     drawn = Image.open(picture)

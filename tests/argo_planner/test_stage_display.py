@@ -53,10 +53,10 @@ def test_what_says_nothing_for_long_is_shown_by_who_looks(watch):
     shown, file = display(watch)
     shown("finding [the surface]", None, "")
     watch.now += 1.9
-    shown.look()
+    shown.refresh()
     assert file.getvalue() == ""
     watch.now += 0.2
-    shown.look()
+    shown.refresh()
     assert file.getvalue() == "finding [the surface] …\n"
     shown.close()
 
@@ -93,7 +93,7 @@ def test_quiet_is_quiet(watch):
     try:
         shown("searching", None, "")
         watch.now += 30.0
-        shown.look()
+        shown.refresh()
     finally:
         verbosity.set_verbosity()
     assert file.getvalue() == ""

@@ -4,19 +4,19 @@ import pytest
 
 from argo_compiler.base.errors import Conflict, Invalid, Remedy, RemedyChoice
 from argo_compiler.diagnostics import Diagnostic, Severity
-from argo_planner.terminal.words import order_said, said, with_options
+from argo_planner.terminal.words import error_text, name_keep_order_option, name_options
 
 
 @pytest.mark.parametrize("remedy", Remedy)
 def test_each_remedy_has_words(remedy):
-    text = said(Invalid("no", remedies=(remedy,), about="a file"), "argo: ")
+    text = error_text(Invalid("no", remedies=(remedy,), about="a file"), "argo: ")
     assert text.startswith("argo: no (")
     assert "--" in text or "argo " in text
 
 
 def test_a_command_names_the_file_so_that_it_can_be_pasted():
     error = Conflict("my run.journal: is there", remedies=(Remedy.RESUME,), about="my run.journal")
-    assert said(error) == "my run.journal: is there (argo resume 'my run.journal')"
+    assert error_text(error) == "my run.journal: is there (argo resume 'my run.journal')"
 
 
 @pytest.mark.parametrize(
@@ -41,9 +41,12 @@ def test_hints_name_the_options(hint, remedy, choice, said):
         remedies=(remedy,),
         choice=choice and RemedyChoice(remedy, *choice),
     )
-    (shown,) = with_options([found])
+    (shown,) = name_options([found])
     assert shown.hint == said
 
 
 def test_an_order_that_is_kept_names_the_option():
-    assert order_said("kept: the order as written") == "kept: the order as written (--keep-order)"
+    assert (
+        name_keep_order_option("kept: the order as written")
+        == "kept: the order as written (--keep-order)"
+    )

@@ -73,7 +73,7 @@ def out(evaluated, tmp_path) -> Path:
 def test_a_file_is_evaluated_and_what_failed_is_made_again(argo, file, tmp_path):
     out = tmp_path / "out"
     said = argo("evaluate", file, "--out", out, "--workers", "2", status=0)
-    assert "5 of 10 runs are no success" in said.stdout
+    assert "5 of 10 runs did not succeed" in said.stdout
     assert "stop" in said.stdout
     rows = read_rows(out)
     assert len(rows) == 10
@@ -114,7 +114,7 @@ def test_two_evaluations_are_compared(argo, file, out, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((), "give an evaluation's file, or missions"),
+        ((), "name an evaluation file or missions"),
         (("nowhere.yaml",), "nowhere.yaml"),
         ((MISSION, "--seeds", "9..1"), "seeds `9..1`"),
         ((MISSION, "--drive", "hover"), "no drive `hover`"),
@@ -132,8 +132,8 @@ def test_two_evaluations_are_compared(argo, file, out, tmp_path):
             "takes at least 10 worlds",
         ),
         (("--compare", "here", "there"), "here"),
-        (("--compare", "here", "there", "--seeds", "0..3"), "no use for --seeds"),
-        ((MISSION, "--compare", "here", "there"), "give no missions"),
+        (("--compare", "here", "there", "--seeds", "0..3"), "runs nothing: leave --seeds out"),
+        ((MISSION, "--compare", "here", "there"), "leave the missions out"),
     ],
 )
 def test_wrong_input_gets_one_message(argo, tmp_path, arguments, message):
@@ -176,7 +176,7 @@ def test_another_evaluation_is_not_overwritten(argo, out):
 
 def test_what_a_file_says_is_not_said_by_options_as_well(argo, file, tmp_path):
     said = refused(argo("evaluate", file, "--out", tmp_path / "out", "--drive", "kinematic"))
-    assert "--drive would say it again" in said
+    assert "write --drive into the file" in said
 
 
 def test_faults_that_have_changed_are_not_those_of_before(argo, file, out, tmp_path):
@@ -204,13 +204,13 @@ def test_files_of_others_are_not_written_over(argo, file, tmp_path):
     out = tmp_path / "out"
     out.mkdir()
     (out / "report.html").write_text("somebody's own")
-    assert "report.html: is there already" in refused(argo("evaluate", file, "--out", out))
+    assert "report.html: already exists" in refused(argo("evaluate", file, "--out", out))
     assert (out / "report.html").read_text() == "somebody's own"
     assert argo("evaluate", file, "--out", out, "--force").returncode == 0
     assert argo("evaluate", file, "--out", out).returncode == 0
     assert argo("evaluate", "--compare", out, out).returncode == 0
     again = refused(argo("evaluate", "--compare", out, out))
-    assert "comparison.html: is there already" in again
+    assert "comparison.html: already exists" in again
     assert argo("evaluate", "--compare", out, out, "--out", tmp_path / "other").returncode == 0
     assert (tmp_path / "other" / "comparison.html").exists()
 

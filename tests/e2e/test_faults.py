@@ -31,8 +31,8 @@ def test_found_told_kept_and_shown(argo, folder):
     ran = argo(*RUN, "--report", "out", "--journal", "run.journal", cwd=folder, status=0)
     shown = ran.stdout + ran.stderr
     for kind in ("positive obstacle", "connection lost", "connection restored"):
-        assert f"s: found: {kind}: " in shown
-    noticed = r"s: found: gas leak: .*, noticed from floor 1 at \(\d\.\d\d, \d\.\d\d, 0\.02\)"
+        assert f"s: detected: {kind}: " in shown
+    noticed = r"s: detected: gas leak: .*, noticed from floor 1 at \(\d\.\d\d, \d\.\d\d, 0\.02\)"
     assert re.search(noticed, shown)
     assert "4 findings" in ran.stdout
     assert "platform alarm did not happen: begins at 4000 s, the mission ended at" in ran.stdout

@@ -154,12 +154,12 @@ def test_an_interrupted_run_is_reported_and_goes_on(argo, folder, navigator, tmp
     assert not so_far.result.ended
     assert len(so_far.readings) == len(ANNOUNCED.findall(said)) > 0
     last = said.splitlines()[-1]
-    assert re.match(r"argo: interrupted at \d+ s; go on with: argo resume ", last)
-    go_on = shlex.split(last.partition("go on with: argo ")[2])
+    assert re.match(r"argo: interrupted at \d+ s; continue with: argo resume ", last)
+    go_on = shlex.split(last.partition("continue with: argo ")[2])
     assert go_on == ["resume", str(report / "run.journal"), "--report", str(report)]
 
     refused = argo(*run_of(folder), "--report", report, status=2)
-    assert f"go on with it: {last.partition('with: ')[2]}" in refused.stderr
+    assert f"continue it with: {last.partition('with: ')[2]}" in refused.stderr
     with open_journal(report / "run.journal"):
         refused = argo(*run_of(folder), "--report", report, "--force")
     assert (refused.returncode, refused.stderr.count("in use")) == (2, 1)
@@ -180,7 +180,7 @@ def test_an_interrupted_run_is_reported_and_goes_on(argo, folder, navigator, tmp
         b"".join((report / "run.journal").read_bytes().splitlines(keepends=True)[:20])
     )
     kept = argo("resume", report / "other.journal", "--report", report)
-    assert (kept.returncode, kept.stderr.count("is there already")) == (2, 1)
+    assert (kept.returncode, kept.stderr.count("already exists")) == (2, 1)
     assert reported(report) == record
 
 
@@ -194,7 +194,7 @@ def test_what_goes_on_with_a_run_replaces_what_that_was_to_replace(folder, tmp_p
     assert status == 143
     assert film.read_bytes() == b"an older film"
     assert said.endswith(
-        f"go on with: argo resume {tmp_path}/run.journal --render {film} --force\n"
+        f"continue with: argo resume {tmp_path}/run.journal --render {film} --force\n"
     )
 
 
@@ -204,8 +204,8 @@ def test_an_interrupted_run_that_is_recorded_only(argo, folder, tmp_path, number
     recording = tmp_path / "run.mcap"
     status, shown, said = interrupted_when_it_reads(number, *run_of(folder), "--record", recording)
     assert status == STATUS[number]
-    assert "nothing is kept to go on from, as --report or --journal would have it" in said
-    assert f"what was done is shown by: argo replay {recording};" in said
+    assert "the run can't be continued, as no journal (--report or --journal) stores it" in said
+    assert f"; to see the results so far: argo replay {recording}\n" in said
     again = argo("replay", recording, "--report", tmp_path / "again", status=1)
     verdict = next(line for line in shown.splitlines() if "has not ended" in line)
     assert verdict in again.stdout
@@ -283,7 +283,7 @@ def test_runs_that_are_interrupted_lose_nothing(argo, folder, navigator) -> None
                 break
             assert status == STATUS[number], said
             sent += 1
-            if journal.exists() and "go on with" in said:
+            if journal.exists() and "continue with" in said:
                 assert {(r.t, r.task) for r in reported(report).readings} >= {
                     (t, task) for t, task, *_ in told
                 }

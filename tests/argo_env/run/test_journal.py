@@ -409,7 +409,7 @@ class TestRefusals:
     def test_a_journal_that_is_there_already(self, yard, path, tmp_path):
         create_journal(path, header(yard)).close()
         before = path.read_bytes()
-        with pytest.raises(Conflict, match=r"run\.journal: is there already") as caught:
+        with pytest.raises(Conflict, match=r"run\.journal: already exists") as caught:
             create_journal(path, header(yard))
         assert (caught.value.remedies, caught.value.about) == ((Remedy.RESUME,), str(path))
         assert path.read_bytes() == before
@@ -462,7 +462,7 @@ class TestRefusals:
     @pytest.mark.parametrize("name", [".", "/dev/full", "no/such/folder/j"])
     def test_places_that_can_not_be_written(self, yard, tmp_path, monkeypatch, name):
         monkeypatch.chdir(tmp_path)
-        with pytest.raises(ArgoError, match=r"is there already|its folder does not exist"):
+        with pytest.raises(ArgoError, match=r"already exists|its folder does not exist"):
             create_journal(Path(name), header(yard))
 
     def test_another_version(self, yard, path):
@@ -568,7 +568,7 @@ def test_a_full_disk(yard, complete, path):
 def test_one_that_is_there_is_replaced_on_demand_unless_it_is_in_use(yard, path, tmp_path):
     with create_journal(path, header(yard)) as journal:
         before = path.read_bytes()
-        with pytest.raises(Conflict, match="is there already"):
+        with pytest.raises(Conflict, match="already exists"):
             create_journal(path, header(yard))
         with pytest.raises(Conflict, match="is in use"):
             create_journal(path, header(yard), replace=True)

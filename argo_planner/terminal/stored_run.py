@@ -1,0 +1,104 @@
+"""The journal or recording that stores a run, and the command that continues it."""
+
+import os
+import shlex
+from dataclasses import dataclass
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from argo_compiler.base.errors import Conflict, Invalid
+from argo_env.report.files import RECORD
+from argo_env.run.journal import Journal, open_journal
+from argo_env.run.record import RunRecord
+from argo_env.run.simulation import SAMPLE_PERIOD
+
+JOURNAL = "run.journal"
+"""name of the journal in a report's folder, unless another journal is named"""
+
+
+@dataclass(frozen=True)
+class StoredRun:
+    """The files that store a run."""
+
+    journal: Path | None = None
+    recording: Path | None = None
+    force: bool = False
+    """whether the run may replace existing files; a command that continues it may then, too"""
+
+    def continuation_command(
+        self, report: Path | None = None, render: Path | None = None
+    ) -> str | None:
+        """Return the command that continues the run or makes its results again; None: none can.
+
+        Args:
+            report: folder of a report that the command is to write
+            render: file of a film that the command is to write
+        """
+        if self.journal is not None and os.path.exists(self.journal):
+            words = ["argo", "resume", str(self.journal)]
+        elif self.recording is not None and os.path.exists(self.recording):
+            words = ["argo", "replay", str(self.recording)]
+        else:
+            return None
+        for option, path in (("--report", report), ("--render", render)):
+            if path is not None:
+                words += [option, str(path)]
+        if self.force and (report or render):
+            words.append("--force")
+        return shlex.join(words)
+
+    def continuation_hint(self, report: Path | None, render: Path | None) -> str:
+        """Return a clause that says how to continue a run that has not ended."""
+        command = self.continuation_command(report, render)
+        if command is not None and self.journal is not None:
+            return f"continue with: {command}"
+        lost = "the run can't be continued, as no journal (--report or --journal) stores it"
+        return f"{lost}; to see the results so far: {command}" if command else lost
+
+
+def require_no_unfinished_run(report: Path | None, journal: Path | None = None) -> None:
+    """Raise Conflict if a journal holds a run that has not ended and can be continued.
+
+    Args:
+        report: folder of a report, which may hold a journal
+        journal: the journal that is named
+    """
+    for path in (journal, report and report / JOURNAL):
+        if path and os.path.isfile(path) and _is_unfinished(path):
+            raise Conflict(
+                f"{path}: holds a run that has not ended: choose another path, replace the run "
+                f"(--force), or continue it with: {StoredRun(path).continuation_command(report)}"
+            )
+
+
+def _is_unfinished(path: Path) -> bool:
+    try:
+        with open_journal(path) as book:
+            return not book.ended
+    except Invalid:  # no journal, or a damaged one
+        return False
+
+
+def is_report_of(book: Journal, folder: Path) -> bool:
+    """Return True if the report in a folder is of the journal's run.
+
+    It must not contain more than the journal does, so that a new report of the run loses nothing.
+    """
+    try:
+        record = RunRecord.model_validate_json((folder / RECORD).read_bytes())
+    except (OSError, ValidationError):
+        return False
+    spec = book.header.spec
+    made_from = (spec.mission, spec.drive, spec.sensor, spec.seed)
+    if (record.mission, record.drive, record.sensor, record.seed) != made_from:
+        return False
+    tasks = tuple(entry.task for entry in book.entries if entry.task)
+    readings = tuple(entry.reading for entry in book.entries if entry.reading)
+    reached = book.entries[-1].t + SAMPLE_PERIOD if book.entries else 0.0
+    return (
+        record.tasks == tasks[: len(record.tasks)]
+        and record.readings == readings[: len(record.readings)]
+        and record.result.duration <= reached
+        and (book.ended or not record.result.ended)
+    )

@@ -53,7 +53,7 @@ FIRST_FITTED_SEED = 1_000
 """The missions of the fit are others than those of the comparison."""
 
 
-_places = cache(Navigator.turning_places)
+_places = cache(Navigator.turning_poses)
 
 
 def random_mission(navigator: Navigator, seed: int) -> Mission:

@@ -95,11 +95,11 @@ def measure_paths(name: str, count: int) -> Navigator:
     measure_queries(navigator, "random poses, both on the ground floor", pairs(on_the_ground))
     compare(navigator, random, min(12, count))
     for _ in range(2):
-        took = timed(lambda: navigator.turning_places(1))
+        took = timed(lambda: navigator.turning_poses(1))
         print(f"  places to turn on the ground floor: {1e3 * took:.1f} ms")
     dock, goal = site.docks[1], ids[min(7, len(ids) - 1)]
     brick = brick_on(navigator.plan_to_view(dock, goal))
-    took = timed(lambda: navigator.avoiding([brick]).plan_to_view(dock, goal))
+    took = timed(lambda: navigator.with_blockages([brick]).plan_to_view(dock, goal))
     print(f"  avoiding a blockage, and the first path round it: {1e3 * took:.0f} ms")
     return navigator
 
@@ -132,7 +132,7 @@ def _range(values: np.ndarray) -> str:
 
 def brick_on(path: Path) -> Blockage:
     """Return a rectangle of 0.8 m by 0.4 m in the middle of the longest drive of a path."""
-    middle = max(path.motions, key=lambda motion: motion.length).at(0.5)
+    middle = max(path.motions, key=lambda motion: motion.length).pose_at(0.5)
     x, y = middle.x, middle.y
     return Blockage((x - 0.4, y - 0.2, x + 0.4, y + 0.2), middle.z, "a brick")
 

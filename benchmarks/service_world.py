@@ -95,7 +95,7 @@ def obstacles(site: OpenedSite, floors: Sequence[int]) -> tuple[Obstacle, ...]:
     """A crate on each of the three lowest floors."""
     made = []
     for floor in floors[:3]:
-        places = site.navigator.turning_places(floor)
+        places = site.navigator.turning_poses(floor)
         x, y, z, _ = places[len(places) // 2].tolist()
         pose = Pose(x=x, y=y, z=z, yaw=0.5)
         made.append(Obstacle(id=str(floor), pose=pose, size=(0.6, 0.4, 0.5)))

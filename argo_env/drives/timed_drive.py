@@ -143,7 +143,7 @@ class RouteDrive(TimedDrive):
         poses, first = np.empty((count, 5)), 0
         for motion, share in self._timetable.motions_at(self._times_ahead(count)):
             rows = poses[first : first + len(share)]
-            for column, values in enumerate(motion.along(share)):
+            for column, values in enumerate(motion.coordinates_at(share)):
                 rows[:, column] = values
             rows[:, 4] = np.where(share < 1.0, self._pitch(motion), 0.0)
             first += len(share)

@@ -49,7 +49,7 @@ class Guide:
         self._tree = cKDTree(positions)
         self._headings = 2 * math.pi * np.arange(lattice.state_of.shape[1])
         self._headings /= lattice.state_of.shape[1]
-        found = {f.number: navigator.turning_places(f.number) for f in navigator.site.spec.floors}
+        found = {f.number: navigator.turning_poses(f.number) for f in navigator.site.spec.floors}
         self._places = {
             number: part[self._near(part) >= 0] for number, part in found.items() if len(part)
         }

@@ -114,7 +114,7 @@ class _SiteLegs:
         for motion in path.motions:
             count = max(1, round(motion.length / _STEP))
             for k in range(count + 1):
-                p = motion.at(k / count)
+                p = motion.pose_at(k / count)
                 way.append((p.x, p.y, self._site.floor_at(p.z)))
         return way or [a], path.end.yaw
 

@@ -81,4 +81,4 @@ def navigator_without(navigator: Navigator, blocked: tuple[Stair, ...]) -> Navig
         rect = (x - half, y - half, x + half, y + half)
         name = spec.towers[tower].name
         blockages.append(Blockage(rect, z, f"the {name} is blocked above floor {floor}"))
-    return navigator.avoiding(blockages)
+    return navigator.with_blockages(blockages)

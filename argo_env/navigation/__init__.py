@@ -1,4 +1,4 @@
-"""Navigation: the walkable surface, the robot's moves on it, and the fastest paths."""
+"""Navigation: the traversable surface, the robot's moves on it, and the fastest paths."""
 
 from typing import TYPE_CHECKING
 

@@ -1,4 +1,4 @@
-"""Parts of the surface that are closed, such as what the robot found in its way."""
+"""Closed parts of the surface, such as what the robot found in its path."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -7,24 +7,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.base.model import Pose
-from argo_env.navigation.graphs import graph_of
+from argo_env.navigation.graphs import make_graph
 from argo_env.navigation.lattice import MARGIN, Lattice
 from argo_env.navigation.path import Path
 from argo_env.navigation.raster import CELL
-from argo_env.navigation.stencil import HEADINGS, SWEEP_STEPS, heading_angle, touches
+from argo_env.navigation.stencil import HEADINGS, SWEEP_STEPS, heading_angle, touches_rectangles
 from argo_env.navigation.surface import Surface
 from argo_env.robot.spec import RobotSpec
 from argo_env.site.spec import Rect
 
-LAYER = 1.0  # m above and below a blockage in which the surface is closed; storeys are higher
+LAYER = 1.0  # m above and below a blockage where the surface is closed; storeys are higher
 
-_TURN_STEP = 0.05  # rad between the headings of a turn that are looked at
+_TURN_STEP = 0.05  # rad between the headings of a turn that are checked
 
 
 @dataclass(frozen=True)
 class Blockage:
-    """A rectangle [x0, y0, x1, y1] of the surface near the height `z`, all in m, that no part of
-    the robot may be over; `reason` says to people why."""
+    """Rectangle of the surface that no part of the robot may be over.
+
+    `rect` is [x0, y0, x1, y1], near the height `z`, all in m; `reason` is a text for people.
+    """
 
     rect: Rect
     z: float
@@ -32,18 +34,23 @@ class Blockage:
 
 
 def closed_cells(surface: Surface, blockages: Sequence[Blockage]) -> NDArray[np.bool_]:
-    """Which cells of the surface a blockage touches, even at their edges."""
-    places = surface.positions()
+    """Return a mask of the cells of the surface that a blockage touches, even at their edges."""
+    positions = surface.positions()
     closed = np.zeros(surface.size, dtype=bool)
     for blockage in blockages:
-        closed |= _within(places, blockage, CELL / 2 + 1e-9)
+        closed |= _within(positions, blockage, CELL / 2 + 1e-9)
     return closed
 
 
-def _within(places: NDArray[np.float64], blockage: Blockage, reach: float) -> NDArray[np.bool_]:
-    """Return for each place, shape (n, 3), whether it is in the blockage's layer and within `reach`
-    (m) of it along each axis."""
-    (x0, y0, x1, y1), (x, y, z) = blockage.rect, places.T
+def _within(positions: NDArray[np.float64], blockage: Blockage, reach: float) -> NDArray[np.bool_]:
+    """Return a mask of the positions in or near a blockage, shape (n,).
+
+    Args:
+        positions: Points in m, shape (n, 3).
+        blockage: Blockage, whose layer a point must be in.
+        reach: Distance (m) that a point may be outside the rectangle along each axis.
+    """
+    (x0, y0, x1, y1), (x, y, z) = blockage.rect, positions.T
     return np.asarray(
         (np.abs(z - blockage.z) <= LAYER)
         & (x >= x0 - reach)
@@ -53,57 +60,64 @@ def _within(places: NDArray[np.float64], blockage: Blockage, reach: float) -> ND
     )
 
 
-def close(lattice: Lattice, blockages: Sequence[Blockage]) -> Lattice:
-    """The lattice without the states whose footprint, and the turns whose swept area, touches a
-    blockage, MARGIN added around the robot as everywhere.
+def close_states(lattice: Lattice, blockages: Sequence[Blockage]) -> Lattice:
+    """Return the lattice without the states and turns that touch a blockage.
 
-    The closed states keep their numbers, but have no moves and are not found in `state_of`.
+    MARGIN is added around the robot, as everywhere; of a turn the whole swept area counts. The
+    closed states keep their numbers, but have no moves and are not in `state_of`.
     """
-    shut, stuck = np.zeros(lattice.size, dtype=bool), np.zeros(lattice.size, dtype=bool)
-    places = lattice.surface.positions()
+    closed, no_turn = np.zeros(lattice.size, dtype=bool), np.zeros(lattice.size, dtype=bool)
+    positions = lattice.surface.positions()
     for blockage in blockages:
-        near = _near(lattice, places, blockage)
-        standing, turning = _touched(lattice, places, near, blockage)
-        shut[near] |= standing
-        stuck[near] |= turning
+        near = _states_near(lattice, positions, blockage)
+        in_state, in_turn = _touched_states(lattice, positions, near, blockage)
+        closed[near] |= in_state
+        no_turn[near] |= in_turn
     state_of = lattice.state_of.copy()
-    gone = np.flatnonzero(shut)
-    state_of[lattice.cell[gone], lattice.heading[gone]] = -1
+    closed_states = np.flatnonzero(closed)
+    state_of[lattice.cell[closed_states], lattice.heading[closed_states]] = -1
     moves = lattice.costs.tocoo()
     source, target = moves.coords
     before = np.where(
         (lattice.heading[source] + 1) % HEADINGS == lattice.heading[target], source, target
     )
     turns = lattice.cell[source] == lattice.cell[target]
-    kept = ~(shut[source] | shut[target] | (turns & stuck[before]))
-    lost = np.bincount(source[~kept], minlength=lattice.size)
+    remaining = ~(closed[source] | closed[target] | (turns & no_turn[before]))
+    lost = np.bincount(source[~remaining], minlength=lattice.size)
     start = lattice.costs.indptr - np.concatenate([[0], np.cumsum(lost)])
-    costs = graph_of(lattice.costs.data[kept], lattice.costs.indices[kept], start)
+    costs = make_graph(lattice.costs.data[remaining], lattice.costs.indices[remaining], start)
     return replace(lattice, state_of=state_of, costs=costs)
 
 
-def _near(lattice: Lattice, places: NDArray[np.float64], blockage: Blockage) -> NDArray[np.int64]:
-    """The states that may touch the blockage; `places` are those of the cells."""
-    cells = _within(places, blockage, lattice.robot.footprint.radius + MARGIN)
+def _states_near(
+    lattice: Lattice, positions: NDArray[np.float64], blockage: Blockage
+) -> NDArray[np.int64]:
+    """Return the states that may touch the blockage, ascending.
+
+    `positions` are those of the cells.
+    """
+    cells = _within(positions, blockage, lattice.robot.footprint.radius + MARGIN)
     states = lattice.state_of[cells]
     return np.sort(states[states >= 0])
 
 
-def _touched(
+def _touched_states(
     lattice: Lattice,
-    places: NDArray[np.float64],
+    positions: NDArray[np.float64],
     states: NDArray[np.int64],
     blockage: Blockage,
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Whether the robot touches the blockage in each of the states, and while it turns from it to
-    the next heading, counter-clockwise."""
+    """Return masks of the states, and of the turns from them, that touch the blockage.
+
+    The turns lead to the next heading, counter-clockwise.
+    """
     x0, y0, x1, y1 = blockage.rect
-    place = places[lattice.cell[states]]
-    to_x, to_y = (x0 + x1) / 2 - place[:, 0], (y0 + y1) / 2 - place[:, 1]
+    centers = positions[lattice.cell[states]]
+    to_x, to_y = (x0 + x1) / 2 - centers[:, 0], (y0 + y1) / 2 - centers[:, 1]
     half = ((x1 - x0) / 2 + 1e-9, (y1 - y0) / 2 + 1e-9)
     yaw = lattice.heading[states].astype(np.float64) * heading_angle(1)
     swept = [
-        touches(
+        touches_rectangles(
             lattice.robot.footprint,
             MARGIN,
             yaw + k / SWEEP_STEPS * heading_angle(1),
@@ -116,9 +130,13 @@ def _touched(
     return swept[0], np.any(swept, axis=0)
 
 
-def turns_over(start: Pose, turn: float, blockages: Sequence[Blockage], robot: RobotSpec) -> bool:
-    """Whether a robot that turns in place from `start` by `turn` (rad) touches a blockage that it
-    does not touch at the start."""
+def turn_touches_blockage(
+    start: Pose, turn: float, blockages: Sequence[Blockage], robot: RobotSpec
+) -> bool:
+    """Return True if a turn in place touches a blockage that the robot does not touch at the start.
+
+    The robot turns by `turn` (rad) from `start`, without a margin.
+    """
     yaw = start.yaw + turn * np.linspace(0.0, 1.0, 2 + int(abs(turn) / _TURN_STEP))
     for blockage in blockages:
         if abs(start.z - blockage.z) > LAYER:
@@ -127,20 +145,23 @@ def turns_over(start: Pose, turn: float, blockages: Sequence[Blockage], robot: R
         x = np.full(len(yaw), (x0 + x1) / 2 - start.x)
         y = np.full(len(yaw), (y0 + y1) / 2 - start.y)
         half = (x1 - x0) / 2, (y1 - y0) / 2
-        touched = touches(robot.footprint, 0.0, yaw, x, y, half)
+        touched = touches_rectangles(robot.footprint, 0.0, yaw, x, y, half)
         if touched.any() and not touched[0]:
             return True
     return False
 
 
-def leads_through(path: Path, blockages: Sequence[Blockage], robot: RobotSpec) -> bool:
-    """Whether a robot on the path might touch a blockage, however it is turned."""
+def may_touch_blockage(path: Path, blockages: Sequence[Blockage], robot: RobotSpec) -> bool:
+    """Return True if the path leads so near to a blockage that the robot might touch it.
+
+    The heading is ignored: the footprint's radius and MARGIN decide.
+    """
     points = np.array(
         [
             (pose.x, pose.y, pose.z)
             for motion in path.motions
             for pose in map(
-                motion.at, np.linspace(0.0, 1.0, 2 + int(motion.length / CELL)).tolist()
+                motion.pose_at, np.linspace(0.0, 1.0, 2 + int(motion.length / CELL)).tolist()
             )
         ]
     ).reshape(-1, 3)

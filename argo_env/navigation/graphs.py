@@ -1,7 +1,7 @@
-"""Graphs of moves with their costs, kept and searched by scipy.
+"""Graphs of moves with their costs, stored and searched by scipy.
 
-It is imported with the first graph: much of what is asked of a site needs none, and importing scipy
-takes longer than all of that.
+scipy is imported when the first graph is made: many queries about a site need no graph, and the
+import takes longer than all of them.
 """
 
 from typing import TYPE_CHECKING, TypeAlias
@@ -13,59 +13,64 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 Graph: TypeAlias = "csr_array"
-"""Row s has the moves from state s: `indices` where they lead, `data` their costs (s)."""
+"""sparse matrix whose row s has the moves from state s: `indices` are the states that they lead to,
+`data` their costs (s)"""
 
 Trees = tuple[NDArray[np.float64], NDArray[np.int32]]
-"""Costs in s, inf where there is no way, and the state next to each on the way, both of shape
-(trees, states)."""
+"""costs in s, inf where there is no path, and the state next to each state on its path, negative
+without one, both of shape (trees, states)"""
 
 
-def graph_of(
+def make_graph(
     costs: NDArray[np.float64], heads: NDArray[np.integer], starts: NDArray[np.integer]
 ) -> Graph:
-    """The graph whose moves from state s are those from number `starts[s]` to `starts[s + 1]`."""
+    """Return the graph with the given moves, sorted by the state that they start from.
+
+    Moves from state s are those from number `starts[s]` to before `starts[s + 1]`; `heads` are the
+    states that they lead to, and `costs` (s) what they take.
+    """
     from scipy.sparse import csr_array
 
     states = len(starts) - 1
     return csr_array((costs, heads, starts), shape=(states, states))
 
 
-def graph_of_moves(
+def make_graph_of_moves(
     costs: NDArray[np.float64],
     sources: NDArray[np.int64],
     targets: NDArray[np.int64],
     states: int,
 ) -> Graph:
-    """The graph of moves in any order; costs of equal moves are added."""
+    """Return the graph of moves in any order; costs of equal moves are added."""
     from scipy.sparse import coo_array
 
     return coo_array((costs, (sources, targets)), shape=(states, states)).tocsr()
 
 
-def part_of(graph: Graph, members: NDArray[np.int64] | NDArray[np.bool_]) -> Graph:
-    """The moves between the states `members`, which are numbered anew in their order."""
+def subgraph(graph: Graph, members: NDArray[np.int64] | NDArray[np.bool_]) -> Graph:
+    """Return the moves between the states `members`, which are renumbered in their order."""
     from scipy.sparse import csr_array
 
     return csr_array(graph[members][:, members])
 
 
-def against(graph: Graph) -> Graph:
-    """The same moves against time."""
+def reverse_graph(graph: Graph) -> Graph:
+    """Return the graph with each move reversed."""
     from scipy.sparse import csr_array
 
     return csr_array(graph.T.tocsr())
 
 
-def strong_parts(graph: Graph) -> NDArray[np.int32]:
-    """A number for each state, equal where there are ways there and back."""
+def label_strong_components(graph: Graph) -> NDArray[np.int32]:
+    """Return a number for each state, equal for states that can be reached from each other."""
     from scipy.sparse.csgraph import connected_components
 
     _, label = connected_components(graph, directed=True, connection="strong")
     return label
 
 
-def search(graph: Graph, sources: NDArray[np.int64], limit: float = np.inf) -> Trees:
-    """The cheapest ways from each of `sources` that cost up to `limit` (s)."""
+def shortest_path_trees(graph: Graph, sources: NDArray[np.int64], limit: float = np.inf) -> Trees:
+    """Return the cheapest paths from each of `sources` that cost up to `limit` (s)."""
     from scipy.sparse.csgraph import dijkstra
 
     if not len(sources):
@@ -73,8 +78,11 @@ def search(graph: Graph, sources: NDArray[np.int64], limit: float = np.inf) -> T
     return dijkstra(graph, indices=sources, return_predecessors=True, limit=limit)
 
 
-def costs_of(graph: Graph, sources: list[int]) -> NDArray[np.float64]:
-    """The costs alone of the cheapest ways from each of `sources`, shape (sources, states)."""
+def shortest_path_costs(graph: Graph, sources: list[int]) -> NDArray[np.float64]:
+    """Return the costs (s) of the cheapest paths from each source, shape (sources, states).
+
+    The costs are inf where there is no path.
+    """
     from scipy.sparse.csgraph import dijkstra
 
     return dijkstra(graph, indices=sources)

@@ -1,6 +1,6 @@
-"""Where the robot can be and how it can move: a graph of (cell, heading) states.
+"""The state lattice: (cell, heading) states that the robot can stand in, and moves between them.
 
-The rules of the robot are in here: its whole footprint stays on the surface, it turns in place on
+It contains the rules of the robot: its whole footprint stays on the surface, it turns in place on
 the flat only, and on stairs its front is never the higher end, so it climbs backwards and descends
 forwards.
 """
@@ -12,29 +12,41 @@ from numpy.typing import NDArray
 
 from argo_compiler.base.stages import stage
 from argo_env.files.parts import Arrays
-from argo_env.navigation.graphs import Graph, graph_of, graph_of_moves, part_of, strong_parts
+from argo_env.navigation.graphs import (
+    Graph,
+    label_strong_components,
+    make_graph,
+    make_graph_of_moves,
+    subgraph,
+)
 from argo_env.navigation.raster import CELL
-from argo_env.navigation.stencil import HEADINGS, Stencil, heading_angle, standing, turning
+from argo_env.navigation.stencil import (
+    HEADINGS,
+    Stencil,
+    footprint_stencil,
+    heading_angle,
+    turn_stencil,
+)
 from argo_env.navigation.surface import Surface
 from argo_env.robot.spec import MotionKind, RobotSpec, motion_kind
 
-MARGIN = 0.02  # m kept free around the footprint
-ROOM = 0.1  # m around the footprint where driving is preferred
-CRAMPED_FACTOR = 1.2  # what a second with less room counts
+MARGIN = 0.02  # m members free around the footprint
+PREFERRED_CLEARANCE = 0.1  # m around the footprint where driving is preferred
+CRAMPED_FACTOR = 1.2  # cost of a second with less clearance
 LEVEL = 0.1  # m of height between front and rear, or left and right, that still counts as flat
-DRIVING_LEVEL = 0.05  # m of height that a level drive goes over
-TURNING_LEVEL = 0.025  # m of height within the circle of a turn: belts scrape along a higher rim
+DRIVING_LEVEL = 0.05  # m of height over which a drive still counts as level
+TURNING_LEVEL = 0.025  # m of height within a turn's swept area: belts scrape along a higher rim
 
 
 @dataclass(frozen=True)
 class Lattice:
-    """The states and the moves between them. State s stands on cell `cell[s]`, heading
-    `heading[s]`; `rise[s]` is the height of its front above its rear in m.
+    """The states and the moves between them.
 
-    `costs` is the sparse matrix of moves from state to state: the seconds they take, and a little
-    more where the robot has little room, so that paths keep to the middle. `roomy[s]` says whether
-    there is room around state s. `state_of[cell, heading]` finds a state, -1 where the robot can't
-    stand.
+    State s is on cell `cell[s]` with heading `heading[s]`; `rise[s]` is the height of its front
+    above its rear in m. `costs` is the sparse matrix of moves from state to state: the seconds they
+    take, and a little more where the robot has little clearance, so that paths keep to the middle.
+    `roomy[s]` is True if there is clearance around state s. `state_of[cell, heading]` is the number
+    of a state, -1 where the robot can't stand.
     """
 
     surface: Surface
@@ -50,14 +62,14 @@ class Lattice:
     def size(self) -> int:
         return len(self.cell)
 
-    def seconds(
+    def move_times(
         self, costs: NDArray[np.float64], source: NDArray[np.int64], target: NDArray[np.int64]
     ) -> NDArray[np.float64]:
-        """The seconds that moves of the given `costs` from `source` to `target` take."""
-        return costs / _factor(self.roomy, source, target)
+        """Return the seconds that moves of the given `costs` from `source` to `target` take."""
+        return costs / _cost_factor(self.roomy, source, target)
 
     def poses(self, states: NDArray[np.int64] | slice = slice(None)) -> NDArray[np.float64]:
-        """x, y, z (m) and yaw (rad) of the states, shape (n, 4)."""
+        """Return x, y, z (m) and yaw (rad) of the states, shape (n, 4)."""
         cell = self.cell[states]
         x, y = self.surface.grid.centers(self.surface.i[cell], self.surface.j[cell])
         yaw = self.heading[states] * heading_angle(1)
@@ -65,7 +77,7 @@ class Lattice:
 
 
 def lattice_arrays(lattice: Lattice) -> Arrays:
-    """A lattice as arrays, its surface and robot apart."""
+    """Return a lattice as arrays, without its surface and robot."""
     return {
         "cell": lattice.cell,
         "heading": lattice.heading,
@@ -78,8 +90,8 @@ def lattice_arrays(lattice: Lattice) -> Arrays:
     }
 
 
-def lattice_of(surface: Surface, robot: RobotSpec, arrays: Arrays) -> Lattice:
-    """The lattice that `lattice_arrays` was given."""
+def lattice_from_arrays(surface: Surface, robot: RobotSpec, arrays: Arrays) -> Lattice:
+    """Return the lattice that `lattice_arrays` made the arrays from."""
     return Lattice(
         surface,
         robot,
@@ -88,22 +100,22 @@ def lattice_of(surface: Surface, robot: RobotSpec, arrays: Arrays) -> Lattice:
         arrays["rise"],
         arrays["roomy"],
         arrays["state_of"],
-        graph_of(arrays["costs"], arrays["targets"], arrays["starts"]),
+        make_graph(arrays["costs"], arrays["targets"], arrays["starts"]),
     )
 
 
 @stage("finding where the robot can stand and turn")
 def build_lattice(surface: Surface, robot: RobotSpec) -> Lattice:
-    """All states in which the robot stands safely, and all moves between them."""
+    """Return the lattice of all states in which the robot stands safely, with all moves."""
     rises, rooms = [], []
     for heading in range(HEADINGS):
-        stencil = standing(robot.footprint, heading, MARGIN)
+        stencil = footprint_stencil(robot.footprint, heading, MARGIN)
         z = stencil.heights(surface, np.arange(surface.size))
-        rises.append(standing_rise(z, stencil, heading))
-        wide = standing(robot.footprint, heading, ROOM)
+        rises.append(footprint_rise(z, stencil, heading))
+        wide = footprint_stencil(robot.footprint, heading, PREFERRED_CLEARANCE)
         rooms.append(np.isfinite(wide.heights(surface, np.arange(surface.size)).sum(axis=0)))
     rise, roomy = np.stack(rises, axis=1), np.stack(rooms, axis=1)
-    valid = rise <= LEVEL  # nan, where the robot can't stand, is not
+    valid = rise <= LEVEL  # False for nan, where the robot can't stand
     state_of = np.where(valid, np.cumsum(valid.ravel()).reshape(valid.shape) - 1, -1)
     cell, heading_of = np.nonzero(valid)
     rise, roomy = rise[valid], roomy[valid]
@@ -112,42 +124,49 @@ def build_lattice(surface: Surface, robot: RobotSpec) -> Lattice:
         *_turns(surface, robot, state_of),
     ]
     source, target, seconds = (np.concatenate(parts) for parts in zip(*edges, strict=True))
-    costs = seconds * _factor(roomy, source, target)
-    matrix = graph_of_moves(costs, source, target, len(cell))
+    costs = seconds * _cost_factor(roomy, source, target)
+    matrix = make_graph_of_moves(costs, source, target, len(cell))
     return Lattice(surface, robot, cell, heading_of, rise, roomy, state_of, matrix)
 
 
-def _factor(
+def _cost_factor(
     roomy: NDArray[np.bool_], source: NDArray[np.int64], target: NDArray[np.int64]
 ) -> NDArray[np.float64]:
-    """What a second of each move counts."""
+    """Return the cost of each second of the moves."""
     return np.where(roomy[source] & roomy[target], 1.0, CRAMPED_FACTOR)
 
 
-def connected_part(lattice: Lattice, state: int) -> Lattice:
-    """The lattice of the states that can be reached from `state` and from which it is reached."""
-    label = strong_parts(lattice.costs)
-    kept = label == label[state]
-    number = np.cumsum(kept) - 1
+def connected_sublattice(lattice: Lattice, state: int) -> Lattice:
+    """Return the lattice of the states that can be reached from `state` and can reach it."""
+    label = label_strong_components(lattice.costs)
+    members = label == label[state]
+    number = np.cumsum(members) - 1
     state_of = np.where(
-        (lattice.state_of >= 0) & kept[lattice.state_of], number[lattice.state_of], -1
+        (lattice.state_of >= 0) & members[lattice.state_of], number[lattice.state_of], -1
     )
     return Lattice(
         lattice.surface,
         lattice.robot,
-        lattice.cell[kept],
-        lattice.heading[kept],
-        lattice.rise[kept],
-        lattice.roomy[kept],
+        lattice.cell[members],
+        lattice.heading[members],
+        lattice.rise[members],
+        lattice.roomy[members],
         state_of,
-        part_of(lattice.costs, kept),
+        subgraph(lattice.costs, members),
     )
 
 
-def standing_rise(z: NDArray[np.float64], stencil: Stencil, heading: int) -> NDArray[np.float64]:
-    """Height of the front above the rear for every cell, by the heights `z` (m) of its `stencil`;
-    nan where the robot can't stand: there is no ground all over the stencil, or one side is too
-    high. Where it is more than LEVEL it can't either."""
+def footprint_rise(z: NDArray[np.float64], stencil: Stencil, heading: int) -> NDArray[np.float64]:
+    """Return the height (m) of the front above the rear for each cell, or nan.
+
+    It is nan where the robot can't stand: the ground does not fill the stencil, or one side is more
+    than LEVEL higher than the other. Where it is more than LEVEL, the robot can't stand either.
+
+    Args:
+        z: Heights (m) of the cells of the stencil, shape (offsets, cells).
+        stencil: Stencil of the footprint.
+        heading: Lattice heading of the robot.
+    """
     yaw = heading_angle(heading)
     offsets = np.array(stencil.offsets)
     along = offsets @ np.array([np.cos(yaw), np.sin(yaw)])
@@ -157,7 +176,7 @@ def standing_rise(z: NDArray[np.float64], stencil: Stencil, heading: int) -> NDA
     rear = z[middle & (along < along.min() + 1.5)].mean(axis=0)
     left_side = z[across & (left > left.max() - 1.5)].mean(axis=0)
     right_side = z[across & (left < left.min() + 1.5)].mean(axis=0)
-    # A sum is nan if any of its terms is, so this asks for the whole stencil.
+    # A sum is nan if any of its terms is, so the whole stencil must have ground.
     stands = np.isfinite(z.sum(axis=0)) & (np.abs(left_side - right_side) <= LEVEL)
     return np.where(stands, front - rear, np.nan)
 
@@ -173,7 +192,7 @@ def _drives(
     cell: NDArray[np.int64],
     heading: NDArray[np.int64],
 ) -> list[Edges]:
-    """Moves to the next cell, forwards along the heading and backwards against it."""
+    """Return the moves to the next cell, forwards along the heading and backwards against it."""
     edges = []
     length = robot.footprint.front + robot.footprint.rear
     for gear in (1, -1):
@@ -191,10 +210,11 @@ def _drives(
 
 
 def _turn_seconds(robot: RobotSpec) -> float:
-    """s for a turn by one heading.
+    """Return the time (s) of a turn by one heading.
 
-    A way is turns and drives by turns, so with every turn the time is lost that setting off for it
-    and for the drive after it takes. Most are by two headings.
+    Turns and drives alternate on a path, so a turn includes the time lost when the robot sets off
+    for it and for the drive after it. Most turns are by two headings, so half of it counts for
+    each.
     """
     paces = robot.calibration
     return (
@@ -204,14 +224,14 @@ def _turn_seconds(robot: RobotSpec) -> float:
 
 
 def _turns(surface: Surface, robot: RobotSpec, state_of: NDArray[np.int64]) -> list[Edges]:
-    """Turns in place by one heading, both ways, where the swept circle is free and flat."""
+    """Return turns in place by one heading, both ways, where the swept area is free and flat."""
     edges = []
     seconds = _turn_seconds(robot)
     for heading in range(HEADINGS):
         here, there = state_of[:, heading], state_of[:, (heading + 1) % HEADINGS]
         middle = np.flatnonzero((here >= 0) & (there >= 0))
-        z = turning(robot.footprint, heading, MARGIN).heights(surface, middle)
-        ok = middle[z.max(axis=0) - z.min(axis=0) <= TURNING_LEVEL]  # false where one is nan
+        z = turn_stencil(robot.footprint, heading, MARGIN).heights(surface, middle)
+        ok = middle[z.max(axis=0) - z.min(axis=0) <= TURNING_LEVEL]  # False where a height is nan
         time = np.full(len(ok), seconds)
         edges += [(here[ok], there[ok], time), (there[ok], here[ok], time)]
     return edges

@@ -1,6 +1,6 @@
-"""A path: straight drives and turns in place, one after the other.
+"""A path: straight drives and turns in place, in sequence.
 
-NumPy is imported by what makes arrays only: commands that find their paths in the cache start
+NumPy is imported only where arrays are made: commands that find their paths in the cache start
 without it.
 """
 
@@ -19,16 +19,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Motion:
-    """From one pose to the next: a turn in place, or a straight drive with a constant heading."""
+    """A turn in place, or a straight drive with a constant heading, from one pose to the next."""
 
     start: Pose
     end: Pose
     turn: float = 0.0
-    """rad, counter-clockwise; 0 for a drive"""
+    """angle in rad, counter-clockwise; 0 for a drive"""
     gear: int = 1
-    """1 forwards, -1 backwards; turns have 1"""
+    """1 forwards, -1 backwards; 1 for a turn"""
     on_stairs: bool = False
-    """the robot is tilted: down forwards, or up backwards"""
+    """True if the robot is tilted: down forwards, or up backwards"""
 
     @property
     def kind(self) -> MotionKind:
@@ -36,13 +36,13 @@ class Motion:
 
     @property
     def length(self) -> float:
-        """m along the surface; 0 for a turn."""
+        """Length in m along the surface; 0 for a turn."""
         return math.dist(
             (self.start.x, self.start.y, self.start.z), (self.end.x, self.end.y, self.end.z)
         )
 
-    def at(self, share: float) -> Pose:
-        """The pose after `share` of the motion, 0 to 1."""
+    def pose_at(self, share: float) -> Pose:
+        """Return the pose after `share` of the motion, 0 to 1."""
         a, b = self.start, self.end
         return Pose(
             x=a.x + share * (b.x - a.x),
@@ -51,8 +51,8 @@ class Motion:
             yaw=wrap(a.yaw + share * self.turn),
         )
 
-    def along(self, shares: "NDArray[np.float64]") -> tuple["NDArray[np.float64]", ...]:
-        """x, y, z (m) and yaw (rad) after such shares of the motion, each of the shape of these."""
+    def coordinates_at(self, shares: "NDArray[np.float64]") -> tuple["NDArray[np.float64]", ...]:
+        """Return x, y, z (m) and yaw (rad) after each of `shares`, 0 to 1, as four arrays."""
         a, b = self.start, self.end
         return (
             a.x + shares * (b.x - a.x),
@@ -62,8 +62,11 @@ class Motion:
         )
 
     def speed(self, robot: RobotSpec, velocity: float | None = None) -> float:
-        """m/s that a drive aims at; `velocity` (m/s) replaces the robot's own speed on the flat
-        ahead, and on stairs and backwards where it is the slower one."""
+        """Return the target speed (m/s) of a drive.
+
+        `velocity` (m/s) replaces the robot's own speed on the flat ahead; on stairs and backwards
+        the slower of the two applies.
+        """
         planned = robot.target_speed(self.kind)
         if velocity is None:
             return planned
@@ -71,7 +74,7 @@ class Motion:
         return velocity if flat_ahead else min(velocity, planned)
 
     def duration(self, robot: RobotSpec, velocity: float | None = None) -> float:
-        """s that the motion takes, by the robot's calibration."""
+        """Return the seconds that the motion takes, by the robot's calibration."""
         if self.turn:
             return robot.motion_time(self.kind, abs(self.turn))
         return robot.motion_time(self.kind, self.length, self.speed(robot, velocity))
@@ -79,7 +82,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Path:
-    """A way from `start` along its motions; without motions the robot is there already."""
+    """Motions from `start`; without motions the robot is at its goal already."""
 
     start: Pose
     motions: tuple[Motion, ...]
@@ -90,20 +93,23 @@ class Path:
 
     @property
     def length(self) -> float:
-        """m along the surface."""
+        """Length in m along the surface."""
         return sum(m.length for m in self.motions)
 
     @property
     def climb(self) -> float:
-        """m upwards, all ascents together."""
+        """Sum of all ascents in m."""
         return sum(max(0.0, m.end.z - m.start.z) for m in self.motions)
 
     def duration(self, robot: RobotSpec, velocity: float | None = None) -> float:
-        """s, at the robot's planning speeds or at `velocity` (m/s) on the flat."""
+        """Return the duration in s; `velocity` (m/s) applies as in `Motion.speed`."""
         return sum(m.duration(robot, velocity) for m in self.motions)
 
-    def timed(self, robot: RobotSpec, velocity: float | None = None) -> "NDArray[np.float64]":
-        """t (s), x, y, z (m) and yaw (rad) at the start and after each motion, shape (n + 1, 5)."""
+    def timed_poses(self, robot: RobotSpec, velocity: float | None = None) -> "NDArray[np.float64]":
+        """Return the time and pose at the start and after each motion, shape (n + 1, 5).
+
+        The columns are t (s), x, y, z (m) and yaw (rad).
+        """
         import numpy as np
 
         rows = [(0.0, *_row(self.start))]
@@ -113,7 +119,7 @@ class Path:
 
 
 def merge(motions: Iterable[Motion]) -> list[Motion]:
-    """The same way with neighbouring motions of one kind, gear and steepness joined."""
+    """Join consecutive turns, and consecutive drives of one heading, gear and `on_stairs`."""
     merged: list[Motion] = []
     for motion in motions:
         last = merged[-1] if merged else None
@@ -141,7 +147,7 @@ def wrap(angle: "NDArray[np.float64]") -> "NDArray[np.float64]": ...
 
 
 def wrap(angle: "float | NDArray[np.float64]") -> "float | NDArray[np.float64]":
-    """The same angle between -pi (exclusive) and pi, in rad."""
+    """Return the same angle between -pi (exclusive) and pi, in rad."""
     return math.pi - (math.pi - angle) % (2 * math.pi)
 
 

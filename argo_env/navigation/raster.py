@@ -1,6 +1,6 @@
-"""A site's solids as columns of a grid: what is where, cell by cell.
+"""A site's solids as columns of a grid, cell by cell.
 
-This is where navigation looks at the geometry; all that follows works on the columns.
+Only this module looks at the geometry; the rest of navigation works on the columns.
 """
 
 from dataclasses import dataclass
@@ -12,13 +12,16 @@ from argo_env.site.shapes import WALKING_ROLES, Box, Element, Solid, crossing, h
 
 CELL = 0.1  # m
 _SAMPLES = 5
-"""Samples along each edge of a cell: one in 24.5 mm, so that a rail of 40 mm is not missed."""
-_INSET = 0.001  # m that the outer samples lie inside the cell: what only touches it is not in it
+"""number of samples along each edge of a cell, 24.5 mm apart, so that a rail of 40 mm is hit"""
+_INSET = 0.001  # m from the cell's edge to the outer samples: a solid may touch the edge
 
 
 @dataclass(frozen=True)
 class Grid:
-    """A grid of square cells; cell (i, j) has its centre at x0 + (i + 1/2) CELL, and so in y."""
+    """Grid of square cells.
+
+    Cell (i, j) has its centre at x0 + (i + 1/2) CELL, and likewise in y.
+    """
 
     x0: float
     y0: float
@@ -26,8 +29,8 @@ class Grid:
     ny: int
 
     @staticmethod
-    def over(rect: tuple[float, float, float, float]) -> "Grid":
-        """The grid over [x0, y0, x1, y1], its lines at multiples of CELL."""
+    def covering(rect: tuple[float, float, float, float]) -> "Grid":
+        """Return the grid that covers [x0, y0, x1, y1], with its lines at multiples of CELL."""
         i0, j0 = np.floor(rect[0] / CELL + 1e-6), np.floor(rect[1] / CELL + 1e-6)
         i1, j1 = np.ceil(rect[2] / CELL - 1e-6), np.ceil(rect[3] / CELL - 1e-6)
         return Grid(float(i0 * CELL), float(j0 * CELL), int(i1 - i0), int(j1 - j0))
@@ -35,19 +38,19 @@ class Grid:
     def centers(
         self, i: NDArray[np.int64], j: NDArray[np.int64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """x and y of the cells' centres, in m."""
+        """Return x and y of the cells' centres, in m."""
         return self.x0 + (i.astype(float) + 0.5) * CELL, self.y0 + (j.astype(float) + 0.5) * CELL
 
 
 @dataclass(frozen=True)
 class Columns:
-    """One entry for each solid in each cell that it reaches; all arrays have the same length.
+    """Entries for each solid in each cell that it reaches, as arrays of the same length.
 
-    `top_at_center` is the height of the solid at the cell's centre, or -inf beside it.
+    `top_at_center` is the height of the solid at the cell's centre, or -inf if it is not there.
     """
 
     cell: NDArray[np.int64]
-    """i * ny + j"""
+    """number of the cell, i * ny + j"""
     bottom: NDArray[np.float64]
     top: NDArray[np.float64]
     top_at_center: NDArray[np.float64]
@@ -55,7 +58,7 @@ class Columns:
 
 
 def rasterise(elements: tuple[Element, ...], grid: Grid) -> Columns:
-    """The columns of all solids, sorted by cell."""
+    """Return the columns of all solids, sorted by cell."""
     parts = [
         (*_columns_of(solid, grid), element.role in WALKING_ROLES)
         for element in elements
@@ -75,14 +78,14 @@ def rasterise(elements: tuple[Element, ...], grid: Grid) -> Columns:
 def _columns_of(
     solid: Solid, grid: Grid
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Cells, bottoms, tops and tops at the centre of one solid."""
+    """Return cells, bottoms, tops, and tops at the cells' centres of one solid."""
     half = half_extents(solid)
     i0, i1 = _cells(solid.center[0], half[0], grid.x0, grid.nx)
     j0, j1 = _cells(solid.center[1], half[1], grid.y0, grid.ny)
     i, j = (a.ravel() for a in np.meshgrid(np.arange(i0, i1), np.arange(j0, j1), indexing="ij"))
     x, y = grid.centers(i, j)
     if isinstance(solid, Box) and solid.rpy == (0.0, 0.0, 0.0):
-        # The same answer as from the samples, for the many and large plates.
+        # This is a shortcut for plates, of which there are many large ones; samples give the same.
         reach_x, reach_y = np.abs(x - solid.center[0]), np.abs(y - solid.center[1])
         reach = CELL / 2 - _INSET
         inside = (reach_x < half[0] + reach) & (reach_y < half[1] + reach)

@@ -1,12 +1,12 @@
-"""The lattice cut into regions, a storey each, that only a few states on the stairs connect.
+"""The lattice cut into regions, one per storey, which only a few states on the stairs connect.
 
-A fastest way through several storeys goes from portal to portal, and what lies between the portals
-of a region never changes. So a query searches near its two ends only. Nothing is lost by this: the
-ways found are as cheap as those of one search over the whole lattice.
+A fastest path through several storeys goes from portal to portal, and the paths between the portals
+of a region never change. So a query searches near its two ends only. The paths are as cheap as
+those of one search over the whole lattice.
 
-Landmarks are states whose ways to and from all others are known, and bound all other ways from
-below by the triangle inequality (Goldberg and Harrelson, "Computing the shortest path: A* search
-meets graph theory", 2005).
+Landmarks are states whose path costs to and from all others are known. By the triangle inequality
+they give lower bounds on all other costs (Goldberg and Harrelson, "Computing the shortest path: A*
+search meets graph theory", 2005).
 """
 
 import math
@@ -19,77 +19,99 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_env.files.parts import NO_CACHE, Arrays, Parts
-from argo_env.navigation.graphs import Graph, Trees, against, costs_of, part_of, search
+from argo_env.navigation.graphs import (
+    Graph,
+    Trees,
+    reverse_graph,
+    shortest_path_costs,
+    shortest_path_trees,
+    subgraph,
+)
 from argo_env.navigation.lattice import Lattice
 
-_SIDES, _AWAY = 8, 8  # landmarks at the outermost places, and far away from all others
-_ACTIVE = 6  # bounds that one search uses
-_WORTH_IT = 100_000  # states; a search through fewer is short, and landmarks take memory
-_SHARE = 0.998  # of a bound is used: what single precision rounds must not exceed a move's cost
-_NEVER = 1e6  # s that a way counts that there is not
+_OUTER_LANDMARKS, _DISTANT_LANDMARKS = 8, 8  # at the border, and far away from all others
+_BOUNDS_USED = 6  # at most, in one search
+_MIN_STATES = 100_000  # fewer are searched fast without landmarks, which take memory
+_BOUND_SHARE = 0.998  # lowers bounds, so that rounded ones fall by less than a move's cost
+_UNREACHABLE_COST = 1e6  # s, limit of the bounds, also where there is no path
 
 
 @dataclass(frozen=True)
 class Landmarks:
-    """Landmarks of a graph with the moves `ahead` in time and `back` against it; `places` are the
-    x and y (m) of its states, shape (n, 2).
+    """Landmarks of a graph.
 
-    The bounds hold as well for a graph that has lost some of the moves.
+    `forward` has the moves in the direction of travel, `backward` the reversed ones. `positions`
+    are the x and y (m) of its states, shape (n, 2). The bounds also hold for a graph that has lost
+    some of the moves.
     """
 
-    ahead: Graph
-    back: Graph
-    places: NDArray[np.float64]
+    forward: Graph
+    backward: Graph
+    positions: NDArray[np.float64]
     parts: Parts = NO_CACHE
     name: str = ""
-    """of the part with their ways"""
+    """name of the part with their costs"""
 
-    def bounds(
+    def lower_bounds(
         self, source: int, ends: NDArray[np.int64], extra: NDArray[np.float64]
     ) -> NDArray[np.float64] | None:
-        """Of each state a cost (s) that no way from it to one of `ends` is below, where arriving at
-        each costs `extra` (s) besides; the best ones near the ways from `source`.
+        """Return for each state a lower bound (s) on the cost to reach one of `ends`.
 
-        Along a move, bounds fall by less than its cost. None for a small graph.
+        Along a move, bounds fall by less than its cost. They are best near the paths from `source`.
+
+        Args:
+            source: State from which the search starts.
+            ends: States to reach.
+            extra: Additional cost (s) of each of `ends`.
+
+        Returns:
+            Bounds of shape (n,), or None for a small graph.
         """
-        if len(self.places) < _WORTH_IT:
+        if len(self.positions) < _MIN_STATES:
             return None
         onto, away = self._distances
-        # A way from the goals on to the landmark, or from the landmark to the goals.
+        # Costs from the goals on to each landmark, and from each landmark to the goals.
         behind = (onto[:, ends] - extra).max(axis=1).astype(np.float32)
         before = (away[:, ends] + extra).min(axis=1).astype(np.float32)
         with np.errstate(invalid="ignore"):
             worth = np.concatenate([onto[:, source] - behind, before - away[:, source]])
         usable = np.isfinite(np.concatenate([behind, before]))
         worth[~usable] = -np.inf
-        best = np.zeros(len(self.places), dtype=np.float32)
+        best = np.zeros(len(self.positions), dtype=np.float32)
         bound = np.empty_like(best)
-        for number in np.argsort(-worth, kind="stable")[: min(_ACTIVE, int(usable.sum()))].tolist():
+        for number in np.argsort(-worth, kind="stable")[
+            : min(_BOUNDS_USED, int(usable.sum()))
+        ].tolist():
             k = number % len(onto)
             if number == k:
                 np.subtract(onto[k], behind[k], out=bound)
             else:
                 np.subtract(before[k], away[k], out=bound)
             np.maximum(best, bound, out=best)
-        return np.minimum(best, np.float32(_NEVER), out=best).astype(np.float64) * _SHARE
+        return (
+            np.minimum(best, np.float32(_UNREACHABLE_COST), out=best).astype(np.float64)
+            * _BOUND_SHARE
+        )
 
     def prepare(self) -> None:
-        """Finds the ways now."""
-        if len(self.places) >= _WORTH_IT:
+        """Compute the costs from and to the landmarks now."""
+        if len(self.positions) >= _MIN_STATES:
             _ = self._distances
 
     @cached_property
     def _distances(self) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-        """The costs (s) from all states to each landmark, and from each landmark to all states,
-        shape (landmarks, n)."""
-        ways = self.parts.load_or_make(self.name, self._find_distances)
-        return ways["onto"], ways["away"]
+        """Costs (s) from all states to each landmark, and from each landmark to all states.
+
+        Both have the shape (landmarks, n).
+        """
+        costs = self.parts.load_or_make(self.name, self._find_distances)
+        return costs["onto"], costs["away"]
 
     def _find_distances(self) -> dict[str, NDArray[np.float32]]:
-        chosen = _outermost(self.places)
+        chosen = _outermost(self.positions)
         onto, away = self._to_and_from(chosen)
         nearest = (onto + away).min(axis=0)
-        for _ in range(_AWAY):
+        for _ in range(_DISTANT_LANDMARKS):
             nearest[~np.isfinite(nearest)] = -1.0
             more = self._to_and_from([int(np.argmax(nearest))])
             onto, away = np.vstack([onto, more[0]]), np.vstack([away, more[1]])
@@ -97,17 +119,17 @@ class Landmarks:
         return {"onto": onto, "away": away}
 
     def _to_and_from(self, states: list[int]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-        onto, away = (costs_of(graph, states) for graph in (self.back, self.ahead))
+        onto, away = (shortest_path_costs(graph, states) for graph in (self.backward, self.forward))
         return onto.astype(np.float32), away.astype(np.float32)
 
 
-def _outermost(places: NDArray[np.float64]) -> list[int]:
-    """The state that lies farthest in each of some directions, in the middle of those that do."""
+def _outermost(positions: NDArray[np.float64]) -> list[int]:
+    """Return the outermost state in each of some directions, in the middle of those that tie."""
     states = []
-    for k in range(_SIDES):
-        angle = 2 * math.pi * k / _SIDES
-        along = places @ np.array([math.cos(angle), math.sin(angle)])
-        aside = places @ np.array([-math.sin(angle), math.cos(angle)])
+    for k in range(_OUTER_LANDMARKS):
+        angle = 2 * math.pi * k / _OUTER_LANDMARKS
+        along = positions @ np.array([math.cos(angle), math.sin(angle)])
+        aside = positions @ np.array([-math.sin(angle), math.cos(angle)])
         edge = np.flatnonzero(along > along.max() - 0.15)
         middle = np.abs(aside[edge] - np.median(aside[edge])).round(6)
         states.append(int(edge[np.argmin(middle)]))
@@ -116,55 +138,56 @@ def _outermost(places: NDArray[np.float64]) -> list[int]:
 
 @dataclass(frozen=True)
 class Region:
-    """The states `members` of a lattice, ascending, with the moves between them forwards in time
-    (`ahead`) and against it (`back`), in the region's own numbers.
+    """Part of a lattice: the states `members`, ascending, and the moves between them.
 
-    Ways come in at the states `entries` and leave at the states `exits`.
+    `forward` has the moves in the direction of travel, `backward` the reversed ones, both in the
+    region's own numbers. Paths come in at the states `entries` and leave at the states `exits`, in
+    the same numbers.
     """
 
     members: NDArray[np.int64]
-    ahead: Graph
-    back: Graph
+    forward: Graph
+    backward: Graph
     entries: NDArray[np.int64]
     exits: NDArray[np.int64]
     landmarks: Landmarks
     parts: Parts = NO_CACHE
     name: str = ""
-    """of what is kept of it in `parts`"""
+    """beginning of the names of its parts"""
 
     @cached_property
-    def heads(self) -> NDArray[np.intp]:
-        """Where each move ahead leads, in the numbers that numpy takes fastest."""
-        return self.ahead.indices.astype(np.intp)
+    def move_targets(self) -> NDArray[np.intp]:
+        """State that each forward move leads to, in the type that NumPy indexes fastest with."""
+        return self.forward.indices.astype(np.intp)
 
     @cached_property
-    def from_entries(self) -> Trees:
-        """The cheapest ways from each entry; what is next to a state is the state before it."""
-        return self._trees("entries", self.ahead, self.entries)
+    def trees_from_entries(self) -> Trees:
+        """Cheapest paths from each entry; next to a state is the state before it."""
+        return self._trees("entries", self.forward, self.entries)
 
     @cached_property
-    def to_exits(self) -> Trees:
-        """The cheapest ways to each exit; what is next to a state is the state after it."""
-        return self._trees("exits", self.back, self.exits)
+    def trees_to_exits(self) -> Trees:
+        """Cheapest paths to each exit; next to a state is the state after it."""
+        return self._trees("exits", self.backward, self.exits)
 
     def _trees(self, kind: str, graph: Graph, sources: NDArray[np.int64]) -> Trees:
-        def find() -> Arrays:
-            costs, following = search(graph, sources)
+        def compute_trees() -> Arrays:
+            costs, following = shortest_path_trees(graph, sources)
             return {"costs": costs, "following": following}
 
-        trees = self.parts.load_or_make(f"{self.name}-{kind}", find)
+        trees = self.parts.load_or_make(f"{self.name}-{kind}", compute_trees)
         return trees["costs"], trees["following"]
 
 
-def walk(following: NDArray[np.int32], start: int) -> Iterator[int]:
-    """`start` and what follows it, up to the end."""
+def walk_tree(following: NDArray[np.int32], start: int) -> Iterator[int]:
+    """Yield `start` and the states that follow it, up to the root of the tree."""
     while start >= 0:
         yield start
         start = int(following[start])
 
 
-def find_cuts(lattice: Lattice, floors: Sequence[float]) -> list[float]:
-    """A height between each floor and the next, in m, that the fewest moves cross."""
+def find_cut_heights(lattice: Lattice, floors: Sequence[float]) -> list[float]:
+    """Return the heights (m) between consecutive floors that the fewest moves cross."""
     z = lattice.surface.z[lattice.cell]
     moves = lattice.costs.tocoo()
     a, b = z[moves.coords[0]], z[moves.coords[1]]
@@ -186,8 +209,11 @@ def find_cuts(lattice: Lattice, floors: Sequence[float]) -> list[float]:
 
 @dataclass(frozen=True)
 class Partition:
-    """A lattice in regions. State s is number `local[s]` of region `region[s]`; `crossings` are the
-    moves from region to region: sources, targets and costs (s)."""
+    """A lattice cut into regions.
+
+    State s is number `local[s]` of region `region[s]`; `crossings` are the moves from region to
+    region: sources, targets and costs (s).
+    """
 
     region: NDArray[np.int64]
     local: NDArray[np.int64]
@@ -196,8 +222,10 @@ class Partition:
 
 
 def make_partition(lattice: Lattice, cuts: Sequence[float], parts: Parts = NO_CACHE) -> Partition:
-    """The partition of the lattice at the heights `cuts` (m). What takes long to find of its
-    regions is kept in `parts`."""
+    """Return the partition of the lattice at the heights `cuts` (m).
+
+    What takes long to compute of its regions is stored in `parts`.
+    """
     region = np.searchsorted(np.array(cuts), lattice.surface.z[lattice.cell])
     members = [np.flatnonzero(region == r) for r in range(len(cuts) + 1)]
     local = np.empty(lattice.size, dtype=np.int64)
@@ -206,16 +234,19 @@ def make_partition(lattice: Lattice, cuts: Sequence[float], parts: Parts = NO_CA
     crossings = _crossings(lattice, region)
     regions = []
     for number, states in enumerate(members):
-        found = _region(lattice, states, local, crossings)
+        plain = _region(lattice, states, local, crossings)
         name = f"region-{number}"
-        landmarks = replace(found.landmarks, parts=parts, name=f"{name}-landmarks")
-        regions.append(replace(found, landmarks=landmarks, parts=parts, name=name))
+        landmarks = replace(plain.landmarks, parts=parts, name=f"{name}-landmarks")
+        regions.append(replace(plain, landmarks=landmarks, parts=parts, name=name))
     return Partition(region, local, tuple(regions), crossings)
 
 
 def repartition(partition: Partition, lattice: Lattice, changed: NDArray[np.bool_]) -> Partition:
-    """The partition of a `lattice` with the same states that has lost moves at the states
-    `changed`; regions without them are shared, with all that is known of them."""
+    """Return the partition of a `lattice` with the same states that has lost moves.
+
+    States that have lost moves are those of the mask `changed`. Regions without such states are
+    shared, with all that has been computed of them.
+    """
     crossings = _crossings(lattice, partition.region)
     regions = [
         _region(lattice, old.members, partition.local, crossings, old.landmarks)
@@ -241,18 +272,21 @@ def _region(
     crossings: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]],
     landmarks: Landmarks | None = None,
 ) -> Region:
-    ahead = part_of(lattice.costs, members)
+    forward = subgraph(lattice.costs, members)
     # scipy searches with 32-bit numbers and would convert them for every search.
-    ahead.indices, ahead.indptr = ahead.indices.astype(np.int32), ahead.indptr.astype(np.int32)
+    forward.indices, forward.indptr = (
+        forward.indices.astype(np.int32),
+        forward.indptr.astype(np.int32),
+    )
     inside = np.zeros(lattice.size, dtype=bool)
     inside[members] = True
     sources, targets, _ = crossings
-    back = against(ahead)
+    backward = reverse_graph(forward)
     return Region(
         members,
-        ahead,
-        back,
+        forward,
+        backward,
         local[np.unique(targets[inside[targets]])],
         local[np.unique(sources[inside[sources]])],
-        landmarks or Landmarks(ahead, back, lattice.poses(members)[:, :2]),
+        landmarks or Landmarks(forward, backward, lattice.poses(members)[:, :2]),
     )

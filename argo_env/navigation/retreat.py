@@ -1,4 +1,4 @@
-"""The way back along which the robot came, where it can't turn any more."""
+"""The path back along which the robot came, for where it can't turn any more."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -8,76 +8,87 @@ import numpy as np
 
 from argo_compiler.base.model import Pose
 from argo_env.navigation.path import Motion, Path, merge, wrap
-from argo_env.navigation.smoothing import connect, turn
+from argo_env.navigation.smoothing import connecting_motions, turn_motions
 
-_SPACING = 0.05  # m or rad between the places of a way that are compared with the robot's
-_RADIAN = 0.3  # m that a radian counts as in this
-_STRIDE = 0.05  # m between places that are enough to tell where a way led
-_STEEP = 0.2  # m of height in a metre, from which on it is a stair
+_SPACING = 0.05  # m or rad between the poses of a path that are compared with the robot's
+_RADIAN = 0.3  # m of distance that a radian counts as in this comparison
+_STRIDE = 0.05  # m between poses, enough for the direction of the path between them
+_STEEP = 0.2  # slope above which a path is on stairs
 
 
-def recent(places: Iterable[Pose], length: float) -> list[Pose]:
-    """Of places where the robot was seen, the last one first, those of the last `length` m (a
-    little more, or all that there are), the last one last."""
-    found: list[Pose] = []
-    for place in places:
-        if found:
-            length -= math.dist((place.x, place.y), (found[-1].x, found[-1].y))
-        found.append(place)
+def recent_poses(poses: Iterable[Pose], length: float) -> list[Pose]:
+    """Return the poses of the last `length` m of the robot's path, the latest one last.
+
+    They are those of a little more than `length`, or all that there are.
+
+    Args:
+        poses: Observed poses of the robot, the latest one first.
+        length: Length of the path in m.
+    """
+    latest: list[Pose] = []
+    for pose in poses:
+        if latest:
+            length -= math.dist((pose.x, pose.y), (latest[-1].x, latest[-1].y))
+        latest.append(pose)
         if length <= 0:
             break
-    return found[::-1]
+    return latest[::-1]
 
 
-def driven(places: Sequence[Pose]) -> Path:
-    """The way through places where the robot was seen one after the other (at least one), driven
-    straight from each to the next; of those closer together than a stride, only the turn counts."""
+def path_through(poses: Sequence[Pose]) -> Path:
+    """Return the path through consecutive observed poses, at least one, by straight drives.
+
+    Of poses closer together than a stride, only the turn counts.
+    """
     motions: list[Motion] = []
-    here = places[0]
-    for there in places[1:]:
+    here = poses[0]
+    for there in poses[1:]:
         away = math.dist((there.x, there.y), (here.x, here.y))
         if away < _STRIDE:
-            motions += turn(here, there.yaw)
+            motions += turn_motions(here, there.yaw)
             here = here.model_copy(update={"yaw": there.yaw})
             continue
         ahead = math.cos(math.atan2(there.y - here.y, there.x - here.x) - here.yaw) > 0
         if abs(there.z - here.z) > _STEEP * away:
-            # A robot on stairs is not turned but shaken.
+            # A changed heading on stairs comes from vibration, as the robot does not turn there.
             there = there.model_copy(update={"yaw": here.yaw})
             motions.append(Motion(here, there, gear=1 if ahead else -1, on_stairs=True))
         elif ahead:
-            motions += connect(here, there)
+            motions += connecting_motions(here, there)
         else:
-            motions += _backwards(here, there)
+            motions += _drive_backwards(here, there)
         here = there
-    return Path(places[0], tuple(merge(motions)))
+    return Path(poses[0], tuple(merge(motions)))
 
 
-def _backwards(here: Pose, there: Pose) -> list[Motion]:
-    """As a robot that faces the other way would drive it forwards."""
+def _drive_backwards(here: Pose, there: Pose) -> list[Motion]:
+    """Return the motions that drive backwards from `here` to `there`.
+
+    They mirror those with which a robot that faces the other way would drive forwards.
+    """
     return [
         replace(
             motion,
-            start=_faced_about(motion.start),
-            end=_faced_about(motion.end),
+            start=_opposite_pose(motion.start),
+            end=_opposite_pose(motion.end),
             gear=1 if motion.turn else -1,
         )
-        for motion in connect(_faced_about(here), _faced_about(there))
+        for motion in connecting_motions(_opposite_pose(here), _opposite_pose(there))
     ]
 
 
-def _faced_about(pose: Pose) -> Pose:
+def _opposite_pose(pose: Pose) -> Pose:
     return pose.model_copy(update={"yaw": wrap(pose.yaw + math.pi)})
 
 
-def way_back(path: Path, pose: Pose, length: float) -> Path:
-    """From where a robot at `pose` is on the path it is on, `length` m back along it, in reverse.
+def path_back(path: Path, pose: Pose, length: float) -> Path:
+    """Return the path from the pose on `path` nearest to `pose` back along it, for `length` m.
 
-    It has no motions where the path begins there.
+    It is driven in reverse, and has no motions where the path begins there.
     """
     if not path.motions:
         return Path(pose, ())
-    index, share = _place_on(path, pose)
+    index, share = _nearest_point_on(path, pose)
     motions: list[Motion] = []
     left = length
     for k in range(index, -1, -1):
@@ -94,19 +105,21 @@ def way_back(path: Path, pose: Pose, length: float) -> Path:
 
 
 def _reversed(motion: Motion, first: float, last: float) -> Motion:
-    """The motion backwards from one share of it to a lesser one."""
+    """Return the motion driven backwards from one share of it to a smaller one."""
     angle = -(first - last) * motion.turn
     gear = motion.gear if motion.turn else -motion.gear
-    return replace(motion, start=motion.at(first), end=motion.at(last), turn=angle, gear=gear)
+    return replace(
+        motion, start=motion.pose_at(first), end=motion.pose_at(last), turn=angle, gear=gear
+    )
 
 
-def _place_on(path: Path, pose: Pose) -> tuple[int, float]:
-    """The motion and the share of it at which the pose is nearest to the path."""
+def _nearest_point_on(path: Path, pose: Pose) -> tuple[int, float]:
+    """Return the index and the share of the motion where the path is nearest to the pose."""
     best, nearest = (0, 0.0), math.inf
     for k, motion in enumerate(path.motions):
         count = 2 + int(max(motion.length, abs(motion.turn)) / _SPACING)
         for share in np.linspace(0.0, 1.0, count).tolist():
-            at = motion.at(share)
+            at = motion.pose_at(share)
             away = math.dist((at.x, at.y, at.z), (pose.x, pose.y, pose.z))
             away += _RADIAN * abs(wrap(at.yaw - pose.yaw))
             if away < nearest:

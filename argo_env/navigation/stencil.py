@@ -1,7 +1,7 @@
-"""The cells that a robot covers, as steps from the cell below it.
+"""Stencils: the cells that a robot covers, as steps from the cell below it.
 
 A stencil is walked cell by cell along the surface's links, from the middle outwards. That works on
-any layer and across steps, and a cell that can't be reached so is a hole or an obstacle.
+any layer and across steps, and a cell that can't be reached this way is a hole or an obstacle.
 """
 
 import math
@@ -15,9 +15,9 @@ from argo_env.navigation.surface import DIRECTIONS, Surface
 from argo_env.robot.spec import Footprint
 
 HEADINGS = 8
-"""Headings of the lattice, one in 45 degrees."""
+"""number of headings of the lattice, 45 degrees apart"""
 SWEEP_STEPS = 9
-"""Steps in which the area of a turn of 45 degrees is looked at: one in 5 degrees."""
+"""number of steps in which the swept area of a turn by 45 degrees is computed: every 5 degrees"""
 
 
 @dataclass(frozen=True)
@@ -33,9 +33,11 @@ class Stencil:
     step: tuple[int, ...]
 
     def heights(self, surface: Surface, middle: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Heights of the surface (m) at each offset about the cells `middle`, shape
-        (len(offsets), len(middle)); nan where the surface does not go on."""
-        # One more cell stands for "nowhere": it has no height, and all its links lead to itself.
+        """Return heights of the surface (m) at each offset about the cells `middle`.
+
+        The shape is (len(offsets), len(middle)); nan where the surface does not continue.
+        """
+        # An extra cell stands for "nowhere": its height is nan, and all its links lead to itself.
         nowhere = surface.size
         links = np.vstack([surface.links, np.full((1, len(DIRECTIONS)), nowhere)])
         links = np.ascontiguousarray(np.where(links < 0, nowhere, links).T)
@@ -48,7 +50,7 @@ class Stencil:
 
 
 def make_stencil(cells: set[tuple[int, int]]) -> Stencil:
-    """The stencil over a set of offsets that is convex enough to be walked towards the middle."""
+    """Return the stencil over a set of offsets, convex enough to be walked towards the middle."""
     ordered = sorted(cells | {(0, 0)}, key=lambda c: (c[0] ** 2 + c[1] ** 2, c))
     index = {offset: k for k, offset in enumerate(ordered)}
     parents, steps = [0], [0]
@@ -60,7 +62,7 @@ def make_stencil(cells: set[tuple[int, int]]) -> Stencil:
 
 
 def _towards_middle(i: int, j: int, known: dict[tuple[int, int], int]) -> tuple[int, int]:
-    """The known neighbour that lies nearest to the straight line to the middle."""
+    """Return the known neighbour that is nearest to the straight line to the middle."""
     candidates = [
         (i + di, j + dj)
         for di, dj in DIRECTIONS
@@ -69,23 +71,29 @@ def _towards_middle(i: int, j: int, known: dict[tuple[int, int], int]) -> tuple[
     return min(candidates, key=lambda c: (abs(i * c[1] - j * c[0]), c[0] ** 2 + c[1] ** 2, c))
 
 
-def overlaps(
+def overlaps_cells(
     footprint: Footprint,
     margin: float,
     yaw: float | NDArray[np.float64],
     x: NDArray[np.float64],
     y: NDArray[np.float64],
 ) -> NDArray[np.bool_]:
-    """Whether a robot with heading `yaw` (rad), `margin` (m) added on all sides, touches the cells
-    whose centres lie at (x, y) from its point of rotation, in m. The arrays are broadcast.
+    """Return a mask of the cells that a robot touches.
 
-    A cell that is only touched at its edge is apart.
+    A cell that is touched only at its edge is not counted. The arrays are broadcast.
+
+    Args:
+        footprint: Footprint of the robot.
+        margin: Margin (m) added on all sides.
+        yaw: Heading of the robot in rad.
+        x: x of the cells' centres from the robot's point of rotation, in m.
+        y: y of the same.
     """
     half_cell = CELL / 2 - 1e-6
-    return touches(footprint, margin, yaw, x, y, (half_cell, half_cell))
+    return touches_rectangles(footprint, margin, yaw, x, y, (half_cell, half_cell))
 
 
-def touches(
+def touches_rectangles(
     footprint: Footprint,
     margin: float,
     yaw: float | NDArray[np.float64],
@@ -93,10 +101,18 @@ def touches(
     y: NDArray[np.float64],
     half: tuple[float, float],
 ) -> NDArray[np.bool_]:
-    """Whether a robot with heading `yaw` (rad), `margin` (m) added on all sides, touches the
-    rectangles of half edges `half` (m) about (x, y) from its point of rotation, in m.
+    """Return a mask of the rectangles that a robot touches.
 
-    Two convex shapes are apart if a normal of one of their edges parts them.
+    Two convex shapes are apart if a normal of one of their edges separates them. The arrays are
+    broadcast.
+
+    Args:
+        footprint: Footprint of the robot.
+        margin: Margin (m) added on all sides.
+        yaw: Heading of the robot in rad.
+        x: x of the rectangles' centres from the robot's point of rotation, in m.
+        y: y of the same.
+        half: Half of the rectangles' edges along x and y, in m.
     """
     cos, sin = np.cos(yaw), np.sin(yaw)
     front, rear = footprint.front + margin, footprint.rear + margin
@@ -114,36 +130,38 @@ def touches(
     )
 
 
-def cells_around(footprint: Footprint, margin: float) -> NDArray[np.int64]:
-    """Numbers of all columns or rows of cells that the robot can reach from the one it is in."""
+def offsets_in_reach(footprint: Footprint, margin: float) -> NDArray[np.int64]:
+    """Return the offsets of all rows or columns of cells that the robot can reach from its own."""
     reach = math.ceil((footprint.radius + margin) / CELL) + 1
     return np.arange(-reach, reach + 1)
 
 
-def covered(footprint: Footprint, yaw: float, margin: float) -> set[tuple[int, int]]:
-    """Cells that a robot at the middle of a cell with heading `yaw` (rad) touches, `margin` (m)
-    added on all sides."""
-    around = cells_around(footprint, margin)
+def covered_cells(footprint: Footprint, yaw: float, margin: float) -> set[tuple[int, int]]:
+    """Return the cells that a robot at the middle of a cell with heading `yaw` (rad) touches.
+
+    `margin` (m) is added on all sides.
+    """
+    around = offsets_in_reach(footprint, margin)
     i, j = np.meshgrid(around, around, indexing="ij")
     x, y = i.astype(np.float64) * CELL, j.astype(np.float64) * CELL
-    touched = overlaps(footprint, margin, yaw, x, y)
+    touched = overlaps_cells(footprint, margin, yaw, x, y)
     return set(zip(i[touched].tolist(), j[touched].tolist(), strict=True))
 
 
-def standing(footprint: Footprint, heading: int, margin: float) -> Stencil:
-    """The stencil of a robot that stands or drives with lattice heading `heading`."""
-    return make_stencil(covered(footprint, heading_angle(heading), margin))
+def footprint_stencil(footprint: Footprint, heading: int, margin: float) -> Stencil:
+    """Return the stencil of a robot that stands or drives with lattice heading `heading`."""
+    return make_stencil(covered_cells(footprint, heading_angle(heading), margin))
 
 
-def turning(footprint: Footprint, heading: int, margin: float) -> Stencil:
-    """The stencil of a turn in place from `heading` to the next one, counter-clockwise."""
+def turn_stencil(footprint: Footprint, heading: int, margin: float) -> Stencil:
+    """Return the stencil of a turn in place from `heading` to the next one, counter-clockwise."""
     cells: set[tuple[int, int]] = set()
     for k in range(SWEEP_STEPS + 1):
         yaw = heading_angle(heading) + k / SWEEP_STEPS * heading_angle(1)
-        cells |= covered(footprint, yaw, margin)
+        cells |= covered_cells(footprint, yaw, margin)
     return make_stencil(cells)
 
 
 def heading_angle(heading: int) -> float:
-    """rad, of a lattice heading."""
+    """Return the angle (rad) of a lattice heading."""
     return heading * 2 * math.pi / HEADINGS

@@ -1,7 +1,8 @@
-"""The walkable surface, found from the geometry: layered cells, linked where a robot can go on.
+"""The traversable surface, computed from the geometry: layered cells with links between them.
 
-Several cells may lie above each other: decks over decks, flights over flights. Stairs are nothing
-special here: treads are cells whose neighbour lies one rise higher.
+Links lead where a robot can continue. Several cells may be above each other: decks over decks,
+flights over flights. Stairs need no special case: treads are cells whose neighbour is one rise
+higher.
 """
 
 import math
@@ -19,15 +20,18 @@ from argo_env.site.shapes import Element
 DIRECTIONS: tuple[tuple[int, int], ...] = (
     (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1),
 )  # fmt: skip
-"""Steps to the eight neighbours; direction k points k * 45 degrees from the x axis."""
-_TOUCHING = 0.01  # m: what reaches no higher than this above the surface is not in the way
-_LONGEST = 2.0**40  # cells
+"""steps to the eight neighbours; direction k points k * 45 degrees from the x axis"""
+_TOUCHING = 0.01  # m above the surface up to which a solid is no obstacle
+_MAX_CELLS = 2.0**40  # cells
 
 
 @dataclass(frozen=True)
 class Surface:
-    """Walkable cells. Arrays have one entry a cell; `links[n, k]` is the neighbour in direction k,
-    or -1 if there is none within one step's height."""
+    """Traversable cells.
+
+    Arrays have one entry per cell; `links[n, k]` is the neighbour in direction k, or -1 if there is
+    none within one step's height.
+    """
 
     grid: Grid
     i: NDArray[np.int64]
@@ -40,7 +44,7 @@ class Surface:
         return len(self.z)
 
     def positions(self) -> NDArray[np.float64]:
-        """Centres of the cells on the surface, in m, shape (size, 3)."""
+        """Return the centres of the cells on the surface, in m, shape (size, 3)."""
         x, y = self.grid.centers(self.i, self.j)
         return np.stack([x, y, self.z], axis=1)
 
@@ -48,11 +52,18 @@ class Surface:
     def _columns(self) -> NDArray[np.int64]:
         return self.i * self.grid.ny + self.j
 
-    def near(self, x: float, y: float, distance: float) -> NDArray[np.int64]:
-        """The cells, ascending, of the square about (x, y) that reaches `distance` (m) far."""
-        # Poses may lie anywhere, also further than arrays are long, or floats are large.
-        i0, i1 = (_whole((x + d - self.grid.x0) / CELL) for d in (-distance, distance))
-        j0, j1 = (_whole((y + d - self.grid.y0) / CELL) for d in (-distance, distance))
+    def cells_near(self, x: float, y: float, distance: float) -> NDArray[np.int64]:
+        """Return the cells, ascending, of a square about (x, y).
+
+        Its sides are `distance` (m) away.
+        """
+        # Poses may be anywhere, even at coordinates that exceed the size of any array.
+        i0, i1 = (
+            _floor_within_limits((x + d - self.grid.x0) / CELL) for d in (-distance, distance)
+        )
+        j0, j1 = (
+            _floor_within_limits((y + d - self.grid.y0) / CELL) for d in (-distance, distance)
+        )
         low, high = (min(max(i, 0), self.grid.nx) for i in (i0, i1 + 1))
         rows = np.arange(low, high) * self.grid.ny
         first = np.searchsorted(self._columns, rows + min(max(j0, 0), self.grid.ny))
@@ -60,13 +71,13 @@ class Surface:
         return np.concatenate([np.arange(a, b) for a, b in zip(first, last, strict=True)] or [rows])
 
 
-def _whole(number: float) -> int:
-    """Rounded down, and as large as any array may be where it is larger."""
-    return math.floor(min(max(number, -_LONGEST), _LONGEST))
+def _floor_within_limits(number: float) -> int:
+    """Return the number rounded down, and limited to `_MAX_CELLS` on either side of 0."""
+    return math.floor(min(max(number, -_MAX_CELLS), _MAX_CELLS))
 
 
 def surface_arrays(surface: Surface) -> Arrays:
-    """A surface as arrays, its grid apart."""
+    """Return a surface as arrays, without its grid."""
     return {"i": surface.i, "j": surface.j, "z": surface.z, "links": surface.links}
 
 
@@ -74,10 +85,11 @@ def surface_arrays(surface: Surface) -> Arrays:
 def find_surface(
     elements: tuple[Element, ...], grid: Grid, headroom: float, max_step: float
 ) -> Surface:
-    """All places where a robot of height `headroom` (m) could stand, climbing steps of `max_step`.
+    """Return all cells where a robot of height `headroom` (m) could stand.
 
-    A cell is walkable where a walking solid has its top at the cell's centre, and no part of the
-    cell is obstructed between that height and `headroom` above it.
+    A cell is traversable where a walking solid has its top at the cell's centre, and no part of the
+    cell is obstructed between that height and `headroom` above it. The robot climbs steps of up to
+    `max_step` (m).
     """
     columns = rasterise(elements, grid)
     cell, z = _candidates(columns, max_step)
@@ -89,7 +101,10 @@ def find_surface(
 
 
 def _candidates(columns: Columns, max_step: float) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Tops of walking solids, sorted by cell and height; of tops within one step the highest."""
+    """Return cells and heights of the tops of walking solids, sorted by cell and height.
+
+    Of tops within one step of each other, only the highest is returned.
+    """
     walking = columns.walking & np.isfinite(columns.top_at_center)
     cell, z = columns.cell[walking], columns.top_at_center[walking]
     order = np.lexsort((z, cell))
@@ -106,10 +121,10 @@ def _obstructed(
     headroom: float,
     max_step: float,
 ) -> NDArray[np.bool_]:
-    """Which candidates have something in their way; steps of a walking solid are not."""
+    """Return a mask of the candidates that are obstructed; steps of a walking solid don't count."""
     first = np.searchsorted(columns.cell, cell, side="left")
     count = np.searchsorted(columns.cell, cell, side="right") - first
-    # All pairs (candidate, column entry of the same cell).
+    # These are all pairs (candidate, column entry of the same cell).
     candidate = np.repeat(np.arange(len(cell)), count)
     entry = np.arange(len(candidate)) - np.repeat(np.cumsum(count) - count - first, count)
     over = z[candidate]
@@ -127,7 +142,7 @@ def _link(
     grid: Grid,
     max_step: float,
 ) -> NDArray[np.int64]:
-    """For each cell the neighbour in `direction` whose height is nearest, or -1."""
+    """Return for each cell the neighbour in `direction` whose height is nearest, or -1."""
     ni, nj = i + direction[0], j + direction[1]
     inside = (ni >= 0) & (ni < grid.nx) & (nj >= 0) & (nj < grid.ny)
     wanted = np.where(inside, ni * grid.ny + nj, -1)

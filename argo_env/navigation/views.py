@@ -1,4 +1,4 @@
-"""From where a checkpoint can be read: states with its face in range and in sight."""
+"""Views: states from which a checkpoint's face is in range and in line of sight."""
 
 import math
 from dataclasses import dataclass
@@ -12,22 +12,22 @@ from argo_env.site import Site, SiteCheckpoint
 from argo_env.site.shapes import crossing
 
 FACE_GAP = 0.02  # m in front of a checkpoint's face where a line of sight ends
-_OBLIQUE_COST = 6.0  # s that the most oblique view is worth against a frontal one
-_FAR_COST = 3.0  # s that a view at the limit of the range is worth against one at half the range
+_OBLIQUE_COST = 6.0  # s that the most oblique view costs more than a frontal one
+_FAR_COST = 3.0  # s that a view at full range costs more than one at half the range
 
 
 def face_normal(checkpoint: SiteCheckpoint) -> NDArray[np.float64]:
-    """The unit vector that the face looks along, shape (3,)."""
+    """Return the unit vector in which the face looks, shape (3,)."""
     return np.array([np.cos(checkpoint.yaw), np.sin(checkpoint.yaw), 0.0])
 
 
 def sight_target(checkpoint: SiteCheckpoint) -> NDArray[np.float64]:
-    """The point just in front of the face that must be seen, in m, shape (3,)."""
+    """Return the point (m) just in front of the face that must be seen, shape (3,)."""
     return np.array(checkpoint.position) + FACE_GAP * face_normal(checkpoint)
 
 
 def camera_positions(poses: NDArray[np.float64], robot: RobotSpec) -> NDArray[np.float64]:
-    """Where the raised camera is for poses (x, y, z, yaw), shape (n, 3) in m."""
+    """Return the positions (m) of the raised camera for poses (x, y, z, yaw), shape (n, 3)."""
     along, left, up = robot.sensor.offset
     cos, sin = np.cos(poses[:, 3]), np.sin(poses[:, 3])
     shift = np.column_stack([along * cos - left * sin, along * sin + left * cos])
@@ -37,22 +37,25 @@ def camera_positions(poses: NDArray[np.float64], robot: RobotSpec) -> NDArray[np
 def find_views(
     site: Site, checkpoint: SiteCheckpoint, lattice: Lattice
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """The states to read the checkpoint from, and what each view costs in s (the worse, the more).
+    """Return the states from which the checkpoint can be read, and the cost of each view in s.
 
-    Both arrays are empty if there is no such state.
+    A worse view costs more. Both arrays are empty if there is no such state.
     """
     sensor, target = lattice.robot.sensor, sight_target(checkpoint)
-    views = possible_views(checkpoint, lattice)
-    seen = in_sight(site, views.cameras, target)
+    views = candidate_views(checkpoint, lattice)
+    seen = has_line_of_sight(site, views.cameras, target)
     far = np.maximum(0.0, views.distance[seen] / sensor.max_range - 0.5) * 2
     oblique = (views.obliqueness[seen] / sensor.max_obliqueness) ** 2
     return views.states[seen], _OBLIQUE_COST * oblique + _FAR_COST * far**2
 
 
 @dataclass(frozen=True)
-class PossibleViews:
-    """States with a face in range and not too oblique, whatever stands between; with each where
-    the camera is (m, shape (n, 3)), how far the face is (m), and how oblique (deg)."""
+class CandidateViews:
+    """States from which a face is in range and not too oblique, whatever stands between.
+
+    For each there are the position of the camera (m, shape (n, 3)), its distance from the face (m),
+    and the obliqueness (deg).
+    """
 
     states: NDArray[np.int64]
     cameras: NDArray[np.float64]
@@ -60,11 +63,11 @@ class PossibleViews:
     obliqueness: NDArray[np.float64]
 
 
-def possible_views(checkpoint: SiteCheckpoint, lattice: Lattice) -> PossibleViews:
-    """Those of a checkpoint."""
+def candidate_views(checkpoint: SiteCheckpoint, lattice: Lattice) -> CandidateViews:
+    """Return the candidate views of a checkpoint."""
     sensor, target = lattice.robot.sensor, sight_target(checkpoint)
     reach = sensor.max_range + math.hypot(*sensor.offset[:2])
-    states = lattice.state_of[lattice.surface.near(target[0], target[1], reach)]
+    states = lattice.state_of[lattice.surface.cells_near(target[0], target[1], reach)]
     states = states[states >= 0]
     states = states[np.abs(lattice.rise[states]) <= LEVEL]
     cameras = camera_positions(lattice.poses(states), lattice.robot)
@@ -77,13 +80,13 @@ def possible_views(checkpoint: SiteCheckpoint, lattice: Lattice) -> PossibleView
         & (distance <= sensor.max_range)
         & (obliqueness <= sensor.max_obliqueness)
     )
-    return PossibleViews(states[good], cameras[good], distance[good], obliqueness[good])
+    return CandidateViews(states[good], cameras[good], distance[good], obliqueness[good])
 
 
-def in_sight(
+def has_line_of_sight(
     site: Site, origins: NDArray[np.float64], target: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
-    """Whether nothing stands between each of `origins`, shape (n, 3), and `target`, shape (3,)."""
+    """Return a mask of `origins`, shape (n, 3), in line of sight of `target`, shape (3,)."""
     clear = np.ones(len(origins), dtype=bool)
     if not len(origins):
         return clear

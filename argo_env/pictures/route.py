@@ -104,7 +104,7 @@ def _way(
             takes = motion.duration(robot)
             count = max(1, round(motion.length / _STEP))
             for k in range(1, count + 1):
-                p = motion.at(k / count)
+                p = motion.pose_at(k / count)
                 moments.append(Moment(t + takes * k / count, p.x, p.y, site.floor_at(p.z)))
             t += takes
         here = path.end

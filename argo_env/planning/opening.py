@@ -83,7 +83,7 @@ class OpenedSite:
         """What finds paths on the site; remembers those that it planned last."""
         from argo_env.navigation import Navigator
 
-        return Navigator(self.site, self.robot, self.parts, remembered=_PATHS)
+        return Navigator(self.site, self.robot, self.parts, cached_paths=_PATHS)
 
     @cached_property
     def catalog(self) -> Catalog:
@@ -211,7 +211,7 @@ def _keep(
     parts.store_text("site", site.spec.model_dump_json())
     opened = OpenedSite(reference, site, robot, parts)
     if not isinstance(made, Site):
-        opened.navigator.take_over(made)
+        opened.navigator.adopt_results(made)
     return opened
 
 

@@ -67,7 +67,7 @@ def patrol_corners(navigator: "Navigator", floor: int) -> list[tuple[float, floa
     Fewer than three make no patrol."""
     import numpy as np  # by what finds patrols, not by what has them in the cache
 
-    places = navigator.turning_places(floor)
+    places = navigator.turning_poses(floor)
     x0, y0, x1, y1 = _bounds(navigator.site, floor)
     # The whole robot stays on the floor, wherever it turns.
     inset = navigator.robot.footprint.radius

@@ -30,5 +30,5 @@ def inspection_views(mission: Mission, navigator: Navigator) -> dict[str, Inspec
 
 
 def _anywhere(navigator: Navigator) -> Pose:
-    x, y, z, _ = navigator.turning_places(navigator.site.spec.floors[0].number)[0].tolist()
+    x, y, z, _ = navigator.turning_poses(navigator.site.spec.floors[0].number)[0].tolist()
     return Pose(x=x, y=y, z=z)

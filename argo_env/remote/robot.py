@@ -285,7 +285,7 @@ class RemoteRobot:
         """No-op: faults are not simulated."""
 
     def avoid(self, blockages: Sequence[Blockage]) -> None:
-        self.setup = replace(self.setup, navigator=self.setup.navigator.avoiding(blockages))
+        self.setup = replace(self.setup, navigator=self.setup.navigator.with_blockages(blockages))
 
     def start(self, command: StartAction, now: float, arrival_path: Path | None) -> RobotAction:  # noqa: ARG002
         """Prepare the order of an action, which the next `advance` sends.

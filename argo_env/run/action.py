@@ -9,8 +9,8 @@ from argo_compiler.hfsm import ActionFailed, ActionStopped, ActionSucceeded, Sta
 from argo_compiler.il import Action, Task
 from argo_env.drives.drive import DriveStatus
 from argo_env.navigation import Navigator, Path
-from argo_env.navigation.closed_areas import leads_through
-from argo_env.navigation.retreat import way_back
+from argo_env.navigation.closed_areas import may_touch_blockage
+from argo_env.navigation.retreat import path_back
 from argo_env.robot.pose import BodyPose
 from argo_env.run.record import DIGITS, Reading, TaskRun
 from argo_env.run.robot import ActionEnd
@@ -124,7 +124,7 @@ class SimulatedAction:
         """
         self._setup = setup
         navigator = setup.navigator
-        blocked = self.path is not None and leads_through(
+        blocked = self.path is not None and may_touch_blockage(
             self.path, navigator.blockages, navigator.robot
         )
         if blocked and self._phase == self._drive:
@@ -247,7 +247,7 @@ class SimulatedAction:
         """Start to drive back along the arrival path, to plan a path from there."""
         assert self.arrival_path is not None
         self._retreated = True
-        back_path = way_back(self.arrival_path, _to_pose(self._setup.drive.pose), RETREAT)
+        back_path = path_back(self.arrival_path, _to_pose(self._setup.drive.pose), RETREAT)
         self._setup.drive.follow(back_path, self._velocity)
         self._phase = self._retreat
         return None

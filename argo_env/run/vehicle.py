@@ -18,7 +18,7 @@ from argo_compiler.hfsm import StartAction
 from argo_env.drives.battery import electric_loads
 from argo_env.drives.powertrain import Powertrain, StepsAhead
 from argo_env.navigation import Blockage, Path
-from argo_env.navigation.retreat import driven, recent
+from argo_env.navigation.retreat import path_through, recent_poses
 from argo_env.robot.pose import BodyPose, PoseArray, PoseTuple, pose_tuple_at
 from argo_env.run.action import RETREAT, SimulatedAction
 from argo_env.run.initial_state import InitialState
@@ -165,7 +165,7 @@ class Vehicle:
 
     def avoid(self, blockages: Sequence[Blockage]) -> None:
         """Make later paths keep clear of these blockages as well."""
-        navigator = self.setup.navigator.avoiding(blockages)
+        navigator = self.setup.navigator.with_blockages(blockages)
         self.setup = replace(self.setup, navigator=navigator)
 
     def start(self, command: StartAction, now: float, arrival_path: Path | None) -> RobotAction:
@@ -244,4 +244,4 @@ def find_arrival_path(log: RunLog) -> Path | None:
     if not log.path:
         return None
     poses = (Pose(x=s.x, y=s.y, z=s.z, yaw=s.yaw) for s in reversed(log.path))
-    return driven(recent(poses, 2 * RETREAT))
+    return path_through(recent_poses(poses, 2 * RETREAT))

@@ -308,7 +308,7 @@ def _sample_poses(path: Path, velocity: float | None, robot: RobotSpec) -> NDArr
         max_samples = 1 + math.ceil(max(0.0, duration - first) / _SAMPLE)
         times = [*accumulate(repeat(_SAMPLE, max_samples), initial=first)]
         samples_within = bisect_left(times, duration)
-        x, y, z, yaw = motion.along(np.array(times[:samples_within]) / duration)
+        x, y, z, yaw = motion.coordinates_at(np.array(times[:samples_within]) / duration)
         rows.append(np.column_stack([x, y, z, wrap(yaw)]))
         first = times[samples_within] - duration
     end = path.end

@@ -103,7 +103,7 @@ def test_times_of_motions_add_up_and_give_the_paces_again(navigator):
     docks, timed = navigator.site.docks, []
     for a, b in ((1, 2), (2, 1)):
         for floor in (2, 4):
-            x, y, z, _ = navigator.turning_places(floor)[5 * a].tolist()
+            x, y, z, _ = navigator.turning_poses(floor)[5 * a].tolist()
             above = Pose(x=x, y=y, z=z, yaw=1.0)
             for path in (navigator.plan(docks[a], above), navigator.plan(above, docks[b])):
                 found = drive_along(standing(Telling(robot, 0.02), path.start), path)

@@ -84,7 +84,7 @@ def bricks(navigator: Navigator, count: int, first_seed: int, drive: str) -> Non
         way = navigator.plan_to_view(navigator.snap(site.docks[area]), checkpoint)
         floors = {f.z: f for f in site.spec.floors}
         places = [
-            (floors[motion.start.z].number, motion.at(float(rng.random())))
+            (floors[motion.start.z].number, motion.pose_at(float(rng.random())))
             for motion in way.motions
             if not motion.turn and motion.start.z == motion.end.z and motion.start.z in floors
         ]

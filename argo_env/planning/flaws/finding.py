@@ -12,7 +12,7 @@ from argo_compiler.base.errors import ArgoError
 from argo_compiler.base.listing import listed
 from argo_env.navigation import Navigator
 from argo_env.navigation.stencil import HEADINGS
-from argo_env.navigation.views import find_views, possible_views, sight_target
+from argo_env.navigation.views import candidate_views, find_views, sight_target
 from argo_env.planning.checking import unseen_checkpoints, unserved_floors
 from argo_env.planning.flaws.flaw import Flaw, Mark, between, direction, in_the_way, place
 from argo_env.planning.flaws.floors import floor_flaws, lost_floors
@@ -125,7 +125,7 @@ def _why(standing: Standing, navigator: Navigator, checkpoint: SiteCheckpoint) -
             f"it is {z - floor.z:.1f} m above the deck, and the camera, {sensor.offset[2]:.2f} m "
             f"above it, reads from {sensor.min_range:g} to {sensor.max_range:g} m; hang it lower"
         )
-    views = possible_views(checkpoint, navigator.lattice)
+    views = candidate_views(checkpoint, navigator.lattice)
     if len(views.states):
         hidden = _hiding(site, views.cameras, (x, y, z))
         return (

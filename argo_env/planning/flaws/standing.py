@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_env.navigation import Navigator
-from argo_env.navigation.graphs import strong_parts
+from argo_env.navigation.graphs import label_strong_components
 from argo_env.navigation.lattice import Lattice, build_lattice
 from argo_env.navigation.navigator import nearest_state
 from argo_env.site import Site
@@ -33,7 +33,7 @@ class Standing:
         docks = {
             n: nearest_state(lattice, pose) for n, pose in sorted(navigator.site.docks.items())
         }
-        return Standing(navigator.site, lattice, strong_parts(lattice.costs), docks)
+        return Standing(navigator.site, lattice, label_strong_components(lattice.costs), docks)
 
     @property
     def first_dock(self) -> int | None:

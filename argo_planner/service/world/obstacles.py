@@ -99,7 +99,7 @@ def _with_obstacles(site: OpenedSite, obstacles: tuple[Obstacle, ...]) -> Opened
     navigator = site.navigator
     blockages = [b for obstacle in obstacles for b in closed_by(obstacle, navigator)]
     altered = site.site.with_elements((*site.site.elements, *bodies))
-    opened = OpenedSite.of_navigator(navigator.avoiding(blockages, altered))
+    opened = OpenedSite.of_navigator(navigator.with_blockages(blockages, altered))
     opened.catalog = site.catalog
     return opened
 

@@ -177,7 +177,7 @@ class _Ways:
 
 
 def _previewed(leg: Leg, path: Path, velocity: float | None, robot: RobotSpec) -> PreviewedWay:
-    rows = path.timed(robot, velocity).round(_DIGITS).tolist()
+    rows = path.timed_poses(robot, velocity).round(_DIGITS).tolist()
     return PreviewedWay(
         points=tuple((t, x, y, z, yaw) for t, x, y, z, yaw in rows),
         time=round(leg.duration, _DIGITS),

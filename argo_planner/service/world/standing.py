@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid
 from argo_env.navigation import Navigator
-from argo_env.navigation.graphs import costs_of
-from argo_env.navigation.lattice import LEVEL, MARGIN, standing_rise
+from argo_env.navigation.graphs import shortest_path_costs
+from argo_env.navigation.lattice import LEVEL, MARGIN, footprint_rise
 from argo_env.navigation.navigator import SNAP_DISTANCE, nearest_state
 from argo_env.navigation.raster import CELL
-from argo_env.navigation.stencil import HEADINGS, heading_angle, standing
+from argo_env.navigation.stencil import HEADINGS, footprint_stencil, heading_angle
 from argo_env.planning.opening import OpenedSite
 from argo_planner.service.world.obstacles import Obstacle, with_obstacles
 
@@ -172,7 +172,7 @@ def _codes(site: OpenedSite, obstacles: tuple[Obstacle, ...]) -> NDArray[np.uint
     docks = [nearest_state(lattice, dock) for dock in site.site.docks.values()]
     sources = [dock for dock in docks if dock is not None]
     if sources:
-        reached = np.isfinite(costs_of(lattice.costs, sources)).any(axis=0) & ~closed
+        reached = np.isfinite(shortest_path_costs(lattice.costs, sources)).any(axis=0) & ~closed
         found[lattice.cell[reached], lattice.heading[reached]] = Ground.REACHED
     return found
 
@@ -181,11 +181,11 @@ def _codes_without_obstacles(navigator: Navigator) -> NDArray[np.uint8]:
     surface, robot = navigator.surface, navigator.robot
     codes = np.empty((surface.size, HEADINGS), np.uint8)
     for heading in range(HEADINGS):
-        stencil = standing(robot.footprint, heading, MARGIN)
+        stencil = footprint_stencil(robot.footprint, heading, MARGIN)
         for first in range(0, surface.size, _AT_ONCE):
             cells = np.arange(first, min(first + _AT_ONCE, surface.size))
             z = stencil.heights(surface, cells)
-            stands = standing_rise(z, stencil, heading) <= LEVEL
+            stands = footprint_rise(z, stencil, heading) <= LEVEL
             steep = np.where(stands, Ground.CUT_OFF, Ground.TOO_STEEP)
             fits = np.isfinite(z.sum(axis=0))
             codes[cells, heading] = np.where(fits, steep, Ground.TOO_NEAR)

@@ -76,7 +76,7 @@ def test_arrives_at_the_end_pose(simulation, robot, paths, way):
 def test_passes_every_vertex_at_its_time(simulation, robot, paths, way):
     path, step = paths[way], 0.05
     poses, _ = follow(simulation, robot, path, time_step=step)
-    for t, x, y, _, yaw in path.timed(robot):
+    for t, x, y, _, yaw in path.timed_poses(robot):
         pose = poses[min(round(t / step), len(poses) - 1)]
         assert math.dist((pose.x, pose.y), (x, y)) <= robot.speed * step
         assert abs(wrap(pose.yaw - yaw)) <= robot.turn_rate_radians * step
@@ -345,7 +345,7 @@ def test_climb_is_monotonous(on_flight):
 def test_continues_where_the_previous_motion_ended(simulation, robot):
     """A flight that is driven in pieces, with seams anywhere, is climbed without jumps."""
     whole = FLIGHTS[1]
-    seams = [whole.at(share) for share in np.linspace(0.0, 1.0, 12)]
+    seams = [whole.pose_at(share) for share in np.linspace(0.0, 1.0, 12)]
     parts = [resting_poses(simulation, Motion(a, b), robot) for a, b in pairwise(seams)]
     for before, after in pairwise(parts):
         assert (after[0].z, after[0].pitch) == pytest.approx((before[-1].z, before[-1].pitch))

@@ -15,7 +15,7 @@ from argo_env.drives.timed_drive import RouteDrive
 from argo_env.drives.timetable import Timetable
 from argo_env.navigation import Path
 from argo_env.navigation.path import Motion, wrap
-from argo_env.navigation.views import in_sight
+from argo_env.navigation.views import has_line_of_sight
 from argo_env.planning.travel import SiteTravel
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import Calibration, MotionPace, load_robot
@@ -86,7 +86,7 @@ def test_is_on_its_path_by_time(path, robot, velocity, time_step):
     end = path.end
     assert poses[-1] == BodyPose(end.x, end.y, end.z, wrap(end.yaw)) or not path.motions
     # At its vertices by the path's own table, to within a step of the fastest.
-    for t, x, y, z, _ in path.timed(robot, velocity):
+    for t, x, y, z, _ in path.timed_poses(robot, velocity):
         near = poses[min(len(poses) - 1, math.ceil(t / time_step - 1e-9))]
         speeds = [m.speed(robot, velocity) * 1.2 for m in path.motions if not m.turn]
         reach = max(speeds, default=0.0) * time_step + 1e-6
@@ -168,7 +168,7 @@ def test_lines_of_sight_are_those_of_the_world(umad, robot, simulation):
         origin = rng.uniform(low, high)
         target = origin + rng.uniform(-2.0, 2.0, 3)
         found = paper.obstacle_between(tuple(origin.tolist()), tuple(target.tolist()))
-        assert (found is None) == bool(in_sight(umad, origin[None, :], target)[0])
+        assert (found is None) == bool(has_line_of_sight(umad, origin[None, :], target)[0])
         seen += found is None
         hit = simulation.obstacle_between(tuple(origin.tolist()), tuple(target.tolist()))
         # A ray that begins inside of something, or meets a checkpoint, is another matter.

@@ -1,4 +1,4 @@
-"""Parts of the surface that are closed after the site was built."""
+"""Tests of closed parts of the surface, and of paths back."""
 
 import math
 from itertools import groupby
@@ -12,7 +12,7 @@ from argo_compiler.base.errors import Unreachable
 from argo_compiler.base.model import Pose
 from argo_env.navigation import Blockage, Path
 from argo_env.navigation.path import wrap
-from argo_env.navigation.retreat import driven, recent, way_back
+from argo_env.navigation.retreat import path_back, path_through, recent_poses
 from benchmarks.paths import poses
 from tests.conftest import examples
 
@@ -20,7 +20,7 @@ FLIGHT = Blockage((3.0, 1.0, 3.5, 2.1), 1.0, "the stairs are blocked")
 
 
 def over(pose, footprint, rect, margin=0.0):
-    """Whether any of a grid of points under the robot lies in the rectangle."""
+    """Return True if any of a grid of points under the robot is in the rectangle."""
     along = np.linspace(-footprint.rear - margin, footprint.front + margin, 23)
     left = np.linspace(-footprint.half_width - margin, footprint.half_width + margin, 13)
     along, left = (a.ravel() for a in np.meshgrid(along, left))
@@ -29,11 +29,11 @@ def over(pose, footprint, rect, margin=0.0):
     return bool(((x >= rect[0]) & (x <= rect[2]) & (y >= rect[1]) & (y <= rect[3])).any())
 
 
-def places_along(path):
-    """Poses every few centimetres and degrees along a path."""
+def poses_along(path):
+    """Yield poses every few centimetres and degrees along a path."""
     for motion in path.motions:
         count = 2 + math.ceil(max(motion.length / 0.05, abs(motion.turn) / math.radians(3)))
-        yield from (motion.at(share) for share in np.linspace(0.0, 1.0, count))
+        yield from (motion.pose_at(share) for share in np.linspace(0.0, 1.0, count))
 
 
 @settings(max_examples=examples(6), deadline=None)
@@ -41,43 +41,43 @@ def places_along(path):
     x=st.floats(0.5, 9.5), y=st.floats(0.5, 7.0), width=st.floats(0.0, 1.2),
     depth=st.floats(0.0, 1.2), seed=st.integers(0, 10**6),
 )  # fmt: skip
-def test_no_way_leads_over_what_is_closed(hall, robot, x, y, width, depth, seed):
+def test_no_path_touches_a_closed_area(hall, robot, x, y, width, depth, seed):
     rect = (x, y, x + width, y + depth)
-    avoiding = hall.avoiding([Blockage(rect, 0.0, "a brick")])
+    avoiding = hall.with_blockages([Blockage(rect, 0.0, "a brick")])
     random = np.random.default_rng(seed)
     ground = np.flatnonzero(hall.lattice.surface.z[hall.lattice.cell] < 0.05)
-    places = poses(hall, random.choice(ground, 3))
-    # A robot that is on what is closed can only go off it.
-    for start in (p for p in places if not over(p, robot.footprint, rect)):
-        for goal in places:
+    chosen = poses(hall, random.choice(ground, 3))
+    # A robot that is on a closed area may leave it.
+    for start in (p for p in chosen if not over(p, robot.footprint, rect)):
+        for goal in chosen:
             try:
                 path = avoiding.plan(start, goal)
             except Unreachable:
                 continue
-            assert not any(over(p, robot.footprint, rect) for p in places_along(path) if p.z < 0.9)
+            assert not any(over(p, robot.footprint, rect) for p in poses_along(path) if p.z < 0.9)
 
 
-def test_a_way_round_takes_longer_and_the_first_navigator_is_as_before(hall, robot):
+def test_detours_take_longer_and_the_first_navigator_is_unchanged(hall, robot):
     start, goal = Pose(x=1.05, y=4.05, z=0.0), Pose(x=6.05, y=6.55, z=0.0)
     direct = hall.plan(start, goal)
-    middle = direct.motions[len(direct.motions) // 2].at(0.5)
+    middle = direct.motions[len(direct.motions) // 2].pose_at(0.5)
     rect = (middle.x - 0.2, middle.y - 0.2, middle.x + 0.2, middle.y + 0.2)
-    avoiding = hall.avoiding([Blockage(rect, 0.0, "a brick")])
+    avoiding = hall.with_blockages([Blockage(rect, 0.0, "a brick")])
     assert avoiding.plan(start, goal).duration(robot) > direct.duration(robot)
     assert hall.plan(start, goal) == direct
     assert avoiding.site is hall.site
     assert avoiding.surface is hall.surface
-    assert hall.avoiding([]) is hall
+    assert hall.with_blockages([]) is hall
 
 
-def test_what_is_closed_below_does_not_close_what_is_above(hall):
+def test_a_closed_area_does_not_close_the_deck_above(hall):
     below = Blockage((5.64, 0.6, 9.6, 2.4), 0.0, "a leak")
     start, goal = Pose(x=6.5, y=1.55, z=2.5), Pose(x=9.0, y=1.55, z=2.5)
-    assert hall.avoiding([below]).plan(start, goal) == hall.plan(start, goal)
+    assert hall.with_blockages([below]).plan(start, goal) == hall.plan(start, goal)
 
 
-def test_blocked_stairs_part_the_floors(hall):
-    avoiding = hall.avoiding([FLIGHT])
+def test_blocked_stairs_separate_the_floors(hall):
+    avoiding = hall.with_blockages([FLIGHT])
     dock = hall.site.docks[1]
     for refused in (
         lambda: avoiding.plan_to_view(dock, 4),
@@ -86,7 +86,7 @@ def test_blocked_stairs_part_the_floors(hall):
     ):
         with pytest.raises(Unreachable, match="the stairs are blocked"):
             refused()
-    # On either side all is as it was.
+    # Paths on either side are unchanged.
     assert avoiding.plan_to_view(dock, 3) == hall.plan_to_view(dock, 3)
     up = Pose(x=9.0, y=1.5, z=2.5)
     assert avoiding.plan_to_view(up, 6) == hall.plan_to_view(up, 6)
@@ -95,20 +95,23 @@ def test_blocked_stairs_part_the_floors(hall):
     assert np.diag(times).tolist() == [0.0, 0.0]
 
 
-def test_a_robot_that_meets_it_on_the_stairs_goes_back(hall):
-    """Up it comes backwards, so it leaves forwards, and the other way round."""
+def test_a_robot_that_meets_a_blockage_on_the_stairs_goes_back(hall):
+    """It climbs backwards, so it goes back forwards."""
     on_the_flight = hall.plan(hall.site.docks[1], Pose(x=9.0, y=1.5, z=2.5))
-    below = next(p for p in places_along(on_the_flight) if 0.4 < p.z < 0.5)
+    below = next(p for p in poses_along(on_the_flight) if 0.4 < p.z < 0.5)
     ahead = Blockage((below.x + 0.8, 1.0, below.x + 1.0, 2.1), below.z + 0.5, "a brick")
-    avoiding = hall.avoiding([ahead])
+    avoiding = hall.with_blockages([ahead])
     back = avoiding.plan(below, hall.site.docks[1])
     assert back.end.z < 0.1
     assert {m.gear for m in back.motions if m.on_stairs} == {1}
 
 
-def test_one_after_the_other_is_as_together(hall):
+def test_blockages_can_be_added_together_or_one_by_one(hall):
     bricks = [Blockage((2, 3, 2.4, 3.2), 0.0, "a brick"), Blockage((4, 3, 4.2, 4.4), 0.0, "a bag")]
-    together, after = hall.avoiding(bricks), hall.avoiding(bricks[:1]).avoiding(bricks[1:])
+    together, after = (
+        hall.with_blockages(bricks),
+        hall.with_blockages(bricks[:1]).with_blockages(bricks[1:]),
+    )
     assert together.blockages == after.blockages
     assert together.lattice.state_of.tolist() == after.lattice.state_of.tolist()
     goal = Pose(x=6.05, y=4.05, z=0.0)
@@ -116,11 +119,11 @@ def test_one_after_the_other_is_as_together(hall):
         assert together.plan(dock, goal) == after.plan(dock, goal)
 
 
-def test_states_over_it_are_closed_and_no_others(hall, robot):
+def test_exactly_the_states_over_a_blockage_are_closed(hall, robot):
     rect = (4.03, 3.02, 4.31, 3.24)
-    closed = hall.avoiding([Blockage(rect, 0.0, "a brick")]).lattice
+    closed = hall.with_blockages([Blockage(rect, 0.0, "a brick")]).lattice
     lattice = hall.lattice
-    near = lattice.surface.near(4.2, 3.1, 1.0)
+    near = lattice.surface.cells_near(4.2, 3.1, 1.0)
     states = lattice.state_of[near]
     gone = (states >= 0) & (closed.state_of[near] < 0)
     assert gone.sum() > 100
@@ -131,19 +134,19 @@ def test_states_over_it_are_closed_and_no_others(hall, robot):
         if over(pose, robot.footprint, rect):
             assert gone[k, heading], pose
         if gone[k, heading]:
-            # The margin, and what lies between the points that are looked at.
+            # This allows for the margin, and for the spacing of the points.
             wide = (rect[0] - 0.06, rect[1] - 0.06, rect[2] + 0.06, rect[3] + 0.06)
             assert over(pose, robot.footprint, wide, margin=0.02), pose
     assert (closed.state_of >= 0).sum() == lattice.size - gone.sum()
 
 
-def test_without_a_way_round_there_is_none(yard):
-    """Within one region, small and without landmarks."""
+def test_without_a_detour_the_goal_is_unreachable(yard):
+    """The site is one small region without landmarks."""
     wall = Blockage((3.4, 0.0, 3.6, 5.0), 0.02, "a trench")
     start, goal = Pose(x=1.55, y=1.55, z=0.02), Pose(x=5.55, y=2.55, z=0.02)
     assert yard.plan(start, goal).length > 4.0
     with pytest.raises(Unreachable, match="a trench"):
-        yard.avoiding([wall]).plan(start, goal)
+        yard.with_blockages([wall]).plan(start, goal)
 
 
 @pytest.fixture(scope="module")
@@ -153,7 +156,7 @@ def path(yard):
 
 
 def require_joined(motions, at):
-    """Each motion begins where and as the one before it ended, the first at a place."""
+    """Check that each motion begins at the pose where the previous one ended, the first at `at`."""
     for motion in motions:
         assert math.dist((motion.start.x, motion.start.y), (at.x, at.y)) < 1e-6
         assert abs(wrap(motion.start.yaw - at.yaw)) < 1e-6
@@ -163,10 +166,10 @@ def require_joined(motions, at):
 
 @settings(max_examples=examples(60), deadline=None)
 @given(st.data(), st.floats(0.0, 1.0), st.floats(0.0, 8.0))
-def test_the_same_places_in_reverse(path, data, share, length):
+def test_the_path_back_has_the_same_poses_in_reverse(path, data, share, length):
     k = data.draw(st.integers(0, len(path.motions) - 1))
-    here = path.motions[k].at(share)
-    back = way_back(path, here, length)
+    here = path.motions[k].pose_at(share)
+    back = path_back(path, here, length)
     came = sum(m.length for m in path.motions[:k]) + share * path.motions[k].length
     assert back.length == pytest.approx(min(length, came), abs=0.06)
     assert math.dist((back.start.x, back.start.y), (here.x, here.y)) < 0.06
@@ -178,48 +181,48 @@ def test_the_same_places_in_reverse(path, data, share, length):
             assert ahead * motion.gear >= -1e-9
 
 
-def test_of_no_way_at_all():
+def test_path_back_along_a_path_without_motions():
     here = Pose(x=1.0, y=1.0, z=0.0)
-    assert way_back(Path(here, ()), here, 1.0) == Path(here, ())
+    assert path_back(Path(here, ()), here, 1.0) == Path(here, ())
 
 
 def gears_of(path):
-    """Ahead and back, in turns."""
+    """Return the gears of a path's drives, without repetitions."""
     return [gear for gear, _ in groupby(m.gear for m in path.motions if not m.turn)]
 
 
 @settings(max_examples=examples(40), deadline=None)
 @given(st.integers(2, 60), st.booleans())
-def test_the_way_that_was_seen_is_the_way_that_was_driven(path, count, forwards):
-    places = [m.at(k / count) for m in path.motions for k in range(count + 1)]
+def test_the_path_through_observed_poses_is_the_driven_path(path, count, forwards):
+    observed = [m.pose_at(k / count) for m in path.motions for k in range(count + 1)]
     gears = gears_of(path)
     if not forwards:
-        places.reverse()
+        observed.reverse()
         gears = [-gear for gear in reversed(gears)]
-    seen = driven(places)
+    seen = path_through(observed)
     assert gears_of(seen) == gears
     assert seen.length == pytest.approx(path.length, rel=0.02)
-    require_joined(seen.motions, places[0])
-    assert math.dist((seen.end.x, seen.end.y), (places[-1].x, places[-1].y)) < 0.06
+    require_joined(seen.motions, observed[0])
+    assert math.dist((seen.end.x, seen.end.y), (observed[-1].x, observed[-1].y)) < 0.06
 
 
-def test_stairs_are_gone_back_as_they_were_come():
+def test_the_path_back_on_stairs_is_straight_and_reversed():
     flight = [Pose(x=0.2 * k, y=0.01 * (k % 2), z=0.16 * k, yaw=0.03 * (k % 2)) for k in range(9)]
-    down = way_back(driven(flight), flight[-1], 1.0)
+    down = path_back(path_through(flight), flight[-1], 1.0)
     assert all(m.on_stairs and m.gear < 0 and not m.turn for m in down.motions)
     assert down.length == pytest.approx(1.0, abs=0.01)
 
 
 @pytest.mark.parametrize("waited", [0, 500])
-def test_waiting_does_not_make_one_forget_the_way(path, waited):
-    places = [m.at(k / 20) for m in path.motions for k in range(21)]
-    last = [places[-1]] * waited
-    seen = recent(reversed([*places, *last]), 2.0)
+def test_waiting_does_not_shorten_the_recent_path(path, waited):
+    observed = [m.pose_at(k / 20) for m in path.motions for k in range(21)]
+    last = [observed[-1]] * waited
+    seen = recent_poses(reversed([*observed, *last]), 2.0)
     assert len(seen) < waited + 60
-    assert way_back(driven(seen), places[-1], 1.0).length == pytest.approx(1.0, abs=0.02)
-    assert recent(reversed(places), 1000.0) == places
+    assert path_back(path_through(seen), observed[-1], 1.0).length == pytest.approx(1.0, abs=0.02)
+    assert recent_poses(reversed(observed), 1000.0) == observed
 
 
-def test_a_robot_that_stood_still_came_from_nowhere():
+def test_the_path_of_a_robot_at_rest_has_no_motions():
     here = Pose(x=1.0, y=1.0, z=0.0, yaw=0.5)
-    assert driven([here]) == driven([here, here]) == Path(here, ())
+    assert path_through([here]) == path_through([here, here]) == Path(here, ())

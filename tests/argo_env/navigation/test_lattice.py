@@ -28,14 +28,14 @@ def test_every_cell_lies_on_the_site(surface, umad_world):
     assert np.abs(heights - surface.z).max() < 0.01
 
 
-def in_the_way(world, center, headroom, obstacles):
-    """What stands in a cell above what the robot climbs."""
+def obstructing_materials(world, center, headroom, obstacles):
+    """Return the materials in a cell that are above the height that the robot climbs."""
     half = CELL / 2 + 0.003  # PyBullet's cylinders are prisms, and 4 mm thinner between the edges
-    found = world.touched((-half, -half, 0.02), (half, half, headroom), center, 0.0, obstacles)
+    touched = world.touched((-half, -half, 0.02), (half, half, headroom), center, 0.0, obstacles)
     step = world.touched(
         (-half, -half, 0.21), (half, half, headroom), center, materials=sorted(FLOOR_MATERIALS)
     )
-    return found | step
+    return touched | step
 
 
 def test_cells_are_free_of_obstacles(surface, umad_world, robot, obstacles):
@@ -50,8 +50,7 @@ def test_cells_are_free_of_obstacles(surface, umad_world, robot, obstacles):
         ), center
 
 
-def test_what_is_not_walkable_on_a_deck_has_a_reason(umad, surface, umad_world, robot, obstacles):
-    """Everywhere on the floors the surface goes on, or something stands there."""
+def test_decks_are_traversable_except_at_obstacles(umad, surface, umad_world, robot, obstacles):
     grid, unexplained, obstructed = surface.grid, [], 0
     for floor in umad.spec.floors:
         i, j = (a.ravel() for a in np.meshgrid(range(grid.nx), range(grid.ny), indexing="ij"))
@@ -61,21 +60,21 @@ def test_what_is_not_walkable_on_a_deck_has_a_reason(umad, surface, umad_world, 
             on |= (x > x0) & (x < x1) & (y > y0) & (y < y1)
         for x0, y0, x1, y1 in floor.openings.values():
             on &= ~((x > x0) & (x < x1) & (y > y0) & (y < y1))
-        # The first tread of a flight lies one rise over the deck.
+        # The first tread of a flight is one rise above the deck.
         level = (surface.z > floor.z - 0.01) & (surface.z < floor.z + robot.max_step)
         on &= ~np.isin(i * grid.ny + j, (surface.i * grid.ny + surface.j)[level])
         missing = np.flatnonzero(on)
         obstructed += len(missing)
         for n in missing[some(120, len(missing), seed=floor.number)]:
             center = (x[n], y[n], floor.z)
-            if not in_the_way(umad_world, center, robot.driving_height, obstacles):
+            if not obstructing_materials(umad_world, center, robot.driving_height, obstacles):
                 unexplained.append(center)
     assert unexplained == []
     assert obstructed > 500
 
 
 def test_decks_over_each_other_are_layers(umad, surface):
-    """On the north aisle, which every upper floor has over the slab."""
+    """The north aisle is on every upper floor, above the slab."""
     at = (np.abs(surface.positions()[:, :2] - [6.05, 10.45]) < 0.01).all(axis=1)
     assert surface.z[at] == pytest.approx([f.z for f in umad.spec.floors])
 
@@ -101,7 +100,7 @@ def test_links_lead_to_the_neighbour_and_back(surface, robot):
 
 
 def test_consecutive_treads_are_linked(umad, surface):
-    """From the cell in the middle of every tread links lead to the next one."""
+    """Links lead from the cell in the middle of each tread to the next tread."""
     x, y, z = surface.positions().T
     checked = 0
     for element in umad.elements:
@@ -109,15 +108,15 @@ def test_consecutive_treads_are_linked(umad, surface):
             continue
         treads = sorted(element.solids, key=lambda s: s.center[2])
         for below, above in pairwise(treads):
-            way = np.subtract(above.center, below.center)
-            direction = DIRECTIONS.index(tuple(np.round(way[:2] / 0.28).astype(int).tolist()))
+            step = np.subtract(above.center, below.center)
+            direction = DIRECTIONS.index(tuple(np.round(step[:2] / 0.28).astype(int).tolist()))
             top = below.center[2] + below.size[2] / 2
             near = np.hypot(x - below.center[0], y - below.center[1]) + 10 * np.abs(z - top)
             cell = int(np.argmin(near))
             for _ in range(3):
                 cell = surface.links[cell, direction]
                 assert cell >= 0
-            assert z[cell] == pytest.approx(top + way[2], abs=0.001)
+            assert z[cell] == pytest.approx(top + step[2], abs=0.001)
             checked += 1
     assert checked == 5 * (12 + 5 + 5)
 
@@ -140,16 +139,16 @@ def test_the_whole_footprint_is_free_in_every_state(lattice, umad_world, robot, 
 def test_the_narrowest_aisle_admits_the_robot_along_it_only(
     lattice, umad_world, robot, degrees, touched
 ):
-    """Also shows that the boxes of PyBullet do find the railings."""
+    """This also shows that PyBullet's boxes touch the railings."""
     low, high = footprint_box(robot, 0.06, robot.driving_height - 0.01)
-    place = (3.95, 5.55, 5.0)
-    assert umad_world.touched(low, high, place, np.radians(degrees)) - FLOOR_MATERIALS == touched
-    (cell,) = np.flatnonzero(np.abs(lattice.surface.positions() - place).max(axis=1) < 0.01)
+    at = (3.95, 5.55, 5.0)
+    assert umad_world.touched(low, high, at, np.radians(degrees)) - FLOOR_MATERIALS == touched
+    (cell,) = np.flatnonzero(np.abs(lattice.surface.positions() - at).max(axis=1) < 0.01)
     assert (lattice.state_of[cell, degrees // 45] >= 0) == (not touched)
 
 
-def test_the_whole_footprint_is_carried_in_every_state(lattice, umad_world, robot):
-    """Rays down from the corners and the rim of the footprint find the floor a step away."""
+def test_the_whole_footprint_is_supported_in_every_state(lattice, umad_world, robot):
+    """Rays down from points of the footprint hit the floor within the height of a step."""
     foot = robot.footprint
     along, left = np.meshgrid(
         np.linspace(-foot.rear, foot.front, 5), np.linspace(-foot.half_width, foot.half_width, 3)
@@ -173,9 +172,9 @@ def test_the_front_is_never_the_higher_end(lattice):
     assert lattice.rise.min() < -0.5
 
 
-def test_every_state_is_found_by_its_cell_and_heading(lattice):
-    found = lattice.state_of[lattice.cell, lattice.heading]
-    assert (found == np.arange(lattice.size)).all()
+def test_every_state_has_its_cell_and_heading(lattice):
+    states = lattice.state_of[lattice.cell, lattice.heading]
+    assert (states == np.arange(lattice.size)).all()
     assert (lattice.state_of >= 0).sum() == lattice.size
 
 
@@ -187,13 +186,13 @@ def test_moves_are_drives_to_a_neighbour_or_turns_in_place(lattice, robot):
     still = lattice.cell[source] == lattice.cell[target]
     assert np.isin(turned[still], [1, 7]).all()
     assert (turned[~still] == 0).all()
-    way = poses[target] - poses[source]
+    step = poses[target] - poses[source]
     yaw = poses[source, 3]
-    aside = way[:, 1] * np.cos(yaw) - way[:, 0] * np.sin(yaw)
+    aside = step[:, 1] * np.cos(yaw) - step[:, 0] * np.sin(yaw)
     assert np.abs(aside).max() < 1e-9
     assert np.abs(lattice.rise[source][still]).max() <= LEVEL
     # No move takes less time than its length at the highest speed, or its angle at the turn rate.
-    length = np.hypot(way[:, 0], way[:, 1])
+    length = np.hypot(step[:, 0], step[:, 1])
     assert (moves.data[~still] >= length[~still] / robot.speed - 1e-9).all()
     assert (moves.data[still] >= np.pi / 4 / robot.turn_rate_radians - 1e-9).all()
 
@@ -202,18 +201,17 @@ def test_backwards_up_and_forwards_down(lattice):
     moves = lattice.costs.tocoo()
     source, target = moves.coords
     poses = lattice.poses()
-    way = poses[target] - poses[source]
+    step = poses[target] - poses[source]
     steep = (lattice.rise[source] + lattice.rise[target]) / 2 < -LEVEL
-    ahead = way[:, 0] * np.cos(poses[source, 3]) + way[:, 1] * np.sin(poses[source, 3])
-    up, down = steep & (way[:, 2] > 0.01), steep & (way[:, 2] < -0.01)
+    ahead = step[:, 0] * np.cos(poses[source, 3]) + step[:, 1] * np.sin(poses[source, 3])
+    up, down = steep & (step[:, 2] > 0.01), steep & (step[:, 2] < -0.01)
     assert up.any()
     assert down.any()
     assert (ahead[up] < 0).all()
     assert (ahead[down] > 0).all()
 
 
-def test_turns_need_their_whole_circle(lattice, umad_world, robot, obstacles):
-    """Half-way through a turn, between two headings of the lattice, the robot touches nothing."""
+def test_turns_touch_nothing_between_two_headings(lattice, umad_world, robot, obstacles):
     moves = lattice.costs.tocoo()
     source, target = moves.coords
     turns = np.flatnonzero(

@@ -1,4 +1,4 @@
-"""Paths on UMAD."""
+"""Tests of paths on the site UMAD."""
 
 import math
 from itertools import pairwise
@@ -21,7 +21,7 @@ def pose_of(navigator, state):
 
 
 def random_pose(navigator, rng):
-    """A pose anywhere, with any heading that the robot can take there."""
+    """Return the pose of a random state of the lattice."""
     return pose_of(navigator, rng.integers(navigator.lattice.size))
 
 
@@ -37,13 +37,13 @@ def views(navigator):
 
 @pytest.fixture(scope="module")
 def routes(navigator, views):
-    """Paths to look at: from each dock to each checkpoint, and between random places."""
+    """Paths from each dock to each checkpoint, and between random poses."""
     rng = np.random.default_rng(5)
-    found = list(views.values())
+    paths = list(views.values())
     for _ in range(3):
         start = random_pose(navigator, rng)
-        found += [navigator.plan(start, random_pose(navigator, rng)) for _ in range(3)]
-    return found
+        paths += [navigator.plan(start, random_pose(navigator, rng)) for _ in range(3)]
+    return paths
 
 
 def apart(a, b):
@@ -68,9 +68,11 @@ def check_continuous(path):
         else:
             assert motion.length > 0
             assert turned(motion.start.yaw, motion.end.yaw) < 1e-6
-            way = math.atan2(motion.end.y - motion.start.y, motion.end.x - motion.start.x)
+            direction = math.atan2(motion.end.y - motion.start.y, motion.end.x - motion.start.x)
             # Rounded lattice poses leave a little.
-            assert turned(way + (math.pi if motion.gear < 0 else 0.0), motion.start.yaw) < 1e-3
+            assert (
+                turned(direction + (math.pi if motion.gear < 0 else 0.0), motion.start.yaw) < 1e-3
+            )
         here = motion.end
     assert path.end == here
 
@@ -81,7 +83,7 @@ def test_paths_are_continuous(routes):
 
 
 def test_neighbouring_motions_differ(routes):
-    """What goes on alike is one motion."""
+    """Consecutive turns are one motion."""
     for path in routes:
         for a, b in pairwise(path.motions):
             assert not (a.turn and b.turn)
@@ -107,20 +109,20 @@ def test_durations_are_the_sum_of_the_motions(routes, robot):
         for motion in path.motions:
             if motion.turn:
                 pace = robot.calibration.turn
-                told = math.degrees(abs(motion.turn)) / robot.turn_rate
+                nominal = math.degrees(abs(motion.turn)) / robot.turn_rate
             elif motion.on_stairs:
                 up = motion.end.z > motion.start.z
                 pace = robot.calibration.up if up else robot.calibration.down
                 speed = robot.stair_up_speed if up else robot.stair_down_speed
-                told = apart(motion.start, motion.end) / speed
+                nominal = apart(motion.start, motion.end) / speed
             else:
                 ahead = motion.gear > 0
                 pace = robot.calibration.ahead if ahead else robot.calibration.reverse
                 speed = robot.speed if ahead else robot.reverse_speed
-                told = apart(motion.start, motion.end) / speed
-            total += told / pace.share + pace.lost
+                nominal = apart(motion.start, motion.end) / speed
+            total += nominal / pace.share + pace.lost
         assert path.duration(robot) == pytest.approx(total)
-        times = path.timed(robot)
+        times = path.timed_poses(robot)
         assert times.shape == (len(path.motions) + 1, 5)
         assert times[-1, 0] == pytest.approx(total)
         assert (np.diff(times[:, 0]) > 0).all()
@@ -128,14 +130,14 @@ def test_durations_are_the_sum_of_the_motions(routes, robot):
         assert path.length == pytest.approx(
             sum(apart(a, b) for a, b in pairwise([path.start, *(m.end for m in path.motions)]))
         )
-        # A wish to go faster changes nothing where the robot can't; slower is slower.
+        # A velocity has no effect where the robot can't drive as fast; a lower one takes longer.
         assert path.duration(robot, 0.2) >= total - 1e-9
         assert path.duration(robot, robot.speed) == pytest.approx(total)
         assert path.duration(robot, 0.8) <= total + 1e-9
 
 
 def test_smoothed_paths_beat_the_lattice(navigator, robot):
-    """A plan takes no longer than the cheapest way from state to state, and ends where that does"""
+    """A path takes no longer than the cheapest path from state to state, with the same end."""
     rng = np.random.default_rng(6)
     for source in rng.integers(navigator.lattice.size, size=3):
         costs = dijkstra(navigator.lattice.costs, indices=source)
@@ -155,10 +157,10 @@ def test_driven_paths_touch_nothing(routes, umad_world, robot, obstacles):
     for path in routes[::4]:
         for motion in path.motions:
             count = 1 + math.ceil(max(motion.length / 0.1, abs(motion.turn) / math.radians(7.5)))
-            # Tilted on stairs, the box of the robot reaches higher; the handrails' gap is upright.
+            # On stairs the robot is tilted, so its box is higher; the handrails' gap is upright.
             low, high = (0.3, 0.8) if motion.on_stairs else (0.06, 0.99)
             for share in np.linspace(0.0, 1.0, count):
-                pose = motion.at(share)
+                pose = motion.pose_at(share)
                 touched = umad_world.touched(
                     *footprint_box(robot, low, high),
                     (pose.x, pose.y, pose.z),
@@ -203,7 +205,7 @@ def test_every_checkpoint_is_seen_from_the_end_of_its_path(views, umad, umad_wor
         assert material is None, (checkpoint, material, point)
 
 
-def test_checkpoint_that_does_not_exist(navigator, umad):
+def test_unknown_checkpoint(navigator, umad):
     with pytest.raises(NotFound):
         navigator.plan_to_view(umad.docks[1], 99)
 
@@ -221,7 +223,7 @@ def test_same_query_same_path(navigator, umad, robot):
 
 
 @pytest.mark.parametrize(
-    "place",
+    "position",
     [
         (6.8, 10.4, 3.8),  # in the air between floors
         (4.2, 7.7, 0.0),  # inside a vessel
@@ -232,9 +234,9 @@ def test_same_query_same_path(navigator, umad, robot):
         (8.0, 5.5, 7.5),  # over the drop in the middle of floor 4
     ],
 )
-def test_places_that_cannot_be_reached(navigator, umad, place):
-    pose = Pose(x=place[0], y=place[1], z=place[2], yaw=0.0)
-    wanted = f"({place[0]:.2f}, {place[1]:.2f}, {place[2]:.2f})"
+def test_positions_that_cannot_be_reached(navigator, umad, position):
+    pose = Pose(x=position[0], y=position[1], z=position[2], yaw=0.0)
+    wanted = f"({position[0]:.2f}, {position[1]:.2f}, {position[2]:.2f})"
     for refused in (
         lambda: navigator.plan(umad.docks[1], pose),
         lambda: navigator.plan(pose, umad.docks[1]),
@@ -248,7 +250,7 @@ def test_places_that_cannot_be_reached(navigator, umad, place):
         assert "0.5 m" in str(caught.value)
 
 
-def test_snapping(navigator, umad):
+def test_snapping_keeps_the_heading_and_is_idempotent(navigator, umad):
     for x, y in ((12.4, 3.0), (11.8, 6.0), (6.8, 1.9), (6.8, 1.45)):
         wanted = Pose(x=x, y=y, z=2.5, yaw=0.3)
         snapped = navigator.snap(wanted)
@@ -259,7 +261,7 @@ def test_snapping(navigator, umad):
         assert apart(path.end, wanted) <= SNAP_DISTANCE
 
 
-def test_where_there_is_room_the_end_is_near_and_turned_as_asked(navigator, umad):
+def test_with_enough_clearance_the_path_ends_at_the_requested_pose(navigator, umad):
     for yaw in (0.0, 1.0, -2.5, 3.1):
         wanted = Pose(x=8.02, y=-2.03, z=umad.spec.ground_z, yaw=yaw)
         path = navigator.plan(umad.docks[1], wanted)
@@ -267,26 +269,26 @@ def test_where_there_is_room_the_end_is_near_and_turned_as_asked(navigator, umad
         assert turned(path.end.yaw, yaw) < 1e-9
 
 
-def test_from_here_to_here(navigator, umad):
+def test_path_to_the_own_pose_has_no_motions(navigator, umad):
     dock = navigator.snap(umad.docks[1])
     path = navigator.plan(dock, dock)
     assert path.motions == ()
     assert path.end == path.start
 
 
-def test_turning_places_have_room_all_round(navigator, umad, umad_world, robot, obstacles):
+def test_turns_at_turning_poses_touch_nothing(navigator, umad, umad_world, robot, obstacles):
     low, high = footprint_box(robot, 0.06, 0.99)
     for floor in umad.spec.floors:
-        places = navigator.turning_places(floor.number)
-        assert len(places)
-        assert np.abs(places[:, 2] - floor.z).max() <= 0.01
-        for x, y, z, _ in np.random.default_rng(7).permutation(places)[:25]:
+        poses = navigator.turning_poses(floor.number)
+        assert len(poses)
+        assert np.abs(poses[:, 2] - floor.z).max() <= 0.01
+        for x, y, z, _ in np.random.default_rng(7).permutation(poses)[:25]:
             for yaw in np.radians(np.arange(0, 360, 7.5)):
                 touched = umad_world.touched(low, high, (x, y, z), yaw, obstacles)
                 assert not touched, (x, y, z, yaw, touched)
 
 
-def test_turning_places_are_those_with_all_turns(navigator, umad):
+def test_turning_poses_are_those_with_all_turns(navigator, umad):
     lattice = navigator.lattice
     source, target = lattice.costs.tocoo().coords
     turning = source[lattice.cell[source] == lattice.cell[target]]
@@ -294,4 +296,4 @@ def test_turning_places_are_those_with_all_turns(navigator, umad):
     for floor in umad.spec.floors:
         level = np.abs(navigator.surface.z - floor.z) <= 0.01
         wanted = navigator.surface.positions()[np.flatnonzero((moves == 16) & level)]
-        assert navigator.turning_places(floor.number)[:, :3].tolist() == wanted.tolist()
+        assert navigator.turning_poses(floor.number)[:, :3].tolist() == wanted.tolist()

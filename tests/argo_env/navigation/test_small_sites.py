@@ -1,4 +1,4 @@
-"""Sites that are small enough to work out the fastest path by hand."""
+"""Tests with sites so small that the fastest path can be calculated by hand."""
 
 import math
 
@@ -13,7 +13,7 @@ from tests.yard import site_of
 
 @pytest.fixture(scope="module")
 def robot():
-    """A robot that does as it is told, so that times can be worked out."""
+    """A robot that drives exactly at its planned speeds, so that times can be calculated."""
     return load_robot().model_copy(update={"calibration": Calibration()})
 
 
@@ -77,9 +77,9 @@ def test_backwards_is_gear_minus_one(yard):
 
 
 def test_duration_round_a_wall(walled_yard, robot):
-    """Straight to a point beside the wall's end, past it, and straight on."""
+    """The path leads straight to a point beside the wall's end, past it, and straight on."""
     path = walled_yard.plan(pose(5.05, 4.05, 90), pose(6.95, 4.05, -90))
-    # At least the taut string about the wall's end, and the half turn.
+    # The lower bound is the shortest line around the wall's end, and the half turn.
     clear = robot.footprint.half_width + 0.02
     around = math.hypot(0.95, 5.95 + clear)
     bound = 2 * around / 0.4 + 180 / 22.5
@@ -88,7 +88,7 @@ def test_duration_round_a_wall(walled_yard, robot):
 
 
 def two_storeys(robot):
-    """A slab, and a deck at the head of one straight flight along x."""
+    """Return the navigator of a slab, and a deck at the head of one straight flight along x."""
     flight = {
         "name": "flight",
         "foot": [4.0, 3.0, 0.0],
@@ -112,12 +112,12 @@ def two_storeys(robot):
 
 def test_duration_over_a_flight(robot):
     yard = two_storeys(robot)
-    # Facing away from the flight, straight back and up, and the same way down.
+    # The robot faces away from the flight and drives straight back and up, and back the same way.
     below, above = pose(2.05, 3.05, 180, z=0.0), pose(9.55, 3.05, 180, z=2.5)
     up, down = yard.plan(below, above), yard.plan(above, below)
     run, slope = 14 * 0.28, math.hypot(14 * 0.28, 2.5)
     flat = 7.5 - run
-    # The robot is tilted for up to its own length more than the flight is long.
+    # The robot is tilted over the flight's length and up to its own length more.
     length = robot.footprint.front + robot.footprint.rear
     for path, on_flat, on_stairs in (
         (up, robot.reverse_speed, robot.stair_up_speed),
@@ -134,7 +134,10 @@ def test_duration_over_a_flight(robot):
 
 
 def two_platforms(robot, width):
-    """Two railed platforms and a walkway between them; a gate in the west one's rail only."""
+    """Return the navigator of two railed platforms with a walkway between them.
+
+    Only the west platform's railing has a gate.
+    """
     return navigator(
         robot,
         [
@@ -177,9 +180,9 @@ def test_site_whose_dock_is_blocked(robot):
         ).lattice
 
 
-def test_site_whose_docks_are_parted(robot):
+def test_site_whose_docks_are_separated(robot):
     slab = {"z": 0.0, "railed": False, "walkways": {"slab": [0, 0, 12, 12]}}
-    parted = {**slab, "barriers": {"wall": [[6.0, 0.0], [6.0, 12.0]]}}
+    separated = {**slab, "barriers": {"wall": [[6.0, 0.0], [6.0, 12.0]]}}
     areas = [{"number": 1, "dock": [2.05, 2.05, 180]}, {"number": 2, "dock": [10.05, 2.05, 0]}]
-    with pytest.raises(ArgoError, match="no way from one docking station to another"):
-        _ = navigator(robot, [parted], areas=areas).lattice
+    with pytest.raises(ArgoError, match="no path from one docking station to another"):
+        _ = navigator(robot, [separated], areas=areas).lattice

@@ -56,13 +56,13 @@ def found(navigator):
     """A digest of all that is asked of a site: paths, times, views, catalogue, to the last bit."""
     site, sink = navigator.site, hashlib.sha256()
     poses = [*site.docks.values(), *site.places.values()]
-    poses += [Pose(x=x, y=y, z=z) for x, y, z, _ in navigator.turning_places(1)[::97].tolist()[:4]]
+    poses += [Pose(x=x, y=y, z=z) for x, y, z, _ in navigator.turning_poses(1)[::97].tolist()[:4]]
     ids = [checkpoint.id for checkpoint in site.checkpoints]
     first = site.docks[min(site.docks)]
     path = navigator.plan(first, poses[-1])
-    middle = path.motions[len(path.motions) // 2].at(0.5)
+    middle = path.motions[len(path.motions) // 2].pose_at(0.5)
     brick = Blockage((middle.x, middle.y, middle.x + 0.1, middle.y + 0.1), middle.z, "a brick")
-    for one in (navigator, navigator.avoiding([brick])):
+    for one in (navigator, navigator.with_blockages([brick])):
         for start in poses[:2]:
             for goal in (*poses, *ids):
                 try:
@@ -397,4 +397,4 @@ def test_what_is_not_there_is_named(umad):
     with pytest.raises(NotFound, match="no checkpoint 4; there are: 1 to 3"):
         yard.navigator.viewing_pose(4)
     with pytest.raises(NotFound, match="no floor 2; there are: 1"):
-        yard.navigator.turning_places(2)
+        yard.navigator.turning_poses(2)

@@ -190,7 +190,7 @@ class TestObstacles:
         (found,), (reading,) = record.anomalies, record.readings
         assert record.result.success
         assert len(looks) == reading.views == 2
-        aware = yard.avoiding([blockage_from_anomaly(found)])
+        aware = yard.with_blockages([blockage_from_anomaly(found)])
         unturned, turned = (aware.plan_to_view(watch._left[0], 1, t).end for t in TURNS[:2])
         assert math.dist((looks[1].x, looks[1].y), (turned.x, turned.y)) < 0.01
         assert math.dist((unturned.x, unturned.y), (turned.x, turned.y)) > 0.1

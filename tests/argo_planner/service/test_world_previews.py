@@ -39,7 +39,7 @@ def random_tasks(site, rng, count):
             chosen = site.site.checkpoints[int(rng.integers(len(site.site.checkpoints)))]
             yield measure(chosen.id, velocity=velocity).model_copy(update={"name": f"T{k}"})
         else:
-            places = site.navigator.turning_places(int(rng.integers(1, 4)))
+            places = site.navigator.turning_poses(int(rng.integers(1, 4)))
             x, y, z, _ = places[int(rng.integers(len(places)))].tolist()
             pose = Pose(x=x, y=y, z=z, yaw=float(rng.uniform(-3, 3)))
             yield waypoint(f"T{k}", pose=pose, velocity=velocity)
@@ -144,7 +144,7 @@ def test_ways_and_runs_go_round_an_obstacle_alike(site):
         assert not record.contacts
         assert not record.anomalies
     # A plan that does not know of it leads into what is solid there.
-    unaware = OpenedSite.of_navigator(site.navigator.avoiding((), altered.site))
+    unaware = OpenedSite.of_navigator(site.navigator.with_blockages((), altered.site))
     touched = driven(unaware, mission, "kinematic").contacts
     assert {contact.element for contact in touched} == {"obstacle a"}
 
@@ -184,7 +184,7 @@ def test_the_description_is_that_of_the_site(site):
 
 
 def test_a_run_goes_on_among_the_same_obstacles_only(site, tmp_path):
-    place = site.navigator.turning_places(1)[5].tolist()
+    place = site.navigator.turning_poses(1)[5].tolist()
     one, other = (
         with_obstacles(site, (crate("a", *place[:3], (0.4, 0.4, high)),)) for high in (0.8, 0.9)
     )

@@ -29,7 +29,7 @@ def crate(id, x, y, z, size=(0.5, 0.4, 1.0), yaw=0.0):
 def crates(site):
     """Some on the walkways of several floors, one of which closes a way for good."""
     rng = np.random.default_rng(5)
-    places = site.navigator.turning_places(2)
+    places = site.navigator.turning_poses(2)
     chosen = places[rng.choice(len(places), 4, replace=False)]
     return tuple(
         crate(str(k), x, y, z, yaw=0.4 * k) for k, (x, y, z, _) in enumerate(chosen.tolist())
@@ -157,7 +157,7 @@ def test_with_obstacles_the_map_says_what_plans_say(site, crates):
 
 
 def test_an_obstacle_closes_no_more_than_what_the_robot_would_touch(site):
-    x, y, z, _ = site.navigator.turning_places(3)[40].tolist()
+    x, y, z, _ = site.navigator.turning_poses(3)[40].tolist()
     box = crate("a", x, y, z, (0.6, 0.3, 0.5), yaw=0.7)
     robot = site.robot.footprint
     reach, inner = robot.radius + 0.6, robot.half_width
@@ -174,7 +174,7 @@ def test_an_obstacle_closes_no_more_than_what_the_robot_would_touch(site):
 
 
 def test_what_lies_over_the_robot_closes_nothing(site):
-    x, y, z, _ = site.navigator.turning_places(6)[10].tolist()
+    x, y, z, _ = site.navigator.turning_poses(6)[10].tolist()
     beam = crate("beam", x, y, z + site.robot.driving_height + 0.1, (1.0, 1.0, 0.3))
     assert (standing_map(site, 6, 0, (beam,)).codes == standing_map(site, 6, 0).codes).all()
 

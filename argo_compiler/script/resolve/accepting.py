@@ -53,38 +53,38 @@ _NAMED = (
 )
 """what a name can be given to"""
 _WORDS = {
-    "leaving": "a speed of leaving",
+    "leaving": "a speed for leaving",
     "delay": "a wait before it",
-    "time_limit": "a limit of time",
+    "time_limit": "a time limit",
     "reading_limit": "a time to read",
-    "optional": "that it may be left out",
-    "earliest": "a time before which it is not done",
-    "latest": "a time by which it is done",
-    "soft_window": "that a time is only preferred",
-    "times": "how often",
-    "more": "that it is done again",
-    "at_most": "how often at most",
-    "every": "every so often",
+    "optional": "that it is optional",
+    "earliest": "an earliest time",
+    "latest": "a latest time",
+    "soft_window": "that a time is only a preference",
+    "times": "a number of rounds",
+    "more": "that it is repeated",
+    "at_most": "the maximum number of rounds",
+    "every": "an interval",
     "pause": "a pause between rounds",
-    "duration": "for how long",
-    "until": "until when",
-    "finishing": "whether a round is finished",
+    "duration": "a duration",
+    "until": "a condition that ends it",
+    "finishing": "whether the round is finished",
     "count_interruptions": "that interruptions count",
     "endless": "that it never ends",
-    "in_circles": "that it is done in circles",
-    "condition": "in which case",
+    "in_circles": "that it goes round in circles",
+    "condition": "a condition",
     "joints": "joints",
-    "shown_in": "where it is shown",
+    "shown_in": "the group that it is shown in",
     "object_id": "an object",
-    "pose": "where it stands",
+    "pose": "the robot's position",
     "order": "an order",
-    "backwards": "that it is done backwards",
+    "backwards": "that it is reversed",
     "floors": "floors",
     "rank": "a priority",
-    "by_importance": "that some are more important than others",
-    "mission_time": "how long the mission may take",
+    "by_importance": "an order of importance",
+    "mission_time": "the duration of the mission",
     "person": "a person to wait for",
-    "on_limit": "what happens when a hold is over",
+    "on_limit": "what happens when the waiting time ends",
 }
 
 
@@ -105,8 +105,8 @@ def require_used(order: ScriptOrder, diagnostics: Diagnostics) -> None:
     """That an order makes use of all that is said of it. Raises RefusedError if not."""
     meets = isinstance(order, orders.Plain) and order.word is PlainWord.MEET
     if order.name is not None and not meets and not isinstance(order, _NAMED):
-        message = f"the name `{order.name}` stands before what is no task"
-        hint = "write it before the order that plans the task, or leave it out"
+        message = f"the name `{order.name}` is in front of something that is not a task"
+        hint = "write it in front of the command of a task, or remove it"
         diagnostics.refuse("stray-clause", message, order.span, hint)
     if order.manner is None:
         return
@@ -118,6 +118,6 @@ def require_used(order: ScriptOrder, diagnostics: Diagnostics) -> None:
         used |= {"speed"}  # of the way to the place
     left = [name for name, _ in _FIELDS if name in given - used] if given - used else []
     if left:
-        message = f"this can't be said here: {words_of(left)}"
-        hint = "write it behind what is to be done so, or leave it out"
+        message = f"this has no meaning here: {words_of(left)}"
+        hint = "write it after the command that it belongs to, or remove it"
         diagnostics.refuse("stray-clause", message, order.span, hint)

@@ -94,8 +94,8 @@ def _transitions(
         target = _name(point, names)
         if not conditions:
             if decided:
-                message = "the mission can go on in one way only where no condition holds"
-                hint = "leave one of the two out, or give it a condition"
+                message = "only one transition can be without a condition"
+                hint = "remove one of the two, or give it a condition"
                 diagnostics.error("second-route", message, item.do.source, hint)
             decided = True
         if target is not None:
@@ -129,8 +129,8 @@ def _speeds(lowered: Lowered, names: Sequence[str], diagnostics: Diagnostics) ->
     left = {j for froms in sources for j in froms}
     for i, item in enumerate(items):
         if item.do.leaving is not None and i not in left:
-            message = "no way leads on from here, so there is none that could have this speed"
-            hint = "write `at 0.3 m/s` for the way to a task"
+            message = "no path leads on from here, so this speed has no effect"
+            hint = "write `at 0.3 m/s` for the path to a task"
             diagnostics.warning("speed-unused", message, item.do.source, hint)
         if item.do.action is Action.WAIT:
             continue
@@ -141,14 +141,14 @@ def _speeds(lowered: Lowered, names: Sequence[str], diagnostics: Diagnostics) ->
                 continue
             said, speeds[i] = speeds[i], value
             if said is not None and said != value:
-                message = f"two speeds for one way: {value:g} and {said:g} m/s"
-                hint = "leave one of them out"
+                message = f"this path has two speeds: {value:g} and {said:g} m/s"
+                hint = "remove one of them"
                 diagnostics.error("two-speeds", message, items[j].do.source, hint)
             if others and item.do.velocity is None:
                 elsewhere = ", ".join(f"'{names[o]}'" for o in others[:3])
-                message = f"{value:g} m/s will be the speed of all ways to '{names[i]}', "
-                message += f"also from {elsewhere}"
-                hint = f"plan a waypoint before '{names[i]}' if these are not to be that fast"
+                message = f"{value:g} m/s will be the speed on all paths to '{names[i]}', "
+                message += f"including those from {elsewhere}"
+                hint = f"plan a waypoint before '{names[i]}' if these should be slower or faster"
                 diagnostics.warning("speed-shared", message, items[j].do.source, hint)
     return speeds
 
@@ -180,7 +180,7 @@ def _name_tasks(items: Sequence[Item], diagnostics: Diagnostics) -> list[str]:
             continue
         if name in own:
             message = f"more than one task is named `{name}`"
-            hint = "give each task a name of its own"
+            hint = "give each task a different name"
             diagnostics.error("repeated-name", message, item.do.source, hint)
         own.add(name)
     return own_names([item.do for item in items])

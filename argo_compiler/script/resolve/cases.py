@@ -102,11 +102,11 @@ class Cases:
         values = any(isinstance(test, Test) for test in asked)
         late = any(isinstance(test, TooLate) for test in asked)
         if values and not late and not case.orders:
-            hint = "add, say, `go to step 5` or `return to the docking station`"
+            hint = "for example, add `go to step 5` or `return to the docking station`"
             self.diagnostics.refuse("unfinished", "this does not say what to do", case.span, hint)
         if condition.negated and (late or not values):
-            message = "`unless` is said of values, not of events or of what comes too late"
-            hint = "say what is to be done if it is so"
+            message = "`unless` needs a condition on values, not an event or a missed time"
+            hint = "write what to do if it happens: `if ..., go home`"
             self.diagnostics.refuse("condition", message, condition.span, hint)
         if late or not values or _is_failure(condition):
             self.context.choice = None
@@ -137,14 +137,14 @@ class Cases:
     def _values(self, case: Case, condition: SaidCondition, block: ProgramBlock) -> None:
         alternatives = self.context.conditions.alternatives(condition)
         if condition is not case.condition and sum(map(len, alternatives)) != 1:
-            message = "this can be asked of one checkpoint only"
-            hint = "turn it round: `if ..., go on; otherwise ...`"
+            message = "this condition can have one checkpoint only"
+            hint = "write it the other way round: `if ..., go on; otherwise ...`"
             self.diagnostics.refuse("condition", message, condition.span, hint)
         do = block.last
         if isinstance(do, Leave):
             self.context.require_reached(case.span, block)
         if isinstance(do, Do) and any(way.otherwise for way in do.ways):
-            message = "this is never looked at: `otherwise` before it leads elsewhere"
+            message = "this is never evaluated: the `otherwise` before it leads elsewhere"
             hint = "write this condition before the `otherwise`"
             self.diagnostics.refuse("second-route", message, case.span, hint)
         target = None if condition.negated else self._target(case.orders)
@@ -172,12 +172,12 @@ class Cases:
         do = block.last
         if isinstance(before, Choice) and before.is_listed and before.block is not None:
             if before.otherwise.first is not None:
-                message = "there are two `otherwise` for one condition"
-                self.diagnostics.refuse("second-route", message, case.span, "leave one out")
+                message = "this condition has two `otherwise`"
+                self.diagnostics.refuse("second-route", message, case.span, "remove one of them")
             # It is what is done if none of several conditions holds, where that is clear.
             if not _put_together(before):
-                message = "`otherwise` can be meant for the last of these conditions, or for all"
-                hint = "write `otherwise, if ...`, or say each condition in a step of its own"
+                message = "`otherwise` can apply to the last of these conditions, or to all of them"
+                hint = "write `otherwise, if ...`, or write each condition in a separate step"
                 self.diagnostics.refuse("ambiguous-otherwise", message, case.span, hint)
             self._plan(case.orders, before.otherwise)
         elif isinstance(before, Way) and isinstance(do, Do):
@@ -192,16 +192,16 @@ class Cases:
             self._otherwise_of_what(case)
 
     def _otherwise_of_what(self, case: Case) -> NoReturn:
-        message = "`Otherwise` of what? No condition stands before it"
-        hint = "write it behind the condition whose other case it is"
+        message = "`otherwise` needs a condition before it"
+        hint = "write it after the condition that it belongs to"
         self.context.refuse_missing("otherwise", message, case.span, hint)
 
     def _rest(self, case: Case, block: ProgramBlock) -> None:
         """The way that a task leads on if none of its conditions holds, wherever that is said."""
         do, target = block.last, self._target(case.orders)
         if not isinstance(do, Do) or target is None:
-            message = f"`{case.rest}` is said of a task, and leads to another one"
-            hint = f"write it behind the task: `{case.rest}, go to step 5`"
+            message = f"`{case.rest}` must follow a task and lead to another one"
+            hint = f"write it after the task: `{case.rest}, go to step 5`"
             self.diagnostics.refuse("otherwise", message, case.span, hint)
         last_round = case.rest is Rest.LAST_ROUND
         do.ways.append(Way((), target, case.span, last_round=last_round))
@@ -272,8 +272,8 @@ class Cases:
         """Plan the orders that are carried out if the last task fails."""
         recent = self.context.recent
         if not recent:
-            message = "there is no task before this that could fail"
-            hint = "write it behind the task that it is said of"
+            message = "there is no task before this to which a failure could apply"
+            hint = "write it after the task that it applies to"
             self.diagnostics.refuse("no-task", message, case.span, hint)
         self._require_told(recent, case)
         self._require_each(recent, case)
@@ -284,14 +284,14 @@ class Cases:
         if not rest:
             return
         if any(do.failure or any(do is one for one in self.told) for do in recent):
-            message = "what is done if it fails is said already"
-            self.diagnostics.refuse("second-route", message, case.span, "leave one of the two out")
+            message = "the script already says what to do if it fails"
+            self.diagnostics.refuse("second-route", message, case.span, "remove one of the two")
         self.told += recent
         if (policy := _policy(rest)) is not None:
             self.manners.on_failure(policy)
             return
         if len(recent) > 1:
-            message = "several tasks are meant here, and each would need orders of its own"
+            message = "several tasks are meant here, and each would need separate commands"
             hint = "write one sentence for each of them"
             self.diagnostics.refuse("failure", message, case.span, hint)
         do = recent[-1]
@@ -306,8 +306,8 @@ class Cases:
         if not others or len(others) == len(last):
             return
         names = listed((f"{c.name} (#{c.id})" for c in last[:6]), "or")
-        message = f"this can be said of {names}"
-        hint = "say it behind the task that it is said of: `check checkpoint 4; if it fails, ...`"
+        message = f"this can apply to {names}"
+        hint = "write it after the task that it applies to: `check checkpoint 4; if it fails, ...`"
         self.diagnostics.refuse("ambiguous-pronoun", message, case.span, hint)
 
     def _require_each(self, recent: Sequence[Do], case: Case) -> None:
@@ -323,8 +323,8 @@ class Cases:
         all_ = any(isinstance(noun, Pronoun) and noun.every and not noun.either for noun in nouns)
         one = any(isinstance(noun, Pronoun) and noun.either for noun in nouns)
         if all_ or (one and len(recent) == 1):
-            message = "this can be asked of each of them, or of all together"
-            hint = "write `if one of them fails, ...` behind a list, or a sentence for each"
+            message = "this can apply to each of them, or to all together"
+            hint = "write `if one of them fails, ...` after a list, or a sentence for each"
             self.diagnostics.refuse("failure", message, case.span, hint)
 
     def _unless_failed(self, do: Do, case: Case, block: ProgramBlock) -> bool:
@@ -347,7 +347,7 @@ class Cases:
         found = replace(condition, alternatives=((asked,),), negated=negated)
         measured = {do.action for do in self.context.recent} <= {Action.MEASURE}
         if negated and not measured and state is TaskState.FAILED and _is_of_it(test):
-            message = "`it` can be what is done last, or what is measured last"
+            message = "`it` can be the last task, or the last measurement"
             hint = "name the checkpoint: `if checkpoint #1 has not failed, ...`"
             self.diagnostics.refuse("ambiguous-pronoun", message, test.span, hint)
         return found if test.negated else condition
@@ -357,14 +357,14 @@ class Cases:
         recent = self.context.recent
         alone = len(condition.alternatives) == len(condition.alternatives[0]) == 1
         if not alone or len(recent) != 1 or recent[0].window is None:
-            message = "this has to follow one task that is to be done by a certain time"
+            message = "this must follow a task that has a latest time"
             hint = "write `Check checkpoint #1 not later than 10 minutes after the start. If it is "
             hint += "too late, go to step 5.`"
             self.diagnostics.refuse("too-late", message, case.span, hint)
         (do,) = recent
         if do.missed is not None:
-            message = "what is done if it is too late is said already"
-            self.diagnostics.refuse("second-route", message, case.span, "leave one of the two out")
+            message = "the script already says what to do if it is too late"
+            self.diagnostics.refuse("second-route", message, case.span, "remove one of the two")
         do.missed = ProgramBlock(do)
         self._plan(case.orders, do.missed)
 

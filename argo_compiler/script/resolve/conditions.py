@@ -63,7 +63,7 @@ class ConditionResolver:
             if not combined:
                 said = self.diagnostics.source.said(tests[0].span, tests[-1].span)
                 span, hint = tests[-1].span, "is `or` meant?"
-                self.diagnostics.refuse("condition", f"no value is `{said}`", span, hint)
+                self.diagnostics.refuse("condition", f"no value satisfies `{said}`", span, hint)
             found += combined
             if len(found) > _MOST:
                 message = f"this condition has more than {_MOST} alternatives"
@@ -71,7 +71,7 @@ class ConditionResolver:
                 self.diagnostics.refuse("condition", message, condition.span, hint)
         if are_exhaustive(tuple(found)):
             said = self.diagnostics.source.said(condition.span)
-            message = f"`{said}` holds for every value"
+            message = f"every value satisfies `{said}`"
             hint = "is `and` meant, or another bound?"
             self.diagnostics.warning("always-holds", message, condition.span, hint)
         return tuple(found)
@@ -79,7 +79,7 @@ class ConditionResolver:
     def _test(self, test: Asked) -> list[tuple[Condition, ...]]:
         """Alternatives for one test; of several checkpoints all, or one with `or`."""
         if not isinstance(test, Test):
-            message = "values and events can't be asked for in one condition"
+            message = "one condition can't contain both values and events"
             self.diagnostics.refuse("condition", message, test.span, "write a sentence for each")
         checkpoints = self._subjects(test)
         self._require_value(test, checkpoints)
@@ -102,8 +102,8 @@ class ConditionResolver:
         if other is None or bound.unit or other in checkpoints:
             return
         if all(checkpoint.unit == other.unit for checkpoint in checkpoints):
-            message = f"`{other.id}` can be {other.id} {other.unit}, or what {told(other)} shows"
-            hint = f"write `{other.id} {other.unit}`; two checkpoints are not compared"
+            message = f"`{other.id}` can be {other.id} {other.unit}, or the value of {told(other)}"
+            hint = f"write `{other.id} {other.unit}`; two checkpoints can't be compared"
             self.diagnostics.refuse("ambiguous-number", message, bound.span, hint)
 
     def _note_unmeasured(self, checkpoint: CheckpointInfo, test: Test) -> None:
@@ -116,8 +116,8 @@ class ConditionResolver:
     def _subjects(self, test: Test) -> Sequence[CheckpointInfo]:
         """Which checkpoints are asked for; `it` is the only one whose unit is that of the value."""
         if test.subject is not None and test.subject.but:
-            message = "what is left out may be anything, or must not be so"
-            hint = "write `if #1 is above 5 and #4 is at most 5`, or leave the exception out"
+            message = "the exception can have any value, or must not satisfy this"
+            hint = "write `if #1 is above 5 and #4 is at most 5`, or remove the exception"
             if not any(isinstance(noun, AllOf) for noun in test.subject.nouns):
                 self.diagnostics.refuse("condition", message, test.subject.span, hint)
         match test.subject:
@@ -161,8 +161,8 @@ class ConditionResolver:
         if test.negated and state in (TaskState.NORMAL, TaskState.ABNORMAL):
             state = TaskState.ABNORMAL if state is TaskState.NORMAL else TaskState.NORMAL
         elif test.negated:
-            message = f"`not {state}` can't be asked for"
-            hint = "turn it round: `if ..., go on; otherwise ...`"
+            message = f"`not {state}` is not a possible condition"
+            hint = "write it the other way round: `if ..., go on; otherwise ...`"
             self.diagnostics.refuse("condition", message, test.predicate.span, hint)
         if state is TaskState.NORMAL:
             return ConditionType.WITHIN, checkpoint.nominal.low, checkpoint.nominal.high, True
@@ -174,8 +174,8 @@ class ConditionResolver:
         amounts = (predicate.low, predicate.high)
         low, high = self.diagnostics.each(lambda one: self._bound(one, checkpoint), amounts)
         if low > high or (low == high and not predicate.inclusive):
-            message = "no value lies between these"
-            self.diagnostics.refuse("condition", message, test.span, "write the lower one first")
+            message = "no value is between these bounds"
+            self.diagnostics.refuse("condition", message, test.span, "write the lower bound first")
         if not test.negated:
             return [(ConditionType.WITHIN, low, high, predicate.inclusive)]
         outside = ((ConditionType.LESS, low), (ConditionType.GREATER, high))

@@ -125,8 +125,8 @@ class Context:
         first, last = points[0], points[-1]
         if steps.through and isinstance(first, int) and isinstance(last, int):
             if first > last:
-                message = "the first of these steps comes after the last one"
-                hint = "write the earlier one first"
+                message = "the first of these steps comes after the last"
+                hint = "write the earlier step first"
                 self.diagnostics.refuse("step-range", message, steps.span, hint)
             points = list(range(first, min(last, first + len(self.steps) + 1) + 1))
         return [node for point in points for node in self._of_point(point, steps.span)]
@@ -155,7 +155,7 @@ class Context:
         nodes = self.steps[point]
         if nodes is None:
             message = f"more than one step has the number {point}"
-            hint = "number the steps anew, or name the task"
+            hint = "give the steps new numbers, or name the task"
             self.diagnostics.refuse("ambiguous-step", message, span, hint)
         return [node for node in nodes if node.is_listed]
 
@@ -164,8 +164,8 @@ class Context:
         last, step = block.last, self.step
         begins = block is self.program and (not step or last is not step[-1])
         if leads_away(last) and not begins:
-            message = "the mission never comes here: what stands before this leads elsewhere"
-            hint = "write it before the words that lead elsewhere, or as a step of its own"
+            message = "the mission never reaches this, because the words before it lead elsewhere"
+            hint = "write it before those words, or as a separate step"
             self.diagnostics.refuse("second-route", message, span, hint)
 
     # ---- steps that are counted from the one that is being planned: `the next step`
@@ -194,8 +194,8 @@ class Context:
 
     def _numbered(self, steps: Steps) -> Steps:
         if self.number is None:
-            message = "it is not clear which one the next step is"
-            hint = "number the steps, and name it: `step 4`"
+            message = "it is not clear which step is the next one"
+            hint = "number the steps, and write the number: `step 4`"
             self.diagnostics.refuse("step-range", message, steps.span, hint)
         points = tuple(self.number + n for n in steps.points if isinstance(n, int))
         return replace(steps, points=points, ahead=False)

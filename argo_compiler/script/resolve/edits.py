@@ -72,8 +72,8 @@ class Edits:
         bound = isinstance(do.after, Choice) or isinstance(whole.after, Choice)
         bound = bound or isinstance(whole.block.owner, Choice)
         if bound or not isinstance(do, Do) or do.failure is not None:
-            message = "this task belongs to a condition, so it can't be moved or taken out"
-            hint = "change the line that asks for it"
+            message = "this task belongs to a condition, so it can't be moved or deleted"
+            hint = "change the line of the condition"
             self.diagnostics.refuse("bound-task", message, edit.span, hint)
         taken: list[ProgramNode] = [do]
         if isinstance(do.after, Leave):
@@ -87,8 +87,8 @@ class Edits:
     def _move(self, edit: orders.Move) -> None:
         nodes, anchors = self.diagnostics.each(self._found, (edit.what, edit.anchor))
         if any(node is anchor for node in nodes for anchor in anchors):
-            message = "this is to stand before or after itself"
-            self.diagnostics.refuse("self-move", message, edit.span, "name another place")
+            message = "this can't be before or after itself"
+            self.diagnostics.refuse("self-move", message, edit.span, "name another position")
         self._put([n for node in nodes for n in self._take_out(node, edit)], anchors, edit.side)
 
     def _replace(self, edit: orders.Replace) -> None:
@@ -98,7 +98,7 @@ class Edits:
         single = len(nodes) == 1 and not isinstance(do.after, Choice)
         if not single or not isinstance(do, Do) or do.action is not Action.MEASURE:
             message = "only a single measurement can be replaced"
-            hint = "delete what is there, and add the other behind it"
+            hint = "delete this, and add the other one after it"
             self.diagnostics.refuse("bound-task", message, edit.span, hint)
         self.context.forget(do)
         new = measurement(checkpoint, edit.span)
@@ -123,11 +123,11 @@ class Edits:
         if tasks:
             lines = sorted({s.line for do in tasks[:20] if (s := do.source)})
             where = listed(str(line) for line in lines)
-            message = f"{name} is measured more than once at this point: lines {where}"
-            hint = "say which of them is meant by its step: `step 3`"
+            message = f"{name} is measured more than once at this point: in lines {where}"
+            hint = "name it by its step: `step 3`"
             self.diagnostics.refuse("ambiguous-edit", message, span, hint)
-        message = f"{name} is not in the plan at this point"
-        hint = f"ask for it before this line: `Check the {name}`"
+        message = f"{name} is not in the mission at this point"
+        hint = f"write before this line: `Check the {name}`"
         self.context.refuse_missing("not-planned", message, span, hint)
 
     def _of_steps(self, steps: Steps) -> list[ProgramNode]:
@@ -136,7 +136,7 @@ class Edits:
         named = all(isinstance(p, str) and p in self.context.named for p in steps.points)
         nodes = self.context.nodes_of(steps) if known or named else []
         if not nodes:
-            message = "no task of this step is in the plan at this point"
+            message = "no task of this step is in the mission at this point"
             hint = "name a step above this line that measures or drives"
             self.context.refuse_missing("not-planned", message, steps.span, hint)
         return nodes

@@ -90,33 +90,33 @@ def _mission(
             if nodes and steps.behind:
                 last = nodes[-1]
                 if last.after is None and last.block is not context.program:
-                    message = "the last step of a repetition or of a case can't be skipped so"
-                    hint = "say the opposite condition before that step: `if ..., check "
+                    message = "this can't skip the last step of a repetition or of a case"
+                    hint = "write the opposite condition before that step: `if ..., check "
                     hint += "checkpoint 4`"
                     diagnostics.refuse("step-range", message, steps.span, hint)
                 return last.after
             if nodes:
                 return nodes[0]
             said = f"step {steps.points[0]}"
-            message = f"{said} leaves nothing to do at which the mission could go on"
+            message = f"{said} has no task with which the mission could go on"
             hint = "name a step that measures or drives"
             diagnostics.error("empty-step", message, steps.span, hint)
         return None
 
     if depth(context.program) > _DEEPEST:
-        message = f"more than {_DEEPEST} repetitions or conditions lie in one another"
-        hint = "repeat the steps more often in one of them"
+        message = f"more than {_DEEPEST} repetitions or conditions are nested"
+        hint = "nest fewer of them, and repeat the steps more often"
         diagnostics.refuse("deep-rounds", message, None, hint)
     lowered = lower_program(context.program, find, starting.home)
     for leave in lowered.circling:
         hint = "name a step that measures, drives or waits"
-        diagnostics.error("empty-step", "this only leads back to itself", leave.span, hint)
+        diagnostics.error("empty-step", "this leads only back to itself", leave.span, hint)
     tasks, groups, names = assemble(lowered, diagnostics)
     _require_no_error(diagnostics)
     said = script.header
     text = said.designation or said.title
     if said.designation and said.title and not said.format_title:
-        message = f"`{said.title.text}` has no effect: another designation is given"
+        message = f"`{said.title.text}` has no effect, because the script has another designation"
         diagnostics.note("no-effect", message, said.title.span)
     mission = Mission(
         designation=text.text if text else "",
@@ -149,8 +149,8 @@ def _warn_of_time(mission: Mission, diagnostics: Diagnostics) -> None:
     if optional is None or mission.max_duration is not None:
         return
     if all(task.window is None or task.window.latest is None for task in mission.tasks):
-        message = "nothing limits the time of the mission, so that there is always time for this"
-        hint = "say how long it may take: `Maximum duration: 30 min`"
+        message = "the mission has no time limit, so there is always time for this"
+        hint = "add a limit: `Maximum duration: 30 min`"
         diagnostics.warning("no-time-limit", message, optional.source, hint)
 
 
@@ -162,9 +162,9 @@ def _warn_of_long_waits(context: Context, header: ScriptHeader) -> None:
     for do in all_nodes(context.program):
         if not isinstance(do, Do) or do.wait is None or (do.wait.duration or 0) < most_s:
             continue
-        message = f"this wait takes {do.wait.duration:g} s, and the whole mission may take "
+        message = f"this wait takes {do.wait.duration:g} s, but the whole mission may take only "
         message += f"{most_s:g} s"
-        hint = "wait for a shorter time, or give the mission more"
+        hint = "wait for a shorter time, or raise the limit of the mission"
         context.diagnostics.warning("long-wait", message, do.source, hint)
 
 
@@ -183,7 +183,7 @@ def _current(said: Steps | None, context: Context, names: dict[int, str]) -> str
     nodes = context.nodes_of(said)
     tasks = [node for node in all_nodes(nodes) if isinstance(node, Do)]
     if not tasks and nodes:
-        message = f"step {point} leaves nothing to do"
+        message = f"step {point} has no task"
         context.diagnostics.refuse("empty-step", message, said.span, "name another step")
     return names[id(tasks[0])] if tasks else None
 
@@ -194,8 +194,8 @@ def _site(script: Script, catalog: Catalog, diagnostics: Diagnostics) -> str:
     if said is None:
         return site
     if said.text.lower() != site.lower():
-        message = f"the script is for `{said.text}`; it is read with the catalogue of {site}"
-        hint = "are its checkpoints and places those of the other site?"
+        message = f"the script is for `{said.text}`; it was read with the names of {site}"
+        hint = "choose the other site, or check that the names are those of this one"
         diagnostics.warning("other-site", message, said.span, hint)
         return said.text
     return site

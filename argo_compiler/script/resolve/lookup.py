@@ -65,7 +65,7 @@ class Lookup:
         """Warns where a script asks for something that the checkpoint does not show."""
         usual = _QUANTITIES[checkpoint.kind]
         if quantity not in (None, Quantity.VALUE, *usual):
-            message = f"a {checkpoint.kind} has no {quantity}; its {usual[0]} will be read"
+            message = f"a {checkpoint.kind} has no {quantity}; its {usual[0]} is read"
             self.diagnostics.warning("quantity", message, span, f"write `the {usual[0]}`")
 
     def of_kind(self, kind: Kind, floors: Collection[int]) -> list[CheckpointInfo]:
@@ -89,7 +89,7 @@ class Lookup:
         name = f"{kind or 'checkpoint'} {identifier.upper()}"
         if found:
             message = f"`{name}` can be read as {listed(map(told, found), 'or')}"
-            hint = "name the checkpoint by its number, or by its whole name"
+            hint = "write the checkpoint's number, or by its full name"
             self.diagnostics.refuse("ambiguous-checkpoint", message, span, hint)
         close = nearest(name, (c.name for c in self.catalog.checkpoints))
         message = f"there is no {name} on {self.catalog.site}"
@@ -134,8 +134,8 @@ class Lookup:
             return
         self._lowest.setdefault(floor.number, floor.span)
         if len(self._lowest) > 1:
-            message = "this script names the ground floor and the first floor: the first may be "
-            message += "the same one, or the one above it"
+            message = "this script names the ground floor and the first floor: these can be "
+            message += "the same, or two floors"
             hint = "floors are counted from 1 at the bottom (German `Stock` as well): write "
             hint += "`floor 2` for the one above the ground floor"
             self.diagnostics.refuse("ambiguous-floor", message, floor.span, hint)
@@ -152,7 +152,7 @@ class Lookup:
             other = places.setdefault(self._place_key(place.name), place)
             if other is not place and self._place_key(place.name) == said:
                 message = f"`{location.name}` may be the place `{other.name}` or `{place.name}`"
-                hint = "write its coordinates, or give one of them another name on the site"
+                hint = "write its coordinates, or rename one of them in the site"
                 self.diagnostics.refuse("ambiguous-place", message, location.span, hint)
         if found := places.get(said):
             return found.pose
@@ -194,8 +194,8 @@ class Lookup:
         if point.floor is not None:
             floor = self.floor(point.floor)
             if z is not None and z != floor.z:
-                message = f"floor {floor.number} lies at z = {floor.z:g} m, not at {z:g} m"
-                hint = "leave the height or the floor out"
+                message = f"floor {floor.number} is at z = {floor.z:g} m, not at {z:g} m"
+                hint = "remove the height or the floor"
                 self.diagnostics.refuse("height", message, point.span, hint)
             z = floor.z
         if z is None:
@@ -213,8 +213,8 @@ class Lookup:
             hint = f"add `in starting area 1`, or give {known}"
             self.diagnostics.refuse("area-choice", message, dock.span, hint)
         if which == "end" and option is not None and option != named:
-            message = f"the mission is to end in starting area {option}, not {named}"
-            hint = f"leave {flag} (or `End area:`) out, or take the area out of this line"
+            message = f"the mission has to end in starting area {option}, not {named}"
+            hint = f"remove {flag} (or `End area:`), or the area in this line"
             self.diagnostics.refuse("area-conflict", message, dock.span, hint)
         return self.area(named, dock.span)
 

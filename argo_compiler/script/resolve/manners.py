@@ -42,8 +42,8 @@ class Manners:
         if order.name is None:
             return
         if len(tasks) > 1:
-            message = "this name stands before a command with several tasks"
-            hint = "give each of them a line and a name"
+            message = "this name is in front of a command with several tasks"
+            hint = "write a line and a name for each of them"
             self.diagnostics.error("one-name", message, order.span, hint)
         tasks[0].name = order.name
 
@@ -63,8 +63,8 @@ class Manners:
                 continue
             if values[field.name] not in (field.default, value):
                 what = field.name.replace("_", " ")
-                message = f"the {what} is said twice"
-                self.diagnostics.error("repeated-limit", message, span, "leave one of them out")
+                message = f"the {what} is given twice"
+                self.diagnostics.error("repeated-limit", message, span, "remove one of them")
             values[field.name] = value
         return Manner(**values)
 
@@ -93,7 +93,7 @@ class Manners:
         """The nodes with a wait before them, in the case that is said of them only."""
         manner = order.manner or _NOTHING
         if manner.delay is not None and isinstance(order, orders.Go | orders.Home):
-            message = "this can be a wait of that time before, or that time since the start"
+            message = "this can be a wait before the task, or a time since the start"
             hint = "write `wait 20 minutes, then return home`, or `return home not before 20 "
             hint += "minutes after the start`; `maximum duration: 20 minutes` ends the mission"
             self.diagnostics.refuse("ambiguous-duration", message, order.span, hint)
@@ -121,7 +121,7 @@ class Manners:
         done = {node.object_id for node in nodes if isinstance(node, Do)}
         asked = {condition.object_id for held in found for condition in held}
         if len(done) > 1 and done & asked:
-            message = "this condition can be meant for the last of these only, or for all of them"
+            message = "this condition can apply to the last of these only, or to all of them"
             hint = "write a sentence for each: `check #1. Check #4 only if #1 is above 4`"
             self.diagnostics.refuse("ambiguous-manner", message, order.span, hint)
 
@@ -133,16 +133,16 @@ class Manners:
     def furnish_each(self, manner: Manner, span: Span, tasks: Sequence[Do]) -> None:
         """Applies it to each of the tasks; what is said twice and differs is an error."""
         if manner.priority is not None and not 1 <= manner.priority <= _MOST_PRIORITY:
-            message = f"{manner.priority} is no priority of a task"
+            message = f"a task can't have priority {manner.priority}"
             hint = f"write a number from 1 to {_MOST_PRIORITY}"
             self.diagnostics.refuse("number", message, span, hint)
         if manner.priority == 1:
-            message = "priority 1 can be meant as the highest, or as the lowest as it is without it"
-            hint = "write `with high priority`, or a greater number for what is more important"
+            message = "priority 1 can be the highest or the lowest"
+            hint = "write `with high priority`, or a higher number for more important tasks"
             self.diagnostics.error("ambiguous-priority", message, span, hint)
         if manner.rank is not None and manner.priority not in (None, manner.rank):
-            message = "the priority is said twice"
-            self.diagnostics.error("repeated-limit", message, span, "leave one of them out")
+            message = "the priority is given twice"
+            self.diagnostics.error("repeated-limit", message, span, "remove one of them")
         if manner.by_importance:
             self._by_importance(manner, span, tasks)
         given = {
@@ -161,8 +161,8 @@ class Manners:
             self._window(do, manner, span)
             if manner.object_id is not None:
                 if do.action is Action.MEASURE:
-                    message = "a measurement is about its checkpoint"
-                    hint = "leave `about object` out"
+                    message = "a measurement always concerns its checkpoint"
+                    hint = "remove `about object`"
                     self.diagnostics.error("stray-clause", message, span, hint)
                 do.object_id = manner.object_id
         if tasks:
@@ -171,12 +171,12 @@ class Manners:
     def _by_importance(self, manner: Manner, span: Span, tasks: Sequence[Do]) -> None:
         """Gives the first of the tasks the highest priority, and the last one 1."""
         if len(tasks) < 2 or manner.priority is not None or manner.rank is not None:
-            message = "this is said of several tasks, of which each is less important than the last"
+            message = "this needs several tasks, the most important one first"
             hint = "write `Check checkpoints 3, 7 and 12, the most important first`"
             self.diagnostics.refuse("stray-clause", message, span, hint)
         names = ", ".join(f"`{do.base}` {len(tasks) - i}" for i, do in enumerate(tasks[:_SHOWN]))
         more = ", and so on" if len(tasks) > _SHOWN else ""
-        self.diagnostics.note("priority-taken", f"taken as these priorities: {names}{more}", span)
+        self.diagnostics.note("priority-taken", f"assumed priorities: {names}{more}", span)
         for i, do in enumerate(tasks):
             self._set(do, "priority", len(tasks) - i, span)
 
@@ -189,13 +189,13 @@ class Manners:
 
     def _twice(self, do: Do, name: str, span: Span) -> None:
         what = name.replace("_", " ")
-        message = f"`{do.base}` has another {what} already"
-        self.diagnostics.error("repeated-limit", message, span, "leave one of the two out")
+        message = f"`{do.base}` already has another {what}"
+        self.diagnostics.error("repeated-limit", message, span, "remove one of the two")
 
     def _window(self, do: Do, manner: Manner, span: Span) -> None:
         if manner.earliest is None and manner.latest is None:
             if manner.soft_window and do.window is None:
-                message = "this does not say by when, or whether the task may be left out"
+                message = "this does not say by when, or whether the task is optional"
                 hint = "write `preferably not later than 10 minutes after the start`, or `if there "
                 hint += "is time`"
                 self.diagnostics.error("ambiguous-manner", message, span, hint)
@@ -220,8 +220,8 @@ class Manners:
         """Applies a sentence or clause of manner to the tasks before it."""
         recent = self.context.recent
         if not recent:
-            message = "there is no task before this that it could belong to"
-            hint = "write it behind the task that it is said of"
+            message = "there is no task before this to which it could apply"
+            hint = "write it after the task that it applies to"
             self.context.refuse_missing("no-task", message, order.span, hint)
         if isinstance(order, orders.Retry):
             self._retry(order, recent)
@@ -230,15 +230,15 @@ class Manners:
 
     def _retry(self, order: orders.Retry, recent: Sequence[Do]) -> None:
         if order.again:
-            message = "this can ask to do it once more in any case, or only if it fails"
+            message = "this can mean once more in any case, or only after a failure"
             hint = "write `check it again`, or `if it fails, retry once`"
             self.diagnostics.refuse("ambiguous-repeat", message, order.span, hint)
         manner = order.manner or Manner()
         counts = [n for n in (manner.times, manner.at_most) if n is not None]
         retries = counts[0] if counts else 1
         if len(counts) > 1 or any(do.retries not in (0, retries) for do in recent):
-            message = "how often it is retried is said twice"
-            self.diagnostics.error("repeated-limit", message, order.span, "leave one of them out")
+            message = "the number of retries is given twice"
+            self.diagnostics.error("repeated-limit", message, order.span, "remove one of them")
         for do in recent:
             do.retries = retries
 
@@ -296,13 +296,13 @@ def timed(order: ScriptOrder, diagnostics: Diagnostics) -> ScriptOrder:
         return order
     others = manner.times is not None or manner.at_most is not None or manner.until is not None
     if single and not keeps and (others or manner.every is None):
-        message = "this limit can be read as that of each attempt, or of all together"
-        hint = "write `for 10 minutes` if it is how long all rounds last at most, or the limit of "
-        hint += "each in a sentence of its own"
+        message = "this limit can apply to each attempt, or to all together"
+        hint = "write `for 10 minutes` to limit all rounds together, or the limit of "
+        hint += "each attempt in a separate sentence"
         diagnostics.refuse("ambiguous-duration", message, order.span, hint)
     if manner.duration is not None:
-        message = "how long is said twice"
-        diagnostics.refuse("repeated-limit", message, order.span, "leave one of them out")
+        message = "the duration is given twice"
+        diagnostics.refuse("repeated-limit", message, order.span, "remove one of them")
     return replace(order, manner=replace(manner, duration=manner.time_limit, time_limit=None))
 
 
@@ -311,13 +311,14 @@ def _limits(order: ScriptOrder, context: Context) -> Limits:
     refuse, span = context.diagnostics.refuse, order.span
     what = "patrol" if isinstance(order, orders.Patrol) else "repetition"
     if manner.times == 0 or manner.at_most == 0:
-        refuse("rounds", f"a {what} of no rounds", span, "write how often, say, `three times`")
+        hint = "write a number of rounds, for example `three times`"
+        refuse("rounds", f"a {what} needs at least one round", span, hint)
     if manner.times is not None and manner.at_most is not None:
-        refuse("repeated-limit", "how often is said twice", span, "leave one of them out")
+        refuse("repeated-limit", "the number of rounds is given twice", span, "remove one of them")
     ended = manner.until is not None or manner.duration is not None or manner.every is not None
     if manner.at_most is not None and not ended and not manner.endless:
-        message = "this can be exactly so often, or less often if something holds that is not said"
-        hint = "write `three times`, or what ends it: `until it is above 5, at most three times`"
+        message = "this can be the exact number, or a maximum with a condition that is missing"
+        hint = "write `three times`, or add a condition: `until it is above 5, at most three times`"
         refuse("ambiguous-repeat", message, span, hint)
     count = manner.times or manner.at_most or 0
     if manner.more and isinstance(order, orders.Repeat):
@@ -327,11 +328,11 @@ def _limits(order: ScriptOrder, context: Context) -> Limits:
     until = () if manner.until is None else _until(manner.until, order, context)
     limited = count or manner.duration or until
     if manner.endless and limited:
-        message = f"this {what} is said to end, and not to"
-        refuse("repeated-limit", message, span, "leave one of them out")
+        message = f"this {what} has an end, but is also endless"
+        refuse("repeated-limit", message, span, "remove one of them")
     if not limited and not manner.endless:
         message = f"this {what} would never end"
-        hint = "say how long or how often: `for 10 minutes`, `three times`, `endlessly`"
+        hint = "write a duration or a number: `for 10 minutes`, `three times`, `endlessly`"
         refuse("endless-patrol" if what == "patrol" else "endless-repeat", message, span, hint)
     return Limits(
         count=count,
@@ -347,7 +348,7 @@ def _limits(order: ScriptOrder, context: Context) -> Limits:
 def _until(said: SaidCondition, order: ScriptOrder, context: Context) -> tuple[Condition, ...]:
     found = context.conditions.alternatives(said)
     if len(found) > 1:
-        message = "a round ends by conditions that all hold, not by one of several"
-        hint = "join them by `and`, or leave the round by `if ..., go to step 7`"
+        message = "a round can end when all conditions are satisfied, not when one of several is"
+        hint = "join them with `and`, or leave the round with `if ..., go to step 7`"
         context.diagnostics.refuse("condition", message, order.span, hint)
     return found[0]

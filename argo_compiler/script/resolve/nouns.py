@@ -53,18 +53,19 @@ class NounResolver:
         """The checkpoints of a list, in its order, each as often as it is named."""
         if nouns.either:
             said = self.diagnostics.source.said(nouns.span)
-            message = f"`{said}` leaves open which of them, or whether both"
-            hint = "write `and` for all of them, or name the one that is meant"
+            message = f"`{said}` can mean either of them, or both"
+            hint = "write `and` for all of them, or name one"
             self.diagnostics.refuse("ambiguous-or", message, nouns.span, hint)
         found = self.each(nouns)
         twice = {c.id: c for i, c in enumerate(found) if c in found[:i]}
         for checkpoint in twice.values():
             if any(isinstance(noun, AllOf) for noun in nouns.nouns):
-                message = f"{told(checkpoint)} is one of all of these, and may be meant once more"
-                hint = "leave it out, or write a sentence for it: `check it again`"
+                message = f"{told(checkpoint)} is in this list twice; it is not clear whether to "
+                message += "measure it twice"
+                hint = "remove it, or write a separate sentence: `check it again`"
                 self.diagnostics.refuse("ambiguous-measure", message, nouns.span, hint)
-            message = f"{told(checkpoint)} stands in this list more than once, and is done as often"
-            hint = "leave it out if it is to be done once"
+            message = f"{told(checkpoint)} is in this list twice or more, and is measured each time"
+            hint = "remove it to measure it only once"
             self.diagnostics.warning("listed-twice", message, nouns.span, hint)
         return found
 
@@ -78,8 +79,8 @@ class NounResolver:
                 continue
             if not own or not {f.number for f in own} <= {f.number for f in floors}:
                 said = self.diagnostics.source.said(noun.span)
-                message = f"`{said}` is said to be on another floor as well"
-                hint = "leave one of the two floors out"
+                message = f"`{said}` is on two floors according to this"
+                hint = "remove one of the two floors"
                 self.diagnostics.refuse("ambiguous-floor", message, noun.span, hint)
             placed.append(noun)
         return replace(nouns, nouns=tuple(placed))
@@ -94,19 +95,19 @@ class NounResolver:
             self._require_no_count(noun, excepted, found)
             if len(nouns.but) > 1 and not any(checkpoint in found for checkpoint in excepted):
                 said = self.diagnostics.source.said(noun.span)
-                message = f"`{said}` can be left out as well, or be done as well"
-                hint = "write what is left out at the end: `all valves and all gauges except #1`"
+                message = f"`{said}` can be a further exception, or a further checkpoint"
+                hint = "write the exceptions at the end: `all valves and all gauges except #1`"
                 self.diagnostics.refuse("ambiguous-exception", message, noun.span, hint)
             for checkpoint in excepted:
                 if checkpoint not in found:
-                    message = f"{told(checkpoint)} is none of these anyway"
-                    hint = "is another one meant?"
+                    message = f"{told(checkpoint)} is not in this list anyway"
+                    hint = "remove it, or name another one"
                     self.diagnostics.warning("needless-exception", message, noun.span, hint)
                 out.append(checkpoint)
         left = [checkpoint for checkpoint in found if checkpoint not in out]
         if not left:
             message = f"`{self.diagnostics.source.said(nouns.span)}` leaves no checkpoint"
-            hint = "name those that are left"
+            hint = "name the checkpoints to measure"
             self.diagnostics.refuse("no-checkpoint", message, nouns.span, hint)
         return left
 
@@ -119,8 +120,8 @@ class NounResolver:
         said = self.diagnostics.source.said(noun.span)
         inside = any(checkpoint in found for checkpoint in excepted)
         if isinstance(noun.label, int) and not (inside and said.isdigit()):
-            message = f"`{said}` can be {told(excepted[0])}, or how many of them are left out"
-            hint = f"write `except checkpoint {noun.label}`, or name those that are left out"
+            message = f"`{said}` can be {told(excepted[0])}, or the number of exceptions"
+            hint = f"write `except checkpoint {noun.label}`, or name the checkpoints to measure out"
             self.diagnostics.refuse("ambiguous-exception", message, noun.span, hint)
 
     def warn_of_empty(
@@ -137,7 +138,7 @@ class NounResolver:
         """The only checkpoint of a phrase."""
         found = self.each(nouns)
         if len(found) != 1:
-            message = "this has to be one checkpoint"
+            message = "this must be a single checkpoint"
             self.diagnostics.refuse("one-checkpoint", message, nouns.span, "name one of them")
         return found[0]
 
@@ -189,7 +190,7 @@ class NounResolver:
     def _range(self, noun: Labelled) -> range:
         first, last = noun.label, noun.last
         if not isinstance(first, int) or not isinstance(last, int):
-            message = "a range goes from a number to a number"
+            message = "a range needs two numbers"
             self.diagnostics.refuse("range", message, noun.span, "name each of them")
         if first > last:
             message = "this range of checkpoints is empty"
@@ -239,7 +240,7 @@ class NounResolver:
             self.diagnostics.refuse("ambiguous-checkpoint", message, span, hint)
         found = self.lookup.numbered(number, span)
         message = f"checkpoint #{number} is {found.name}, and there is no {kind} {number}"
-        self.diagnostics.refuse("checkpoint-mismatch", message, span, "name the one")
+        self.diagnostics.refuse("checkpoint-mismatch", message, span, "name one of them")
 
     def _inherited(self, noun: Labelled, label: int, kind: Kind | None) -> CheckpointInfo:
         """`valve R25 and 5`: a number behind one of a kind may be a name or a number."""
@@ -314,12 +315,12 @@ class NounResolver:
     def _ambiguous(self, code: str, noun: Noun, found: Sequence[CheckpointInfo]) -> NoReturn:
         said = self.diagnostics.source.said(noun.span)
         message = f"`{said}` can be {listed(map(told, found[:_SHOWN]), 'or')}"
-        self.diagnostics.refuse(code, message, noun.span, "name the one")
+        self.diagnostics.refuse(code, message, noun.span, "name one of them")
 
     def _nothing_before(self, span: Span) -> NoReturn:
         if not self.memory.known:
             raise RefusedError
-        message = "nothing has been measured before this, so it does not say which checkpoint"
+        message = "nothing is measured before this, so it does not refer to a checkpoint"
         self.diagnostics.refuse("which-checkpoint", message, span, "name it: `checkpoint #1`")
 
 

@@ -80,7 +80,7 @@ class Ordering:
         tasks = _tasks(self.context.nodes_of(steps))
         if not tasks:
             hint = "name a step that measures or drives"
-            message = "no task of this step is in the plan"
+            message = "no task of this step is in the mission"
             self.context.diagnostics.refuse("not-planned", message, steps.span, hint)
         return list(tasks)
 
@@ -92,7 +92,7 @@ class Ordering:
                 self._contradiction(span)
         if not self.free:
             if self.left_out and said is None and not self.precise:
-                message = "what does not fit is left out: the order is taken to be free, too"
+                message = "other parts have no effect: the order is free as well"
                 diagnostics.note("order-taken", message, self.left_out[0])
                 return Order.ANY
             return said or Order.PRECISE
@@ -110,14 +110,14 @@ class Ordering:
             for before, after in pairwise(groups):
                 self.pairs += [(span, a, b) for a, b in product(before, after)]
             return Order.ANY
-        message = "only some tasks are to be done in any order here: they keep the one as written"
-        hint = "write `The order is free.` if that is so of all"
+        message = "only some tasks here have any order: Argo keeps them in the order as written"
+        hint = "write `The order is free.` if that applies to all tasks"
         diagnostics.warning("partly-free", message, span, hint)
         return Order.PRECISE
 
     def _contradiction(self, span: Span) -> None:
-        message = "the script says elsewhere that the order is another one"
-        self.context.diagnostics.error("repeated-field", message, span, "leave one of the two out")
+        message = "another line of the script sets another order"
+        self.context.diagnostics.error("repeated-field", message, span, "remove one of the two")
 
     def _planned(self, span: Span, checkpoint: CheckpointInfo) -> Do:
         """The only measurement of a checkpoint."""
@@ -127,11 +127,11 @@ class Ordering:
         if len(planned) == 1:
             return planned[0]
         if planned:
-            message = f"{name} is measured more than once, so it is not clear what comes first"
-            hint = "leave this out, or write the order in which they are measured"
+            message = f"{name} is measured more than once, so it is not clear which one comes first"
+            hint = "remove this, or write the order of the measurements"
             context.diagnostics.refuse("ambiguous-edit", message, span, hint)
-        hint = f"ask for it: `Check the {name}`"
-        context.refuse_missing("not-planned", f"{name} is not in the plan", span, hint)
+        hint = f"add it: `Check the {name}`"
+        context.refuse_missing("not-planned", f"{name} is not in the mission", span, hint)
 
     def named(self, names: Mapping[int, str]) -> tuple[tuple[str, str], ...]:
         """The pairs by the names of their tasks."""

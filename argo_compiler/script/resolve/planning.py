@@ -78,8 +78,8 @@ class Planner:
             if step.number is None:
                 continue
             if step.number != expected:
-                message = f"step {step.number} stands where step {expected} would be"
-                hint = "is a line missing, or in the wrong place?"
+                message = f"step {step.number} is in the position of step {expected}"
+                hint = "check whether a line is missing or misplaced"
                 self.diagnostics.warning("step-number", message, step.span, hint)
             expected = step.number + 1
 
@@ -132,7 +132,7 @@ class Planner:
             self.manners.furnish_each(of_each, order.span, tasks)
 
     def _without_limit(self, sentence: Sentence) -> Sentence:
-        """The sentence without how long the mission may take: `at most 25 minutes in total`."""
+        """The sentence without the duration of the mission: `at most 25 minutes in total`."""
         if all(order.manner is None for order in sentence.orders):
             return sentence
         kept: list[ScriptOrder] = []
@@ -199,7 +199,7 @@ class Planner:
         if isinstance(dock, AreaLocation):
             dock = DockLocation(span=fact.span, area=dock)
         if not isinstance(dock, DockLocation):
-            message = "a mission ends in a docking station by a certain time, not at a place"
+            message = "a mission can have a latest end in a docking station only, not at a place"
             hint = "name the starting area: `it has to be back in starting area 1`"
             self.diagnostics.error("fact", message, fact.span, hint)
             return
@@ -208,8 +208,8 @@ class Planner:
     def _max_duration(self, seconds: float, fact: Node) -> None:
         said = self.header.max_duration
         if said is not None and said[0] != seconds:
-            message = f"line {said[1].span.line} says another maximum duration"
-            hint = "leave one of the two out"
+            message = f"line {said[1].span.line} has another maximum duration"
+            hint = "remove one of the two"
             self.diagnostics.error("repeated-field", message, fact.span, hint)
         self.header.max_duration = (seconds, fact)
 
@@ -242,7 +242,7 @@ class Planner:
             before = orders_[max(i - 2, 0) : i]
             several = len(before) == 2 and all(isinstance(one, orders.Measure) for one in before)
             if isinstance(order, orders.Retry) and several:
-                message = "this can be meant for the last of these only, or for each of them"
+                message = "this can apply to the last of these only, or to each of them"
                 hint = "write `check checkpoints 1 and 4, retry twice` for each, or two sentences"
                 self.diagnostics.error("ambiguous-manner", message, order.span, hint)
                 continue
@@ -254,8 +254,8 @@ class Planner:
             case orders.Plain(word=PlainWord.ABORT, manner=None):
                 self.manners.on_failure(OnFailure.ABORT)
             case orders.Plain(word=PlainWord.END) | orders.Home():
-                message = "this can be meant for the case that it still fails, or for any case"
-                hint = "write `if it still fails, ...` for the first, and a sentence of its own "
+                message = "this can apply only if it still fails, or in any case"
+                hint = "write `if it still fails, ...` for the first, and a separate sentence "
                 hint += "for the second"
                 self.diagnostics.error("ambiguous-case", message, order.span, hint)
             case _:
@@ -279,8 +279,8 @@ class Planner:
             return
         require_used(order, self.diagnostics)
         if isinstance(order, _WHOLE_PLAN) and in_branch(block):
-            message = "this changes the plan, so it can't be done in one case only"
-            self.diagnostics.refuse("route", message, order.span, "write it as a step of its own")
+            message = "this changes the mission, so it can't depend on a condition"
+            self.diagnostics.refuse("route", message, order.span, "write it as a separate step")
         if not isinstance(order, orders.Measure):
             self.making.leave_unvisited()
         if type(order) in _PLANNED:
@@ -322,7 +322,7 @@ class Planner:
         it has to say how long."""
         context = self.context
         if context.stays is not None and not isinstance(order, orders.Plain):
-            hint = "write `stay there for 90 s`, or move it to the end if the mission ends with it"
+            hint = "write `stay there for 90 s`, or move it to the end if the mission ends there"
             context.diagnostics.error("wait", "this does not say how long", context.stays, hint)
             context.stays = None
             context.fail()
@@ -351,8 +351,8 @@ class Planner:
             context.docked = None  # `stay there for 5 minutes`: it goes on behind that
             return False
         line = docked.source.line if docked.source else 0
-        message = f"the robot is back in its docking station since line {line}"
-        hint = "move the return to the end, or say how it goes on: `then go to step 3`"
+        message = f"line {line} has already returned the robot to its docking station"
+        hint = "move the return to the end, or write how to go on: `then go to step 3`"
         context.diagnostics.refuse("after-docking", message, order.span, hint)
 
     def _wait_at(
@@ -417,11 +417,11 @@ class Planner:
                 self._leave(Leave(Ahead.END, order.span), block)
             case PlainWord.GO_ON | PlainWord.REPORT:
                 done = "reported" if order.word is PlainWord.REPORT else "done next"
-                what = "every reading" if order.word is PlainWord.REPORT else "what comes behind"
-                message = f"{what} is {done} anyway, so that this has no effect"
+                what = "every reading" if order.word is PlainWord.REPORT else "the next task"
+                message = f"this has no effect, because {what} is {done} anyway"
                 self.diagnostics.note("no-effect", message, order.span)
             case _:
-                message = f"when is the robot to {order.word}?"
+                message = f"this does not say when to {order.word}"
                 hint = "write `if a gas leak is detected, pause`, or `wait 5 minutes`"
                 self.diagnostics.refuse("stray-clause", message, order.span, hint)
 
@@ -442,9 +442,9 @@ class Planner:
         context = self.context
         for key, span in context.once.items():
             if len(context.measured.get(key, {})) > 1:
-                message = f"checkpoint #{key} is measured elsewhere as well: it can be meant to be "
-                message += "measured here, too, or only there"
-                hint = "name it in one of the two only, or write `check it again`"
+                message = f"checkpoint #{key} is measured elsewhere as well: it can be meant "
+                message += "to be measured here as well, or only there"
+                hint = "name it in only one of the two places, or write `check it again`"
                 context.diagnostics.error("ambiguous-edit", message, span, hint)
 
     def _check_spared(self) -> None:
@@ -455,8 +455,8 @@ class Planner:
             if tasks:
                 lines = sorted({s.line for do in tasks.values() if (s := do.source)})
                 asks = f"line {lines[0]} asks for checkpoint #{key}" if lines else "it is asked for"
-                hint = "leave one of the two out, or write `except` in the line that asks for it"
+                hint = "remove one of the two, or write `except` in the line that asks for it"
                 context.diagnostics.error("spared", asks, span, hint)
             else:
-                message = f"checkpoint #{key} is not in the plan anyway, so that this has no effect"
+                message = f"checkpoint #{key} is not in the mission anyway, so this has no effect"
                 context.diagnostics.note("no-effect", message, span)

@@ -205,7 +205,7 @@ def _behind(node: ProgramNode) -> ProgramNode | None:
 
 
 def depth(block: ProgramBlock) -> int:
-    """How many blocks lie in one another."""
+    """How many blocks are nested."""
     deepest, waiting = 0, [(block, 1)]
     while waiting:
         block, level = waiting.pop()

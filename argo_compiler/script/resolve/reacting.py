@@ -70,8 +70,8 @@ class Reactions:
         """Adds the reaction that a case with events as its condition asks for."""
         assert case.condition is not None
         if any(len(tests) > 1 for tests in case.condition.alternatives):
-            message = "a reaction follows one event, not several at the same time"
-            self.diagnostics.refuse("reaction", message, case.condition.span, "join them by `or`")
+            message = "a reaction needs one event, not several at the same time"
+            self.diagnostics.refuse("reaction", message, case.condition.span, "join them with `or`")
         triggers = [self._trigger(test) for (test,) in case.condition.alternatives]
         answer = self._answer(case)
         response = answer.response
@@ -80,13 +80,13 @@ class Reactions:
         elif response is None and answer.reported:
             response = Response.REPORT
         if response is None:
-            hint = "add, say, `report it` or `pause`"
+            hint = "add, for example, `report it` or `pause`"
             self.diagnostics.refuse("unfinished", "this does not say what to do", case.span, hint)
         for event, span, level in triggers:
             before = self.lines.get(event)
             if before is not None:
-                message = f"line {before.line} already says what to do in this event"
-                hint = "leave one of the two out"
+                message = f"line {before.line} already has a reaction to this event"
+                hint = "remove one of the two"
                 self.diagnostics.error("second-reaction", message, case.span, hint)
                 continue
             self.lines[event] = span
@@ -110,10 +110,10 @@ class Reactions:
         if isinstance(test, BatteryDrops):
             return _Trigger(EventKind.LOW_BATTERY, test.span, self._level(test))
         if not isinstance(test, Occurs):
-            message = "values and events can't be asked for in one condition"
+            message = "one condition can't contain both values and events"
             self.diagnostics.refuse("reaction", message, test.span, "write a sentence for each")
         if test.event is None:
-            message = "an obstacle may be positive or negative: in the way, or a part missing"
+            message = "an obstacle is positive (in the way) or negative (a part is missing)"
             hint = "write `a positive obstacle` or `a negative obstacle`"
             self.diagnostics.refuse("ambiguous-event", message, test.span, hint)
         return _Trigger(test.event, test.span)
@@ -121,15 +121,15 @@ class Reactions:
     def _level(self, battery: BatteryDrops) -> float:
         """The share of the charge below which the battery is to be called low."""
         amount = battery.level
-        hint = "write, say, `if the battery drops below 30 %`"
+        hint = "write, for example, `if the battery drops below 30 %`"
         if battery.relation not in (Relation.LESS, Relation.AT_MOST):
-            message = "a reaction follows a battery that is low, not one that is charged"
+            message = "a reaction needs a battery that becomes low, not one that is charged"
             hint += ", or `wait until the battery is charged`"
         elif amount.unit != "%":
             unit = f"in {amount.unit}" if amount.unit else "without a unit"
-            message = f"the battery's charge is a share of it, in %, not a number {unit}"
+            message = f"the battery's charge is given in %, not as a number {unit}"
         elif not 0.0 < amount.value < 100.0:
-            message = "no battery ever drops below this, or each is below it"
+            message = "this must be more than 0 % and less than 100 %"
         else:
             return amount.value / 100.0
         self.diagnostics.refuse("battery", message, battery.span, hint)
@@ -178,8 +178,8 @@ class Reactions:
         own = {orders.Home: {"pose"}, orders.WaitOrder: {"person"}}.get(type(order), set())
         left = sorted(said(manner) - _USED - own)
         if left or order.name is not None:
-            message = f"of a reaction this can't be said: {words_of(left) if left else 'a name'}"
-            hint = "leave it out; how urgent it is, is said by a number: `with priority 90`"
+            message = f"a reaction can't have this: {words_of(left) if left else 'a name'}"
+            hint = "remove it; to say how urgent it is, write a number: `with priority 90`"
             self.diagnostics.refuse("stray-clause", message, order.span, hint)
         if manner.time_limit is not None and manner.duration is not None:
             self._twice(order.span)
@@ -198,7 +198,7 @@ class Reactions:
         match condition.alternatives:
             case ((Occurs(event=EventKind() as event),),):
                 return event
-        hint = "write, say, `until the all clear`"
+        hint = "write, for example, `until the all clear`"
         self.diagnostics.refuse("reaction", "a reaction waits for one event", condition.span, hint)
 
     def _until(self, event: EventKind, answer: _Answer, span: Span) -> _Answer:
@@ -210,8 +210,8 @@ class Reactions:
         goes_on = answer.afterwards is not None and response is Response.ABORT
         stops = answer.ended and response is Response.RETURN  # `stop the mission and go home`
         if goes_on or not (stops or answer.response in (None, Response.PAUSE, response)):
-            message = "two things to do at once in this event"
-            self.diagnostics.refuse("reaction", message, order.span, "leave one of them out")
+            message = "the reaction has two actions at once"
+            self.diagnostics.refuse("reaction", message, order.span, "remove one of them")
         return replace(answer, response=response)
 
     def _afterwards(self, order: ScriptOrder, answer: _Answer, afterwards: Afterwards) -> _Answer:
@@ -240,7 +240,7 @@ class Reactions:
 
     def _goes(self, order: orders.Go, answer: _Answer) -> _Answer:
         if isinstance(order.where, FloorName):
-            message = "a reaction drives to a place, not to a floor"
+            message = "a reaction can drive to a place, but not to a floor"
             self.diagnostics.refuse("reaction", message, order.span, "name a place of the site")
         pose, _ = self.lookup.locate(order.where, "end")
         return replace(self._responds(answer, Response.SAFE_AREA, order), pose=pose)
@@ -250,16 +250,16 @@ class Reactions:
         if answer.hold_limit is None:
             return answer
         if answer.drives and answer.until is None:
-            message = "after its drive a reaction holds until an event, not for a time"
-            hint = "write, say, `return and wait until the all-clear for at most 10 minutes`"
+            message = "after its drive a reaction can wait for an event, but not for a duration"
+            hint = "write, for example, `return and wait until all clear for at most 10 minutes`"
             self.diagnostics.refuse("reaction", message, span, hint)
         on_limit = answer.on_limit or answer.afterwards
         if on_limit is None and answer.until is not None:
-            message = "this does not say what happens if the time is over before that event"
+            message = "this does not say what to do if the event does not occur in this time"
             hint = "add `or else go on`, `or else end the mission` or `or else wait`"
             self.diagnostics.refuse("reaction", message, span, hint)
         return replace(answer, on_limit=on_limit or Afterwards.RESUME)
 
     def _twice(self, span: Span) -> NoReturn:
-        message = "this is not what was said before of the same event"
-        self.diagnostics.refuse("reaction", message, span, "leave one of the two out")
+        message = "this contradicts an earlier reaction to the same event"
+        self.diagnostics.refuse("reaction", message, span, "remove one of the two")

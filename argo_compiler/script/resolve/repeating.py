@@ -78,11 +78,11 @@ class Repeating:
         if manner.every is not None and manner.times == 1:  # `once every ten minutes`
             return replace(order, manner=replace(manner, times=None))
         if not order.again:
-            message = "this can be that the steps are done once in all, or once more"
+            message = "this can mean once in total, or once more"
             hint = "write `once in total`, or `once more`"
             self.diagnostics.refuse("ambiguous-repeat", message, order.span, hint)
-        message = "to repeat once is taken as once more, so that it is done twice in all"
-        hint = "write `once more`, or `once in total` if it is done a single time"
+        message = "`once` is taken as once more, so it is done twice in total"
+        hint = "write `once more`, or `once in total` to do it a single time"
         self.diagnostics.warning("once-more", message, order.span, hint)
         return replace(order, manner=replace(manner, more=True))
 
@@ -90,14 +90,14 @@ class Repeating:
         """`Repeat this twice`: the step before, or what was said before in the same step."""
         context = self.context
         if not context.step and self._follows_several():
-            message = "this can be the step before, or all steps so far"
+            message = "this can be the previous step, or all steps so far"
             hint = "name the steps: `repeat step 3 twice`, `repeat steps 1 to 3 twice`"
             self.diagnostics.refuse("step-range", message, order.span, hint)
         nodes = _topmost(context.step or context.before, block)
         starts = any(map(_is_start, nodes))
         one = not context.step or len(nodes) == 1 or all(n in context.recent for n in nodes)
         if not nodes or starts or not one or nodes[-1] is not block.last:
-            message = "it is not clear what is to be repeated"
+            message = "it is not clear what to repeat"
             hint = "name the steps: `repeat steps 2 and 3 twice`"
             self.diagnostics.refuse("step-range", message, order.span, hint)
         round_ = make_round(order, "Repeat", context, order.name)
@@ -125,8 +125,8 @@ class Repeating:
         if manner.duration is None or said(manner) - {"duration", "finishing"}:
             return False
         if round_.limits.duration:
-            message = "how long is said twice"
-            hint = "leave one of them out"
+            message = "the duration is given twice"
+            hint = "remove one of them"
             self.diagnostics.refuse("repeated-limit", message, order.span, hint)
         soft = bool(manner.finishing)
         round_.limits = replace(round_.limits, duration=manner.duration, soft=soft)
@@ -153,8 +153,8 @@ class Repeating:
             return
         if isinstance(behind, Do) and behind.docks:
             return  # nothing can be meant behind the return
-        message = "these steps are repeated where they stand, before those between them and this"
-        hint = "write `repeat step 2 again` for doing them here once more"
+        message = "these steps are repeated in their place, before the steps that follow them"
+        hint = "write `repeat step 2 again` to do them here once more"
         self.diagnostics.warning("repeated-there", message, order.span, hint)
 
     def _once_more(self, order: orders.Repeat, steps: Steps, block: ProgramBlock) -> None:
@@ -162,8 +162,8 @@ class Repeating:
         nodes = self.context.nodes_of(steps)
         tasks = [n for n in nodes if isinstance(n, Do) and not (n.ways or n.failure or n.missed)]
         if not nodes or len(tasks) < len(nodes):
-            message = "this does not say how often, and can't be done once more"
-            hint = "say how often: `twice`, `three times in total`, `until ...`"
+            message = "this does not say how often, and it can't be done once more"
+            hint = "write how often: `twice`, `three times in total`, `until ...`"
             self.diagnostics.refuse("endless-repeat", message, order.span, hint)
         times = order.manner.times if order.manner is not None else 1
         tasks *= min(times or 1, _MOST_AGAIN)
@@ -208,8 +208,8 @@ class Repeating:
             return
         follows = _leads_to(found[-1], round_)
         if tail and (not follows or round_ in found):
-            message = "a condition behind a repetition is looked at after its last round"
-            hint = "write the repetition behind the steps that it repeats"
+            message = "a condition after a repetition is evaluated after its last round"
+            hint = "write the repetition after the steps that it repeats"
             self.diagnostics.refuse("not-planned", message, order.span, hint)
         for node in (round_, *tail):
             assert node.block is not None
@@ -230,8 +230,8 @@ class Repeating:
         leave = round_.after if isinstance(round_.after, Leave) else None
         if tail and leave is not None:
             if tail[-1].otherwise.first is not None:
-                message = "after the last round this leads elsewhere, and so does `otherwise`"
-                hint = "leave one of the two out"
+                message = "this leads elsewhere after the last round, and so does `otherwise`"
+                hint = "remove one of the two"
                 self.diagnostics.error("second-route", message, leave.span, hint)
             block.remove(leave)
             tail[-1].otherwise.append(leave)
@@ -244,8 +244,8 @@ class Repeating:
         order, round_ = repetition.order, repetition.round
         if order.steps is None:
             if not (found := self._all(round_)):
-                message = "nothing is planned before this that could be repeated"
-                hint = "write it behind what is to be repeated, or `do the following twice:`"
+                message = "there is nothing before this to repeat"
+                hint = "write it after the tasks to repeat, or `do the following twice:`"
                 self.diagnostics.refuse("empty-step", message, order.span, hint)
             return found
         nodes = self.context.nodes_of(order.steps)
@@ -254,7 +254,7 @@ class Repeating:
         nodes = [n for n in nodes if id(n) not in later and id(n) not in behind and _repeats(n)]
         if not nodes:
             said = " to ".join(str(p) for p in order.steps.points)
-            message = f"step {said} leaves nothing to do that could be repeated"
+            message = f"step {said} has no task to repeat"
             hint = "name a step that measures or drives"
             self.diagnostics.refuse("empty-step", message, order.steps.span, hint)
         known = {id(node) for node in nodes}
@@ -263,8 +263,8 @@ class Repeating:
         block = _around(nodes, known, self.context.program, order.name or "")
         tops = _topmost(nodes, block)
         if any(not _covered(top, known) for top in tops):
-            message = "these steps and those of another repetition have only some in common"
-            hint = "let one lie in the other as a whole, or separate them"
+            message = "these steps overlap with those of another repetition"
+            hint = "put one completely within the other, or separate them"
             self.diagnostics.refuse("overlap", message, order.span, hint)
         return self._together(order, tops)
 
@@ -289,13 +289,13 @@ class Repeating:
             found.append(found[-1].after)
             missing -= id(found[-1]) in ends
         if missing:
-            message = "the first of these steps comes after the last one"
-            hint = "write the earlier one first"
+            message = "the first of these steps comes after the last"
+            hint = "write the earlier step first"
             self.diagnostics.refuse("step-range", message, order.span, hint)
         listed = len(order.steps.points) > 1 and not order.steps.through
         if listed and any(_repeats(node) and id(node) not in ends for node in found):
             message = "these steps are not next to each other"
-            hint = "repeat steps that follow each other"
+            hint = "repeat consecutive steps"
             self.diagnostics.refuse("step-range", message, order.span, hint)
         return found
 
@@ -318,9 +318,9 @@ class Repeating:
         whole = len(tasks) == len(list(round_.body))
         ends = limits.count > 1 or (limits.until and not limits.count)
         if limits.duration or limits.every or not whole or not tasks or not ends:
-            message = "a pause can only be between rounds of tasks without conditions, of which it "
-            message += "is said how many they are, or until what"
-            hint = "write the tasks and `wait 1 minute` out as often as they are done"
+            message = "a pause between rounds needs tasks without conditions, and a number of "
+            message += "rounds or a condition that ends them"
+            hint = "write the tasks and `wait 1 minute` as often as needed"
             context.diagnostics.error("pause", message, round_.span, hint)
             return
         block, anchor = round_.block, round_.before

@@ -39,8 +39,8 @@ def area_choices(
     offers."""
     for which, option in (("start", start_area), ("end", end_area)):
         if header.areas_open is not None and option is None:
-            message = f"the script leaves the {which} to the preparation"
-            hint, span = "choose a starting area for it", header.areas_open.span
+            message = f"the script leaves the {which} open"
+            hint, span = "choose a starting area", header.areas_open.span
             diagnostics.error("area-choice", message, span, hint, _REMEDIES[which])
     start = _choice("start", header.start_area, header.initial_position, start_area, diagnostics)
     end = _choice("end", header.end_area, header.end_of_mission, end_area, diagnostics)
@@ -59,7 +59,7 @@ def _choice(
     if header is not None:
         if option is not None and option != header.area:
             message = f"--{which}-area {option} contradicts the script"
-            hint = f"leave --{which}-area out, or take this line out of the script"
+            hint = f"remove --{which}-area, or this line of the script"
             diagnostics.error("area-conflict", message, header.span, hint)
         return AreaChoice(header.area, header.span, header.as_planned, said=True)
     if cell is None:
@@ -68,15 +68,15 @@ def _choice(
     numbers = tuple(map(str, offered))
     choice = RemedyChoice(_REMEDIES[which], "area", numbers)
     if option is not None and offered and option not in offered:
-        message = f"the {which} in area {option} is not what the script offers"
+        message = f"area {option} is not among the areas that the script allows for the {which}"
         diagnostics.error("area-not-offered", message, span, str(choice), choice)
     elif option is None and len(offered) > 1:
         areas = listed(numbers, "or")
-        message = f"the script leaves the {which} to the preparation: starting area {areas}"
+        message = f"the script leaves the {which} open: starting area {areas}"
         diagnostics.error("area-choice", message, span, str(choice), choice)
     elif option is None and not offered:
         message = f"this names no starting area for the mission's {which}"
-        hint = "write, say, `starting area 1`"
+        hint = "write, for example, `starting area 1`"
         diagnostics.error("no-area", message, span, hint, choice.remedy)
     chosen = option if option in offered or not offered else None
     area = chosen if chosen is not None else next(iter(offered), None)
@@ -112,7 +112,7 @@ class Starting:
         """The start that a script sets. Raises RefusedError if there is another one."""
         if self.start_at is not None:
             message = f"the starting point is already set in line {self.start_at.line}"
-            self.diagnostics.refuse("second-start", message, order.span, "leave one of the two out")
+            self.diagnostics.refuse("second-start", message, order.span, "remove one of the two")
         self.start_at = order.span
         pose, area = None, None
         if order.where is not None:
@@ -133,20 +133,20 @@ class Starting:
         if area is None or (end.area is not None and end.area != area.number):
             message = "the mission can't end here"
             if area is not None:
-                message = f"the mission is to end in starting area {end.area}, not {area.number}"
-            hint = "say in another sentence where it ends"
+                message = f"the mission has to end in starting area {end.area}, not {area.number}"
+            hint = "write a separate sentence for the end"
             self.diagnostics.refuse("area-conflict", message, span, hint)
         self.end = AreaChoice(area.number, span, said=True)
 
     def _conflict(self, span: Span) -> NoReturn:
         wanted = self.wanted
         message = f"the starting area {wanted.area} contradicts the script's starting point"
-        hint = "choose none, or take the starting point out of the script"
+        hint = "choose none, or remove the starting point from the script"
         remedy: Remedy | None = Remedy.CHOOSE_START
         if wanted.span is not None:
             remedy = None
             message = f"line {wanted.span.line} says that it starts in area {wanted.area}"
-            hint = "leave one of the two out, or add `as planned` to the header line"
+            hint = "remove one of the two, or add `as planned` to the header line"
         self.diagnostics.refuse("area-conflict", message, span, hint, remedy)
 
     def _start_unsaid(self) -> None:
@@ -172,8 +172,8 @@ class Starting:
         if said.area is not None:
             number = said.area.area
             if option not in (None, number):
-                message = f"the mission is to end in starting area {option}, not {number}"
-                hint = "leave out the end area given beside (or `End area:`), or the one in this "
+                message = f"the mission has to end in starting area {option}, not {number}"
+                hint = "remove the end area that was chosen (or `End area:`), or the one in this "
                 hint += "line"
                 self.diagnostics.refuse("area-conflict", message, said.span, hint)
         area = self._nearest(said.span) if number is None else self.lookup.area(number, said.span)
@@ -185,12 +185,12 @@ class Starting:
         areas = self.lookup.catalog.areas
         if not areas:
             message = "there is no docking station on this site"
-            self.diagnostics.refuse("area-choice", message, span, "name a place to go to")
+            self.diagnostics.refuse("area-choice", message, span, "name a place instead")
         at = self.start.pose if self.start is not None else None
         area = min(areas, key=lambda a: 0.0 if at is None else _distance(at, a.dock))
         if self.assumed is None:
             self.assumed = area
-            where = "nearest to where it starts" if at is not None else "first of the site"
+            where = "nearest to the start" if at is not None else "first one of the site"
             message = "this does not say which docking station; that of starting area "
             message += f"{area.number} is taken, the {where}"
             hint = f"write `the docking station in starting area {area.number}`"
@@ -201,8 +201,8 @@ class Starting:
         """Adds the start and the way into the dock, and finds where home is."""
         context = self.context
         if context.program.first is None and context.whole:
-            hint = "give it steps such as `Check the checkpoint #14`"
-            self.diagnostics.refuse("nothing-to-do", "the script has nothing to do", None, hint)
+            hint = "add steps such as `Check the checkpoint #14`"
+            self.diagnostics.refuse("nothing-to-do", "the script has no task", None, hint)
         if self.start_at is None:
             self._start_unsaid()
         if self.start is not None and not self.start.is_listed:

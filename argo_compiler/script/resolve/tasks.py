@@ -52,11 +52,11 @@ class TaskMaker:
             case orders.Plain(word=PlainWord.MEET):
                 return [Do("MEET", Action.WAIT, span, wait=WaitRule(duration=0))]
         if isinstance(order, orders.Follow):
-            message = "there are no steps within this one"
-            hint = "write `repeat this three times`, or the steps as sub-steps below it"
+            message = "this step has no sub-steps"
+            hint = "write `repeat this three times`, or write the sub-steps below it"
             self.context.diagnostics.refuse("route", message, span, hint)
-        message = "this can't be done here"
-        self.context.diagnostics.refuse("route", message, span, "write it as a step of its own")
+        message = "this is not possible here"
+        self.context.diagnostics.refuse("route", message, span, "write it as a separate step")
 
     def _measurements(self, order: orders.Measure) -> list[Do]:
         nouns, what = self.context.nouns, order.what
@@ -80,7 +80,7 @@ class TaskMaker:
         """That `the whole list` is not said where something was measured before."""
         whole = any(isinstance(n, AllOf) and n.whole and not n.floors for n in order.what.nouns)
         if whole and not order.what.but and self.context.measured:
-            message = "this can mean all that was done so far, or all checkpoints of the site"
+            message = "this can mean all tasks so far, or all checkpoints of the site"
             hint = "write `repeat everything once more`, or `check all checkpoints`"
             self.context.diagnostics.refuse("ambiguous-all", message, order.span, hint)
 
@@ -107,20 +107,20 @@ class TaskMaker:
         manner = order.manner or Manner()
         until, duration, limit = manner.until, manner.duration, manner.time_limit
         if order.person:
-            hint = "let somebody pause it there, or write how long: `wait 5 minutes`"
-            diagnostics.refuse("wait", "a mission does not wait for a person", order.span, hint)
+            hint = "an operator can pause the run; or write a duration: `wait 5 minutes`"
+            diagnostics.refuse("wait", "a mission can't wait for a person", order.span, hint)
         if until is None:
             if duration is None:
-                message = "this does not say how long, or for what"
+                message = "this has no duration and no condition"
                 hint = "write `wait 90 s`, `wait until #1 is below 3` or `wait for the all-clear`"
                 diagnostics.refuse("wait", message, order.span, hint)
             if limit is not None:
-                message = "a wait that lasts for a time has no other limit"
-                diagnostics.refuse("wait", message, order.span, "leave one of them out")
+                message = "a wait with a duration can't have another limit"
+                diagnostics.refuse("wait", message, order.span, "remove one of them")
             return WaitRule(duration=duration)
         if limit is not None and duration is not None:
-            message = "how long it waits at most is said twice"
-            diagnostics.refuse("repeated-limit", message, order.span, "leave one of them out")
+            message = "the limit of the wait is given twice"
+            diagnostics.refuse("repeated-limit", message, order.span, "remove one of them")
         limit = duration if limit is None else limit
         event: EventKind | None = None
         match until.alternatives:
@@ -128,8 +128,8 @@ class TaskMaker:
                 event, until = awaited, replace(until, alternatives=tuple(others))
         conditions = self.context.conditions.alternatives(until)
         if len(conditions) > 1:
-            message = "a wait ends by conditions that all hold, not by one of several"
-            diagnostics.refuse("wait", message, until.span, "join them by `and`")
+            message = "a wait can end when all conditions are satisfied, not when one of several is"
+            diagnostics.refuse("wait", message, until.span, "join them with `and`")
         return WaitRule(event=event, conditions=conditions[0] if conditions else (), limit=limit)
 
     def patrol_rounds(self, order: orders.Patrol) -> tuple[list[ProgramRound], list[Do]]:
@@ -152,7 +152,7 @@ class TaskMaker:
         context, manner = self.context, order.manner
         floors = [p for p in order.places if isinstance(p, FloorName)]
         if len(floors) > 1 and manner is not None and manner.duration is not None:
-            message = "this duration can be read as that of each floor or of all together"
+            message = "this duration can apply to each floor, or to all together"
             hint = "write one patrol for each floor, each with its own duration"
             context.diagnostics.refuse("ambiguous-duration", message, order.span, hint)
         rounds: list[tuple[str, list[Pose]]] = []
@@ -171,8 +171,8 @@ class TaskMaker:
         if through:
             rounds.append((f"Patrol {label}", through))
         if order.name is not None and len(rounds) > 1:
-            message = "this name stands before a command with several rounds"
-            hint = "give each of them a line and a name"
+            message = "this name is in front of a command with several patrols"
+            hint = "write a line and a name for each of them"
             context.diagnostics.error("one-name", message, order.span, hint)
         return rounds
 
@@ -190,8 +190,8 @@ class TaskMaker:
             return []
         own_step = bool(context.steps) and not context.step
         if own_step or any(len(tasks) > 1 for tasks in planned):
-            message = "this can be said of what is measured before, or ask for it once more"
-            hint = "say it where it is measured: `check checkpoint 4 within 5 minutes`"
+            message = "this can apply to the measurement before, or ask for it once more"
+            hint = "write it with the measurement: `check checkpoint 4 within 5 minutes`"
             context.diagnostics.refuse("ambiguous-demand", message, order.span, hint)
         return [task for tasks in planned for task in tasks]
 
@@ -204,8 +204,8 @@ class TaskMaker:
         if order.side is Side.AFTER:
             both = [order.order] if len(done) == len(anchor) else [other, order.order]
         elif done:
-            message = f"{told(done[0])} is measured before this already"
-            hint = "write this before it, or say that it is measured once more"
+            message = f"{told(done[0])} is already measured before this"
+            hint = "write this before it, or ask for another measurement"
             context.diagnostics.refuse("ambiguous-edit", message, order.span, hint)
         else:
             both = [order.order, other]

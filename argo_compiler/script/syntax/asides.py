@@ -289,7 +289,7 @@ class Asides:
         return bool(_MANNERS & {*types}) or self.orders(text) or types[:1] in _SINGLE
 
     def sets_aside(self, heading: ScriptText) -> bool:
-        """Whether a heading may say that what stands below it is not to be done, or not always."""
+        """Whether a heading can mean that the lines below it are not tasks, or not always."""
         types = self.understanding.types(heading)
         timed = types[:1] in (("BEFORE",), ("AFTER",)) or _CLOCK.search(heading.content) is not None
         return timed or _limits(heading, "set_aside", "past")
@@ -339,8 +339,8 @@ class Asides:
 
 def ask_of_remark(remark: ScriptText, diagnostics: Diagnostics) -> None:
     """Asks about a remark that may not be one."""
-    message = f"`{remark.content}` may change what is done, or be a remark"
-    hint = "write what is done as it is meant, or leave this out"
+    message = f"`{remark.content}` can be a change, or a remark"
+    hint = "write the change into the commands, or remove this"
     diagnostics.error("ambiguous-remark", message, remark.span(), hint)
 
 

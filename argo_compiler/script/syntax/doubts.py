@@ -44,29 +44,29 @@ class Doubt:
 
 
 _ONLY = Doubt(
-    "may mean that the others are not so",
-    "leave it out, or say of the others as well what they have to be",
+    "can mean that the others do not satisfy this",
+    "remove it, or write the condition for the others, too",
 )
 _ONLY_THEN = Doubt(
-    "may mean only in that case, or only after that",
-    "write `if ..., then ...` for the first, and leave it out for the second",
+    "can mean only in that case, or only after that",
+    "write `if ..., then ...` for the first, and remove it for the second",
 )
-_SUM = Doubt("may ask for their sum, or for each of them", "write `and` for the second")
+_SUM = Doubt("can mean their sum, or each of them", "write `and` for the second")
 _ALSO = Doubt(
-    "may mean `if`, or `even if`",
-    "write `if ...` for the first, and leave the condition out for the second",
+    "can mean `if`, or `even if`",
+    "write `if ...` for the first, and remove the condition for the second",
 )
 _WITHIN = Doubt(
-    "may be counted from the start of the mission, or from what is done before",
-    "write `within 10 minutes of the start`; no time is counted from another step",
+    "can count from the start of the mission, or from the previous task",
+    "write `within 10 minutes of the start`; Argo counts times from the start only",
 )
 _THERE = Doubt(
-    "may be the docking station, or the place that was named before",
+    "can be the docking station, or the place named before",
     "name the place: `return to the docking station`",
 )
 _AND_BACK = Doubt(
-    "may mean the way home, or the same checkpoints the other way round",
-    "name what is done on the way back",
+    "can mean the path home, or the same checkpoints in reverse order",
+    "name the tasks on the way back",
 )
 
 
@@ -74,8 +74,8 @@ def ask_of_dots(text: ScriptText, diagnostics: Diagnostics) -> None:
     """Asks about `Check 1, 4, ...`."""
     dots = _AND_SO_ON.search(text.content)
     if dots is not None:
-        message = f"`{dots[1]}` may mean that more is to be done"
-        hint = "name all that is to be done, or leave the dots out"
+        message = f"`{dots[1]}` can mean that more tasks follow"
+        hint = "write all tasks, or remove the dots"
         diagnostics.error("ambiguous-word", message, text.span(*dots.span(1)), hint)
 
 
@@ -188,12 +188,12 @@ class PlacingCheck:
         match placed.placing:
             case Placing.THERE:
                 if any(_is_of_all(order) for order in _orders(sentence)):
-                    message = "this does not say where `there` is"
+                    message = "it is not clear where `there` is"
                     hint = "name the floor: `all gauges on floor 3`"
                     self.diagnostics.error("which-place", message, placed.span, hint)
             case Placing.AT_END | Placing.AT_BEGIN if any(map(_names_twice, before)):
-                message = "this may be said of one that stands in the list already, or once more"
-                hint = "write the list in the order that is meant"
+                message = "this can move a checkpoint of the list, or ask for it once more"
+                hint = "write the list in the intended order"
                 self.diagnostics.error("ambiguous-measure", message, placed.span, hint)
             case Placing.AT_END if not sentence.cases:
                 others = [order for order in after if before and isinstance(order, _WORK)]
@@ -202,19 +202,19 @@ class PlacingCheck:
                 else:
                     self.last = placed
             case Placing.INSTEAD if not all(map(_is_other_way, sentence.cases or (None,))):
-                message = "this does not say instead of what"
-                hint = "write `otherwise, ...` behind the condition whose other case it is"
+                message = "it is not clear what this replaces"
+                hint = "write `otherwise, ...` after the condition that it belongs to"
                 self.diagnostics.error("instead", message, placed.span, hint)
             case Placing.AT_BEGIN:
                 if self.line or len(before) > 1:
                     line = self.line or placed.span.line
-                    message = f"this is to be done first, and line {line} asks for something before"
-                    hint = "write what is done first above the others"
+                    message = f"this has to come first, but line {line} has a task before it"
+                    hint = "write the first task above the others"
                     self.diagnostics.error("not-first", message, placed.span, hint)
 
     def _not_last(self, placed: Placed, other: ScriptOrder) -> None:
-        message = f"this is to be done at the end, and line {other.span.line} asks for more"
-        hint = "write what is done at the end below the others"
+        message = f"this has to come last, but line {other.span.line} has a task after it"
+        hint = "write the last task below the others"
         self.diagnostics.error("not-last", message, placed.span, hint)
 
 

@@ -174,8 +174,8 @@ class ScriptFields:
         if known == key:
             return before is value
         line = before.span().line
-        message = f"line {line} says `{before.content}`, and this says `{value.content}`"
-        hint = "leave one of the two out"
+        message = f"line {line} has `{before.content}`, but this line has `{value.content}`"
+        hint = "remove one of the two"
         self.diagnostics.error("repeated-field", message, value.span(), hint)
         return False
 
@@ -184,7 +184,7 @@ class ScriptFields:
         if not value.content:
             if name in _PROSE_FIELDS:
                 return
-            message, hint = "this field says nothing", "write its value, or leave the line out"
+            message, hint = "this field has no value", "write its value, or remove the line"
             self.diagnostics.error("field", message, label.span(), hint)
             return
         value = self.understanding.figures(value) if name not in _PROSE_FIELDS else value
@@ -230,7 +230,7 @@ class ScriptFields:
         types = self.understanding.types(value)
         if {*types} & {"AREA", "KIND", "HASH", "DOCK"} or {*types[:1]} & {*VERBS}:
             message = f"a field `{label.content.rstrip(' :')}` has no effect on a mission"
-            hint = "write what is to be done as a sentence, or take the line out"
+            hint = "write a sentence if the robot has to do something, or remove the line"
             self.diagnostics.error("unknown-label", message, label.span(), hint)
             return
         said = label.source.text[label.offsets[0] : value.offsets[-1] + 1]
@@ -242,7 +242,7 @@ class ScriptFields:
         if found is None:
             known = {m: said for (n, said), m in reversed(self.prose.meanings.items()) if n == name}
             choices = listed((f"`{known[meaning]}`" for meaning in kind), "or")
-            message = f"`{value.content}` is no {name}"
+            message = f"`{value.content}` is not a valid {name}"
             self.diagnostics.error("field", message, value.span(), f"write {choices}")
         return found
 
@@ -259,8 +259,8 @@ class ScriptFields:
         others = [w for w in found if w not in lengths and w.type != "TOTAL"]
         if len(lengths) != 1 or others:
             at = value[others[0].start : others[0].end] if lengths and others else value
-            message = f"`{value.content}` is no duration"
-            hint = "write, say, `20 min`, `1 h 30 min` or `none`"
+            message = f"`{value.content}` is not a duration"
+            hint = "write, for example, `20 min`, `1 h 30 min` or `none`"
             self.diagnostics.error("duration", message, at.span(), hint)
             return
         (word,) = lengths
@@ -327,7 +327,7 @@ class ScriptFields:
             self._set("left_out", names, value)
 
     def _no_value(self, value: ScriptText, hint: str) -> None:
-        message = f"can't understand `{value.content}` here"
+        message = f"Argo does not understand `{value.content}` here"
         self.diagnostics.error("field", message, value.span(), hint)
 
     # ---- starting areas: `docked in "Starting area" 1 or 2, chosen by the staff`
@@ -342,8 +342,9 @@ class ScriptFields:
             number = word.value.whole
             if number is None or number > 9999:
                 said = value[word.start : word.end]
-                message = f"`{said.content}` is no number of a starting area"
-                self.diagnostics.error("number", message, said.span(), "write, say, `area 1`")
+                message = f"`{said.content}` is not the number of a starting area"
+                hint = "write, for example, `area 1`"
+                self.diagnostics.error("number", message, said.span(), hint)
             else:
                 areas.append(number)
         last = max((end for _, end in covered), default=0)
@@ -375,8 +376,8 @@ class ScriptFields:
             joins = said in self.understanding.joints("or")
             if said not in around and not (joins and any(a > token.start() for a, _ in covered)):
                 span = value.span(token.start(), token.end())
-                message = f"can't understand `{token[0]}` here"
-                hint = "write, say, `docked in starting area 1`, or `starting area 1 or 2`"
+                message = f"Argo does not understand `{token[0]}` here"
+                hint = "write, for example, `docked in starting area 1`, or `starting area 1 or 2`"
                 self.diagnostics.error("not-understood", message, span, hint)
                 return
 
@@ -403,8 +404,8 @@ class ScriptFields:
         )
         none = ("none", said.strip().lower()) in self.prose.meanings
         if (number is None and not none) or bool(comma) != planned:
-            message = f"can't understand `{value.content}` here"
-            hint = "write the area's number, or `none`, and perhaps `, as planned` behind it"
+            message = f"Argo does not understand `{value.content}` here"
+            hint = "write the area's number, or `none`, and `, as planned` after it if needed"
             self.diagnostics.error("field", message, value.span(), hint)
             return None
         area = int(number[1]) if number is not None else None

@@ -74,7 +74,7 @@ _MOST_KNOWN = 1024
 _LONGEST_STRANGE = 300
 """characters; lines that make no sense are put together up to here"""
 _DEEPEST = 20
-"""items that lie in one another; what lies deeper is taken to lie there"""
+"""items that are nested; what lies deeper is taken to lie there"""
 _LAST_HALF = re.compile(r"([^\W\d_]+)-$")
 _FIRST_HALF = re.compile(r"[^\W\d_]+")
 

@@ -61,12 +61,12 @@ def parse(
 def _require_size(source: Source) -> None:
     diagnostics = Diagnostics(source)
     if not source.text.strip("\ufeff \t\r\n"):
-        hint = "write, say, `Start in starting area 1` and `Check checkpoint #4`"
+        hint = "write, for example, `Start in starting area 1` and `Check checkpoint #4`"
         diagnostics.error("empty", "the script is empty", None, hint)
     lines = max(source.text.count("\n"), source.text.count("\r")) + 1
     if lines > MAX_LINES:
         message = f"the script has {lines} lines; at most {MAX_LINES} are read"
-        diagnostics.error("too-long", message, None, "divide the mission")
+        diagnostics.error("too-long", message, None, "split the mission into several scripts")
     if diagnostics.errors:
         raise DiagnosticError(source.name, diagnostics.entries)
 
@@ -246,7 +246,7 @@ def _ask_of_title(steps: Sequence[ScriptStep], diagnostics: Diagnostics) -> None
     for sentence in first.sentences:
         orders = sentence.orders if isinstance(sentence, Sentence) and not sentence.cases else ()
         if len(orders) == 1 and isinstance(orders[0], Measure) and _is_bare_number(orders[0]):
-            message = "this line over the steps may be their title, or an order"
+            message = "this line above the steps can be their title, or a command"
             hint = "write `Designation: ...` for the first, a numbered step for the second"
             diagnostics.error("ambiguous-title", message, first.span, hint)
             return
@@ -268,9 +268,9 @@ def _ask_of_quotes(steps: Sequence[ScriptStep], diagnostics: Diagnostics) -> Non
     if len(first) < 2:
         return
     line = first[False].span.line
-    message = f"this is quoted, and line {line} is not: it may be done as well, or be "
-    message += "of another plan"
-    hint = "leave out what is not to be done, and `>` before what is"
+    message = f"this is quoted, but line {line} is not: it can be a task as well, or part "
+    message += "of another script"
+    hint = "remove the lines that are not meant, and `>` in front of the others"
     diagnostics.error("ambiguous-quote", message, first[True].span, hint)
 
 

@@ -71,7 +71,7 @@ def tables(
         elif len(found) > _MOST_ROWS:
             message = f"tables have more than {_MOST_ROWS} rows; the rest is not read"
             span = source.line_text(number).span()
-            diagnostics.error("too-long", message, span, "divide the mission")
+            diagnostics.error("too-long", message, span, "split the mission into several scripts")
             break
         elif _RULE.fullmatch(line):
             found[number] = source.line_text(number)[:0]
@@ -189,8 +189,8 @@ class _Rows:
         if cell.content.lower() in expand(self.prose.no):
             self._note(cell)
             return
-        message = f"`{cell.content}` may mean that this is done already"
-        hint = "leave the column out, or the rows that are not to be done"
+        message = f"`{cell.content}` can mean that this is done already"
+        hint = "remove the column, or the rows that are done"
         self.diagnostics.error("ambiguous-cell", message, cell.span(), hint)
 
     def _note(self, aside: ScriptText) -> None:
@@ -250,9 +250,9 @@ class _Rows:
         number = int(cell.content)
         if self.greatest_first is None and not self.asked:
             self.asked = True
-            message = f"`{cell.content}` can be counted from the most important one, or from the "
+            message = f"`{cell.content}` can count from the most important one, or from the "
             message += "least"
-            hint = "write over the column `Priority (1 = highest)` or `Priority (1 = lowest)`, or "
+            hint = "write above the column `Priority (1 = highest)` or `Priority (1 = lowest)`, or "
             hint += "`high`, `medium` and `low` in it"
             self.diagnostics.error("ambiguous-priority", message, cell.span(), hint)
         return str(self.greatest + 1 - number if self.greatest_first is False else number)
@@ -263,8 +263,8 @@ class _Rows:
         if said in expand(self.prose.columns["optional"]):
             yield from (" ", _as(self.prose.say["optional"], cell))
         elif said in expand(self.prose.no) and said not in expand(self.prose.columns["needed"]):
-            message = f"`{cell.content}` may mean that this may be left out, or that it is left out"
-            hint = f"write `{self.prose.columns['optional'].split(' |')[0]}`, or leave the row out"
+            message = f"`{cell.content}` can mean that this is optional, or that it is excluded"
+            hint = f"write `{self.prose.columns['optional'].split(' |')[0]}`, or remove the row"
             self.diagnostics.error("ambiguous-cell", message, cell.span(), hint)
         elif said not in expand(f"{self.prose.yes} | {self.prose.columns['needed']}"):
             yield from (" ", cell)

@@ -62,8 +62,8 @@ class SentenceReader:
             if not isinstance(reading, StumbleError):
                 return [self._node(inner, reading)]
         if self.asides.bids(inner):
-            message = f"`{text.content}` is taken for a remark: what it asks for is not planned"
-            hint = "write it as a step if it is to be done"
+            message = f"`{text.content}` is taken for a remark: the command in it has no effect"
+            hint = "write it as a step if the robot has to do it"
             self.diagnostics.warning("remark", message, text.span(), hint)
         else:
             self.note(text, "a remark")
@@ -115,16 +115,16 @@ class SentenceReader:
             return self._not_understood(text, item, reading)
         joint = self.understanding.unfinished(text)
         if joint is not None:
-            message = f"nothing stands behind `{joint.content}`"
-            hint = "say what follows, or leave it out"
+            message = f"nothing follows `{joint.content}`"
+            hint = "write what follows, or remove it"
             self.diagnostics.error("unfinished", message, joint.span(), hint)
         node = self._node(text, reading)
         introduces = text.content.endswith(":") and not item.items
         if introduces and item.over and not _is_amend(node):
             return self._announced(text, node)
         if stands_over and not item.items and _is_amend(node):
-            message = "this stands over other lines, and says only how they are done"
-            hint = "say it in each of them, or write them as sub-steps of this line"
+            message = "this is above other lines, and only says how they are done"
+            hint = "write it in each of them, or write them as sub-steps of this line"
             self.diagnostics.error("stray-clause", message, text.span(), hint)
             return [Unread(span=text.span())]
         return [node]
@@ -140,8 +140,8 @@ class SentenceReader:
         return [replace(node, orders=tuple(orders))] if orders or node.facts else []
 
     def _ask_of_rank(self, text: ScriptText) -> list[Said]:
-        message = f"`{text.content}` may ask for all of them, or for the other lines in this order"
-        hint = "write `check all ...` as a step, or the steps in the order that is meant"
+        message = f"`{text.content}` can mean all of them, or the order of the other lines"
+        hint = "write `check all ...` as a step, or the steps in the intended order"
         self.diagnostics.error("ambiguous-order", message, text.span(), hint)
         return [Unread(span=text.span())]
 
@@ -232,11 +232,9 @@ class SentenceReader:
         if first:
             self._entitle(title.head, asked=not self.asides.is_title(title.head))
         elif self.asides.sets_aside(title.head):
-            message = (
-                f"`{title.head.content}` may say that what stands below it is not to be done, "
-            )
+            message = f"`{title.head.content}` can mean that the lines below it are not tasks, "
             message += "or not always"
-            hint = "leave out what is not to be done, and the heading; or write another heading"
+            hint = "remove the lines that are not tasks, and the heading; or write another heading"
             self.diagnostics.error("ambiguous-title", message, title.head.span(), hint)
         else:
             self.note(title.head, "a heading")
@@ -256,8 +254,8 @@ class SentenceReader:
         header.title = Text(span=title.span(), text=title.content)
         header.format_title = self.asides.is_explicit_title(title)
         if asked:
-            message = f"`{title.content}` is taken for the title: nothing is planned for it"
-            hint = "write it as a step if it is to be done"
+            message = f"`{title.content}` is taken for the title, and adds no task"
+            hint = "write it as a step if the robot has to do it"
             self.diagnostics.warning("title", message, title.span(), hint)
         elif not self.asides.is_explicit_title(title):
             message = f"`{title.content}` is taken for the title, and has no effect on what is done"
@@ -274,13 +272,13 @@ def _is_amend(node: Said) -> bool:
 def _ask_of_stray(text: ScriptText, listed: str, diagnostics: Diagnostics) -> None:
     number = text.content
     message, hint = (
-        f"`{number}` may be checkpoint {number}",
+        f"`{number}` can be checkpoint {number}",
         f"write `check checkpoint {number}`",
     )
     if listed:
         message += f", one more of the `{listed}` above it"
-        hint += f", or `{listed}:` over the list"
-    message, hint = f"{message}, or nothing at all", f"{hint}, or leave it out"
+        hint += f", or `{listed}:` above the list"
+    message, hint = f"{message}, or have no meaning", f"{hint}, or remove it"
     diagnostics.error("not-understood", message, text.span(), hint)
 
 

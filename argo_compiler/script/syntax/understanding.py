@@ -200,13 +200,13 @@ class Understanding:
             at = found[stumble.at]
         hint = self._hint(text, at, found, stumble)
         if at is None:
-            message = "the sentence ends where more is expected"
+            message = "the sentence is incomplete"
             self.diagnostics.error("unfinished", message, text.span(len(text.content)), hint)
             return
         said = text.content[at.start : at.end]
-        message = f"can't understand `{said}` here"
+        message = f"Argo does not understand `{said}` here"
         if at.type == "CANNOT":
-            message = f"`{said}` is nothing that the robot can do"
+            message = f"`{said}` is not an action of the robot"
         self.diagnostics.error("not-understood", message, text.span(at.start, at.end), hint)
 
     def _hint(
@@ -223,7 +223,7 @@ class Understanding:
             before = tuple(word.type for word in found[: stumble.at])
             follow = self._may_follow(before)
             if follow:
-                parts.append(f"here may stand {listed(follow, 'or')}")
+                parts.append(f"possible here: {listed(follow, 'or')}")
         samples = self.language.prose.samples
         verb = next((w.type for w in found if w.type in samples), "MEASURE")
         parts.append(f"say, `{samples[verb]}`")

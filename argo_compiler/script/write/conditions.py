@@ -108,7 +108,7 @@ def _state(c: Condition) -> str:
 def checkpoint(object_id: str) -> str:
     """A checkpoint's number."""
     if not (object_id.isascii() and object_id.isdecimal()) or object_id != str(int(object_id)):
-        raise UnwritableError(f"a script names checkpoints by number, and `{object_id}` is none")
+        raise UnwritableError(f"a script names checkpoints by number; `{object_id}` is none")
     return object_id
 
 
@@ -137,7 +137,7 @@ def _occurs(reaction: Reaction) -> str:
         return EVENTS[reaction.event]
     percent = next((p for p in (level * 100, round(level * 100, 9)) if p / 100 == level), None)
     if percent is None or reaction.event is not EventKind.LOW_BATTERY:
-        raise UnwritableError("this level of the battery is no number of percent: `battery_below`")
+        raise UnwritableError("this level of the battery is not a percentage: `battery_below`")
     return f"the battery drops below {number(percent)} %"
 
 
@@ -166,7 +166,7 @@ def _response(reaction: Reaction, places: Places) -> str:
     if area is not None:
         dock = places.dock(area)
         if dock is None or pose is None:
-            raise UnwritableError(f"there is no docking station that is meant by area {area}")
+            raise UnwritableError(f"there is no docking station for area {area}")
         said += f" in starting area {area}"
     return said if pose == dock else f"{said}, standing at {point(pose)}" if pose else said
 
@@ -191,4 +191,4 @@ def _require_used(reaction: Reaction) -> None:
     if reaction.response is Response.PAUSE and reaction.afterwards is Afterwards.WAIT:
         names.append("`afterwards`")
     if names:
-        raise UnwritableError(f"{', '.join(names)} has no effect on what it does")
+        raise UnwritableError(f"{', '.join(names)} has no effect on this action")

@@ -71,7 +71,7 @@ def unwritable(what: str, subject: str, span: Span | None, error: UnwritableErro
         severity=Severity.ERROR,
         message=f"{what} can't be written as a script: {error}",
         span=span,
-        hint="keep the mission as JSON, or change what is named here",
+        hint="store the mission as JSON, or change what is named here",
         subject=subject,
     )
 

@@ -34,7 +34,7 @@ def command(task: Task, places: Places) -> str:
             return "start here" if task.pose is None else f"start here at {point(task.pose)}"
         case Action.WAIT:
             if task.wait is None:
-                raise UnwritableError("it does not say how long it waits: `wait`")
+                raise UnwritableError("it has no duration of the wait: `wait`")
             return _wait(task.wait)
         case Action.WAYPOINT:
             if task.pose is None:
@@ -50,7 +50,7 @@ def _wait(rule: WaitRule) -> str:
     until = [] if rule.event is None else [EVENTS[rule.event]]
     until += [conditions(rule.conditions)] if rule.conditions else []
     if not until:
-        raise UnwritableError("it does not say what it waits for: `wait`")
+        raise UnwritableError("it has no condition to wait for: `wait`")
     joint = ", or " if len(rule.conditions) > 1 else " or "
     said = f"wait until {joint.join(until)}"
     return said if rule.limit is None else f"{said},\nfor at most {duration(rule.limit)}"
@@ -133,7 +133,7 @@ def ways(task: Task, around: Around) -> Iterator[str]:
     yield from _transitions(task, around)
     if task.on_failure is OnFailure.BRANCH:
         if task.failure_target is None:
-            raise UnwritableError("it does not say where it goes on: `failure_target`")
+            raise UnwritableError("it has no task to go on with: `failure_target`")
         yield f"if it fails, {_jump(task.failure_target, around)}"
     elif task.failure_target is not None:
         raise UnwritableError(f"it has no use for `failure_target`: it will {task.on_failure}")
@@ -146,7 +146,7 @@ def ways(task: Task, around: Around) -> Iterator[str]:
 def _transitions(task: Task, around: Around) -> Iterator[str]:
     conditional = any(t.conditions for t in task.transitions)
     if sum(not t.conditions for t in task.transitions) > 1:
-        raise UnwritableError("it has several ways without conditions: `transitions`")
+        raise UnwritableError("it has several transitions without conditions: `transitions`")
     unconditional = False
     for i, transition in enumerate(task.transitions):
         if transition.conditions:

@@ -45,7 +45,7 @@ def test_each_healed_word_is_a_warning_with_both_forms() -> None:
     (warning,) = heal("the\n  tota\tal value", VOCABULARY).diagnostics
     assert warning.severity is Severity.WARNING
     assert warning.code == "script.healed"
-    assert warning.message == "healed `tota al` to `total`"
+    assert warning.message == "read `tota al` as `total`"
     assert warning.span is not None
     assert (warning.span.line, warning.span.column, warning.span.length) == (2, 3, 7)
     assert warning.excerpt == "  tota\tal value"

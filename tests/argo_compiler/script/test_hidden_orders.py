@@ -112,5 +112,5 @@ def test_what_stands_in_brackets_is_said_of_the_task(catalog: Catalog) -> None:
 
 
 def test_nothing_is_repeated_before_anything_is_planned(catalog: Catalog) -> None:
-    with pytest.raises(DiagnosticError, match="nothing is planned before this"):
+    with pytest.raises(DiagnosticError, match="there is nothing before this to repeat"):
         import_script(f"Repeat everything twice. {START}.", catalog)

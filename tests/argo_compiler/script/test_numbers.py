@@ -201,7 +201,7 @@ def test_which_one_of_several_is_not_dropped(catalog: Catalog) -> None:
     ["above 5 and between 1 and 2", "below 1 and above 2", "at most 1 and between 2 and 3"],
 )
 def test_bounds_that_no_value_keeps_to_are_asked_about(bounds: str, catalog: Catalog) -> None:
-    assert "no value is" in messages(f"Check #1. If it is {bounds}, check #4.", catalog)
+    assert "no value satisfies" in messages(f"Check #1. If it is {bounds}, check #4.", catalog)
 
 
 def test_of_what_is_not_between_two_bounds_the_other_side_is_left(catalog: Catalog) -> None:

@@ -45,8 +45,8 @@ def require_moment(part: RulePart) -> None:
     condition = part.the(SaidCondition)
     tests = [test for tests in condition.alternatives for test in tests]
     if any(isinstance(test, Test) and not _is_failure(test) for test in tests):
-        message = "a value is looked at where that is said, not at any time"
-        hint = "write `if ...` behind each measurement that it is looked at after"
+        message = "a condition on a value is evaluated after a task, not at any time"
+        hint = "write `if ...` after each measurement"
         part.diagnostics.error("ambiguous-case", message, condition.span, hint)
 
 
@@ -70,7 +70,7 @@ def _between(part: RulePart) -> Between:
 
 def _exactly(part: RulePart) -> Between:
     amount = part.the(Amount)
-    message = "a measured value is hardly ever exactly this one"
+    message = "a measured value is hardly ever exactly equal to this"
     hint = "write `between 4.9 and 5.1 bar`, `at least 5 bar` or `at most 5 bar`"
     part.error("condition", message, hint)
     return Between(span=part.span, low=amount, high=amount, inclusive=True)
@@ -102,7 +102,7 @@ def _test(part: RulePart) -> Test:
     subject = part.first(Nouns)
     several = subject is not None and len(subject.nouns) > 1
     if subject is not None and several and how_many == ("both" if subject.either else "either"):
-        message = "this can be meant of one of them, or of both"
+        message = "this can apply to one of them, or to both"
         hint = "write `if either #1 or #5 is abnormal`, or `if both #1 and #5 are abnormal`"
         part.error("ambiguous-and-or", message, hint)
     age = part.first(float)
@@ -148,7 +148,7 @@ def _require_plain_negation(part: RulePart) -> None:
         said, behind = content[start : joint.start], content[joint.end :].lstrip()
         start = joint.end
         if parted and pattern(_NEGATING).search(said) and pattern(_BOUNDING).match(behind):
-            message = "`not` can be said of the first of these only, or of both"
+            message = "`not` can apply to the first of these only, or to both"
             hint = "write `is not ... and is not ...`, or `is not ... or is ...`"
             part.error("ambiguous-and-or", message, hint)
             return
@@ -175,7 +175,7 @@ def _alternatives(part: RulePart, tests: Sequence[Asked], named: Sequence[bool])
     joints = tuple(_joints(part.every(Word)))
     found = _joined(tests, joints, named)
     if found is None:
-        _ask(part, joints, "put a comma where the two sides part, or write a sentence for each")
+        _ask(part, joints, "put a comma between the two parts, or write a sentence for each")
         return (tuple(tests),)
     if len(found) > _MOST:
         message = f"this condition has more than {_MOST} alternatives"
@@ -234,7 +234,7 @@ def require_one_joint(part: RulePart) -> None:
     words = [word for word in part.every(Word) if word.type != "EXCEPT"]
     joints = tuple(_joints(words))
     if len({joint.said for joint in joints}) > 1:
-        _ask(part, joints, "write a sentence, or what is asked of them, for each")
+        _ask(part, joints, "write a sentence or a comparison for each")
 
 
 def _ask(part: RulePart, joints: Sequence[_Joint], hint: str) -> None:

@@ -49,8 +49,8 @@ def _in_all(part: RulePart) -> bool | None:
 def _more(part: RulePart) -> Manner:
     word = part.children[0]
     if "and" in word.before:
-        message = "this can be once more right after it, or at another place"
-        hint = "write `check it twice`, or what is done in between: `..., then check it again`"
+        message = "this can mean once more right after it, or at another time"
+        hint = "write `check it twice`, or the tasks in between: `..., then check it again`"
         part.error("ambiguous-manner", message, hint)
     return Manner(times=whole(part, word.value), more=True)
 
@@ -93,7 +93,7 @@ def _priority(part: RulePart) -> Manner:
 
 def _ranked(part: RulePart) -> Manner:
     word = part.children[0]
-    message = f"`{part.said}` is taken as priority {word.value}, of high 3, medium 2 and low 1"
+    message = f"`{part.said}` is taken as priority {word.value} (high is 3, medium 2, low 1)"
     part.diagnostics.note("priority-taken", message, part.span)
     return Manner(rank=word.value)
 
@@ -119,7 +119,7 @@ def combined(part: RulePart, manners: Iterable[Manner]) -> Manner | None:
     for manner in manners:
         asked = "condition" in values or "until" in values
         if asked and (manner.times is not None or manner.duration is not None):
-            message = "this can say how often or how long the condition has to hold, or the order"
+            message = "this can apply to the condition, or to the command"
             hint = "write it before the condition: `check #4 twice if it is above 5`"
             part.error("ambiguous-manner", message, hint)
         for field in fields(manner):
@@ -128,7 +128,7 @@ def combined(part: RulePart, manners: Iterable[Manner]) -> Manner | None:
                 continue
             if field.name in values:
                 what = field.name.replace("_", " ")
-                part.error("repeated-limit", f"the {what} is said twice", "leave one of them out")
+                part.error("repeated-limit", f"the {what} is given twice", "remove one of them")
             values[field.name] = value
     return Manner(**values) if values else None
 

@@ -35,7 +35,7 @@ def _order(part: RulePart) -> ScriptOrder:
     if name is None:
         return found
     if not name.value:
-        hint = "write a name between the quotation marks, or leave them out"
+        hint = "write a name between the quotation marks, or remove them"
         part.error("empty-name", "this name is empty", hint)
     return replace(found, name=name.value)
 
@@ -46,9 +46,9 @@ def _measure(part: RulePart) -> ScriptOrder:
         what = replace(what, but=(*what.but, *but[0].but))
     manner = _manner(part)
     if what.parted and manner is not None and manner.condition is not None:
-        message = "this condition can be meant for the last of these only, or for both"
-        hint = "write a sentence for each: `check #1. Check #4 only if #1 is above 4`, or leave "
-        hint += "out the comma"
+        message = "this condition can apply to the last of these only, or to both"
+        hint = "write a sentence for each: `check #1. Check #4 only if #1 is above 4`, or remove "
+        hint += "the comma"
         part.error("ambiguous-manner", message, hint)
     return orders.Measure(
         span=part.span,
@@ -65,8 +65,8 @@ def _go(part: RulePart) -> ScriptOrder:
     order = _towards(part, where_to)
     driven = order.manner is not None and order.manner.speed is not None
     if isinstance(where_to, FloorName) and driven and pattern(_WHEREABOUTS).search(part.said):
-        message = "this may be where the robot goes to, or where it drives at this speed"
-        hint = "write `go to floor 2` for the first, the speed behind each order for the second"
+        message = "this can be the destination, or the floor where this speed applies"
+        hint = "write `go to floor 2` for the first, the speed after each command for the second"
         part.error("ambiguous-place", message, hint)
     return order
 
@@ -77,7 +77,7 @@ def where(part: RulePart) -> Location | FloorName:
     inside = part.every(AreaLocation)[-1:] if part.has("LPAR") else ()
     if inside:
         if found is None or found.area is not None:
-            hint = "leave one of the two out"
+            hint = "remove one of the two"
             part.error("several-places", "this names two places", hint)
             return inside[0]
         return replace(found, area=inside[0])
@@ -86,8 +86,8 @@ def where(part: RulePart) -> Location | FloorName:
             floor: FloorName = child[0]
             others = child[1:]
             if others:
-                message = "the robot can go to one floor at a time"
-                part.error("several-floors", message, "write an order for each of them")
+                message = "the robot can go to only one floor at a time"
+                part.error("several-floors", message, "write a command for each of them")
             return floor
         if isinstance(child, AreaLocation | DockLocation | PlaceLocation | Coordinates):
             return child
@@ -113,7 +113,7 @@ def _start(part: RulePart) -> ScriptOrder:
     place = where(part)
     if isinstance(place, FloorName):
         hint = "name a starting area or a place: `start in starting area 1`"
-        part.error("start", "a mission starts at a place", hint)
+        part.error("start", "a mission must start at a place", hint)
         return orders.Start(span=part.span, where=None)
     ends = part.has("END")
     return orders.Start(span=part.span, manner=_manner(part), where=place, ends_there=ends)

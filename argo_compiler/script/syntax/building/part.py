@@ -129,7 +129,7 @@ def decimal(part: RulePart, figure: Figure, unit: str = "") -> float:
         part.error("number", f"`{part.said}` is several numbers, not one", "write one number")
         return 0.0
     elif isinf(figure.value):
-        part.error("number", f"{part.said} is too large a number", "write a smaller one")
+        part.error("number", f"{part.said} is too large a number", "write a smaller number")
         return 0.0
     return figure.value
 
@@ -147,7 +147,7 @@ def seconds(part: RulePart, word: Word) -> float:
         message = f"`{said}` can be read as {length.first} or as {length.second}"
         part.error("ambiguous-duration", message, f"write `{length.first}` or `{length.second}`")
     elif length.seconds <= 0:
-        part.error("duration", "a duration of zero", "write, say, `10 minutes`")
+        part.error("duration", "a duration must be more than zero", "for example, `10 minutes`")
         return 1.0
     elif length.seconds > MAX_TIME_S:
         message = f"a duration of {length.seconds:g} s is too long"
@@ -166,7 +166,7 @@ def speed(part: RulePart, word: Word) -> float:
     figure, factor = word.value
     value = decimal(part, figure, "m/s" if factor == 1 else "")
     if value <= 0:
-        part.error("speed", "a speed of zero", "write, say, `at 0.3 m/s`")
+        part.error("speed", "a speed must be more than zero", "for example, `at 0.3 m/s`")
         return 1.0
     return value if factor == 1 else float(f"{value * factor:.12g}")
 
@@ -184,7 +184,7 @@ def _signed(part: RulePart) -> Signed:
     word = part.the_word("NUMBER")
     sign = -1 if part.has("MINUS") else 1
     if word.value.value == inf:
-        part.error("number", f"{part.said} is too large a number", "write a smaller one")
+        part.error("number", f"{part.said} is too large a number", "write a smaller number")
         return Signed(0.0)
     return Signed(sign * word.value.value, word.value.listed)
 

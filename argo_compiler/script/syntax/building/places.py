@@ -24,9 +24,9 @@ def _area(part: RulePart) -> AreaLocation:
     """`starting area 1`, `starting area 1, not 2`."""
     area, *others = (whole(part, w.value) for w in part.every(Word) if w.type == "NUMBER")
     if area in others:
-        part.error("several-places", "this area is said and excluded", "leave one of the two out")
+        part.error("several-places", "this area is named and excluded", "remove one of the two")
     for other in others:
-        message = f"that it is not area {other} has no effect beside area {area}"
+        message = f"excluding area {other} has no effect, because area {area} is named"
         part.diagnostics.note("no-effect", message, part.span)
     return AreaLocation(span=part.span, area=area)
 
@@ -63,8 +63,8 @@ def _floors(part: RulePart) -> tuple[FloorName, ...]:
     plural = floor is not None and bool(floor.value)
     if len(found) > 1 and not part.has("ORDINAL") and not plural:
         said = " and ".join(str(one.number) for one in found)
-        message = f"can't tell whether `{said}` are both floors"
-        hint = f"write `floors {said}`, or name what else is meant: `checkpoint 4`"
+        message = f"it is not clear whether `{said}` are both floors"
+        hint = f"write `floors {said}`, or name the other thing: `checkpoint 4`"
         part.error("ambiguous-floor", message, hint)
     return tuple(found)
 
@@ -74,7 +74,7 @@ def _range_of_floors(part: RulePart, first: FloorName, last: FloorName) -> tuple
     between = range(int(first.number), int(last.number) + 1)
     if not 1 < len(between) <= _MOST_FLOORS:
         hint = "write the lower floor first: `floors 1 to 4`"
-        part.error("empty-range", f"`{part.said}` is no range of floors", hint)
+        part.error("empty-range", f"`{part.said}` is not a range of floors", hint)
         return first, last
     return tuple(FloorName(span=part.span, number=number) for number in between)
 
@@ -85,7 +85,8 @@ def _coordinates(part: RulePart) -> Coordinates:
     if only.listed and not more:
         values = [float(n) for n in only.listed]
     if len(values) not in (2, 3) or not all(-inf < value < inf for value in values):
-        part.error("coordinates", "coordinates are two or three numbers", "write `(12.5, 3, 2.5)`")
+        hint = "write `(12.5, 3, 2.5)`"
+        part.error("coordinates", "coordinates must be two or three numbers", hint)
         values = [0.0, 0.0]
     x, y, *z = values
     poses = part.every(dict)
@@ -94,7 +95,7 @@ def _coordinates(part: RulePart) -> Coordinates:
     floors = [floor for c in part.children if isinstance(c, tuple) for floor in c]
     for many, what in ((heights, "heights"), (yaws, "headings"), (floors, "floors")):
         if len(many) > 1:
-            hint = "leave all but one of them out"
+            hint = "remove all but one of them"
             part.error("coordinates", f"these coordinates have {len(many)} {what}", hint)
     return Coordinates(
         span=part.span,
@@ -111,9 +112,9 @@ def _heading(part: RulePart) -> dict[str, float]:
         figure, unit = word.value
         if unit != "deg":
             hint = "write `heading 90 degrees` or `heading 1.5 rad`"
-            part.error("unit", f"a heading is no number of {unit}", hint)
+            part.error("unit", f"a heading is an angle, not a number of {unit}", hint)
         if not figure.value < inf:
-            part.error("number", "this heading is too large a number", "write a smaller one")
+            part.error("number", "this heading is too large a number", "write a smaller number")
             return {"yaw": 0.0}
         return {"yaw": (-1 if part.has("MINUS") else 1) * figure.value * _RADIANS}
     value = single(part)

@@ -53,7 +53,7 @@ def _case(part: RulePart) -> Case:
     if condition is not None and late is not None and late.delay is not None:
         behind = part.children[part.children.index(condition) + 1]
         if not isinstance(behind, Word):
-            message = "this time can be that of the condition, or that before what is done"
+            message = "this time can belong to the condition, or be a wait before the command"
             hint = "write `if ..., wait 5 minutes and check ...`, or `wait 5 minutes` before it"
             part.diagnostics.error("ambiguous-case", message, orders[0].span, hint)
     conditions.require_moment(part)
@@ -63,8 +63,8 @@ def _case(part: RulePart) -> Case:
         condition = replace(condition, negated=True)
     for order in orders[1:]:
         if ";" in order.joint:
-            message = "this can be meant for this case only, or for any case"
-            hint = "write `, then ...` for the first, and a sentence of its own for the second"
+            message = "this can apply in this case only, or in any case"
+            hint = "write `, then ...` for the first, and a separate sentence for the second"
             part.diagnostics.error("ambiguous-case", message, order.span, hint)
     return Case(
         span=part.span,
@@ -80,8 +80,8 @@ def _require_joint(part: RulePart, condition: SaidCondition, manner: Amend) -> N
     before = part.children.index(condition) + 1
     if part.children[before] is not manner:
         return
-    message = "this can be said of the condition, or of what is done if it holds"
-    hint = "leave it out, or write it behind what is done: `if it is above 5, check #4 twice`"
+    message = "this can apply to the condition, or to the command"
+    hint = "remove it, or write it after the command: `if it is above 5, check #4 twice`"
     part.diagnostics.error("ambiguous-manner", message, manner.span, hint)
 
 
@@ -111,12 +111,12 @@ def _joined(part: RulePart) -> tuple[ScriptOrder, ...]:
                 found[-1] = _with_pause(last, child)
             else:
                 if last is not None and _may_be_step(part, last, joint):
-                    message = "this number may be a checkpoint's or that of a step"
+                    message = "this number can be that of a checkpoint or of a step"
                     hint = "write `check checkpoint 4` for the first, `4. ...` for the second"
                     part.diagnostics.error("ambiguous-number", message, last.span, hint)
                 if isinstance(last, Measure) and _is_same_reading(child):
-                    message = "this can be what was just measured, or another measurement of it"
-                    hint = "leave it out for the first, write `check it again` for the second"
+                    message = "this can be the last measurement, or another one"
+                    hint = "remove it for the first, write `check it again` for the second"
                     part.diagnostics.error("ambiguous-measure", message, child.span, hint)
                 found.append(child.joined(joint) if joint else child)
         joint = str(child.value) if isinstance(child, Word) and child.type == "NEXT" else ""

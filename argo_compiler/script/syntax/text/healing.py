@@ -159,14 +159,14 @@ def _join_cuts(
                 "ambiguous-cut",
                 f"`{left} {right}` can be read as {listed((f'`{r}`' for r in readings), 'or')}",
                 span,
-                "write it without the tab as it is meant",
+                "write it with the intended spacing, without the tab",
             )
         elif not readings:
             diagnostics.warning(
-                "unclear-cut", f"can't tell whether `{left} {right}` is one word; read as two", span
+                "unclear-cut", f"`{left} {right}` can be one word; it is read as two", span
             )
         if len(readings) == 1 and " " not in readings[0]:
-            diagnostics.warning("healed", f"healed `{left} {right}` to `{readings[0]}`", span)
+            diagnostics.warning("healed", f"read `{left} {right}` as `{readings[0]}`", span)
             line = line.replace(start - len(left), end + len(right), readings[0])
             done = start - len(left) + len(readings[0])
         else:

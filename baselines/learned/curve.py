@@ -1,4 +1,4 @@
-"""`python -m baselines.learned.curve DIR PICTURE` draws how a training went."""
+"""Learning curve of a training: `python -m baselines.learned.curve DIR PICTURE` draws it."""
 
 import argparse
 import sys
@@ -11,7 +11,7 @@ from argo_compiler.base.errors import ArgoError, Invalid, NotFound
 from baselines.learned.extra import check_learned
 
 Points = list[tuple[int, float]]
-"""states learned from so far, and a value"""
+"""pairs of the number of states learned from so far, and a value"""
 
 _SETS = {
     "random-20": "20 checkpoints, random sites",
@@ -21,39 +21,45 @@ _SETS = {
 
 
 def read_logs(folder: Path) -> dict[str, Points]:
-    """What tensorboard's logs of a training have, by tag. Raises ArgoError if there are none."""
+    """Return the values in the TensorBoard logs of a training, by tag.
+
+    Raises ArgoError if there are no logs, or none of a completed part.
+    """
     check_learned()
     from tensorboard.backend.event_processing.event_accumulator import (  # type: ignore[import-untyped]
         EventAccumulator,
     )
 
     if not (folder / "logs").is_dir():
-        raise NotFound(f"no logs of a training: there is no folder {folder / 'logs'}")
+        raise NotFound(f"no logs of a training: the folder {folder / 'logs'} does not exist")
     logs = EventAccumulator(str(folder / "logs"), size_guidance={"scalars": 0})
     logs.Reload()
     tags = logs.Tags()["scalars"]
     if not any(tag.startswith("validation/") for tag in tags):
-        raise Invalid(f"{folder / 'logs'} has no training of which one part is done")
+        raise Invalid(
+            f"{folder / 'logs'} has no completed part of a training: wait for the first part"
+        )
     return {tag: [(event.step, event.value) for event in logs.Scalars(tag)] for tag in tags}
 
 
 def draw_curve(logs: dict[str, Points], picture: Path) -> None:
-    """Mean prizes on the validation sets, and where MaskablePPO took over from the lessons."""
+    """Plot the mean prizes on the validation sets, in the lessons and in MaskablePPO."""
     figure, axes = plt.subplots(1, len(_SETS), figsize=(12, 3.6), layout="constrained")
-    taught = [step for step, _ in logs.get("lessons/actions", [])]
+    lessons = [step for step, _ in logs.get("lessons/actions", [])]
     for panel, (name, title) in zip(axes, _SETS.items(), strict=True):
-        _draw_set(panel, logs[f"validation/{name}"], max(taught, default=0))
+        _draw_set(panel, logs[f"validation/{name}"], max(lessons, default=0))
         panel.set_title(title, fontsize=10)
     axes[0].set_ylabel("mean prize, best node each time")
     figure.savefig(picture, dpi=110)
     plt.close(figure)
 
 
-def _draw_set(panel: Axes, points: Points, taught: int) -> None:
+def _draw_set(panel: Axes, points: Points, lessons: int) -> None:
+    """Plot one validation set; the first `lessons` states are those of the lessons."""
     steps = [step / 1e6 for step, _ in points]
     prizes = [prize for _, prize in points]
-    panel.axvspan(0, taught / 1e6, color="#e8eef4", label="lessons")
-    panel.axvspan(taught / 1e6, steps[-1], color="#fdf3e3", label="MaskablePPO")
+    panel.axvspan(0, lessons / 1e6, color="#e8eef4", label="lessons")
+    panel.axvspan(lessons / 1e6, steps[-1], color="#fdf3e3", label="MaskablePPO")
     panel.plot(steps, prizes, "o-", markersize=3, color="#1f5f99", label="validation")
     panel.set_xlim(0, steps[-1])
     panel.set_xlabel("million states learned from")
@@ -62,13 +68,13 @@ def _draw_set(panel: Axes, points: Points, taught: int) -> None:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """The exit status: 2 if there is nothing to draw."""
+    """Run the command; return its exit status, 2 after an error that is reported."""
     parser = argparse.ArgumentParser(prog="python -m baselines.learned.curve", description=__doc__)
-    parser.add_argument("folder", type=Path, metavar="DIR", help="what --out of the training was")
+    parser.add_argument("folder", type=Path, metavar="DIR", help="folder of the training (--out)")
     parser.add_argument("picture", type=Path, metavar="PICTURE", help="a .png or .svg to write")
-    given = parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
     try:
-        draw_curve(read_logs(given.folder), given.picture)
+        draw_curve(read_logs(options.folder), options.picture)
     except ArgoError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

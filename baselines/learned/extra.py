@@ -1,4 +1,4 @@
-"""What training and the learned policies need besides Argo."""
+"""Check for the packages of the extra `learned`, which training and learned policies need."""
 
 from importlib.util import find_spec
 
@@ -7,13 +7,13 @@ from argo_compiler.base.extras import install_line
 
 
 def check_learned() -> None:
-    """Raises ArgoError if something is missing."""
-    wanted = {
+    """Raise ArgoError if a package is missing."""
+    required = {
         "torch": "torch",
         "sb3_contrib": "sb3-contrib",
         "stable_baselines3": "stable-baselines3",
         "tensorboard": "tensorboard",
     }
-    missing = [name for module, name in wanted.items() if find_spec(module) is None]
+    missing = [name for module, name in required.items() if find_spec(module) is None]
     if missing:
         raise Unavailable(f"learned policies need {', '.join(missing)}: {install_line('learned')}")

@@ -1,7 +1,8 @@
-"""The warm start: the network is taught by the exact values of small routes.
+"""Imitation learning, the first stage of the training: the network imitates exact values.
 
-A sample is a state of a route with few checkpoints, cut out of a training instance. The network
-learns which actions are best there, how much worse the others are, and what is visited at best.
+A sample is a state of a small route problem, which has a few checkpoints of a training instance.
+The network learns which actions are best there, how much worse the others are, and the best prize
+that can still be won.
 """
 
 from collections.abc import Iterator
@@ -18,68 +19,74 @@ from argo_env.envs.route_instance import DOCK
 from argo_env.envs.route_sources import RouteSource
 from argo_env.seeding import generator
 from baselines.learned.network import RouteNetwork
-from baselines.learned.oracle import Floats, Oracle, Remainder
+from baselines.learned.oracle import Floats, Oracle, RemainingRoutes
 
 _PRIZE_SCALE = 0.1
-"""a prize lost by an action that makes it e times less likely in what is taught"""
-_TIME_SCALE = 0.02  # likewise of time lost, as a share of the time left
-_ROUTES = 2  # that are followed through each instance
-_ASTRAY = 0.1  # of the steps on them are any legal ones
-_BATCH = 16  # routes
+"""loss of prize that makes an action e times less likely in the target distribution"""
+_TIME_SCALE = 0.02  # likewise the loss of time, as a share of the time left
+_ROUTES = 2  # routes that are followed through each small problem
+_RANDOM = 0.1  # share of steps on these routes that are drawn from all legal actions alike
+_BATCH = 16  # small problems in a batch
 
 
 @dataclass(frozen=True)
 class Lessons:
-    """Samples with m checkpoints: what the network observes, and what it is to answer."""
+    """Samples with m checkpoints: inputs and targets of the network."""
 
     observation: dict[str, NDArray[np.float32]]
+    """inputs by name, the first dimension being the samples"""
     target: Floats
-    """the probability of each action, shape (samples, m + 1)"""
+    """probability of each action, shape (samples, m + 1)"""
     value: Floats
-    """the prize that is still to come at best, shape (samples,)"""
+    """best prize that can still be won, shape (samples,)"""
 
     def __len__(self) -> int:
         return len(self.value)
 
-    def part(self, rows: NDArray[np.int64]) -> "Lessons":
-        """Some of the samples."""
+    def select(self, rows: NDArray[np.int64]) -> "Lessons":
+        """Return the samples in these rows."""
         observation = {name: array[rows] for name, array in self.observation.items()}
         return Lessons(observation, self.target[rows], self.value[rows])
 
 
-def lessons(source: RouteSource, size: int, count: int, seed: int) -> Lessons:
-    """At least `count` samples with `size` checkpoints. Equal arguments give equal samples."""
+def make_lessons(source: RouteSource, size: int, count: int, seed: int) -> Lessons:
+    """Make at least `count` samples with `size` checkpoints; equal arguments give equal samples."""
     rng = generator(seed, "lessons", size)
-    found: list[tuple[dict[str, Floats], Floats, float]] = []
-    with stage(f"lessons with {size} checkpoints") as tell:
-        while len(found) < count:
-            tell(len(found) / count)
-            cuts = [_cut(source, size, rng) for _ in range(_BATCH)]
-            oracle = Oracle(Remainder(*(np.stack(parts) for parts in zip(*cuts, strict=True))))
+    samples: list[tuple[dict[str, Floats], Floats, float]] = []
+    with stage(f"making lessons with {size} checkpoints") as report:
+        while len(samples) < count:
+            report(len(samples) / count)
+            problems = [_draw_problem(source, size, rng) for _ in range(_BATCH)]
+            oracle = Oracle(
+                RemainingRoutes(*(np.stack(parts) for parts in zip(*problems, strict=True)))
+            )
             for k in range(_BATCH):
                 for _ in range(_ROUTES):
-                    found += _follow(oracle, k, rng)
-    observation = {name: np.stack([one[0][name] for one in found]) for name in found[0][0]}
+                    samples += _follow_route(oracle, k, rng)
+    observation = {name: np.stack([one[0][name] for one in samples]) for name in samples[0][0]}
     return Lessons(
         observation,
-        np.stack([one[1] for one in found]),
-        np.array([one[2] for one in found], np.float32),
+        np.stack([one[1] for one in samples]),
+        np.array([one[2] for one in samples], np.float32),
     )
 
 
-def _cut(source: RouteSource, size: int, rng: np.random.Generator) -> tuple[Any, ...]:
-    """Some checkpoints of an instance, a place to set off and some time, as Remainder has them."""
+def _draw_problem(source: RouteSource, size: int, rng: np.random.Generator) -> tuple[Any, ...]:
+    """Draw a small problem: some checkpoints of an instance, a start and the time left.
+
+    Returns the values of RemainingRoutes, of one route.
+    """
     while True:
         instance = source.draw(int(rng.integers(2**19)))
-        there = np.flatnonzero(np.isfinite(instance.arrival[-1, 1:])) + 1
-        if len(there) > size:
+        reachable = np.flatnonzero(np.isfinite(instance.arrival[-1, 1:])) + 1
+        if len(reachable) > size:
             break
-    some = rng.permutation(there)
-    here = instance.start if rng.random() < 0.3 else int(some[size])
-    chosen = some[:size]
+    shuffled = rng.permutation(reachable)
+    here = instance.start if rng.random() < 0.3 else int(shuffled[size])
+    chosen = shuffled[:size]
     between = instance.arrival[np.ix_(chosen, chosen)]
     home, start = instance.arrival[chosen, DOCK], instance.arrival[here, chosen]
-    left = _tour(start, between, home) * rng.uniform(0.25, 1.1)
+    left = _nearest_neighbour_time(start, between, home) * rng.uniform(0.25, 1.1)
     return (
         start,
         instance.arrival[here, DOCK],
@@ -91,80 +98,91 @@ def _cut(source: RouteSource, size: int, rng: np.random.Generator) -> tuple[Any,
     )
 
 
-def _tour(start: Floats, between: Floats, home: Floats) -> float:
-    """s to the nearest checkpoint, from there to the next nearest, and home at the end."""
-    times, time, rest = start, 0.0, np.zeros(len(start), np.float32)
+def _nearest_neighbour_time(start: Floats, between: Floats, home: Floats) -> float:
+    """Return the time in s of the nearest-neighbour route through all checkpoints to the dock."""
+    times, time, visited = start, 0.0, np.zeros(len(start), np.float32)
     for _ in range(len(start)):
-        k = int(np.argmin(times + rest))
+        k = int(np.argmin(times + visited))
         time += float(times[k])
-        rest[k] = np.inf
+        visited[k] = np.inf
         times = between[k]
     return time + float(home[k])
 
 
-def _follow(
+def _follow_route(
     oracle: Oracle, k: int, rng: np.random.Generator
 ) -> Iterator[tuple[dict[str, Floats], Floats, float]]:
-    """The samples on one way through a route: good steps as a rule, at times any."""
+    """Yield the samples on a random route through problem k.
+
+    Most steps are drawn from the target distribution, the others from all legal actions.
+    """
     routes, visited = oracle.routes, 0
     travel, back, left = routes.start[k], routes.back[k], float(routes.left[k])
-    whole = left
-    while len(actions := oracle.legal(k, visited, travel, left)):
-        prize, time = oracle.values(k, visited, travel, left, actions)
+    budget = left
+    while len(actions := oracle.legal_actions(k, visited, travel, left)):
+        prize, time = oracle.action_values(k, visited, travel, left, actions)
         lost = (prize.max() - prize) / _PRIZE_SCALE
         best = time[prize >= prize.max() - 1e-5].min()
         lost = lost + np.maximum(time - best, 0.0) / left / _TIME_SCALE
         target = np.exp(-lost)
         target /= target.sum()
         yield (
-            _observed(oracle, k, visited, np.append(back, travel), left, whole, actions),
-            np.append(np.float32(0.0), _spread(target, actions, len(travel))),
+            _observe(oracle, k, visited, np.append(back, travel), left, budget, actions),
+            np.append(np.float32(0.0), _scatter(target, actions, len(travel))),
             float(prize.max()),
         )
-        chosen = rng.choice(actions) if rng.random() < _ASTRAY else rng.choice(actions, p=target)
+        chosen = rng.choice(actions) if rng.random() < _RANDOM else rng.choice(actions, p=target)
         visited |= 1 << int(chosen)
         left -= float(travel[chosen])
         travel, back = routes.between[k, chosen], routes.home[k, chosen]
 
 
-def _spread(values: Floats, actions: NDArray[np.int32], size: int) -> Floats:
-    """The values at their actions, 0 elsewhere."""
-    spread = np.zeros(size, np.float32)
-    spread[actions] = values
-    return spread
+def _scatter(values: Floats, actions: NDArray[np.int32], size: int) -> Floats:
+    """Return an array with the values at the indices of their actions, and 0 elsewhere."""
+    scattered = np.zeros(size, np.float32)
+    scattered[actions] = values
+    return scattered
 
 
-def _observed(
-    oracle: Oracle, k: int, visited: int, travel: Floats, left: float, whole: float,
+def _observe(
+    oracle: Oracle, k: int, visited: int, travel: Floats, left: float, budget: float,
     actions: NDArray[np.int32],
 ) -> dict[str, Floats]:  # fmt: skip
-    """The state as `RouteEnv` would show it, but for the row of the start, which is not needed."""
+    """Return the observation that `RouteEnv` would give of this state of problem k.
+
+    The matrix has no row of the start, which is not needed. `visited` is a bit mask of checkpoints;
+    `travel` has the times in s from here to all nodes, the dock first; `left` and `budget` are the
+    time left and the time left at the start, in s.
+    """
     routes = oracle.routes
     m = len(travel) - 1
-    still = (visited >> np.arange(m) & 1) == 0
+    unvisited = (visited >> np.arange(m) & 1) == 0
     matrix = np.full((m + 1, m + 1), np.inf, np.float32)
     matrix[1:, 1:], matrix[1:, DOCK] = routes.between[k], routes.home[k]
     before = np.zeros((m + 1, m + 1), np.float32)
     before[1:, 1:] = routes.before[k]
     observation = {
-        "travel": np.minimum(travel / whole, 1.0),
-        "home": np.minimum(np.append(0.0, routes.home[k]) / whole, 1.0),
-        "prize": np.append(0.0, routes.prizes[k] * still),
-        "left": np.array([left / whole]),
-        "mask": np.append(1.0, _spread(np.ones(len(actions), np.float32), actions, m)),
-        "matrix": np.minimum(matrix / whole, 1.0),
+        "travel": np.minimum(travel / budget, 1.0),
+        "home": np.minimum(np.append(0.0, routes.home[k]) / budget, 1.0),
+        "prize": np.append(0.0, routes.prizes[k] * unvisited),
+        "left": np.array([left / budget]),
+        "mask": np.append(1.0, _scatter(np.ones(len(actions), np.float32), actions, m)),
+        "matrix": np.minimum(matrix / budget, 1.0),
         "before": before,
     }
     return {name: array.astype(np.float32) for name, array in observation.items()}
 
 
-def loss(network: RouteNetwork, lesson: Lessons) -> tuple[torch.Tensor, torch.Tensor]:
-    """How far the network's answers are from what is taught: of the actions (cross-entropy less
-    that of the target, nats), and of the value (its square, per checkpoint)."""
-    observation = {name: torch.from_numpy(array) for name, array in lesson.observation.items()}
+def imitation_loss(network: RouteNetwork, lessons: Lessons) -> tuple[torch.Tensor, torch.Tensor]:
+    """Return the losses of the network's action distribution and of its value.
+
+    The first is the Kullback-Leibler divergence from the target distribution in nats, the second
+    the mean squared error of the value, divided by the number of checkpoints.
+    """
+    observation = {name: torch.from_numpy(array) for name, array in lessons.observation.items()}
     scores, value = network(observation)
     scores = scores.masked_fill(observation["mask"] == 0, -1e9)
-    target = torch.from_numpy(lesson.target)
+    target = torch.from_numpy(lessons.target)
     actions = functional.kl_div(scores.log_softmax(dim=1), target, reduction="batchmean")
     size = target.shape[1] - 1
-    return actions, ((value[:, 0] - torch.from_numpy(lesson.value)) ** 2).mean() / size
+    return actions, ((value[:, 0] - torch.from_numpy(lessons.value)) ** 2).mean() / size

@@ -1,4 +1,4 @@
-"""The network as a policy of MaskablePPO."""
+"""Policy of MaskablePPO with the route network."""
 
 from typing import Any
 
@@ -12,8 +12,11 @@ from baselines.learned.network import RouteNetwork
 
 
 class RoutePolicy(MaskableActorCriticPolicy):
-    """`RouteNetwork` in place of sb3's feature extractor and dense layers: logits by node, and a
-    value that is a sum over nodes. Observations go to it as the environment gives them."""
+    """Actor-critic policy that has a `RouteNetwork` in place of sb3's extractor and dense layers.
+
+    The network gives a logit for each node, and a value that is a sum over nodes. Its input is the
+    observation as the environment gives it.
+    """
 
     def _build(self, lr_schedule: Schedule) -> None:
         self.network = RouteNetwork()
@@ -29,25 +32,25 @@ class RoutePolicy(MaskableActorCriticPolicy):
         deterministic: bool = False,
         action_masks: NDArray[Any] | None = None,
     ) -> tuple[Tensor, Tensor, Tensor]:
-        distribution, value = self._answer(obs, action_masks)
+        distribution, value = self._distribution_and_value(obs, action_masks)
         actions = distribution.get_actions(deterministic=deterministic)
         return actions, value, distribution.log_prob(actions)
 
     def evaluate_actions(
         self, obs: PyTorchObs, actions: Tensor, action_masks: Tensor | None = None
     ) -> tuple[Tensor, Tensor, Tensor | None]:
-        distribution, value = self._answer(obs, action_masks)
+        distribution, value = self._distribution_and_value(obs, action_masks)
         return value, distribution.log_prob(actions), distribution.entropy()
 
     def get_distribution(
         self, obs: PyTorchObs, action_masks: NDArray[Any] | None = None
     ) -> MaskableDistribution:
-        return self._answer(obs, action_masks)[0]
+        return self._distribution_and_value(obs, action_masks)[0]
 
     def predict_values(self, obs: PyTorchObs) -> Tensor:
-        return self._answer(obs, None)[1]
+        return self._distribution_and_value(obs, None)[1]
 
-    def _answer(
+    def _distribution_and_value(
         self, obs: PyTorchObs, masks: NDArray[Any] | Tensor | None
     ) -> tuple[MaskableDistribution, Tensor]:
         scores, value = self.network(obs)

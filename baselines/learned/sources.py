@@ -1,4 +1,4 @@
-"""What the learned policy trains on: routes with different numbers of checkpoints and sites."""
+"""Training instances: routes with different numbers of checkpoints, on different sites."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -23,29 +23,32 @@ SITES = tuple(
         (2, "24x16", 11), (3, "20x14", 12), (4, "20x14", 14), (6, "20x14", 16)
     ]
 )  # fmt: skip
-"""Generated sites to train on; all seeds are below those for testing."""
+"""Generated sites for training; all seeds are below those reserved for tests."""
 _NOISE = RouteNoise(failing=0.2, blocked=2)
-_NOISY = 0.3  # share of the routes that are not plain
-_PRECEDENCES = (0.0, 0.2, 0.5, 0.8)  # of them, share of checkpoints that another must come before
+_NOISY = 0.3  # share of noisy routes among those that are not plain
+_PRECEDENCES = (0.0, 0.2, 0.5, 0.8)  # shares of checkpoints that must follow another one
 
 
 @dataclass(frozen=True)
 class TrainingRoutes:
-    """Routes of many kinds in as many slots: slots that an instance does not need can't be reached.
+    """A source of routes of many kinds with the same number of slots for checkpoints.
 
-    Half of them are random routes as `RandomRoutes` makes them with all slots and six floors. In
-    the others things go wrong on the way; or there are fewer checkpoints or floors, another budget,
-    more or less to be kept in order, or a generated site.
+    Slots that an instance does not need can't be reached. A share `plain` of the routes are random
+    ones with all checkpoints on six floors. Of the others, 30 % are like these, but with noise; the
+    rest have fewer checkpoints or floors, another budget, another share of precedence constraints,
+    or a generated site.
     """
 
     checkpoints: int = 20
+    """number of slots"""
     budget: float = 1200.0
-    """s"""
+    """time budget in s"""
     sites: Sequence[str] = SITES
+    """sites that some of the routes are on"""
     plain: float = 0.5
-    """the share that has all checkpoints on six floors"""
+    """share of routes with all checkpoints on six floors, without noise"""
     offset: int = 0
-    """added to the numbers, for other instances than before"""
+    """number added to the instance numbers, to get other instances"""
 
     @property
     def floors(self) -> int:
@@ -54,7 +57,7 @@ class TrainingRoutes:
     def draw(
         self, number: int, floors: Sequence[int] = (), faults: RouteFaults = NO_FAULTS
     ) -> RouteInstance:
-        """See RouteSource."""
+        """Return the instance with this number; see `RouteSource.draw`."""
         number = (number + self.offset) % TEST.start
         rng = generator(number, "training route", self.checkpoints)
         source: RouteSource
@@ -72,11 +75,11 @@ class TrainingRoutes:
             else:
                 site = self.sites[int(rng.integers(len(self.sites)))]
                 source = SiteRoutes(count, site, budget, precedence=precedence)
-        return padded(source.draw(number, floors, faults), self.checkpoints)
+        return pad_instance(source.draw(number, floors, faults), self.checkpoints)
 
 
-def padded(instance: RouteInstance, checkpoints: int) -> RouteInstance:
-    """The same instance with more checkpoints, which can't be reached and are worth nothing."""
+def pad_instance(instance: RouteInstance, checkpoints: int) -> RouteInstance:
+    """Add checkpoints that can't be reached and have no prize, up to this number of checkpoints."""
     more = checkpoints + 1 - instance.size
     if more == 0:
         return instance

@@ -1,4 +1,4 @@
-"""`python -m baselines.learned.train --out DIR` trains the policy; `--resume DIR` goes on."""
+"""Training of the learned policy: `--out DIR` starts a training, `--resume DIR` continues it."""
 
 import argparse
 import sys
@@ -13,56 +13,74 @@ from baselines.stage_lines import StageLines
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """The exit status: 2 if nothing could be trained."""
+    """Run the command; return its exit status, 2 after an error that is reported."""
     parser = argparse.ArgumentParser(prog="python -m baselines.learned.train", description=__doc__)
-    where = parser.add_mutually_exclusive_group(required=True)
-    where.add_argument("--out", type=Path, metavar="DIR", help="train from nothing, and write here")
-    where.add_argument("--resume", type=Path, metavar="DIR", help="go on where that one stopped")
-    parser.add_argument("--seed", type=_whole(0), help="default 0")
+    folder = parser.add_mutually_exclusive_group(required=True)
+    folder.add_argument("--out", type=Path, metavar="DIR", help="folder of a new training")
+    folder.add_argument("--resume", type=Path, metavar="DIR", help="folder of a training to resume")
+    parser.add_argument("--seed", type=_integer_from(0), help="seed of a new training; default 0")
     parser.add_argument(
-        "--lesson-parts", type=_whole(1), help="rounds of imitating exact values, first of all"
+        "--lesson-parts",
+        type=_integer_from(1),
+        help="number of parts of the first stage, imitation of exact values",
     )
-    parser.add_argument("--parts", type=_whole(0), help="of MaskablePPO, after that")
-    given = parser.parse_args(arguments)
+    parser.add_argument(
+        "--parts", type=_integer_from(0), help="number of parts of the second stage, MaskablePPO"
+    )
+    options = parser.parse_args(arguments)
     try:
         check_learned()
-        _train(given)
+        _train(options)
     except ArgoError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
     return 0
 
 
-def _train(given: argparse.Namespace) -> None:
-    from baselines.learned.training import CHECKPOINT, Settings, begin, load, train
+def _train(options: argparse.Namespace) -> None:
+    from baselines.learned.training import (
+        CHECKPOINT,
+        Settings,
+        initial_state,
+        load_checkpoint,
+        train,
+    )
 
     chosen = {
         name: value
         for name in ("seed", "lesson_parts", "parts")
-        if (value := getattr(given, name)) is not None
+        if (value := getattr(options, name)) is not None
     }
-    if given.resume:
+    if options.resume:
         if chosen:
-            raise Invalid("--resume goes on with the settings that the training began with")
-        state, folder = load(given.resume), given.resume
+            raise Invalid(
+                "--resume uses the settings that the training began with: leave out the other "
+                "options"
+            )
+        state, folder = load_checkpoint(options.resume), options.resume
     else:
-        folder = given.out
+        folder = options.out
         if (folder / CHECKPOINT).exists():
-            raise Conflict(f"{folder} has a training already: --resume {folder}, or another --out")
+            raise Conflict(
+                f"{folder} already has a training: resume it with --resume {folder}, or choose "
+                "another folder with --out"
+            )
         make_folder(folder)
-        state = begin(replace(Settings(), **chosen))
+        state = initial_state(replace(Settings(), **chosen))
     with listen_to_stages(StageLines(lambda line: print(line, file=sys.stderr, flush=True))):
         train(state, folder, lambda line: print(line, flush=True))
 
 
-def _whole(least: int):  # type: ignore[no-untyped-def]
-    def read(text: str) -> int:
+def _integer_from(minimum: int):  # type: ignore[no-untyped-def]
+    """Return a type for argparse: an integer that is at least `minimum`."""
+
+    def parse(text: str) -> int:
         number = int(text)
-        if not least <= number:
-            raise argparse.ArgumentTypeError(f"it is at least {least}")
+        if not minimum <= number:
+            raise argparse.ArgumentTypeError(f"give a number of at least {minimum}")
         return number
 
-    return read
+    return parse
 
 
 if __name__ == "__main__":

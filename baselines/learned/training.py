@@ -1,5 +1,8 @@
-"""Training in parts: first lessons, then MaskablePPO. Each part begins with nothing but what the
-one before it left in a file, so that a training that was cut off goes on to the same weights."""
+"""Training in parts: first with lessons, then with MaskablePPO.
+
+Each part starts only from what the one before it stored in a file, so a training that is
+interrupted and resumed leads to the same weights.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field
@@ -17,7 +20,7 @@ from stable_baselines3.common.utils import set_random_seed
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.stages import ProgressReporter, stage
 from argo_env.seeding import generator
-from baselines.learned.imitation import lessons, loss
+from baselines.learned.imitation import imitation_loss, make_lessons
 from baselines.learned.network import RouteNetwork
 from baselines.learned.policy import RoutePolicy
 from baselines.learned.sources import SITES, TrainingRoutes
@@ -25,61 +28,69 @@ from baselines.learned.validation import Validation
 from baselines.learned.vec_env import RouteVecEnv
 
 CHECKPOINT, WEIGHTS = "checkpoint.pt", "weights.pt"
-_PASSES = 3  # over the lessons of a part
-_INSTANCES = 4096  # a batch of routes draws from
+_PASSES = 3  # passes over the lessons of a part
+_INSTANCES = 4096  # number of instances from which a batch of routes draws
 
 
 @dataclass(frozen=True)
 class Settings:
-    """What decides the weights: equal settings give equal weights on the same machine."""
+    """Settings of a training; equal settings give equal weights on the same machine."""
 
     seed: int = 0
     lesson_parts: int = 12
+    """number of parts with lessons"""
     parts: int = 4
-    """of MaskablePPO"""
+    """number of parts with MaskablePPO"""
     lesson_sizes: tuple[int, ...] = (8, 10, 12, 12, 13, 14)
-    """checkpoints in the lessons of a part"""
+    """numbers of checkpoints in the lessons of a part"""
     lessons: int = 1500
-    """of each of these in a part"""
+    """number of samples in a part for each of `lesson_sizes`"""
     iterations: int = 6
-    """of MaskablePPO in a part, each of `routes` times `moves` steps"""
+    """iterations of MaskablePPO in a part, each of `routes` times `moves` steps"""
     routes: int = 256
+    """routes at once in MaskablePPO, with 20 checkpoints"""
     moves: int = 40
+    """steps of each route in an iteration, with 20 checkpoints"""
     batch: int = 1024
+    """batch size of MaskablePPO"""
     passes: int = 2
+    """passes of MaskablePPO over the steps of an iteration"""
     lesson_rate: float = 1e-3
+    """initial learning rate of the lessons; it falls from part to part"""
     rate: float = 3e-4
-    """learning rates at the start; both fall"""
+    """initial learning rate of MaskablePPO; it falls from part to part"""
     entropy: float = 0.003
+    """weight of the entropy in the loss of MaskablePPO"""
     checkpoints: tuple[int, ...] = (20,)
-    """in the routes of the parts of MaskablePPO, in turn"""
+    """numbers of checkpoints in the parts with MaskablePPO, in turn"""
     sites: tuple[str, ...] = SITES
     validation: int = 50
-    """instances of each validation set"""
+    """number of instances in each validation set"""
 
 
 @dataclass
-class State:
-    """What is learned so far, and what the optimiser keeps."""
+class TrainingState:
+    """State of a training: the network, the optimiser and the progress."""
 
     settings: Settings
     network: RouteNetwork
     part: int = 0
-    """parts that are done, those with lessons included"""
+    """number of completed parts, those with lessons included"""
     steps: int = 0
-    """states that it has learned from, in lessons and in the environment"""
+    """number of states learned from, in lessons and in the environment"""
     optimiser: dict[str, Any] = field(default_factory=dict)
+    """state of the optimiser; empty at the start of each of the two stages"""
 
 
-def begin(settings: Settings) -> State:
-    """A network that has learned nothing."""
+def initial_state(settings: Settings) -> TrainingState:
+    """Return the state with an untrained network."""
     torch.manual_seed(settings.seed)
-    return State(settings, RouteNetwork())
+    return TrainingState(settings, RouteNetwork())
 
 
-def save(state: State, folder: Path) -> None:
-    """Writes the checkpoint, and the weights as they ship: in half precision."""
-    kept = {
+def save_checkpoint(state: TrainingState, folder: Path) -> None:
+    """Write the checkpoint, and the weights as they are shipped, in half precision."""
+    checkpoint = {
         "settings": asdict(state.settings),
         "network": state.network.state_dict(),
         "part": state.part,
@@ -87,32 +98,42 @@ def save(state: State, folder: Path) -> None:
         "optimiser": state.optimiser,
     }
     half = {name: tensor.half() for name, tensor in state.network.state_dict().items()}
-    for name, data in ((CHECKPOINT, kept), (WEIGHTS, half)):
+    for name, data in ((CHECKPOINT, checkpoint), (WEIGHTS, half)):
         unfinished = folder / f"{name}.part"
         torch.save(data, unfinished)
         unfinished.replace(folder / name)
 
 
-def load(folder: Path) -> State:
-    """The state that was saved there; ArgoError if there is none."""
+def load_checkpoint(folder: Path) -> TrainingState:
+    """Return the state that is stored in a folder; raise ArgoError if there is none."""
     path = folder / CHECKPOINT
     try:
-        kept = torch.load(path, weights_only=True)
+        checkpoint = torch.load(path, weights_only=True)
         network = RouteNetwork()
-        network.load_state_dict(kept["network"])
-        settings = Settings(**kept["settings"])
-        return State(settings, network, kept["part"], kept["steps"], kept["optimiser"])
+        network.load_state_dict(checkpoint["network"])
+        settings = Settings(**checkpoint["settings"])
+        return TrainingState(
+            settings, network, checkpoint["part"], checkpoint["steps"], checkpoint["optimiser"]
+        )
     except FileNotFoundError:
-        raise NotFound(f"no training to go on with: there is no {path}") from None
+        raise NotFound(
+            f"no training to resume: {path} does not exist; start one with --out"
+        ) from None
     except (UnpicklingError, AttributeError, RuntimeError, EOFError, KeyError, TypeError):
         raise Invalid(
-            f"{path} is damaged, or not of this training: begin a new one with --out"
+            f"{path} is damaged or no checkpoint of this training: start a new one with --out"
         ) from None
 
 
-def train(state: State, folder: Path, tell: Callable[[str], None] = print) -> None:
-    """Goes on from the state to the end, saving after each part. Logs are under `folder/logs`."""
-    torch.set_num_threads(1)  # the same sums in the same order, however many cores there are
+def train(state: TrainingState, folder: Path, write_line: Callable[[str], None] = print) -> None:
+    """Train from the state to the end, and save a checkpoint after each part.
+
+    Args:
+        state: state of the training, which is changed.
+        folder: folder of the checkpoint, of the weights and, in `logs`, of the TensorBoard logs.
+        write_line: function that is called with a line of results after each part.
+    """
+    torch.set_num_threads(1)  # so that sums do not depend on the number of cores
     settings = state.settings
     logger = configure(str(folder / "logs"), ["tensorboard"])
     validation = Validation(settings.sites, settings.validation)
@@ -120,28 +141,28 @@ def train(state: State, folder: Path, tell: Callable[[str], None] = print) -> No
     while state.part < parts:
         with stage(f"part {state.part + 1} of {parts}"):
             if state.part < settings.lesson_parts:
-                _teach(state, logger)
+                _train_on_lessons(state, logger)
             else:
-                _practise(state, logger)
+                _train_with_ppo(state, logger)
             state.part += 1
-            save(state, folder)
+            save_checkpoint(state, folder)
             scores = validation(state.network)
         for name, prize in scores.items():
             logger.record(f"validation/{name}", prize)
         logger.record("validation/part", state.part)
         logger.dump(state.steps)
         prizes = ", ".join(f"{name} {prize:.3f}" for name, prize in scores.items())
-        tell(f"part {state.part}: {state.steps} steps; mean prize {prizes}")
+        write_line(f"part {state.part}: {state.steps} steps; mean prize {prizes}")
     logger.close()
 
 
-def _teach(state: State, logger: Logger) -> None:
-    """One part with lessons."""
+def _train_on_lessons(state: TrainingState, logger: Logger) -> None:
+    """Carry out one part with lessons."""
     settings, part = state.settings, state.part
     rng = generator(settings.seed, "teach", part)
     source = TrainingRoutes(20, sites=settings.sites)
-    taught = [
-        lessons(source, size, settings.lessons, int(rng.integers(2**31)))
+    lessons = [
+        make_lessons(source, size, settings.lessons, int(rng.integers(2**31)))
         for size in settings.lesson_sizes
     ]
     optimiser = torch.optim.Adam(state.network.parameters())
@@ -151,54 +172,54 @@ def _teach(state: State, logger: Logger) -> None:
         1.0 - 0.95 * part / settings.lesson_parts
     )
     losses: list[tuple[float, float]] = []
-    with stage("learning from them") as tell:
+    with stage("training on the lessons") as report:
         for done in range(_PASSES):
             batches = [
                 (k, rows)
-                for k, one in enumerate(taught)
+                for k, one in enumerate(lessons)
                 for rows in np.array_split(rng.permutation(len(one)), max(len(one) // 256, 1))
             ]
             for number, b in enumerate(rng.permutation(len(batches))):
-                tell((done + number / len(batches)) / _PASSES, _latest(losses))
+                report((done + number / len(batches)) / _PASSES, _loss_text(losses))
                 k, rows = batches[b]
-                actions, value = loss(state.network, taught[k].part(rows))
+                actions, value = imitation_loss(state.network, lessons[k].select(rows))
                 optimiser.zero_grad()
                 (actions + value).backward()  # type: ignore[no-untyped-call]
                 torch.nn.utils.clip_grad_norm_(state.network.parameters(), 1.0)
                 optimiser.step()
                 losses.append((actions.item(), value.item()))
-    state.steps += sum(len(one) for one in taught)
+    state.steps += sum(len(one) for one in lessons)
     last = part + 1 == settings.lesson_parts
     state.optimiser = {} if last else optimiser.state_dict()
     logger.record("lessons/actions", float(np.mean([one[0] for one in losses])))
     logger.record("lessons/value", float(np.mean([one[1] for one in losses])))
 
 
-def _latest(losses: Sequence[tuple[float, float]]) -> str:
+def _loss_text(losses: Sequence[tuple[float, float]]) -> str:
     return f"loss {sum(losses[-1]):.3f}" if losses else ""
 
 
-class _Told(BaseCallback):
-    """Tells how far MaskablePPO is."""
+class _ProgressCallback(BaseCallback):
+    """Callback of MaskablePPO that reports its progress."""
 
-    def __init__(self, tell: ProgressReporter, total: int) -> None:
+    def __init__(self, report: ProgressReporter, total: int) -> None:
         super().__init__()
-        self._tell = tell
+        self._report = report
         self._total = total
 
     def _on_step(self) -> bool:
         done = self.num_timesteps - self._begun
         returns = [one["r"] for one in self.model.ep_info_buffer or ()]
         mean = f", mean return {np.mean(returns):.3f}" if returns else ""
-        self._tell(done / self._total, f"{done} of {self._total} steps{mean}")
+        self._report(done / self._total, f"{done} of {self._total} steps{mean}")
         return True
 
     def _on_training_start(self) -> None:
         self._begun = self.model.num_timesteps
 
 
-def _practise(state: State, logger: Logger) -> None:
-    """One part of MaskablePPO, on instances that no other part has."""
+def _train_with_ppo(state: TrainingState, logger: Logger) -> None:
+    """Carry out one part with MaskablePPO, on instances that no other part has."""
     settings = state.settings
     part = state.part - settings.lesson_parts
     seed = int(generator(settings.seed, "practise", part).integers(2**31))
@@ -227,8 +248,8 @@ def _practise(state: State, logger: Logger) -> None:
     model.set_logger(logger)
     model.num_timesteps = state.steps
     steps = settings.iterations * routes * moves
-    with stage("practising") as tell:
-        model.learn(steps, callback=_Told(tell, steps), reset_num_timesteps=False)
+    with stage("training with MaskablePPO") as report:
+        model.learn(steps, callback=_ProgressCallback(report, steps), reset_num_timesteps=False)
     state.network.load_state_dict(network.state_dict())
     state.optimiser = model.policy.optimizer.state_dict()
     state.steps = model.num_timesteps

@@ -1,4 +1,4 @@
-"""How good the network is while it trains, on instances that it does not train on."""
+"""Validation of the network during the training, on instances that are not trained on."""
 
 from collections.abc import Sequence
 
@@ -12,11 +12,11 @@ from argo_env.envs.route_instance import DOCK
 from baselines.learned.network import RouteNetwork
 from baselines.learned.sources import TrainingRoutes
 
-_FIRST = 990_000  # number of an instance; training does not get there
+_FIRST = 990_000  # number of the first instance; the training uses lower numbers
 
 
 class Validation:
-    """The mean prize on random routes with 20 and 40 checkpoints, and on a mixture with 40."""
+    """Validation on random routes with 20 and 40 checkpoints, and on a mixture with up to 40."""
 
     def __init__(self, sites: Sequence[str], instances: int) -> None:
         self._batches = {
@@ -31,7 +31,7 @@ class Validation:
         }  # fmt: skip
 
     def __call__(self, network: RouteNetwork) -> dict[str, float]:
-        """By the name of the set."""
+        """Return the mean prize of the network on each set, by the name of the set."""
         batches = stage_items("evaluating", list(self._batches.items()))
         return {
             name: float(greedy_prizes(network, batch, range(batch.num_envs)).mean())
@@ -42,8 +42,10 @@ class Validation:
 def greedy_prizes(
     network: RouteNetwork, batch: RouteVectorEnv, numbers: Sequence[int]
 ) -> NDArray[np.float64]:
-    """The prize on each of these instances, one for each route of the batch, when the node with
-    the highest score is taken each time."""
+    """Return the prizes of routes that follow the highest scores.
+
+    `numbers` are the instances, one for each route of the batch.
+    """
     observation, _ = batch.reset(options={"instance": tuple(numbers)})
     total = np.zeros(batch.num_envs)
     over = np.zeros(batch.num_envs, np.bool_)

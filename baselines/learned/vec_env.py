@@ -1,4 +1,4 @@
-"""The batched environment as stable-baselines3 wants it."""
+"""Batched route environment with the interface of stable-baselines3."""
 
 # ruff: noqa: ARG002  (the signatures are those of stable-baselines3)
 
@@ -15,11 +15,11 @@ from argo_env.envs.route_sources import RouteSource
 
 
 class RouteVecEnv(VecEnv):
-    """Many routes at once for MaskablePPO. Holds the batch and the returns so far.
+    """Vectorized environment of many routes for MaskablePPO; it holds the batch and the returns.
 
-    The batch begins a route anew one step after its end. That step counts here as an episode of
-    its own, with the dock as its only action and no prize, so that nothing is learned from it; it
-    is in no statistics.
+    The batch starts a new route one step after the end of the old one. That step counts here as an
+    episode of its own, with the dock as its only action and no prize, so that nothing is learned
+    from it; the statistics leave it out.
     """
 
     def __init__(self, routes: int, source: RouteSource, seed: int) -> None:
@@ -43,21 +43,21 @@ class RouteVecEnv(VecEnv):
     def step_wait(
         self,
     ) -> tuple[Observation, NDArray[np.float32], NDArray[np.bool_], list[dict[str, Any]]]:
-        anew = self._ended
+        restarted = self._ended
         observation, rewards, self._ended, _, _ = self.batch.step(self._actions)
         self._returns += rewards
         self._lengths += 1
         infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
         for k in np.flatnonzero(self._ended):
             infos[k] = {"episode": {"r": float(self._returns[k]), "l": int(self._lengths[k])}}
-        over = self._ended | anew
+        over = self._ended | restarted
         self._returns[over], self._lengths[over] = 0.0, 0
         return observation, rewards.astype(np.float32), over, infos
 
     def env_method(
         self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
     ) -> list[Any]:
-        """MaskablePPO asks for `action_masks`, shape (n + 1,) for each route; there is no other."""
+        """Return the action masks, shape (n + 1,) for each route; there is no other method."""
         if method_name != "action_masks":
             raise NotImplementedError(method_name)
         return list(self.batch.action_masks())
@@ -75,8 +75,8 @@ class RouteVecEnv(VecEnv):
         return [False] * self.num_envs
 
     def seed(self, seed: int | None = None) -> Sequence[int | None]:
-        """The seeds are those that it was made with."""
+        """Return None for each route: the seeds are those of the construction."""
         return [None] * self.num_envs
 
     def close(self) -> None:
-        """There is nothing to close."""
+        """Do nothing: there is nothing to close."""

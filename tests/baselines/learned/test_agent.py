@@ -1,4 +1,4 @@
-"""The learned policies with the weights that ship."""
+"""The learned policies with the shipped weights."""
 
 from collections.abc import Callable
 from typing import Any
@@ -22,7 +22,7 @@ def scorer() -> Scorer:
 
 
 def play(env: RouteEnv, number: int, policy: Any, seed: int = 0) -> tuple[float, list[int]]:
-    """The return and the route; no step may be illegal."""
+    """Return the prize and the route of a policy; fail if a step is illegal."""
     observation, _ = env.reset(seed=number, options={"instance": number})
     policy.begin(observation, 1200.0, seed)
     total, route, over = 0.0, [], False
@@ -34,7 +34,7 @@ def play(env: RouteEnv, number: int, policy: Any, seed: int = 0) -> tuple[float,
     return total, route
 
 
-def test_they_are_better_than_the_nearest_neighbour(scorer: Scorer) -> None:
+def test_learned_policies_are_better_than_the_nearest_neighbour(scorer: Scorer) -> None:
     env = RouteEnv(full=True)
     prizes = {
         name: np.array([play(env, number, policy)[0] for number in TEST[:6]])
@@ -45,20 +45,20 @@ def test_they_are_better_than_the_nearest_neighbour(scorer: Scorer) -> None:
         ]
     }
     assert prizes["learned"].mean() > 1.05 * prizes["nearest"].mean()
-    # One of the ways that it thinks of is that of the highest scores.
+    # One of the simulated routes follows the highest scores.
     assert (prizes["sampled"] >= prizes["learned"] - 1e-6).all()
 
 
 @pytest.mark.parametrize("make", [LearnedPolicy, lambda scorer: SampledPolicy(scorer, 4)])
 @pytest.mark.parametrize("checkpoints", [1, 5, 40])
-def test_any_number_of_checkpoints_and_legal_steps_only(
+def test_steps_are_legal_with_any_number_of_checkpoints(
     scorer: Scorer, make: Callable[[Scorer], Any], checkpoints: int
 ) -> None:
     env = RouteEnv(checkpoints, budget=300.0 + 30.0 * checkpoints, full=True)
     assert play(env, TEST[0], make(scorer))[1][-1] == 0
 
 
-def test_readings_that_fail_and_stairs_that_are_blocked_are_lived_with(scorer: Scorer) -> None:
+def test_policies_dock_despite_failed_readings_and_blocked_stairs(scorer: Scorer) -> None:
     env = RouteEnv(12, full=True, noise={"failing": 0.3, "blocked": 2})
     for number in TEST[:2]:
         for policy in (LearnedPolicy(scorer), SampledPolicy(scorer, 4)):
@@ -75,5 +75,5 @@ def test_equal_seeds_give_equal_routes(scorer: Scorer) -> None:
     assert first != other
 
 
-def test_the_weights_that_ship_are_small() -> None:
+def test_the_shipped_weights_are_small() -> None:
     assert WEIGHTS.stat().st_size < 300_000

@@ -1,4 +1,4 @@
-"""What holds for the network with any weights."""
+"""Properties of the network that hold with any weights."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from argo_env.envs.route_batch import RouteVectorEnv  # noqa: E402
 from argo_env.envs.route_instance import RouteInstance  # noqa: E402
 from argo_env.envs.route_sources import RandomRoutes  # noqa: E402
 from baselines.learned.network import RouteNetwork  # noqa: E402
-from baselines.learned.sources import TrainingRoutes, padded  # noqa: E402
+from baselines.learned.sources import TrainingRoutes, pad_instance  # noqa: E402
 from tests.conftest import examples  # noqa: E402
 
 torch.set_num_threads(1)
@@ -23,8 +23,8 @@ def network(seed: int = 0) -> RouteNetwork:
     return RouteNetwork().eval()
 
 
-def on_the_way(source: object, moves: int, seed: int) -> Observation:
-    """What a few routes look like after some random moves."""
+def observe_after(source: object, moves: int, seed: int) -> Observation:
+    """Return the observation of three routes after some random moves."""
     batch = RouteVectorEnv(3, source=source, full=True)  # type: ignore[arg-type]
     observation, _ = batch.reset(seed=seed, options={"instance": (seed, seed + 1, seed + 2)})
     rng = np.random.default_rng(seed)
@@ -35,7 +35,7 @@ def on_the_way(source: object, moves: int, seed: int) -> Observation:
     return observation
 
 
-def answers(observation: Observation, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
+def scores_and_values(observation: Observation, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
     tensors = {name: torch.from_numpy(array) for name, array in observation.items()}
     with torch.no_grad():
         scores, value = network(seed)(tensors)
@@ -45,36 +45,36 @@ def answers(observation: Observation, seed: int = 0) -> tuple[np.ndarray, np.nda
 @given(st.integers(0, 1000), st.integers(2, 12), st.integers(0, 5))
 @settings(max_examples=examples(15))
 def test_another_order_of_the_checkpoints_changes_nothing(seed: int, size: int, moves: int) -> None:
-    seen = on_the_way(RandomRoutes(size), moves, seed)
+    observation = observe_after(RandomRoutes(size), moves, seed)
     order = np.append(0, np.random.default_rng(seed).permutation(size) + 1)
-    other = {name: seen[name][:, order] for name in ("travel", "home", "prize", "mask")}
-    other["left"] = seen["left"]
-    other["before"] = seen["before"][:, order][:, :, order]
-    other["matrix"] = seen["matrix"][:, np.append(order, size + 1)][:, :, order]
-    scores, value = answers(seen)
-    its_scores, its_value = answers(other)
-    np.testing.assert_allclose(its_scores, scores[:, order], atol=1e-4)
-    np.testing.assert_allclose(its_value, value, atol=1e-4)
+    other = {name: observation[name][:, order] for name in ("travel", "home", "prize", "mask")}
+    other["left"] = observation["left"]
+    other["before"] = observation["before"][:, order][:, :, order]
+    other["matrix"] = observation["matrix"][:, np.append(order, size + 1)][:, :, order]
+    scores, value = scores_and_values(observation)
+    other_scores, other_value = scores_and_values(other)
+    np.testing.assert_allclose(other_scores, scores[:, order], atol=1e-4)
+    np.testing.assert_allclose(other_value, value, atol=1e-4)
 
 
 @given(st.integers(0, 1000), st.integers(0, 4))
 @settings(max_examples=examples(8))
-def test_slots_that_are_not_used_change_nothing(seed: int, moves: int) -> None:
+def test_unused_slots_change_nothing(seed: int, moves: int) -> None:
     class Padded(TrainingRoutes):
         def draw(self, number: int, *_: object) -> RouteInstance:  # type: ignore[override]
-            return padded(RandomRoutes(7).draw(number), 11)
+            return pad_instance(RandomRoutes(7).draw(number), 11)
 
-    scores, value = answers(on_the_way(RandomRoutes(7), moves, seed))
-    its_scores, its_value = answers(on_the_way(Padded(11), moves, seed))
-    np.testing.assert_allclose(its_scores[:, :8], scores, atol=1e-4)
-    np.testing.assert_allclose(its_value, value, atol=1e-4)
+    scores, value = scores_and_values(observe_after(RandomRoutes(7), moves, seed))
+    padded_scores, padded_value = scores_and_values(observe_after(Padded(11), moves, seed))
+    np.testing.assert_allclose(padded_scores[:, :8], scores, atol=1e-4)
+    np.testing.assert_allclose(padded_value, value, atol=1e-4)
 
 
 @pytest.mark.parametrize("size", [1, 5, 20, 100])
 def test_the_same_weights_serve_any_number_of_checkpoints(size: int) -> None:
-    seen = on_the_way(RandomRoutes(size), 1, 0)
-    scores, value = answers(seen)
-    assert scores.shape == seen["prize"].shape
+    observation = observe_after(RandomRoutes(size), 1, 0)
+    scores, value = scores_and_values(observation)
+    assert scores.shape == observation["prize"].shape
     assert np.isfinite(scores).all()
     assert (value >= 0).all()
-    assert (value[:, 0] <= seen["prize"].sum(axis=1)).all()
+    assert (value[:, 0] <= observation["prize"].sum(axis=1)).all()

@@ -1,4 +1,4 @@
-"""The exact values that the network is taught, against trying every order."""
+"""Exact values that the network learns, compared with those of all orders."""
 
 from itertools import permutations
 
@@ -8,14 +8,14 @@ from hypothesis import strategies as st
 
 from argo_env.envs.route_instance import RouteInstance, score_route
 from argo_env.envs.route_sources import RandomRoutes
-from baselines.learned.imitation import lessons
-from baselines.learned.oracle import Oracle, Remainder
+from baselines.learned.imitation import make_lessons
+from baselines.learned.oracle import Oracle, RemainingRoutes
 from tests.conftest import examples
 
 
-def oracle_of(instance: RouteInstance) -> Oracle:
+def make_oracle(instance: RouteInstance) -> Oracle:
     return Oracle(
-        Remainder(
+        RemainingRoutes(
             start=instance.arrival[-1:, 1:],
             back=instance.arrival[-1:, 0],
             between=instance.arrival[None, 1:-1, 1:],
@@ -33,13 +33,13 @@ def test_values_are_those_of_the_best_order(
     number: int, size: int, budget: float, precedence: float
 ) -> None:
     instance = RandomRoutes(size, 3, 100.0 + budget, precedence=precedence).draw(number)
-    oracle = oracle_of(instance)
+    oracle = make_oracle(instance)
     start, left = instance.arrival[-1, 1:], instance.budget
-    actions = oracle.legal(0, 0, start, left)
+    actions = oracle.legal_actions(0, 0, start, left)
     if not len(actions):
         assert all(score_route(instance, [k]).illegal for k in range(1, size + 1))
         return
-    prizes, times = oracle.values(0, 0, start, left, actions)
+    prizes, times = oracle.action_values(0, 0, start, left, actions)
     for action in range(1, size + 1):
         scores = [
             score
@@ -56,14 +56,14 @@ def test_values_are_those_of_the_best_order(
 
 
 def test_lessons_are_states_that_the_environment_could_show() -> None:
-    taught = lessons(RandomRoutes(12), 8, 60, seed=3)
-    again = lessons(RandomRoutes(12), 8, 60, seed=3)
-    assert np.array_equal(taught.target, again.target)
-    seen = taught.observation
-    assert all(((array >= 0) & (array <= 1)).all() for array in seen.values())
-    np.testing.assert_allclose(taught.target.sum(axis=1), 1.0, rtol=1e-5)
-    assert (taught.target[seen["mask"] == 0] == 0).all()
-    assert (taught.target[:, 0] == 0).all(), "there is always something better than to go home"
-    assert (taught.value <= seen["prize"].sum(axis=1) + 1e-4).all()
-    legal = seen["travel"] + seen["home"] <= seen["left"] + 1e-5
-    assert legal[:, 1:][seen["mask"][:, 1:] == 1].all()
+    lessons = make_lessons(RandomRoutes(12), 8, 60, seed=3)
+    again = make_lessons(RandomRoutes(12), 8, 60, seed=3)
+    assert np.array_equal(lessons.target, again.target)
+    observation = lessons.observation
+    assert all(((array >= 0) & (array <= 1)).all() for array in observation.values())
+    np.testing.assert_allclose(lessons.target.sum(axis=1), 1.0, rtol=1e-5)
+    assert (lessons.target[observation["mask"] == 0] == 0).all()
+    assert (lessons.target[:, 0] == 0).all(), "a visit is always better than to dock"
+    assert (lessons.value <= observation["prize"].sum(axis=1) + 1e-4).all()
+    legal = observation["travel"] + observation["home"] <= observation["left"] + 1e-5
+    assert legal[:, 1:][observation["mask"][:, 1:] == 1].all()

@@ -1,4 +1,4 @@
-"""The look ahead of the network, against driving the same rules in the environment."""
+"""The look-ahead of the network, compared with the same rules in the environment."""
 
 import numpy as np
 import pytest
@@ -9,13 +9,13 @@ torch = pytest.importorskip("torch")
 
 from argo_env.envs.route import RouteEnv  # noqa: E402
 from argo_env.envs.route_sources import RandomRoutes  # noqa: E402
-from baselines.learned.outlook import POWERS, look_ahead  # noqa: E402
+from baselines.learned.look_ahead import POWERS, look_ahead  # noqa: E402
 from tests.conftest import examples  # noqa: E402
 
 
 @given(st.integers(0, 4000), st.integers(1, 12), st.integers(0, 3))
 @settings(max_examples=examples(10))
-def test_it_is_what_the_rules_bring(number: int, size: int, moves: int) -> None:
+def test_the_look_ahead_wins_what_the_rules_win(number: int, size: int, moves: int) -> None:
     env = RouteEnv(source=RandomRoutes(size, budget=800.0, precedence=0.4), full=True)
     observation, _ = env.reset(options={"instance": number})
     for _ in range(moves):
@@ -47,13 +47,17 @@ def test_it_is_what_the_rules_bring(number: int, size: int, moves: int) -> None:
 
 
 def drive(env: RouteEnv, node: int, power: float, left: float) -> tuple[float, float]:
-    """The prize, and the share of the time left that remains before the way home."""
+    """Follow a rule after the node; return its prize and the time left before the drive home.
+
+    The time is a share of `left`.
+    """
     total = 0.0
     while True:
-        seen, prize, _, _, _ = env.step(node)
+        observation, prize, _, _, _ = env.step(node)
         total += prize
-        legal = np.flatnonzero(seen["mask"][1:]) + 1
+        legal = np.flatnonzero(observation["mask"][1:]) + 1
         if not len(legal):
-            return total, float(seen["left"][0] / left)
-        pull = seen["prize"][legal] ** power / (seen["travel"][legal] / left + 0.01)
-        node = int(legal[pull.argmax()])
+            return total, float(observation["left"][0] / left)
+        travel = observation["travel"][legal] / left
+        rating = observation["prize"][legal] ** power / (travel + 0.01)
+        node = int(legal[rating.argmax()])

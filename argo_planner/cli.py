@@ -17,67 +17,67 @@ from argo_planner.terminal.verbosity import set_verbosity
 
 _COMMANDS = {
     "import": (
-        "import_script.import_script",
+        "import_script.import_command",
         "Read a script, a ROS bag or an isar mission, and write the mission as JSON.",
     ),
     "check": (
-        "check.check_mission",
+        "check.check_command",
         "Check a mission without running it; exits with status 2 if there are errors.",
     ),
     "explain": (
-        "explain.explain_mission",
+        "explain.explain_command",
         "Print in plain sentences how Argo understood a mission, and what it assumed.",
     ),
     "compile": (
-        "compile.compile_mission",
+        "compile.compile_command",
         "Convert a mission to its state machine, and write that as JSON.",
     ),
     "format": (
-        "format.format_mission",
+        "format.format_command",
         "Write a mission as a script in a standard form; importing it gives the same mission.",
     ),
     "export": (
-        "export.export_mission",
+        "export.export_command",
         "Write a mission in the format of another tool.",
     ),
     "route": (
-        "route.suggest_order",
+        "route.route_command",
         "Suggest the best order of a mission's tasks; exits with status 2 if there is none.",
     ),
     "run": (
-        "run.run",
-        "Run a mission in simulation and show the results; a report or a film on request.",
+        "run.run_command",
+        "Run a mission, or the spec of an earlier run, in simulation, and show the results.",
     ),
     "resume": (
-        "resume.resume_run",
+        "resume.resume_command",
         "Continue an interrupted run from its journal.",
     ),
     "replay": (
-        "replay.replay",
+        "replay.replay_command",
         "Show the results of a recorded run; its report and film can be made again.",
     ),
     "evaluate": (
-        "evaluate.evaluate",
+        "evaluate.evaluate_command",
         "Estimate the success rate of missions by many runs, or compare two evaluations.",
     ),
     "sites": (
-        "sites.show_sites",
+        "sites.sites_command",
         "List the sites, or check one; exits with status 2 if parts can't be reached.",
     ),
     "plan": (
-        "plan.plan_mission",
+        "plan.plan_command",
         "Plan a mission in the browser, on a 3D model of the site, and watch it run.",
     ),
     "serve": (
-        "serve.serve_plans",
+        "serve.serve_command",
         "Serve the planner page with a folder of missions to several people at once.",
     ),
     "schema": (
-        "schema.show_schema",
+        "schema.schema_command",
         "Print the JSON Schema of one kind of file, such as missions or faults.",
     ),
     "doctor": (
-        "doctor.show_health",
+        "doctor.doctor_command",
         "Show Argo's version, its cache on disk, and which optional parts are installed.",
     ),
 }

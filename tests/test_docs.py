@@ -12,7 +12,7 @@ from argo_env.planning import OpenedSite
 from argo_env.site import make_site
 from argo_env.site.site_file import parse_site_spec
 from argo_planner.use_cases.routing import parse_requirements
-from argo_planner.use_cases.sites import check_site
+from argo_planner.use_cases.sites import make_site_report
 
 ROOT = Path(__file__).parents[1]
 PAGES = {
@@ -47,7 +47,7 @@ def test_snippets_run(page, monkeypatch):
 
 
 def is_a_site(text, page):
-    report = check_site(OpenedSite.of(make_site(parse_site_spec(text, page))))
+    report = make_site_report(OpenedSite.of(make_site(parse_site_spec(text, page))))
     assert (report.errors, report.notes) == ((), ())
 
 

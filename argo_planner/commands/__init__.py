@@ -1,1 +1,1 @@
-"""The commands of `argo`, a file each. `argo_planner.cli` gives them their names."""
+"""The commands of `argo`, one per file; `argo_planner.cli` gives them their names."""

@@ -1,4 +1,4 @@
-"""`argo check`: all that is wrong or odd about a mission, without running it."""
+"""`argo check`: check a mission without running it."""
 
 from pathlib import Path
 from typing import Annotated
@@ -15,20 +15,21 @@ from argo_planner.terminal.words import name_options
 from argo_planner.use_cases.checking import (
     Format,
     check_source,
-    diagnostics_of,
+    error_diagnostics,
     write_diagnostics,
 )
 
 
-def check_mission(
+def check_command(
     source: Source,
     site: SiteOption = "umad",
     format: Annotated[
-        Format, typer.Option("--format", help="for people, programs or code hosts")
+        Format,
+        typer.Option("--format", help="text for people, json for programs, sarif for code hosts"),
     ] = Format.TEXT,
     strict: Strict = False,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="a file to write the findings to")
+        Path | None, typer.Option("-o", "--output", help="write the result to this file")
     ] = None,
     start_area: StartArea = None,
     end_area: EndArea = None,
@@ -56,5 +57,5 @@ def _diagnostics(
     try:
         upload = read_upload(source)
     except ArgoError as error:
-        return diagnostics_of(error)
+        return error_diagnostics(error)
     return check_source(upload, opened.catalog, start_area, end_area, opened.travel, opened)

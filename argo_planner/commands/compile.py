@@ -1,4 +1,4 @@
-"""`argo compile`: a mission becomes its state machine."""
+"""`argo compile`: convert a mission to its state machine."""
 
 from pathlib import Path
 from typing import Annotated
@@ -9,14 +9,14 @@ from argo_env.planning.opening import open_site
 from argo_planner.terminal.files import check_outputs, print_written, read_upload, write_content
 from argo_planner.terminal.importing import import_and_warn
 from argo_planner.terminal.options import EndArea, Force, Optimise, SiteOption, Source, StartArea
-from argo_planner.use_cases.compiling import compile_mission as compile_imported
+from argo_planner.use_cases.compiling import compile_mission
 
 
-def compile_mission(
+def compile_command(
     source: Source,
-    output: Annotated[Path, typer.Option("-o", "--output", help="the machine's .json to write")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="file for the machine (.json)")],
     mermaid: Annotated[
-        Path | None, typer.Option("--mermaid", help="a Mermaid diagram to write as well")
+        Path | None, typer.Option("--mermaid", help="write a Mermaid diagram, too")
     ] = None,
     site: SiteOption = "umad",
     optimise: Optimise = False,
@@ -29,10 +29,10 @@ def compile_mission(
     opened = open_site(site)
     imported = import_and_warn(read_upload(source), opened, start_area, end_area)
     if optimise:
-        from argo_planner.terminal.reordering import optimise_and_show  # brings the solvers
+        from argo_planner.terminal.reordering import optimise_and_show  # imports the solvers
 
         imported, _ = optimise_and_show(imported, opened)
-    compiled = compile_imported(imported)
+    compiled = compile_mission(imported)
     write_content(output, compiled.json)
     if mermaid:
         write_content(mermaid, compiled.mermaid)

@@ -1,4 +1,4 @@
-"""`argo doctor`: what this installation has and lacks."""
+"""`argo doctor`: show the parts and the cache of this installation."""
 
 from typing import Annotated
 
@@ -9,24 +9,27 @@ from argo_env.files import cache
 from argo_planner.use_cases.doctor import examine
 
 
-def show_health(
+def doctor_command(
     empty_cache: Annotated[
         bool,
-        typer.Option("--empty-cache", help="take away all that is kept; it is made again"),
+        typer.Option("--empty-cache", help="delete the cached data, which is computed again"),
     ] = False,
 ) -> None:
     """Show Argo's version, its cache on disk, and which optional parts are installed."""
     if empty_cache:
-        _empty()
+        _empty_cache()
     found = examine()
     print(f"argo {found.version}, Python {found.python}, {found.system}")
-    kept = found.cache
+    stored = found.cache
     print(
-        f"cache: {kept.folder}, {kept.entries} sites, {_megabytes(kept.size)} of at most "
-        f"{_megabytes(kept.limit)}"
+        f"cache: {stored.folder}, {stored.entries} sites, {_megabytes(stored.size)} of at most "
+        f"{_megabytes(stored.limit)}"
     )
-    if kept.flaw:
-        print(f"  nothing can be kept there, so each command builds its site anew: {kept.flaw}")
+    if stored.write_problem:
+        print(
+            "  nothing can be stored there, so each command computes its site again: "
+            f"{stored.write_problem}"
+        )
     for extra in found.extras:
         if extra.missing:
             lacks = ", ".join(extra.missing)
@@ -36,14 +39,14 @@ def show_health(
     print(f"PyBullet: {'works' if found.physics is None else f'does not work: {found.physics}'}")
 
 
-def _empty() -> None:
-    """Raises Unavailable if anything is left, or there is no such folder to be had."""
-    before, why = cache.contents().size, cache.write_problem()
+def _empty_cache() -> None:
+    """Empty the cache; raise Unavailable if files remain, or its folder is not writable."""
+    before, problem = cache.contents().size, cache.write_problem()
     cache.clear()
-    if why is not None or cache.contents().files:
+    if problem is not None or cache.contents().files:
         raise Unavailable(
-            f"{cache.cache_folder()}: the cache can't be emptied: {why or 'some of it is left'}; "
-            f"name a folder that can be written to ({cache.VARIABLE}), or let it be written to"
+            f"{cache.cache_folder()}: the cache can't be emptied: {problem or 'files remain'}; "
+            f"set {cache.VARIABLE} to a writable folder, or change the permissions of this one"
         )
     print(f"cache: emptied, {_megabytes(before)} freed")
 

@@ -1,4 +1,4 @@
-"""`argo evaluate`: missions are run many times, and what that says of them is told."""
+"""`argo evaluate`: run missions many times and estimate their success rates."""
 
 import os
 import sys
@@ -39,39 +39,47 @@ from argo_env.files.folders import check_folder
 from argo_env.run.drives_and_sensors import DRIVES, IDEAL, SENSORS
 from argo_planner.terminal.completion import offer_names
 from argo_planner.terminal.evaluation_display import EvaluationDisplay
-from argo_planner.terminal.evaluation_request import read_request, require_comparison_only
+from argo_planner.terminal.evaluation_request import (
+    read_evaluation_request,
+    require_comparison_only,
+)
 from argo_planner.terminal.evaluation_tables import show_comparison, show_means, show_results
 from argo_planner.terminal.files import check_outputs, read_upload
 from argo_planner.terminal.options import EndArea, Force, SiteOption, StartArea
 from argo_planner.terminal.signals import Interrupted
-from argo_planner.use_cases.evaluating import files_of, make_workers, plan_evaluation
+from argo_planner.use_cases.evaluating import input_contents, make_workers, plan_evaluation
 
 
-def evaluate(
+def evaluate_command(
     context: typer.Context,
     sources: Annotated[
         list[Path] | None,
         typer.Argument(
             metavar="[FILE.yaml|MISSION...]",
-            help="an evaluation's file, or missions as scripts or .json",
+            help="evaluation file (.yaml), or missions: scripts or .json",
         ),
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="DIR", help="folder for the rows and the report"),
+        typer.Option(
+            "--out", metavar="DIR", help="folder for the results; out/evaluations/NAME if not given"
+        ),
     ] = None,
-    seeds: Annotated[str, typer.Option(help="the worlds, such as 0..999")] = "0..99",
+    seeds: Annotated[
+        str, typer.Option(help="seeds of the simulated worlds, such as 0..999")
+    ] = "0..99",
     site: SiteOption = "umad",
     drive: Annotated[
         str,
         typer.Option(
-            help=f"what moves the robot: {', '.join(DRIVES)}", autocompletion=offer_names(DRIVES)
+            help=f"model of the robot's motion: {', '.join(DRIVES)}",
+            autocompletion=offer_names(DRIVES),
         ),
     ] = "route",
     sensor: Annotated[
         str,
         typer.Option(
-            help=f"what reads the checkpoints: {', '.join(SENSORS)}",
+            help=f"how checkpoints are read: {', '.join(SENSORS)}",
             autocompletion=offer_names(SENSORS),
         ),
     ] = IDEAL,
@@ -80,33 +88,36 @@ def evaluate(
         typer.Option(
             "--faults",
             metavar="FILE|DIR|none",
-            help="what goes wrong, a case each; a folder for all of its files; several times",
+            help="file of faults, or a folder with such files, or none; each file is a case of its "
+            "own; can be given several times",
         ),
     ] = None,
     policy: Annotated[
         list[str] | None,
         typer.Option(
-            help="in which order tasks are done: `as written`, `optimised`, or module:function"
+            help="order of the tasks: `as written`, `optimised`, or a function as module:function"
         ),
     ] = None,
     require: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="CLAIM",
-            help="what must hold, such as 'success >= 0.98'; stops when it is decided, and exits "
+            metavar="REQUIREMENT",
+            help="requirement, such as 'success >= 0.98'; the runs stop when it is decided; exits "
             "with status 1 unless it is met",
         ),
     ] = None,
     width: Annotated[
         float | None,
-        typer.Option(help="stop when the intervals of the rates are no wider than this"),
+        typer.Option(
+            help="stop when the 95 % intervals of all rates have at most this width, such as 0.02"
+        ),
     ] = None,
     control: Annotated[
         str | None,
         typer.Option(
             metavar="DRIVE",
-            help="a cheap drive, such as route, whose runs help to estimate what those of --drive "
-            "bring, if that pays",
+            help="fast drive, such as route; many runs with it make the estimates for --drive more "
+            "precise, if that saves time",
             autocompletion=offer_names(DRIVES),
         ),
     ] = None,
@@ -115,33 +126,36 @@ def evaluate(
     backend: Annotated[
         str,
         typer.Option(
-            help=f"what has the workers: {', '.join(BACKENDS)}",
+            help=f"where the runs are computed: {', '.join(BACKENDS)}",
             autocompletion=offer_names(tuple(BACKENDS)),
         ),
     ] = PROCESSES,
     workers: Annotated[
         int | None,
-        typer.Option(help="processes that work at once; all processors if not given", min=1),
+        typer.Option(help="number of parallel processes; one per processor if not given", min=1),
     ] = None,
     address: Annotated[
-        str | None, typer.Option(help="of a Ray or Dask cluster that is there already")
+        str | None, typer.Option(help="address of a running Ray or Dask cluster")
     ] = None,
     limit: Annotated[
-        float | None, typer.Option(help="s that a run may take; it counts as died then", min=1.0)
+        float | None,
+        typer.Option(help="longest time of a run in s; a longer run counts as died", min=1.0),
     ] = None,
     scoring: Annotated[
         Path | None,
         typer.Option(
-            "--scoring", metavar="FILE.yaml", help="how missions score; see scenarios/scoring.yaml"
+            "--scoring", metavar="FILE.yaml", help="scoring rules; see scenarios/scoring.yaml"
         ),
     ] = None,
     report: Annotated[
-        bool, typer.Option("--report/--no-report", help="write the report as a page")
+        bool, typer.Option("--report/--no-report", help="write the report as a web page")
     ] = True,
     compare: Annotated[
         tuple[Path, Path] | None,
         typer.Option(
-            "--compare", metavar="DIR DIR", help="two evaluations, pair by pair; runs nothing"
+            "--compare",
+            metavar="DIR DIR",
+            help="compare two evaluations by their folders; runs nothing",
         ),
     ] = None,
     plans: Annotated[
@@ -149,8 +163,8 @@ def evaluate(
         typer.Option(
             "--plan",
             metavar="NAME",
-            help="with --compare: which plan is meant, where an evaluation has several; once for "
-            "both, or once for each",
+            help="with --compare: name of the plan, if an evaluation has several; give it once for "
+            "both evaluations, or once for each",
         ),
     ] = None,
     force: Force = False,
@@ -162,60 +176,64 @@ def evaluate(
         _compare(*compare, plans or [], out, report, force, console)
         return
     if plans:
-        raise Invalid("--plan says which plans --compare is about: give it with that")
+        raise Invalid(
+            "--plan chooses plans for --compare: give --compare as well, or leave --plan out"
+        )
     rules = read_scoring(scoring)
-    file, folder, content = read_request(
+    file, folder, content = read_evaluation_request(
         context, sources or [], seeds, site, drive, sensor, faults, policy, require, width,
         control, start_area, end_area,
     )  # fmt: skip
-    where = out or Path("out") / "evaluations" / _plain(file.name)
-    own = os.path.exists(where / PLAN)
-    check_outputs(sources or [], folders=[(where, [REPORT] if report else [])], force=own or force)
-    check_folder(where / FAILING)
-    digest = digest_contents(*files_of(file, folder), content)
-    plan = read_plan(where, digest) or plan_evaluation(file, folder, read_upload)
+    target = out or Path("out") / "evaluations" / _folder_name(file.name)
+    continues = os.path.exists(target / PLAN)
+    check_outputs(
+        sources or [], folders=[(target, [REPORT] if report else [])], force=continues or force
+    )
+    check_folder(target / FAILING)
+    digest = digest_contents(*input_contents(file, folder), content)
+    plan = read_plan(target, digest) or plan_evaluation(file, folder, read_upload)
     helper = None if file.control is None else with_drive(plan, file.control)
-    with open_rows(where, plan, digest, replace=force, helper=helper) as store:
-        results, means = _carried_out(
+    with open_rows(target, plan, digest, replace=force, helper=helper) as store:
+        results, means = _run_evaluation(
             plan, file.control, store, make_workers(plan, backend, workers, address), limit
         )
-    failing = write_failing_specs(where, results)
+    failing = write_failing_specs(target, results)
     show_results(results, failing, console, rules)
     show_means(means, file.control, console)
     if report:
-        from argo_env.evaluation.report.page import write_evaluation_report  # brings matplotlib
+        from argo_env.evaluation.report.page import write_evaluation_report  # imports matplotlib
 
-        path = write_evaluation_report(where, results)
+        path = write_evaluation_report(target, results)
         console.print(f"Report: {escape(str(path))}", soft_wrap=True)
     if not any(row.is_completed for row in results.rows):
-        print("argo: no run could be carried out: nothing is known of the plans", file=sys.stderr)
+        print("argo: no run could be carried out, so there are no results", file=sys.stderr)
         raise typer.Exit(1)
     if any(verdict.verdict is not Decision.MET for verdict in results.verdicts):
         raise typer.Exit(1)
 
 
-def _carried_out(
+def _run_evaluation(
     plan: EvaluationPlan,
     control: str | None,
     store: RowStore,
     workers: WorkerBackend,
     limit: float | None,
 ) -> tuple[EvaluationResults, tuple[ControlledMean, ...]]:
-    def made(part: EvaluationPlan) -> EvaluationResults:
-        evaluating = EvaluationRunner(part, workers, store, limit=limit)
-        for _ in evaluating.rows_as_completed():
-            display.show(evaluating.progress)
-        return evaluating.results
+    def make_runs(part: EvaluationPlan) -> EvaluationResults:
+        runner = EvaluationRunner(part, workers, store, limit=limit)
+        for _ in runner.rows_as_completed():
+            display.show(runner.progress)
+        return runner.results
 
     try:
         with EvaluationDisplay() as display:
             if control is None:
-                return made(plan), ()
-            return run_with_control_variate(plan, control, made, store.folder)
+                return make_runs(plan), ()
+            return run_with_control_variate(plan, control, make_runs, store.folder)
     except Interrupted as interrupted:
         print(
-            f"argo: interrupted; {len(store.rows)} runs are kept in {store.folder}: the same "
-            "command goes on with them",
+            f"argo: interrupted; {len(store.rows)} runs are stored in {store.folder}: repeat the "
+            "command to continue",
             file=sys.stderr,
         )
         raise typer.Exit(interrupted.status) from None
@@ -234,11 +252,11 @@ def _compare(
 ) -> None:
     from argo_env.evaluation.comparison import compare_plans, find_plan
 
-    where = out or first
+    target = out or first
     if len(plans) > 2:
-        raise Invalid("--compare is about two plans: give --plan once for each of them")
+        raise Invalid("--compare takes two plans: give --plan at most twice")
     if report:
-        check_outputs((), folders=[(where, [COMPARISON])], force=force)
+        check_outputs((), folders=[(target, [COMPARISON])], force=force)
     a, b = read_results(first), read_results(second)
     names = [None, None] if not plans else [plans[0], plans[-1]]
     chosen = [
@@ -247,16 +265,16 @@ def _compare(
     ]
     compared = compare_plans(a, b, *chosen)
     if compared.first == compared.second:
-        of = compared.first
-        compared = replace(compared, first=f"{of} in {first}", second=f"{of} in {second}")
+        name = compared.first
+        compared = replace(compared, first=f"{name} in {first}", second=f"{name} in {second}")
     show_comparison(compared, console)
     if report:
         from argo_env.evaluation.report.page import write_comparison_report
 
-        path = write_comparison_report(where, first, second, compared)
+        path = write_comparison_report(target, first, second, compared)
         console.print(f"Report: {escape(str(path))}", soft_wrap=True)
 
 
-def _plain(name: str) -> str:
-    """The name as that of a folder."""
+def _folder_name(name: str) -> str:
+    """Return the name of an evaluation as the name of a folder."""
     return "".join(letter if letter.isalnum() or letter in "-_." else "-" for letter in name)

@@ -1,4 +1,4 @@
-"""`argo explain`: what was understood of a mission, in plain sentences."""
+"""`argo explain`: print what Argo understood of a mission, in plain sentences."""
 
 from pathlib import Path
 from typing import Annotated
@@ -9,19 +9,19 @@ from argo_compiler.diagnostics.codes.code import Severity
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.files import STANDARD_OUTPUT, check_outputs, read_upload, write_content
 from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea, Strict
-from argo_planner.use_cases.explaining import ReadingFormat, reading_of, write_reading
+from argo_planner.use_cases.explaining import ExplanationFormat, explain_mission, explanation_text
 from argo_planner.use_cases.importing import import_mission
 
 
-def explain_mission(
+def explain_command(
     source: Source,
     site: SiteOption = "umad",
-    format: Annotated[ReadingFormat, typer.Option("--format", help="for people or programs")] = (
-        ReadingFormat.TEXT
-    ),
+    format: Annotated[
+        ExplanationFormat, typer.Option("--format", help="text for people, json for programs")
+    ] = ExplanationFormat.TEXT,
     strict: Strict = False,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="a file to write it to; else it is shown")
+        Path | None, typer.Option("-o", "--output", help="write the result to this file")
     ] = None,
     start_area: StartArea = None,
     end_area: EndArea = None,
@@ -31,7 +31,7 @@ def explain_mission(
     check_outputs([source, site], [output], force=force)
     opened = open_site(site)
     imported = import_mission(read_upload(source), opened, start_area, end_area)
-    reading = reading_of(imported, opened)
-    write_content(output or STANDARD_OUTPUT, write_reading(reading, format))
+    explanation = explain_mission(imported, opened)
+    write_content(output or STANDARD_OUTPUT, explanation_text(explanation, format))
     if strict and any(d.severity is Severity.WARNING for d in imported.warnings):
         raise typer.Exit(1)

@@ -1,4 +1,4 @@
-"""`argo export`: a mission in the format of another tool."""
+"""`argo export`: write a mission in the format of another tool."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,20 +18,23 @@ from argo_planner.terminal.files import (
 )
 from argo_planner.terminal.importing import import_and_warn
 from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
-from argo_planner.use_cases.exporting import FORMATS, is_folder, require_format
-from argo_planner.use_cases.exporting import export_mission as export_imported
+from argo_planner.use_cases.exporting import FORMATS, export_mission, is_folder, require_format
 
 
-def export_mission(
+def export_command(
     source: Source,
     to: Annotated[
         str,
         typer.Option(
-            "--to", metavar="FORMAT", help=", ".join(FORMATS), autocompletion=offer_names(FORMATS)
+            "--to",
+            metavar="FORMAT",
+            help=f"format: {', '.join(FORMATS)}",
+            autocompletion=offer_names(FORMATS),
         ),
     ],
     output: Annotated[
-        Path, typer.Option("-o", "--output", help="the file to write, or the folder of files")
+        Path,
+        typer.Option("-o", "--output", help="file to write; a folder for formats of several files"),
     ],
     site: SiteOption = "umad",
     start_area: StartArea = None,
@@ -45,13 +48,13 @@ def export_mission(
         raise NotFound(f"--to {error}") from None
     if is_folder(to):
         if output == STANDARD_OUTPUT:
-            raise Invalid(f"{to} is a folder of files and can't be shown; name a folder")
+            raise Invalid(f"--to {to} writes a folder, not standard output: name a folder with -o")
         check_outputs([source, site], folders=[(output, ())])
     else:
         check_outputs([source, site], [output], force=force)
     opened = open_site(site)
     imported = import_and_warn(read_upload(source), opened, start_area, end_area)
-    exported = export_imported(imported, opened, to)
+    exported = export_mission(imported, opened, to)
     if isinstance(exported.content, Mapping):
         check_outputs([], folders=[(output, exported.content)], force=force)
     write_content(output, exported.content)

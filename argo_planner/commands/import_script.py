@@ -1,4 +1,4 @@
-"""`argo import`: a mission script becomes a mission."""
+"""`argo import`: convert a script, bag or isar mission to a mission."""
 
 from pathlib import Path
 from typing import Annotated
@@ -19,14 +19,14 @@ from argo_planner.terminal.files import (
 from argo_planner.terminal.importing import import_and_warn, show_explanation
 from argo_planner.terminal.options import EndArea, Force, SiteOption, StartArea
 from argo_planner.terminal.verbosity import is_quiet
-from argo_planner.use_cases.importing import SourceKind, kind_of
+from argo_planner.use_cases.importing import SourceKind, source_kind
 
 
-def import_script(
+def import_command(
     script: Annotated[
-        Path, typer.Argument(metavar="SCRIPT", help="a sheet, a protocol, a bag or isar's .json")
+        Path, typer.Argument(metavar="SCRIPT", help="script, ROS bag or isar mission (.json)")
     ],
-    output: Annotated[Path, typer.Option("-o", "--output", help="the mission's .json to write")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="file for the mission (.json)")],
     site: SiteOption = "umad",
     start_area: StartArea = None,
     end_area: EndArea = None,
@@ -34,9 +34,11 @@ def import_script(
 ) -> None:
     """Read a script, a ROS bag or an isar mission, and write the mission as JSON."""
     upload = read_upload(script)
-    if kind_of(upload) is SourceKind.MISSION and isinstance(upload.content, bytes):
-        decode_mission(upload.content, upload.name)  # says what is wrong with a broken one
-        raise Invalid(f"{script} is a mission already: `argo run` and `argo compile` take it")
+    if source_kind(upload) is SourceKind.MISSION and isinstance(upload.content, bytes):
+        decode_mission(upload.content, upload.name)  # raises the errors of a broken mission
+        raise Invalid(
+            f"{script} is a mission already: use it with `argo run` or `argo compile` as it is"
+        )
     check_outputs([script, site], [output], force=force)
     if output != STANDARD_OUTPUT:
         require_mission_output(output)

@@ -1,4 +1,4 @@
-"""`argo plan`: the planner page, with a service of its own."""
+"""`argo plan`: open the planner page, with a service of its own."""
 
 import webbrowser
 from contextlib import suppress
@@ -22,24 +22,25 @@ if TYPE_CHECKING:
     from argo_planner.service.storage.folder import PlanFolder
 
 _PORT = 8310
-"""tried first, as a browser keeps what it knows of a page by its address"""
+"""port that is tried first, since a browser stores the data of a page by its address"""
 
 
-def plan_mission(
+def plan_command(
     source: Annotated[
         Path | None,
-        typer.Argument(
-            metavar="[MISSION|SCRIPT]", help="is put into the folder and opened; else the list is"
-        ),
+        typer.Argument(metavar="[MISSION|SCRIPT]", help="mission to add to the folder and to open"),
     ] = None,
-    folder: Annotated[Path, typer.Option("--folder", help="where the missions are kept")] = Path(
+    folder: Annotated[Path, typer.Option("--folder", help="folder of the missions")] = Path(
         "missions"
     ),
     site: SiteOption = "umad",
     port: Annotated[
         int | None,
         typer.Option(
-            "--port", min=0, max=65535, help=f"{_PORT} or, where that is taken, a free one"
+            "--port",
+            min=0,
+            max=65535,
+            help=f"port of the page; if not given: {_PORT}, or a free one",
         ),
     ] = None,
     browser: Annotated[
@@ -69,23 +70,23 @@ def plan_mission(
         listening = listen("127.0.0.1", 0)
     port = listening.getsockname()[1]
     plans = open_folder(folder)
-    place = ""
+    fragment = ""
     if source is not None and imported is not None:
-        place = f"#/missions/{_placed(plans, source.stem, imported)}"
-    address = f"http://127.0.0.1:{port}/?token={token.secret}{place}"
+        fragment = f"#/missions/{_add_mission(plans, source.stem, imported)}"
+    address = f"http://127.0.0.1:{port}/?token={token.secret}{fragment}"
     console = Console(stderr=True, highlight=False, quiet=is_quiet(), soft_wrap=True)
     shown = browser and webbrowser.open(address)
     console.print(f"Site {opened.name}, missions in {folder}.")
     console.print(f"The page is {'open: ' if shown else 'at '}{address}")
-    console.print("Ctrl-C ends it; all that was done is kept.")
+    console.print("Press Ctrl-C to stop; all changes are saved.")
     doors = Doors(frozenset(LOOPBACK), cookie=f"argo-{port}")
     order = ServiceOrder(plans, opened, TokenBook((token,)), doors, AfterRestart.WAIT)
     with suppress(KeyboardInterrupt):
         serve(order, listening)
 
 
-def _placed(plans: "PlanFolder", name: str, mission: Mission) -> str:
-    """Id of the mission in the folder: of the one that is just like it, or of a new one."""
+def _add_mission(plans: "PlanFolder", name: str, mission: Mission) -> str:
+    """Return the id of an equal mission in the folder, or of a new one."""
     known = plans.list_plans()
     for summary in known:
         if summary.problem is None and summary.tasks == len(mission.tasks):

@@ -1,4 +1,4 @@
-"""`argo replay`: what was recorded of a run is shown again, and its report and film made anew."""
+"""`argo replay`: show a recorded run, and write its report or film again."""
 
 import time
 from pathlib import Path
@@ -23,9 +23,9 @@ from argo_planner.terminal.verbosity import is_quiet
 from argo_planner.use_cases.reporting import REPORT_FILES
 
 
-def replay(
+def replay_command(
     recording: Annotated[
-        Path, typer.Argument(metavar="RECORDING", help="the file that `argo run --record` made")
+        Path, typer.Argument(metavar="RECORDING", help="file that `argo run --record` has written")
     ],
     report: Report = None,
     render: Render = None,
@@ -41,7 +41,7 @@ def replay(
     with stage("reading the recording"):
         found = read_recording(recording)
     if found.record is None and not (report or render):
-        _show_rest(found)
+        _show_unfinished(found)
         raise typer.Exit(1)
     record = found.require_record()
     if report:
@@ -50,7 +50,7 @@ def replay(
     if found.flaw:
         console.print(
             f"[bold yellow]Warning[/]: {escape(str(recording))} {escape(found.flaw)}; the record "
-            "of the run is in it, unharmed",
+            "of the run in it is intact",
             soft_wrap=True,
         )
     count = sum(found.messages.values())
@@ -61,8 +61,8 @@ def replay(
         ).conclude(record, found.site, load_robot(record.robot), took)
 
 
-def _show_rest(recording: Recording) -> None:
-    """What there is of a run that did not come to its end."""
+def _show_unfinished(recording: Recording) -> None:
+    """Print readings and last tasks of a recording that has no record of the run."""
     console = Console()
     for reading in recording.readings:
         console.print(

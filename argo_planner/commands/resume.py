@@ -1,4 +1,4 @@
-"""`argo resume`: a run goes on from its journal."""
+"""`argo resume`: continue a run from its journal."""
 
 import os
 import time
@@ -32,11 +32,11 @@ from argo_planner.terminal.verbosity import is_quiet
 from argo_planner.use_cases.reporting import REPORT_FILES
 
 
-def resume_run(
+def resume_command(
     journal: Annotated[
         Path,
         typer.Argument(
-            metavar="JOURNAL", help="the file that `argo run` kept, such as DIR/run.journal"
+            metavar="JOURNAL", help="journal that `argo run` has written, such as DIR/run.journal"
         ),
     ],
     report: Report = None,
@@ -45,16 +45,19 @@ def resume_run(
         typer.Option(
             "--event",
             metavar="TIME=KIND",
-            help=f"what occurs at a time (s), at once if that is over; {KINDS}, or {READING_FORM}",
+            help="event at a time in s of the run; at once if that time is over; KIND: "
+            f"{KINDS}, or {READING_FORM}",
         ),
     ] = None,
     recording: Annotated[
         Path | None,
-        typer.Option("--record", metavar="FILE.mcap", help="record the rest of the run"),
+        typer.Option(
+            "--record", metavar="FILE.mcap", help="record the rest of the run into this file"
+        ),
     ] = None,
     render: Annotated[
         Path | None,
-        typer.Option("--render", metavar="FILE.mp4|FILE.gif", help="film the whole run"),
+        typer.Option("--render", metavar="FILE.mp4|FILE.gif", help="write a film of the whole run"),
     ] = None,
     force: Force = False,
 ) -> None:
@@ -81,13 +84,13 @@ def resume_run(
         site = open_site(book.header.spec.site)
         book.require_unchanged(site)
         if report:
-            make_folder(report)  # now: what is refused before leaves none behind
+            make_folder(report)  # only now, so that a refused command leaves no folder
         at = book.entries[-1].t if book.entries else 0.0
         if book.ended:
             console.print(f"The run had ended already, at {at:g} s; these are its results.")
         else:
             site.prepare()
-            console.print(f"The run goes on at {at:g} s.")
+            console.print(f"The run continues at {at:g} s.")
         with defer_first_signal() as interruption:
             conclusion = Conclusion(report, render, StoredRun(journal, force=force), interruption)
             begun = time.monotonic()

@@ -1,4 +1,4 @@
-"""`argo route`: the best order of a mission's tasks, with its proof."""
+"""`argo route`: suggest the best order of a mission's tasks, with its proof."""
 
 from enum import StrEnum
 from pathlib import Path
@@ -23,69 +23,72 @@ from argo_planner.terminal.importing import import_and_warn
 from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
 from argo_planner.terminal.order_tables import reordering_lines, show_order, show_risk
 from argo_planner.terminal.words import error_text, name_keep_order_option
-from argo_planner.use_cases.importing import SourceKind, kind_of, refuse_areas
+from argo_planner.use_cases.importing import SourceKind, require_no_areas, source_kind
 from argo_planner.use_cases.no_order import require_order
 from argo_planner.use_cases.routing import (
     MAX_BYTES,
     TIME_LIMIT,
-    Suggested,
+    SuggestedOrder,
     parse_requirements,
     require_limit,
+    suggest_order,
     suggest_robust,
+    verify_order,
 )
-from argo_planner.use_cases.routing import suggest_order as suggest
-from argo_planner.use_cases.routing import verify as verify_order
 
 
 class Spread(StrEnum):
-    """How much travel times spread."""
+    """Distribution of the travel times."""
 
     SIMULATED = "simulated"
-    """as the simulator's do"""
+    """as measured in simulation"""
     CAUTIOUS = "cautious"
-    """as they might on a real site; an assumption"""
+    """as assumed for a real site with people"""
 
 
 SPREADS = {Spread.SIMULATED: SIMULATED, Spread.CAUTIOUS: CAUTIOUS}
 
 
-def suggest_order(
+def route_command(
     source: Source,
     site: SiteOption = "umad",
     budget: Annotated[
         str | None,
         typer.Option(
             metavar="TIME",
-            help="such as 20min: what does not fit into this time is left out",
+            help="longest duration, such as 20min; tasks that do not fit are left out",
         ),
     ] = None,
     keep_order: Annotated[
-        bool, typer.Option("--keep-order", help="leave out what does not fit, but move nothing")
+        bool, typer.Option("--keep-order", help="leave tasks out if needed, but keep their order")
     ] = False,
     before: Annotated[
         list[str] | None,
-        typer.Option(metavar="A,B", help='what comes before what, such as "8, 4"'),
+        typer.Option(metavar="A,B", help='required order, such as "8, 4": 8 before 4'),
     ] = None,
     requirements: Annotated[
         Path | None,
-        typer.Option(metavar="FILE.yaml", help="what else is asked for; see docs/routes.md"),
+        typer.Option(metavar="FILE.yaml", help="file with requirements; see docs/routes.md"),
     ] = None,
     time_limit: Annotated[
-        float, typer.Option(help="s that the search may take", min=0.01)
+        float, typer.Option(help="longest time of the search in s", min=0.01)
     ] = TIME_LIMIT,
-    seed: Annotated[int, typer.Option(help="of the search", min=0)] = 0,
+    seed: Annotated[int, typer.Option(help="seed of the search", min=0)] = 0,
     risk: Annotated[
         Spread | None,
-        typer.Option(help="say how probable it is to be in time, with times that spread so"),
+        typer.Option(
+            help="show the probability of being in time if times vary as simulated, or more"
+        ),
     ] = None,
     robust: Annotated[
-        bool, typer.Option("--robust", help="take the order that is most probably in time instead")
+        bool, typer.Option("--robust", help="suggest the order that is most probably in time")
     ] = False,
     verify: Annotated[
-        bool, typer.Option("--verify", help="check apart from the search what is said of the order")
+        bool, typer.Option("--verify", help="check the result with code independent of the search")
     ] = False,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="the mission's .json to write")
+        Path | None,
+        typer.Option("-o", "--output", help="file for the mission in the new order (.json)"),
     ] = None,
     pictures: Annotated[
         Path | None, typer.Option(metavar="DIR", help="folder for a picture of each floor")
@@ -98,24 +101,25 @@ def suggest_order(
     check_outputs([source, site, requirements], [output], [(pictures, ())], force)
     if output:
         require_mission_output(output)
-    wanted = with_options(_read(requirements), budget, keep_order, before or [])
+    wanted = add_options(_read(requirements), budget, keep_order, before or [])
     upload = read_upload(source)
-    if kind_of(upload) is not SourceKind.SCRIPT:
-        refuse_areas(upload.name, start_area, end_area)
+    if source_kind(upload) is not SourceKind.SCRIPT:
+        require_no_areas(upload.name, start_area, end_area)
     opened = open_site(site)
     if pictures:
         _check_pictures(pictures, opened, force)
     imported = import_and_warn(upload, opened, start_area, end_area)
     if robust:
         require_limit(imported.mission, wanted)
-    found = suggest(imported, opened, wanted, time_limit=time_limit, seed=seed)
+    found = suggest_order(imported, opened, wanted, time_limit=time_limit, seed=seed)
     console = Console(highlight=False)
     spread = SPREADS[risk or Spread.CAUTIOUS]
     _require_order(source, found, console, verify)
     if robust:
         found = suggest_robust(found, spread, time_limit, seed)
         _require_order(source, found, console, verify)
-    reordered = found.mission if output else None  # now: not every order can be written
+    # Before any output, since not every order can be written.
+    reordered = found.mission if output else None
     show_order(found, console)
     if verify:
         _verify(found, console)
@@ -137,13 +141,13 @@ def _read(requirements: Path | None) -> Requirements:
 
 
 def _check_pictures(folder: Path, site: OpenedSite, force: bool) -> None:
-    """Raises ArgoError if there are such pictures in the folder already."""
+    """Raise ArgoError if the folder contains such pictures already."""
     from argo_env.pictures.route import picture_names
 
     check_outputs([], folders=[(folder, picture_names(site.site))], force=force)
 
 
-def _draw(found: Suggested, site: OpenedSite, folder: Path, console: Console) -> None:
+def _draw(found: SuggestedOrder, site: OpenedSite, folder: Path, console: Console) -> None:
     from argo_env.pictures.route import write_route
 
     make_folder(folder)
@@ -153,14 +157,14 @@ def _draw(found: Suggested, site: OpenedSite, folder: Path, console: Console) ->
         console.print(f"Picture: {path}", soft_wrap=True, markup=False)
 
 
-def _verify(found: Suggested, console: Console) -> None:
+def _verify(found: SuggestedOrder, console: Console) -> None:
     certificate = verify_order(found)
     show_certificate(found, certificate, console)
     if certificate.refuted:
         raise typer.Exit(1)
 
 
-def _require_order(source: Path, found: Suggested, console: Console, verify: bool) -> None:
+def _require_order(source: Path, found: SuggestedOrder, console: Console, verify: bool) -> None:
     try:
         require_order(found, str(source))
     except Conflict as error:
@@ -170,20 +174,20 @@ def _require_order(source: Path, found: Suggested, console: Console, verify: boo
         raise typer.Exit(2) from None
 
 
-def with_options(
+def add_options(
     requirements: Requirements, budget: str | None, keep_order: bool, before: list[str]
 ) -> Requirements:
-    """The requirements with those that options ask for; ArgoError where they make no sense."""
+    """Return the requirements with those of the options; raise ArgoError if one has errors."""
     found: dict[str, object] = {"keep_order": keep_order or requirements.keep_order}
     if budget is not None:
-        found["budget"] = _checked("budget", budget, budget).budget
-    asked = [_checked("before", one, (_sequence(one),)).before for one in before]
-    found["before"] = sum(asked, requirements.before)
+        found["budget"] = _validate_option("budget", budget, budget).budget
+    added = [_validate_option("before", one, (_sequence(one),)).before for one in before]
+    found["before"] = sum(added, requirements.before)
     return requirements.model_copy(update=found)
 
 
-def _checked(name: str, option: str, value: object) -> Requirements:
-    """What one option asks for alone."""
+def _validate_option(name: str, option: str, value: object) -> Requirements:
+    """Return the requirements of one option."""
     try:
         return Requirements.model_validate({name: value})
     except ValidationError as error:

@@ -1,4 +1,4 @@
-"""`argo run`: a mission is driven through its site."""
+"""`argo run`: run a mission in simulation."""
 
 import os
 import time
@@ -45,7 +45,7 @@ from argo_planner.use_cases.reporting import REPORT_FILES
 from argo_planner.use_cases.running import (
     NO_MISSION,
     is_spec,
-    spec_of,
+    load_spec,
     with_mission,
 )
 
@@ -54,7 +54,7 @@ DEFAULT_PACE = 5.0
 
 @dataclass(frozen=True)
 class _Outputs:
-    """Where a run is shown and kept."""
+    """Outputs of a run."""
 
     source: Path
     report: Path | None
@@ -63,17 +63,17 @@ class _Outputs:
     journal: Path | None
     gui: bool
     pace: float | None
-    """simulated seconds a second"""
+    """simulated seconds per second; None: not given"""
     force: bool
-    """whether what is there already is replaced"""
+    """whether existing files are replaced"""
 
     @property
-    def keeping(self) -> Path | None:
-        """The journal: the one that is named, or one in the report's folder."""
+    def journal_path(self) -> Path | None:
+        """Path of the journal: the given one, or one in the report's folder; None: neither."""
         return self.journal or (self.report and self.report / JOURNAL)
 
-    def check(self, *inputs: Path | str | None) -> None:
-        """Raises ArgoError where something can't be written, or is one of the inputs."""
+    def require_valid(self, *inputs: Path | str | None) -> None:
+        """Raise ArgoError if an output can't be written or is one of the inputs."""
         if not self.force:
             require_no_unfinished_run(self.report, self.journal)
         check_outputs(
@@ -83,8 +83,10 @@ class _Outputs:
             self.force,
         )
         if self.pace is not None and not self.gui:
-            raise Invalid("--pace is how fast the window shows the run: give --gui as well")
-        # What films and recordings are made with takes long to import.
+            raise Invalid(
+                "--pace sets the speed of the window: give --gui as well, or leave --pace out"
+            )
+        # The modules for films and recordings take long to import.
         if self.render:
             from argo_env.pictures import check_film
 
@@ -93,33 +95,36 @@ class _Outputs:
             from argo_env.recording.files import check_recording
 
             check_recording(self.recording)
-        if self.keeping and os.path.exists(self.keeping):
-            require_free(self.keeping, self.force)
+        if self.journal_path and os.path.exists(self.journal_path):
+            require_free(self.journal_path, self.force)
 
 
-_DECIDED = (
+_SPEC_OPTIONS = (
     "site", "seed", "drive", "sensor", "optimise", "start_area", "end_area", "value", "event",
     "faults",
 )  # fmt: skip
-"""options that the spec of a run has decided"""
+"""options that the spec of a run replaces"""
 
 
-def run(
+def run_command(
     context: typer.Context,
     source: Source,
     site: SiteOption = "umad",
-    seed: Annotated[int, typer.Option(help="draws what the checkpoints show", min=0)] = 0,
+    seed: Annotated[
+        int, typer.Option(help="seed of the random values of the checkpoints", min=0)
+    ] = 0,
     report: Report = None,
     drive: Annotated[
         str,
         typer.Option(
-            help=f"what moves the robot: {', '.join(DRIVES)}", autocompletion=offer_names(DRIVES)
+            help=f"model of the robot's motion: {', '.join(DRIVES)}",
+            autocompletion=offer_names(DRIVES),
         ),
     ] = "kinematic",
     sensor: Annotated[
         str,
         typer.Option(
-            help=f"what reads the checkpoints: {', '.join(SENSORS)}",
+            help=f"how checkpoints are read: {', '.join(SENSORS)}",
             autocompletion=offer_names(SENSORS),
         ),
     ] = "ideal",
@@ -128,34 +133,36 @@ def run(
     end_area: EndArea = None,
     value: Annotated[
         list[str] | None,
-        typer.Option("--value", metavar="ID=VALUE", help="what a checkpoint shows, such as 8=4.2"),
+        typer.Option(
+            "--value", metavar="ID=VALUE", help="value that a checkpoint shows, such as 8=4.2"
+        ),
     ] = None,
     event: Annotated[
         list[str] | None,
         typer.Option(
             "--event",
             metavar="TIME=KIND",
-            help=f"what occurs at a time (s), such as 60=gas_leak; {KINDS}, or {READING_FORM}",
+            help=f"event at a time in s, such as 60=gas_leak; KIND: {KINDS}, or {READING_FORM}",
         ),
     ] = None,
     faults: Annotated[
         Path | None,
-        typer.Option("--faults", metavar="FILE.yaml", help="what goes wrong; see docs/faults.md"),
+        typer.Option("--faults", metavar="FILE.yaml", help="file of faults; see docs/faults.md"),
     ] = None,
     journal: Annotated[
         Path | None,
         typer.Option(
             "--journal",
             metavar="FILE",
-            help=f"keep the run on disk, for `argo resume FILE`; with --report, DIR/{JOURNAL} if "
-            "not given",
+            help="store the run in this file, so that `argo resume` can continue it; "
+            f"DIR/{JOURNAL} if not given, with --report",
         ),
     ] = None,
-    gui: Annotated[bool, typer.Option("--gui", help="open PyBullet's window")] = False,
+    gui: Annotated[bool, typer.Option("--gui", help="show the run in PyBullet's window")] = False,
     pace: Annotated[
         float | None,
         typer.Option(
-            help=f"with --gui: simulated seconds a second, at most; {DEFAULT_PACE:g} if not given",
+            help=f"with --gui: simulated seconds per second at most; {DEFAULT_PACE:g} if not given",
             min=0.1,
         ),
     ] = None,
@@ -163,17 +170,17 @@ def run(
     recording: Annotated[
         Path | None,
         typer.Option(
-            "--record", metavar="FILE.mcap", help="record the run, for Foxglove and `argo replay`"
+            "--record", metavar="FILE.mcap", help="record the run for Foxglove and `argo replay`"
         ),
     ] = None,
     force: Force = False,
 ) -> None:
-    """Run a mission in simulation and show the results; a report or a film on request."""
+    """Run a mission, or the spec of an earlier run, in simulation, and show the results."""
     outputs = _Outputs(source, report, render, recording, journal, gui, pace, force)
-    outputs.check(site, faults)
-    said = None
+    outputs.require_valid(site, faults)
+    fault_text = None
     if faults:
-        said = decode_faults(read_bytes(faults, "file of faults", MAX_BYTES), str(faults))
+        fault_text = decode_faults(read_bytes(faults, "file of faults", MAX_BYTES), str(faults))
     spec = RunSpec(
         mission=NO_MISSION,
         source=os.path.realpath(source),
@@ -182,33 +189,33 @@ def run(
         seed=seed,
         values=parse_values(value or []),
         events=logged_events(*parse_events(event or [])),
-        faults=said.faults if said else (),
+        faults=fault_text.faults if fault_text else (),
     )
     started = time.monotonic()
     upload = read_upload(source)
     if is_spec(upload):
-        _refuse_decided(context, source)
-        checked = check_run(spec_of(upload))
+        _require_no_spec_options(context, source)
+        checked = check_run(load_spec(upload))
         opened = checked.site
     else:
         opened = open_site(site)
         spec = spec.model_copy(update={"site": opened.reference})
-        check_spec(spec, opened.site, said)  # before it is long
+        check_spec(spec, opened.site, fault_text)  # before slow work
         imported = import_and_warn(upload, opened, start_area, end_area)
         reordering = None
         if optimise:
-            from argo_planner.terminal.reordering import optimise_and_show  # brings the solvers
+            from argo_planner.terminal.reordering import optimise_and_show  # imports the solvers
 
             imported, reordering = optimise_and_show(imported, opened)
         spec = with_mission(spec, imported, reordering)
         checked = check_run(spec, opened, settings=False)
     if report:
-        make_folder(report)  # now: what is refused before leaves none behind
+        make_folder(report)  # only now, so that a refused command leaves no folder
     opened.prepare()
     loaded = time.monotonic()
     with defer_first_signal() as interruption:
         conclusion = Conclusion(
-            report, render, StoredRun(outputs.keeping, recording, force), interruption
+            report, render, StoredRun(outputs.journal_path, recording, force), interruption
         )
         with conclusion.hint_on_interruption():
             record, recorded = run_with_display(
@@ -218,31 +225,32 @@ def run(
                 lambda observers: simulate(
                     checked,
                     observers=observers,
-                    journal=outputs.keeping,
+                    journal=outputs.journal_path,
                     replace=force,
                     gui=gui,
                     pace=(pace or DEFAULT_PACE) if gui else None,
                     interrupted=interruption,
                 ),
             )
-        took = _took(record, loaded - started, time.monotonic() - loaded)
+        took = _times_text(record, loaded - started, time.monotonic() - loaded)
         if recorded:
             took += f"\n{escape(recorded)}"
         conclusion.conclude(record, opened.site, opened.robot, took)
 
 
-def _took(record: RunRecord, loading: float, running: float) -> str:
-    """How long loading and running took (s), in words."""
+def _times_text(record: RunRecord, loading: float, running: float) -> str:
+    """Return a sentence about the times in s that loading and running took."""
     return (
         f"Loading took {loading:.1f} s, the run {running:.1f} s: "
         f"{record.result.duration / max(1e-9, running):.0f} times real time."
     )
 
 
-def _refuse_decided(context: typer.Context, source: Path) -> None:
-    """Raises Invalid for options that change what a spec has decided."""
+def _require_no_spec_options(context: typer.Context, source: Path) -> None:
+    """Raise Invalid if an option is given that the spec of a run replaces."""
     for name in given_options(context):
-        if name in _DECIDED:
+        if name in _SPEC_OPTIONS:
             raise Invalid(
-                f"{source}: is the spec of a run, in which {option_name(name)} is decided already"
+                f"{source}: is the spec of a run, which sets {option_name(name)} itself: leave the "
+                "option out"
             )

@@ -1,4 +1,4 @@
-"""`argo schema`: the JSON Schemas of Argo's files."""
+"""`argo schema`: print the JSON Schemas of Argo's files."""
 
 from typing import Annotated
 
@@ -7,8 +7,8 @@ import typer
 from argo_planner.use_cases.schemas import FileKind, schema
 
 
-def show_schema(
-    name: Annotated[FileKind, typer.Argument(help="of which file")] = FileKind.MISSION,
+def schema_command(
+    name: Annotated[FileKind, typer.Argument(help="kind of file")] = FileKind.MISSION,
 ) -> None:
     """Print the JSON Schema of one kind of file, such as missions or faults."""
     print(schema(name), end="")

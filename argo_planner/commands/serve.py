@@ -1,4 +1,4 @@
-"""`argo serve`: the planning service."""
+"""`argo serve`: run the planning service."""
 
 import ipaddress
 from contextlib import suppress
@@ -16,30 +16,34 @@ from argo_planner.terminal.options import SiteOption
 from argo_planner.terminal.verbosity import is_quiet
 
 
-def serve_plans(
-    folder: Annotated[
-        Path, typer.Argument(metavar="FOLDER", help="where the missions are kept")
-    ] = Path("missions"),
+def serve_command(
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="folder of the missions")] = Path(
+        "missions"
+    ),
     site: SiteOption = "umad",
     host: Annotated[
         str,
         typer.Option(
             "--host",
-            help="address to listen at; others than this machine's own "
-            "need a token that you choose",
+            help="address to listen on; one that other machines can reach needs --token or "
+            "--token-file",
         ),
     ] = "127.0.0.1",
-    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="0: a free one")] = 8310,
+    port: Annotated[
+        int, typer.Option("--port", min=0, max=65535, help="port to listen on; 0: a free one")
+    ] = 8310,
     token: Annotated[
         str | None,
-        typer.Option("--token", envvar="ARGO_TOKEN", help="who has it may do everything"),
+        typer.Option(
+            "--token", envvar="ARGO_TOKEN", help="secret with which people may do everything"
+        ),
     ] = None,
     token_file: Annotated[
         Path | None,
         typer.Option(
             "--token-file",
             metavar="FILE",
-            help="a token a line, with its role (view, plan, operate) and who has it",
+            help="file with a token per line: its secret, role (view, plan, operate) and owner",
         ),
     ] = None,
     after_restart: Annotated[
@@ -47,7 +51,7 @@ def serve_plans(
         typer.Option(
             "--after-restart",
             metavar="go-on|wait",
-            help="what becomes of a run that was under way when the service was killed",
+            help="what to do with a run that was in progress when the service was killed",
         ),
     ] = "wait",
     foxglove: Annotated[
@@ -57,17 +61,19 @@ def serve_plans(
             metavar="PORT",
             min=1,
             max=65535,
-            help="show runs live in Foxglove, on this machine; it looks at 8765 by itself",
+            help="port on this machine for runs live in Foxglove, which tries 8765 by default",
         ),
     ] = None,
     allow_host: Annotated[
         list[str] | None,
-        typer.Option("--allow-host", metavar="NAME", help="a name under which it is asked for"),
+        typer.Option("--allow-host", metavar="NAME", help="further host name of this service"),
     ] = None,
     origin: Annotated[
         list[str] | None,
         typer.Option(
-            "--origin", metavar="URL", help="address of a proxy in front: https://argo.example.org"
+            "--origin",
+            metavar="URL",
+            help="address of a proxy in front, such as https://argo.example.org",
         ),
     ] = None,
 ) -> None:
@@ -89,8 +95,8 @@ def serve_plans(
         raise Invalid(f"--after-restart {after_restart}: choose from {', '.join(AfterRestart)}")
     if foxglove is not None:
         require_foxglove()
-    own = _is_own(host)
-    if token is None and token_file is None and not own:
+    is_local = _is_loopback(host)
+    if token is None and token_file is None and not is_local:
         raise Invalid(f"--host {host}: others can reach this address: give --token or --token-file")
     if token is not None and token_file is not None:
         raise Invalid("give --token or --token-file, not both")
@@ -111,7 +117,7 @@ def serve_plans(
     if token_file is None and token is None:
         address += f"?token={tokens[0].secret}"
     console.print(f"Site {opened.name}, missions in {folder}. Open {address}")
-    console.print("Ctrl-C ends the service; what was acknowledged is kept.")
+    console.print("Press Ctrl-C to stop the service; all confirmed changes are saved.")
     with suppress(KeyboardInterrupt):
         order = ServiceOrder(
             plans, opened, TokenBook(tokens), doors, AfterRestart(after_restart), foxglove
@@ -119,8 +125,8 @@ def serve_plans(
         serve(order, listening)
 
 
-def _is_own(host: str) -> bool:
-    """Whether only this machine reaches the address."""
+def _is_loopback(host: str) -> bool:
+    """Return True if only this machine reaches the address."""
     if host == "localhost":
         return True
     try:

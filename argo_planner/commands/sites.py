@@ -1,4 +1,4 @@
-"""`argo sites`: which sites there are, and whether one can be driven."""
+"""`argo sites`: list the sites, or check one of them."""
 
 import shlex
 from pathlib import Path
@@ -12,52 +12,52 @@ from argo_planner.terminal import completion
 from argo_planner.terminal.files import check_outputs, print_written, write_content
 from argo_planner.terminal.options import Force
 from argo_planner.use_cases.sites import (
-    check_site,
     describe_site,
     draw_report,
     list_sites,
+    make_site_report,
     require_free_name,
 )
 
 
-def show_sites(
+def sites_command(
     site: Annotated[
         str | None,
         typer.Argument(
             metavar="SITE",
-            help="a site to check: its name, its .yaml, or generated:…",
+            help="site to check: its name, the path of its .yaml, or generated:…",
             autocompletion=completion.offer_sites,
         ),
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", help="a .yaml to write the site's description to"),
+        typer.Option("-o", "--output", help="file for the site's description (.yaml)"),
     ] = None,
     picture: Annotated[
         Path | None,
-        typer.Option("--picture", help="a .png of the floors, with the places of errors"),
+        typer.Option("--picture", help="file for a picture of the floors with the errors (.png)"),
     ] = None,
     force: Force = False,
 ) -> None:
     """List the sites, or check one; exits with status 2 if parts can't be reached."""
     if site is None:
         if output or picture:
-            raise Invalid("a description or a picture is of one site: say which")
+            raise Invalid("-o and --picture need a site: name one")
         for one in list_sites():
             print(f"{one.name}: {one.title}, floors: {one.floors}, checkpoints: {one.checkpoints}")
         return
     if output:
         _check_name(output)
     if picture and picture.suffix.lower() != ".png":
-        raise Invalid(f"{picture}: a site is drawn as a .png; name it so")
+        raise Invalid(f"{picture}: the picture is a PNG: choose a name that ends in .png")
     check_outputs([site], [output, picture], force=force)
     opened = open_site(site)
     if output:
-        _write(opened, output)
-    report = check_site(opened)
+        _write_description(opened, output)
+    report = make_site_report(opened)
     if picture:
         write_content(picture, draw_report(opened, report))
-        print_written(picture, "written, the site's floors")
+        print_written(picture, "picture of the site's floors")
     for note in report.notes:
         print(f"{site}: note: {note}")
     for error in report.errors:
@@ -70,10 +70,14 @@ def show_sites(
 
 
 def _check_name(output: Path) -> None:
-    """Raises ArgoError if no site is found in a file of that name, or another one is by the name
-    that it gets."""
+    """Raise ArgoError if the file could not be used as a site.
+
+    That is the case if its name has another suffix or stands for another site.
+    """
     if output.suffix not in {".yaml", ".yml"}:
-        raise Invalid(f"{output}: a site is found in a file that ends in .yaml or .yml; name it so")
+        raise Invalid(
+            f"{output}: a site needs a file that ends in .yaml or .yml: choose such a name"
+        )
     try:
         require_free_name(str(output))
         require_free_name(output.stem)
@@ -81,7 +85,7 @@ def _check_name(output: Path) -> None:
         raise located(error, str(output)) from None
 
 
-def _write(opened: OpenedSite, output: Path) -> None:
+def _write_description(opened: OpenedSite, output: Path) -> None:
     write_content(output, describe_site(opened, output.stem))
     use = f"argo check MISSION --site {shlex.quote(str(output))}"
     print(f"{output}: written, site `{output.stem}`; use it with `{use}`")

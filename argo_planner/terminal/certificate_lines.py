@@ -8,7 +8,7 @@ from rich.markup import escape
 from argo_compiler.route.certificate import Certificate, CheckedClaim, Claim, Judgement
 from argo_compiler.route.evaluation import evaluate
 from argo_env.formatting import clock
-from argo_planner.use_cases.routing import Suggested
+from argo_planner.use_cases.routing import SuggestedOrder
 
 _BEGINNINGS = {
     Judgement.CONFIRMED: "Verified",
@@ -17,13 +17,13 @@ _BEGINNINGS = {
 }
 
 
-def show_certificate(found: Suggested, certificate: Certificate, console: Console) -> None:
+def show_certificate(found: SuggestedOrder, certificate: Certificate, console: Console) -> None:
     """Print a line for each claim that tells something about this mission."""
     for line in _lines(found, certificate):
         console.print(escape(line), soft_wrap=True)
 
 
-def _lines(found: Suggested, certificate: Certificate) -> Iterator[str]:
+def _lines(found: SuggestedOrder, certificate: Certificate) -> Iterator[str]:
     for one in certificate.claims:
         if one.judgement is Judgement.REFUTED or not _adds_nothing(found, one):
             claim = _claim_text(found, one.claim)
@@ -32,7 +32,7 @@ def _lines(found: Suggested, certificate: Certificate) -> Iterator[str]:
         yield "This is a defect of Argo: please report it with the mission and the command line"
 
 
-def _adds_nothing(found: Suggested, one: CheckedClaim) -> bool:
+def _adds_nothing(found: SuggestedOrder, one: CheckedClaim) -> bool:
     """Return True if a claim about a bound tells nothing.
 
     The proof of the best order includes both bounds, and without an order they have no meaning. The
@@ -44,17 +44,17 @@ def _adds_nothing(found: Suggested, one: CheckedClaim) -> bool:
     return of_bounds and (found.suggestion.proven or found.suggestion.route is None)
 
 
-def _claim_text(found: Suggested, claim: Claim) -> str:
+def _claim_text(found: SuggestedOrder, claim: Claim) -> str:
     made = found.suggestion
     match claim:
         case Claim.ROUTE:
             takes = evaluate(found.planned.problem, found.route).duration
-            return f"the order meets all requirements and takes {clock(found.seconds(takes))}"
+            return f"the order meets all requirements and takes {clock(found.to_seconds(takes))}"
         case Claim.PRIZE_BOUND:
             return f"no order is worth more than {made.prize_bound}"
         case Claim.BOUND:
             worth = f" worth {made.prize_bound}" if found.planned.problem.selective else ""
-            return f"no order{worth} takes less than {clock(found.seconds(made.bound))}"
+            return f"no order{worth} takes less than {clock(found.to_seconds(made.bound))}"
         case Claim.BEST:
             return "no order is better"
         case Claim.NONE:
@@ -63,15 +63,15 @@ def _claim_text(found: Suggested, claim: Claim) -> str:
             return "there is an order if any one of these is left out"
 
 
-def _reason_text(found: Suggested, one: CheckedClaim) -> str:
+def _reason_text(found: SuggestedOrder, one: CheckedClaim) -> str:
     if one.counterexample is not None:
         worth = evaluate(found.planned.problem, one.counterexample)
         names = (found.planned.visits.names[visit] for visit in one.counterexample.order)
-        takes = clock(found.seconds(worth.duration))
+        takes = clock(found.to_seconds(worth.duration))
         return f"counterexample: {', '.join(names)}; it is worth {worth.prize} and takes {takes}"
     if one.shown is None:
         return one.why
     most, least = one.shown
     if most > found.suggestion.prize:
         return f"{one.why}: it only shows that none is worth more than {most}"
-    return f"{one.why}: it only shows that none takes less than {clock(found.seconds(least))}"
+    return f"{one.why}: it only shows that none takes less than {clock(found.to_seconds(least))}"

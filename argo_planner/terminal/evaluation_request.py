@@ -38,7 +38,7 @@ def require_comparison_only(context: typer.Context, sources: list[Path] | None) 
             raise Invalid(f"--compare runs nothing: leave {option_name(option)} out")
 
 
-def read_request(
+def read_evaluation_request(
     context: typer.Context,
     sources: list[Path],
     seeds: str,

@@ -4,7 +4,7 @@ import math
 
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid
 from argo_compiler.hfsm import Event
-from argo_planner.use_cases.running import EVENTS, READING, event_named
+from argo_planner.use_cases.running import EVENTS, READING, parse_event
 
 KINDS = ", ".join(EVENTS)
 """kinds of events in `--event TIME=KIND`, apart from `READING_FORM`"""
@@ -28,7 +28,7 @@ def parse_events(options: list[str]) -> list[tuple[float, Event]]:
         if not (equals and 0.0 <= time_s < math.inf):
             raise Invalid(f"--event {option}: write TIME=KIND in s, such as 60=gas_leak")
         try:
-            events.append((time_s, event_named(name.strip())))
+            events.append((time_s, parse_event(name.strip())))
         except ArgoError as error:
             raise Invalid(f"--event {option}: {error}") from None
     return sorted(events, key=lambda event: event[0])

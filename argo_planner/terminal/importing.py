@@ -6,7 +6,7 @@ from argo_compiler.diagnostics import DiagnosticError, to_text
 from argo_env.planning.opening import OpenedSite
 from argo_planner.terminal.verbosity import is_quiet
 from argo_planner.terminal.words import name_options
-from argo_planner.use_cases.explaining import reading_of, write_reading
+from argo_planner.use_cases.explaining import explain_mission, explanation_text
 from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
 
 
@@ -23,6 +23,6 @@ def import_and_warn(
 def show_explanation(imported: ImportedMission, site: OpenedSite) -> None:
     """Print a mission in plain sentences, or diagnostics for what no script can express."""
     try:
-        print(write_reading(reading_of(imported, site)), end="")
+        print(explanation_text(explain_mission(imported, site)), end="")
     except DiagnosticError as error:
         print(to_text(error.diagnostics, imported.source_name), file=sys.stderr)

@@ -17,16 +17,16 @@ from argo_compiler.route.tour_pauses import TourPause, pauses
 from argo_env.formatting import clock
 from argo_env.planning.opening import OpenedSite
 from argo_planner.terminal.words import name_keep_order_option
-from argo_planner.use_cases.routing import Suggested, completions, too_long
+from argo_planner.use_cases.routing import SuggestedOrder, duration_problem, estimate_completions
 
 _MAX_VIOLATIONS = 3  # violations of the written order that are listed
 _MAX_PRECEDENCES = 12  # precedences that are listed
 
 
-def show_risk(found: Suggested, spread: TravelSpread, seed: int, console: Console) -> None:
+def show_risk(found: SuggestedOrder, spread: TravelSpread, seed: int, console: Console) -> None:
     """Print how probable it is that the written and the suggested order keep all time limits."""
     problem = found.planned.problem
-    both = completions(found, spread, seed)
+    both = estimate_completions(found, spread, seed)
     for name, done in zip(("As written", "Suggested"), both, strict=True):
         text = f"{name}: in time with a probability of {done.probability:.1%}"
         if done.duration < float("inf"):
@@ -37,7 +37,7 @@ def show_risk(found: Suggested, spread: TravelSpread, seed: int, console: Consol
     console.print(escape(f"Spread of the travel times: {spread.source}"), soft_wrap=True)
 
 
-def show_order(found: Suggested, console: Console) -> None:
+def show_order(found: SuggestedOrder, console: Console) -> None:
     """Print the suggested order next to the written one, with its times and proof."""
     console.print(_table(found))
     for line in _lines(found):
@@ -45,18 +45,18 @@ def show_order(found: Suggested, console: Console) -> None:
 
 
 def reordering_lines(
-    found: Suggested, mission: Mission, site: OpenedSite, output: Path
+    found: SuggestedOrder, mission: Mission, site: OpenedSite, output: Path
 ) -> Iterator[str]:
     """Yield the lines about a mission that was written in its new order."""
     yield f"Mission: {output}"
     limit = mission.max_duration
     if limit is not None and limit != found.planned.mission.max_duration:
         yield f"Its maximum duration is now the budget: {time_words(limit)}"
-    if wrong := too_long(mission, site):
+    if wrong := duration_problem(mission, site):
         yield f"Note: with its exact travel times, {wrong}: search with a smaller budget"
 
 
-def _table(found: Suggested) -> Table:
+def _table(found: SuggestedOrder) -> Table:
     planned, route = found.planned, found.route
     worth = evaluate(planned.problem, route)
     stops = pauses(planned.problem, route)
@@ -72,9 +72,9 @@ def _table(found: Suggested) -> Table:
         table.add_row(
             str(k + 1),
             escape(planned.visits.names[visit]),
-            "not reached" if visit in late else clock(found.seconds(worth.arrivals[k])),
+            "not reached" if visit in late else clock(found.to_seconds(worth.arrivals[k])),
             str(written[visit] + 1),
-            clock(found.seconds(before[written[visit]])),
+            clock(found.to_seconds(before[written[visit]])),
         )
         if along := planned.visits.other_tasks(visit):
             table.add_row("", f"[italic]then {escape(', '.join(along))}[/]", "", "", "")
@@ -86,16 +86,16 @@ def _table(found: Suggested) -> Table:
             escape(planned.visits.names[visit]),
             "left out",
             str(written[visit] + 1),
-            clock(found.seconds(before[written[visit]])),
+            clock(found.to_seconds(before[written[visit]])),
             style="yellow",
         )
     return table
 
 
-def _lines(found: Suggested) -> Iterator[str]:
+def _lines(found: SuggestedOrder) -> Iterator[str]:
     planned, suggestion = found.planned, found.suggestion
     problem, worth = planned.problem, evaluate(planned.problem, found.route)
-    new, old = found.seconds(worth.duration), found.seconds(found.written.duration)
+    new, old = found.to_seconds(worth.duration), found.to_seconds(found.written.duration)
     yield f"As written: {clock(old)}" + _violations_text(found)
     change = f", {clock(abs(old - new))} {'less' if new <= old else 'more'}" if new != old else ""
     share = f" ({(old - new) / old:.0%})" if new < old and old > 0.0 else ""
@@ -127,7 +127,7 @@ def _lines(found: Suggested) -> Iterator[str]:
         yield f"Search: {reason}"
 
 
-def _unreached(found: Suggested) -> Iterator[tuple[str, list[int]]]:
+def _unreached(found: SuggestedOrder) -> Iterator[tuple[str, list[int]]]:
     """Yield groups whose time is over before each of their tasks was reached once.
 
     Each comes with the visits of the tasks that are not reached.
@@ -148,15 +148,15 @@ def _unreached(found: Suggested) -> Iterator[tuple[str, list[int]]]:
             yield one.name, late
 
 
-def _pause(found: Suggested, pause: TourPause) -> str:
-    how_long = clock(found.seconds(pause.duration))
+def _pause(found: SuggestedOrder, pause: TourPause) -> str:
+    how_long = clock(found.to_seconds(pause.duration))
     if pause.charger is not None:
         return f"charge {how_long} at {found.planned.problem.chargers[pause.charger]}"
     assert pause.visit is not None
     return f"wait {how_long} for {found.planned.visits.names[pause.visit]}"
 
 
-def _violations_text(found: Suggested) -> str:
+def _violations_text(found: SuggestedOrder) -> str:
     """Return a clause that names the requirements which the written order violates."""
     limit = found.planned.problem.words.get("max_duration", "")
     broken = [
@@ -171,7 +171,7 @@ def _violations_text(found: Suggested) -> str:
     return f", which violates: {'; '.join(broken[:_MAX_VIOLATIONS])}{more}"
 
 
-def _proof(found: Suggested) -> str:
+def _proof(found: SuggestedOrder) -> str:
     suggestion = found.suggestion
     method = f" ({suggestion.method})" if suggestion.method else ""
     if suggestion.proven:
@@ -181,6 +181,6 @@ def _proof(found: Suggested) -> str:
             f"Not proven: worth {suggestion.prize}, and no order is worth more than "
             f"{suggestion.prize_bound}{method}"
         )
-    bound = clock(found.seconds(suggestion.bound))
+    bound = clock(found.to_seconds(suggestion.bound))
     gap = f"{suggestion.gap or 0.0:.1%} less than this one"
     return f"Not proven: no order takes less than {bound}, {gap}{method}"

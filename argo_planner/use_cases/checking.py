@@ -1,4 +1,4 @@
-"""All that is wrong or odd about a mission, without running it."""
+"""Check of a mission without running it."""
 
 from enum import StrEnum
 
@@ -21,14 +21,20 @@ from argo_compiler.diagnostics import (
 from argo_compiler.files.loading import FileError
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.site_warnings import too_fast, unseen_from_poses
-from argo_planner.use_cases.importing import SourceKind, Upload, kind_of, load, refuse_areas
+from argo_planner.use_cases.importing import (
+    SourceKind,
+    Upload,
+    load_upload,
+    require_no_areas,
+    source_kind,
+)
 
-MOST_PLACES = 1_000
-"""as far as ways to different places are planned for a check: each takes some milliseconds"""
+MAX_POSES = 1_000
+"""highest number of poses between which a check plans paths; each takes some milliseconds"""
 
 
 class Format(StrEnum):
-    """How diagnostics are written."""
+    """Format of written diagnostics."""
 
     TEXT = "text"
     JSON = "json"
@@ -43,24 +49,31 @@ def check_source(
     travel: Travel | None = None,
     site: OpenedSite | None = None,
 ) -> tuple[Diagnostic, ...]:
-    """The diagnostics of every stage that the mission gets through, by place.
+    """Return the diagnostics of all stages that the mission passes, by position in the source.
 
-    Without `travel`, nothing is said about times, and without a `site` nothing about what is seen
-    from where. Raises Invalid where areas are chosen for what
-    has them already.
+    Args:
+        upload: script or mission
+        catalog: names and poses of the site
+        start_area: starting area, for a script that names none
+        end_area: area to end in, for a script that names none
+        travel: travel times; None: times are not checked
+        site: the site; None: views of checkpoints and speeds are not checked
+
+    Raises:
+        Invalid: Areas are given for a mission, which has its own.
     """
-    if kind_of(upload) is not SourceKind.SCRIPT:
-        refuse_areas(upload.name, start_area, end_area)
+    if source_kind(upload) is not SourceKind.SCRIPT:
+        require_no_areas(upload.name, start_area, end_area)
     try:
-        loaded = load(upload, catalog, start_area, end_area)
+        loaded = load_upload(upload, catalog, start_area, end_area)
     except ArgoError as error:
-        return diagnostics_of(error)
+        return error_diagnostics(error)
     found = check(loaded.mission, catalog)
     if not has_errors(found):
-        places = len({task.pose for task in loaded.mission.tasks if task.pose is not None})
-        if travel is not None and places > MOST_PLACES:
+        poses = len({task.pose for task in loaded.mission.tasks if task.pose is not None})
+        if travel is not None and poses > MAX_POSES:
             travel = None
-            found += (_too_many_places(places),)
+            found += (_too_many_poses(poses),)
         with stage("analysing the mission's paths"):
             found += analyse(loaded.mission, catalog, travel).diagnostics
         if site is not None:
@@ -69,23 +82,22 @@ def check_source(
     return by_position((*loaded.diagnostics, *loaded.placed(found)))
 
 
-def _too_many_places(places: int) -> Diagnostic:
+def _too_many_poses(poses: int) -> Diagnostic:
     return Diagnostic(
         code="analysis.too-many-places",
         severity=Severity.WARNING,
-        message=f"the mission goes to {places} different places: nothing is said about its times, "
-        f"its energy and whether the robot gets there, as that is looked at for up to "
-        f"{MOST_PLACES} places",
+        message=f"the mission goes to {poses} different poses: its times, its energy and its paths "
+        f"are not checked, as that is done for at most {MAX_POSES} poses",
         hint="divide it into several missions",
         subject="tasks",
     )
 
 
-def diagnostics_of(error: ArgoError) -> tuple[Diagnostic, ...]:
-    """What is wrong with a mission that could not be read, as diagnostics."""
+def error_diagnostics(error: ArgoError) -> tuple[Diagnostic, ...]:
+    """Return the diagnostics of an error that was raised when a mission was read."""
     if isinstance(error, DiagnosticError):
         return error.diagnostics
-    # Where the file is named beside it, the message need not name it again.
+    # The file is named with each diagnostic, so the message does not have to name it.
     file = error if isinstance(error, FileError) else None
     return (
         Diagnostic(
@@ -98,7 +110,7 @@ def diagnostics_of(error: ArgoError) -> tuple[Diagnostic, ...]:
 
 
 def write_diagnostics(diagnostics: tuple[Diagnostic, ...], source_name: str, format: Format) -> str:
-    """The diagnostics as text for people, or as JSON or SARIF."""
+    """Return the diagnostics as text for people, or as JSON or SARIF."""
     match format:
         case Format.JSON:
             return to_json(diagnostics, source_name)
@@ -106,7 +118,7 @@ def write_diagnostics(diagnostics: tuple[Diagnostic, ...], source_name: str, for
             return to_sarif(diagnostics, source_name)
         case Format.TEXT:
             text = to_text(diagnostics, source_name)
-            # Of several diagnostics it says by itself how many there are.
+            # The text of several diagnostics ends with their number.
             if len(diagnostics) > 1:
                 return text
             return f"{text}\n{source_name}: {summary(diagnostics)}".lstrip()

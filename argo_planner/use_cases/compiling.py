@@ -1,4 +1,4 @@
-"""Missions become their state machines."""
+"""Lowering of missions to state machines."""
 
 from dataclasses import dataclass
 
@@ -9,13 +9,13 @@ from argo_planner.use_cases.importing import ImportedMission
 
 @dataclass(frozen=True)
 class CompiledMission:
-    """A mission's machine."""
+    """The state machine of a mission."""
 
     machine: Hfsm
 
     @property
     def json(self) -> str:
-        """The machine's file."""
+        """The machine as the content of its file."""
         return self.machine.model_dump_json(indent=2) + "\n"
 
     @property
@@ -25,5 +25,5 @@ class CompiledMission:
 
 
 def compile_mission(imported: ImportedMission) -> CompiledMission:
-    """Lowers a mission. Raises DiagnosticError for a mission that makes no sense."""
+    """Lower a mission to its state machine; raise DiagnosticError if the mission has errors."""
     return CompiledMission(lower(imported.mission, source_name=imported.source_name))

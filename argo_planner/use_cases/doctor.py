@@ -1,4 +1,4 @@
-"""What this installation of Argo has and lacks, and where it keeps things."""
+"""Examination of an installation of Argo: its optional parts and its cache."""
 
 import platform
 from importlib.util import find_spec
@@ -14,7 +14,7 @@ _EXTRAS: dict[str, tuple[str, tuple[str, ...]]] = {
     "results": ("rows of evaluations in Parquet files", ("pyarrow",)),
     "film": ("films as .mp4", ("imageio_ffmpeg",)),
     "learned": (
-        "policies that learn",
+        "learned policies",
         ("torch", "stable_baselines3", "sb3_contrib", "tensorboard"),
     ),
     "recording": (
@@ -25,26 +25,26 @@ _EXTRAS: dict[str, tuple[str, tuple[str, ...]]] = {
         "the planning service",
         ("fastapi", "uvicorn", "uvloop", "httptools", "websockets"),
     ),
-    "foxglove": ("runs live in Foxglove", ("foxglove",)),
-    "ros": ("missions in bags of ROS", ("rosbags",)),
-    "route": ("better routes", ("pyvrp", "numba")),
+    "foxglove": ("live view of runs in Foxglove", ("foxglove",)),
+    "ros": ("missions in ROS bags", ("rosbags",)),
+    "route": ("more solvers for routes", ("pyvrp", "numba")),
     "vision": ("reading gauges from pictures", ("cv2",)),
 }
-"""What each extra is for, and the modules that it brings."""
+"""extras by name: the purpose of each, and the modules that it installs"""
 
 
 class CacheReport(Model):
-    """What is in the cache on disk."""
+    """Content of the cache on disk."""
 
     folder: str
     entries: int
-    """sites, each with its robot"""
+    """number of sites, each with its robot"""
     size: int
-    """bytes"""
+    """size in bytes"""
     limit: int
-    """bytes"""
-    flaw: str | None
-    """why nothing can be written there, if so"""
+    """highest size in bytes"""
+    write_problem: str | None
+    """reason why nothing can be written there; None: it can"""
 
 
 class Extra(Model):
@@ -57,12 +57,12 @@ class Extra(Model):
 
     @property
     def remedy(self) -> str:
-        """The command that installs it."""
+        """Command that installs this part."""
         return install_line(self.name)
 
 
 class Examination(Model):
-    """What was found out about this installation."""
+    """Result of an examination of this installation."""
 
     version: str
     python: str
@@ -70,22 +70,22 @@ class Examination(Model):
     cache: CacheReport
     extras: tuple[Extra, ...]
     physics: str | None
-    """why PyBullet does not work, if so"""
+    """reason why PyBullet does not work; None: it works"""
 
 
 def examine() -> Examination:
-    """Looks at the installation; nothing is changed."""
-    kept = cache.contents()
+    """Examine the installation without changing anything."""
+    contents = cache.contents()
     return Examination(
         version=__version__,
         python=platform.python_version(),
         system=f"{platform.system()} {platform.machine()}",
         cache=CacheReport(
             folder=str(cache.cache_folder()),
-            entries=kept.sites,
-            size=kept.size,
+            entries=contents.sites,
+            size=contents.size,
             limit=cache.MAX_SIZE,
-            flaw=cache.write_problem(),
+            write_problem=cache.write_problem(),
         ),
         extras=tuple(
             Extra(
@@ -95,12 +95,12 @@ def examine() -> Examination:
             )
             for name, (purpose, modules) in _EXTRAS.items()
         ),
-        physics=_physics_flaw(),
+        physics=_physics_problem(),
     )
 
 
-def _physics_flaw() -> str | None:
-    """Why PyBullet does not work; None if it does."""
+def _physics_problem() -> str | None:
+    """Return the reason why PyBullet does not work, or None if it works."""
     try:
         from argo_env.world.pybullet_client import Connection
 

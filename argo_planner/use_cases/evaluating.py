@@ -1,4 +1,4 @@
-"""Evaluations from files: what is run is found out and checked before the first run begins."""
+"""Plans of evaluations, whose runs are all checked before the first one begins."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -36,28 +36,33 @@ from argo_planner.use_cases.no_order import require_order
 from argo_planner.use_cases.routing import suggest_order
 
 OPTIMISED = "optimised"
-"""the policy that suggests the best order, as `argo route` does"""
+"""policy that uses the best order, as `argo route` finds it"""
 _YAML = (".yaml", ".yml")
 
 
 @dataclass(frozen=True)
 class FaultSet:
-    """The faults of a case."""
+    """The faults of a case, with their name."""
 
     name: str
     faults: tuple[AnyFault, ...] = ()
     weight: float = 1.0
-    said: FaultText | None = None
-    """the text that they were read from"""
+    text: FaultText | None = None
+    """file that they were read from; None: they were drawn, or there are none"""
 
 
 def plan_evaluation(
     file: EvaluationFile, folder: Path, read: Callable[[Path], Upload]
 ) -> EvaluationPlan:
-    """All runs that an evaluation's file asks for. Paths in it begin in `folder`; a mission is read
-    by `read`.
+    """Return the plan with all runs that an evaluation file asks for.
 
-    Raises ArgoError for what is not there, makes no sense, or can't be run.
+    Args:
+        file: the evaluation
+        folder: folder that the paths in the file are relative to
+        read: function that reads a mission
+
+    Raises:
+        ArgoError: A file is missing or has errors, or a run is not possible.
     """
     sets = [*_fault_sets(file, folder)]
     cases = [*_cases(file, folder, read, sets)]
@@ -86,15 +91,18 @@ def plan_evaluation(
     return plan
 
 
-def files_of(file: EvaluationFile, folder: Path) -> Iterator[bytes]:
-    """What an evaluation depends on, as far as it is in files: two that give the same are the same
-    evaluation. Policies that are functions are not in files, and never the same."""
+def input_contents(file: EvaluationFile, folder: Path) -> Iterator[bytes]:
+    """Yield all that an evaluation depends on; equal contents mean equal evaluations.
+
+    A policy that is a function is not in a file; random bytes stand for it, so that evaluations
+    with it are never equal.
+    """
     yield __version__.encode()
     yield file.model_dump_json().encode()
     if any(policy not in (AS_WRITTEN, OPTIMISED) for policy in file.policies):
         yield os.urandom(16)
     faults = [file.faults.file] if isinstance(file.faults, DrawnFaults) else file.faults
-    missions = [said if isinstance(said, str) else said.file for said in file.missions]
+    missions = [one if isinstance(one, str) else one.file for one in file.missions]
     for name in (*missions, *file.sites, *faults):
         path = folder / name
         for one in _files(path) if os.path.isdir(path) else [path]:
@@ -106,7 +114,7 @@ def files_of(file: EvaluationFile, folder: Path) -> Iterator[bytes]:
 def make_workers(
     plan: EvaluationPlan, backend: str, workers: int | None, address: str | None
 ) -> WorkerBackend:
-    """Workers for an evaluation, at most one a run. Raises ArgoError if there can be none."""
+    """Return workers for an evaluation, at most one per run; raise ArgoError if there are none."""
     runs = len(plan.seeds) * (1 if plan.strata else len(plan.cases))
     if workers is None and address is None:
         workers = usable_processors()
@@ -120,13 +128,13 @@ def _cases(
     file: EvaluationFile, folder: Path, read: Callable[[Path], Upload], sets: list[FaultSet]
 ) -> Iterator[EvaluationCase]:
     names: dict[str, str] = {}
-    for said in file.missions:
-        entry = MissionEntry(file=said) if isinstance(said, str) else said
+    for mission_file in file.missions:
+        entry = MissionEntry(file=mission_file) if isinstance(mission_file, str) else mission_file
         name = entry.name or Path(entry.file).stem
         if names.setdefault(name, entry.file) != entry.file:
             raise Conflict(
                 f"missions {names[name]} and {entry.file} are both called {name}: give one of them "
-                "a name"
+                "another name"
             )
         upload = read(folder / entry.file)
         for site in file.sites:
@@ -134,7 +142,7 @@ def _cases(
                 opened = open_site(_site(site, folder), load_robot(robot)).prepare()
                 imported = import_mission(upload, opened, entry.start_area, entry.end_area)
                 for policy in file.policies:
-                    mission = ordered(imported, opened, policy)
+                    mission = apply_policy(imported, opened, policy)
                     for drive in file.drives:
                         for sensor in file.sensors:
                             spec = RunSpec(
@@ -145,15 +153,15 @@ def _cases(
                                 sensor=sensor,
                             )
                             for faults in sets:
-                                yield case_of(name, policy, spec, faults, opened)
+                                yield make_case(name, policy, spec, faults, opened)
 
 
-def case_of(
+def make_case(
     name: str, policy: str, spec: RunSpec, faults: FaultSet, opened: OpenedSite
 ) -> EvaluationCase:
-    """A case of an evaluation with these faults. Raises ArgoError if no run can have them there."""
+    """Return a case with these faults; raise ArgoError if they are not possible on the site."""
     spec = spec.model_copy(update={"faults": faults.faults})
-    check_spec(spec, opened.site, faults.said)
+    check_spec(spec, opened.site, faults.text)
     return EvaluationCase(
         mission=name,
         policy=policy,
@@ -164,11 +172,17 @@ def case_of(
     )
 
 
-def ordered(imported: ImportedMission, site: OpenedSite, policy: str) -> Mission:
-    """The mission in the order of a policy: `as written`, `optimised`, or that of a function, named
-    as `module:function`, which is given mission and site and returns a mission.
+def apply_policy(imported: ImportedMission, site: OpenedSite, policy: str) -> Mission:
+    """Return the mission in the order of a policy.
 
-    Raises ArgoError if there is no such policy, or no such order.
+    Args:
+        imported: the mission
+        site: its site
+        policy: `as written`, `optimised`, or `module:function`: a function that takes mission and
+            site, and returns a mission
+
+    Raises:
+        ArgoError: There is no such policy, or it fails, or no order is possible.
     """
     if policy == AS_WRITTEN:
         return imported.mission
@@ -188,10 +202,10 @@ def ordered(imported: ImportedMission, site: OpenedSite, policy: str) -> Mission
         raise NotFound(f"policy `{policy}`: {error}") from None
     try:
         mission = cast("object", function(imported.mission, site))
-    except Exception as error:  # whatever somebody's own function raises
+    except Exception as error:  # a user's function may raise anything
         raise Invalid(f"policy `{policy}`: {type(error).__name__}: {error}") from error
     if not isinstance(mission, Mission):
-        raise Invalid(f"policy `{policy}`: gave {type(mission).__name__}, and no mission")
+        raise Invalid(f"policy `{policy}`: returned {type(mission).__name__} instead of a mission")
     return mission
 
 
@@ -206,17 +220,17 @@ def _fault_sets(file: EvaluationFile, folder: Path) -> Iterator[FaultSet]:
         for chance in drawn.chances:
             yield FaultSet(chance.name, chance.faults, chance.probability)
         return
-    for said in file.faults:
-        if said == NO_FAULTS:
+    for fault_file in file.faults:
+        if fault_file == NO_FAULTS:
             yield FaultSet(NO_FAULTS)
             continue
-        path = folder / said
+        path = folder / fault_file
         found = _files(path) if os.path.isdir(path) else [path]
         if not found:
-            raise NotFound(f"{path}: has no files of faults, which end in .yaml")
+            raise NotFound(f"{path}: contains no files of faults (.yaml)")
         for one in found:
             text = decode_faults(read_bytes(one, "file of faults", MAX_BYTES), str(one))
-            yield FaultSet(one.stem, text.faults, said=text)
+            yield FaultSet(one.stem, text.faults, text=text)
 
 
 def _files(folder: Path) -> list[Path]:
@@ -225,19 +239,19 @@ def _files(folder: Path) -> list[Path]:
     )
 
 
-def _distribution(said: DrawnFaults, folder: Path) -> FaultDistribution:
-    path = folder / said.file
+def _distribution(drawn: DrawnFaults, folder: Path) -> FaultDistribution:
+    path = folder / drawn.file
     return decode_distribution(read_bytes(path, "distribution of faults", MAX_BYTES), str(path))
 
 
-def _site(said: str, folder: Path) -> str:
-    """A site's file is looked for beside the evaluation's."""
-    path = folder / said
-    return str(path) if said.endswith(_YAML) and os.path.isfile(path) else said
+def _site(name: str, folder: Path) -> str:
+    """Return the path of a site's file relative to the evaluation file, or the site's name."""
+    path = folder / name
+    return str(path) if name.endswith(_YAML) and os.path.isfile(path) else name
 
 
 def _require_drawn(cases: list[EvaluationCase], drawn: FaultDistribution, file: str) -> None:
-    """Raises ArgoError for faults that no run of a case can have, before one draws them."""
+    """Raise ArgoError if faults that may be drawn are not possible in a case."""
     for case in cases:
         site = open_site(case.spec.site, load_robot(case.spec.robot)).site
         for chance in drawn.chances:

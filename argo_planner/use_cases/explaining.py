@@ -1,4 +1,4 @@
-"""Missions said back in plain sentences."""
+"""Explanation of missions in plain sentences."""
 
 from enum import StrEnum
 
@@ -8,23 +8,29 @@ from argo_env.planning.opening import OpenedSite
 from argo_planner.use_cases.importing import ImportedMission
 
 
-class ReadingFormat(StrEnum):
-    """How a reading is written."""
+class ExplanationFormat(StrEnum):
+    """Format of a written explanation."""
 
     TEXT = "text"
     JSON = "json"
 
 
-def reading_of(imported: ImportedMission, site: OpenedSite) -> MissionReading:
-    """What was understood of a mission. Raises DiagnosticError, with all that no script can say."""
+def explain_mission(imported: ImportedMission, site: OpenedSite) -> MissionReading:
+    """Return what Argo understood of a mission, sentence by sentence.
+
+    Raises:
+        DiagnosticError: A script can't express parts of the mission; the diagnostics name them.
+    """
     try:
         return read_back(imported.mission, site.catalog, imported.warnings, imported.source_name)
     except DiagnosticError as error:
         raise DiagnosticError(imported.source_name, error.diagnostics) from None
 
 
-def write_reading(reading: MissionReading, format: ReadingFormat = ReadingFormat.TEXT) -> str:
-    """The reading as text for people, which is a script itself, or as JSON."""
-    if format is ReadingFormat.JSON:
+def explanation_text(
+    reading: MissionReading, format: ExplanationFormat = ExplanationFormat.TEXT
+) -> str:
+    """Return an explanation as text for people, which is also a script, or as JSON."""
+    if format is ExplanationFormat.JSON:
         return reading.model_dump_json(indent=2) + "\n"
     return reading.text

@@ -1,4 +1,4 @@
-"""Missions as scripts, and in the formats of other tools."""
+"""Export of missions as scripts and to the formats of other tools."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,21 +14,21 @@ from argo_env.planning.reading_places import inspection_views
 from argo_planner.use_cases.importing import ImportedMission
 
 FORMATS = (*EXPORTERS, "isar")
-"""The names of all formats."""
+"""names of all formats"""
 
 
 @dataclass(frozen=True)
 class ExportedMission:
-    """What was written of a mission."""
+    """An exported mission."""
 
     content: str | bytes | Mapping[str, bytes]
     """a file as text or bytes, or the files of a folder by their paths in it"""
     description: str
-    """of the format"""
+    """name of the format for people"""
 
 
 def exporters(site: OpenedSite) -> dict[str, Exporter]:
-    """By the names of the formats: the compiler's, and isar's, which needs the site."""
+    """Return the exporters by format: those of the compiler, and isar's, which needs the site."""
     isar = Exporter(
         "isar mission definition",
         (".json",),
@@ -38,21 +38,23 @@ def exporters(site: OpenedSite) -> dict[str, Exporter]:
 
 
 def require_format(name: str) -> None:
-    """Raises NotFound if there is no such format."""
+    """Raise NotFound if there is no such format."""
     if name not in FORMATS:
         raise NotFound(f"{name}: there is no such format; choose from {', '.join(FORMATS)}")
 
 
 def is_folder(format: str) -> bool:
-    """Whether the format is a folder of files. Raises NotFound if there is no such format."""
+    """Return True if the format is a folder of files; raise NotFound if there is no such format."""
     require_format(format)
     return format in EXPORTERS and not EXPORTERS[format].suffixes
 
 
 def export_mission(imported: ImportedMission, site: OpenedSite, format: str) -> ExportedMission:
-    """Writes a mission in that format.
+    """Return a mission in a format.
 
-    Raises NotFound if there is no such format, and DiagnosticError with all that it can't say.
+    Raises:
+        NotFound: There is no such format.
+        DiagnosticError: The format can't express parts of the mission; the diagnostics name them.
     """
     require_format(format)
     exporter = exporters(site)[format]
@@ -64,10 +66,11 @@ def export_mission(imported: ImportedMission, site: OpenedSite, format: str) -> 
     return ExportedMission(content, exporter.description)
 
 
-def as_script(imported: ImportedMission, site: OpenedSite) -> str:
-    """The mission as a script, in one canonical form; importing that gives the same mission.
+def to_script(imported: ImportedMission, site: OpenedSite) -> str:
+    """Return the mission as a script in a standard form; importing it gives the same mission.
 
-    Raises DiagnosticError, with all that no script can say.
+    Raises:
+        DiagnosticError: A script can't express parts of the mission; the diagnostics name them.
     """
     try:
         return format_script(imported.mission, site.catalog)

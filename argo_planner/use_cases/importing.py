@@ -1,4 +1,4 @@
-"""Missions from what someone hands in: scripts, missions, bags and other tools' missions."""
+"""Import of missions from scripts, mission files, ROS bags and isar missions."""
 
 import logging
 import os
@@ -32,14 +32,15 @@ from argo_env.planning.site_warnings import too_fast
 _log = logging.getLogger(__name__)
 
 _BRACE = re.compile(rb"(\xef\xbb\xbf|\xff\xfe|\xfe\xff)?[\s\0]*\{")
-"""how JSON begins that is no list, in any encoding"""
+"""beginning of a JSON object, in any encoding"""
 _JOURNAL = re.compile(rb'[0-9a-f]{8} \{"n":0,')
+"""beginning of the journal of a run"""
 _RECORDING = re.compile(rb"\x89MCAP0.{11,16}\x04\x00\x00\x00argo", re.DOTALL)
-"""how journals and recordings of runs begin"""
+"""beginning of the recording of a run"""
 
 
 class SourceKind(StrEnum):
-    """What a mission is read from."""
+    """Kind of file that a mission is read from."""
 
     SCRIPT = "script"
     MISSION = "mission"
@@ -49,25 +50,25 @@ class SourceKind(StrEnum):
 
 @dataclass(frozen=True)
 class Upload:
-    """What someone hands in, and what it is called."""
+    """A file or folder to import, with its name."""
 
     name: str
     content: bytes | Mapping[str, bytes] | Path
-    """of a file, or of the files of a rosbag2 folder by their names; a Path is a bag on this
-    machine, which may be larger than its memory"""
+    """content of a file, or of the files of a rosbag2 folder by name; a Path is a bag on this
+    machine, which may be larger than the memory"""
 
 
 @dataclass(frozen=True)
-class Loaded:
-    """A mission, what its import had to say, and the text of the file that it was read from."""
+class LoadedMission:
+    """A mission, the diagnostics of its import, and the text of its file."""
 
     mission: Mission
     diagnostics: tuple[Diagnostic, ...]
     file: MissionFile | Script | None
-    """None: a bag or another tool's file, whose lines say nothing to people"""
+    """the file; None: a bag or another tool's file, whose lines mean nothing to people"""
 
     def placed(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-        """Diagnostics about the mission, with the lines of the file that they point at."""
+        """Return diagnostics of the mission with positions and lines in its file."""
         if self.file is None:
             return tuple(f.model_copy(update={"span": None}) for f in diagnostics)
         if isinstance(self.file, Script):
@@ -82,35 +83,37 @@ class ImportedMission:
     mission: Mission
     source_name: str
     diagnostics: tuple[Diagnostic, ...]
-    """what the import had to say: goes into the record of a run"""
+    """diagnostics of the import, which become part of the record of a run"""
     warnings: tuple[Diagnostic, ...]
-    """these and what `check` warns of, by place"""
+    """these and the warnings of `check`, by position"""
 
 
-def kind_of(upload: Upload) -> SourceKind:
-    """What an upload is, by its name and its content. What is nothing else is meant as a script."""
+def source_kind(upload: Upload) -> SourceKind:
+    """Return the kind of an upload by its name and content; a script if it is nothing else."""
     if not isinstance(upload.content, bytes) or is_bag_content(upload.name, upload.content):
         return SourceKind.BAG
-    # From a pipe there is no name that tells, and no script begins with a brace.
+    # A pipe has no name with a suffix, but no script begins with a brace.
     if Path(upload.name).suffix.lower() != ".json" and not _BRACE.match(upload.content):
         return SourceKind.SCRIPT
     return SourceKind.MISSION if find_definition(upload.content) is None else SourceKind.ISAR
 
 
 @stage("reading the mission")
-def load(
+def load_upload(
     upload: Upload, catalog: Catalog, start_area: int | None = None, end_area: int | None = None
-) -> Loaded:
-    """The mission in an upload; whether it makes sense is for `check`.
+) -> LoadedMission:
+    """Read the mission in an upload, without checking it.
 
-    Raises DiagnosticError, or Invalid for what is kept of a run, and where areas are chosen for
-    what has them already.
+    Raises:
+        DiagnosticError: The upload can't be read as a mission.
+        Invalid: It is the journal or recording of a run, or areas are given for a mission that has
+            its own.
     """
-    _refuse_runs(upload)
-    kind, name = kind_of(upload), upload.name
+    _require_no_run(upload)
+    kind, name = source_kind(upload), upload.name
     _log.info("%s is read as a %s", name, kind)
     if kind is not SourceKind.SCRIPT:
-        refuse_areas(name, start_area, end_area)
+        require_no_areas(name, start_area, end_area)
     if not isinstance(upload.content, bytes):
         return _load_bag(upload.content, name)
     match kind:
@@ -120,51 +123,51 @@ def load(
             return _load_isar(upload.content, name, catalog)
         case SourceKind.MISSION:
             file = decode_mission(upload.content, name)
-            return Loaded(file.mission, file.placed(file.changes), file)
+            return LoadedMission(file.mission, file.placed(file.changes), file)
         case SourceKind.SCRIPT:
             return _load_script(upload.content, name, catalog, start_area, end_area)
 
 
-def _refuse_runs(upload: Upload) -> None:
-    """Raises Invalid for the journal or the recording of a run."""
+def _require_no_run(upload: Upload) -> None:
+    """Raise Invalid if an upload is the journal or the recording of a run."""
     beginning = b""
     if isinstance(upload.content, bytes):
         beginning = upload.content[:64]
     elif isinstance(upload.content, Path) and os.path.isfile(upload.content):
         with open_file(upload.content, "bag") as file:
             beginning = file.read(64)
-    for begins, what, remedy in (
+    for pattern, kind, remedy in (
         (_JOURNAL, "journal", Remedy.RESUME),
         (_RECORDING, "recording", Remedy.REPLAY),
     ):
-        if begins.match(beginning):
+        if pattern.match(beginning):
             raise Invalid(
-                f"{upload.name}: is no mission but the {what} of a run",
+                f"{upload.name}: is the {kind} of a run, not a mission",
                 remedies=(remedy,),
                 about=upload.name,
             )
 
 
-# Each kind of source imports what reads it, which none of the others needs.
+# Each kind of source imports its reader here, as the other kinds do not need it.
 
 
-def _load_bag(content: bytes | Mapping[str, bytes] | Path, name: str) -> Loaded:
+def _load_bag(content: bytes | Mapping[str, bytes] | Path, name: str) -> LoadedMission:
     from argo_compiler.ros import decode_bag, read_bag
 
     read = read_bag(content, name) if isinstance(content, Path) else decode_bag(content, name)
-    return Loaded(read.mission, read.diagnostics, None)
+    return LoadedMission(read.mission, read.diagnostics, None)
 
 
-def _load_isar(content: bytes, name: str, catalog: Catalog) -> Loaded:
+def _load_isar(content: bytes, name: str, catalog: Catalog) -> LoadedMission:
     from argo_compiler.isar import from_isar
 
     imported = from_isar(find_definition(content), name, catalog)
-    return Loaded(imported.mission, imported.diagnostics, None)
+    return LoadedMission(imported.mission, imported.diagnostics, None)
 
 
 def _load_script(
     content: bytes, name: str, catalog: Catalog, start_area: int | None, end_area: int | None
-) -> Loaded:
+) -> LoadedMission:
     with collector_held():
         from argo_compiler.script import decode_script, import_script
 
@@ -172,18 +175,25 @@ def _load_script(
     resolved = import_script(
         text, catalog, source_name=name, start_area=start_area, end_area=end_area
     )
-    return Loaded(resolved.mission, resolved.diagnostics, Script(text, name))
+    return LoadedMission(resolved.mission, resolved.diagnostics, Script(text, name))
 
 
 def import_mission(
     upload: Upload, site: OpenedSite, start_area: int | None = None, end_area: int | None = None
 ) -> ImportedMission:
-    """The mission in an upload, for a site. Areas are for scripts that leave them open.
+    """Read and check the mission in an upload, for a site.
 
-    Raises DiagnosticError if there is none, or `check` finds errors in it, and Invalid where the
-    areas make no sense.
+    Args:
+        upload: script, mission, bag or isar mission
+        site: site of the mission
+        start_area: starting area, for a script that names none
+        end_area: area to end in, for a script that names none
+
+    Raises:
+        DiagnosticError: The upload can't be read as a mission, or `check` finds errors.
+        Invalid: It is of a run, or areas are given for a mission that has its own.
     """
-    loaded = load(upload, site.catalog, start_area, end_area)
+    loaded = load_upload(upload, site.catalog, start_area, end_area)
     found = check(loaded.mission, site.catalog)
     found += tuple(too_fast(loaded.mission, site.robot))
     found = by_position((*loaded.diagnostics, *loaded.placed(found)))
@@ -192,10 +202,10 @@ def import_mission(
     return ImportedMission(loaded.mission, upload.name, loaded.diagnostics, found)
 
 
-def refuse_areas(name: str, start_area: int | None, end_area: int | None) -> None:
-    """Raises Invalid where areas are chosen for a mission, which has them already."""
+def require_no_areas(name: str, start_area: int | None, end_area: int | None) -> None:
+    """Raise Invalid if areas are given for a mission, which has its own."""
     if start_area is not None or end_area is not None:
         raise Invalid(
-            f"{name}: areas are chosen when a script is imported; a mission has its areas already",
+            f"{name}: has its areas already; they can be chosen for scripts only",
             remedies=(Remedy.CHOOSE_AREAS,),
         )

@@ -1,4 +1,4 @@
-"""What is made of the record of a run."""
+"""Report of a run, made from its record."""
 
 import tempfile
 from pathlib import Path
@@ -12,13 +12,13 @@ from argo_env.run.record import RunRecord
 from argo_env.site import Site
 
 REPORT_FILES = (RECORD, "site.png", PAGE)
-"""the page last: it shows the others"""
+"""names of the files; the page is the last one, since it shows the others"""
 
 
 def report_files(record: RunRecord, site: Site, robot: RobotSpec) -> dict[str, bytes]:
-    """The report of a run with a picture of its site, as files by their names.
+    """Return the files of a run's report, by name, with a picture of the site.
 
-    `site` is the one that the robot knew; what was changed on it is in the record.
+    `site` is the site as the robot knew it; changes by faults are in the record.
     """
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

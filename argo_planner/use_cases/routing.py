@@ -1,4 +1,4 @@
-"""A mission's best order: asked for, and applied."""
+"""Search for the best order of a mission's tasks."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -31,18 +31,18 @@ from argo_env.seeding import generator
 from argo_planner.use_cases.importing import ImportedMission
 
 TIME_LIMIT = 5.0
-"""s that a search takes at most, if nothing else is said"""
+"""default of the longest time of a search in s"""
 
 MAX_BYTES = 10_000_000
-"""of a file of requirements"""
+"""largest size of a file of requirements"""
 
-_VERIFIED = 10.0  # s that it may take to verify an order
-_SAMPLES = 10_000  # of a mission, to tell how probable it is that it is in time
+_VERIFICATION_TIME = 10.0  # s
+_SAMPLES = 10_000  # random durations of an order, for the probability that it is in time
 
 
 @dataclass(frozen=True, eq=False)
-class Suggested:
-    """What was found for a mission on a site."""
+class SuggestedOrder:
+    """Result of a search for the best order of a mission on a site."""
 
     planned: MissionProblem
     suggestion: RouteSuggestion
@@ -50,43 +50,45 @@ class Suggested:
 
     @property
     def written(self) -> RouteEvaluation:
-        """What the order is worth in which the mission is written."""
+        """Evaluation of the order in which the mission is written."""
         return evaluate(self.planned.problem, self.planned.written)
 
     @property
     def route(self) -> Tour:
-        """Raises Conflict where there is no order; `why_none` tells more."""
+        """The suggested order; raises Conflict if there is none (see `explain_no_order`)."""
         if self.suggestion.route is None:
-            raise Conflict("there is no order that meets all that is asked for")
+            raise Conflict("no order meets all requirements")
         return self.suggestion.route
 
     @property
     def mission(self) -> Mission:
-        """The mission in its new order. Raises ArgoError if there is none."""
+        """The mission in its new order; raises ArgoError if there is none."""
         return apply_route(self.planned, self.route)
 
     @property
     def reordering(self) -> Reordering:
-        """For the record of a run. Raises ArgoError if there is no order."""
+        """Description for the record of a run; raises ArgoError if there is no order."""
         visits, route, problem = self.planned.visits, self.route, self.planned.problem
         tasks = [visits.chain.name(stop.entry) for stop in visits.task_units]
         return Reordering(
             written=tuple(tasks),
             order=tuple(tasks[visit] for visit in route.order),
-            written_duration=self.seconds(self.written.duration),
-            duration=self.seconds(evaluate(problem, route).duration),
-            bound=self.seconds(self.suggestion.bound),
+            written_duration=self.to_seconds(self.written.duration),
+            duration=self.to_seconds(evaluate(problem, route).duration),
+            bound=self.to_seconds(self.suggestion.bound),
             proven=self.suggestion.proven,
         )
 
-    def seconds(self, units: int) -> float:
+    def to_seconds(self, units: int) -> float:
         return round(units * self.planned.problem.unit, 6)
 
 
 def parse_requirements(content: bytes, source_name: str) -> Requirements:
-    """The requirements in YAML, which messages call `source_name`.
+    """Parse requirements in YAML, which messages call `source_name`.
 
-    Raises ArgoError if it is no text, and DiagnosticError if it holds something else.
+    Raises:
+        ArgoError: The content is no text or too large.
+        DiagnosticError: It is no YAML, or has other fields.
     """
     require_size(content, source_name, "file of requirements", MAX_BYTES)
     return parse_yaml(
@@ -107,38 +109,46 @@ def suggest_order(
     *,
     time_limit: float = TIME_LIMIT,
     seed: int = 0,
-    heard: Callable[[SearchProgress, float], None] | None = None,
-) -> Suggested:
-    """The best order of the mission that is found within the time limit (s); `why_none` tells why
-    there is none, where there is none. What is `heard` meanwhile is how far the search is, and how
-    long (s) its unit of time is.
+    on_progress: Callable[[SearchProgress, float], None] | None = None,
+) -> SuggestedOrder:
+    """Search for the best order of a mission; the result may be that there is none.
+
+    Args:
+        imported: the mission
+        site: its site
+        requirements: further requirements; None: there are none
+        time_limit: longest time of the search in s
+        seed: seed of the search
+        on_progress: function that is called with the progress and its unit of time in s
 
     Raises:
         DiagnosticError: `check` finds errors in the mission.
-        ArgoError: its order can't be changed, or a requirement does not fit it.
+        ArgoError: The order can't be changed, or a requirement does not fit the mission.
     """
     name, mission = imported.source_name, imported.mission
     requirements = requirements or Requirements()
     try:
-        require_known(mission, requirements)  # before all ways are planned, which takes long
+        require_known(mission, requirements)  # before all paths are planned, which takes long
         planned = plan_mission(mission, site.navigator, requirements, site.travel)
     except DiagnosticError as error:
         raise DiagnosticError(name, error.diagnostics) from None
     except ArgoError as error:
         raise located(error, name) from None
-    with stage("searching for the best order") as tell:
+    with stage("searching for the best order") as report:
 
-        def found(progress: SearchProgress, *_: object) -> None:
-            tell(None, _known(progress, planned.problem.unit))
-            if heard is not None:
-                heard(progress, planned.problem.unit)
+        def report_progress(progress: SearchProgress, *_: object) -> None:
+            report(None, _progress_text(progress, planned.problem.unit))
+            if on_progress is not None:
+                on_progress(progress, planned.problem.unit)
 
-        suggestion = suggest_route(planned.problem, time_limit, seed, on_best=found, on_bound=found)
-    return Suggested(planned, suggestion, site.travel)
+        suggestion = suggest_route(
+            planned.problem, time_limit, seed, on_best=report_progress, on_bound=report_progress
+        )
+    return SuggestedOrder(planned, suggestion, site.travel)
 
 
-def _known(progress: SearchProgress, unit: float) -> str:
-    """How far a search is, in words."""
+def _progress_text(progress: SearchProgress, unit: float) -> str:
+    """Return the best duration and the bound of a search in words."""
     if progress.cost is None:
         return "none found so far"
     best, bound = (clock(units * unit) for units in (progress.cost, progress.bound))
@@ -146,48 +156,53 @@ def _known(progress: SearchProgress, unit: float) -> str:
 
 
 def require_limit(mission: Mission, requirements: Requirements) -> None:
-    """Raises Invalid if nothing limits the mission's time."""
+    """Raise Invalid if nothing limits the mission's time."""
     limits = [mission.max_duration, requirements.budget, *(w.latest for w in requirements.windows)]
     limits += [t.window.latest for t in mission.tasks if t.window and t.window.hard]
     if all(limit is None for limit in limits):
         raise Invalid(
-            "nothing limits this mission's time, so every order is completed in time: give it a "
-            "budget, or the mission a maximum duration",
+            "nothing limits this mission's time, so every order is in time: give it a budget or a "
+            "maximum duration",
             remedies=(Remedy.GIVE_BUDGET,),
         )
 
 
-@stage("trying orders with times that spread")
+@stage("comparing orders with random travel times")
 def suggest_robust(
-    found: Suggested, spread: TravelSpread, time_limit: float, seed: int
-) -> Suggested:
-    """The order that is most probably kept to within all limits of time, instead.
+    found: SuggestedOrder, spread: TravelSpread, time_limit: float, seed: int
+) -> SuggestedOrder:
+    """Return the order that most probably keeps all time limits, in place of the best one.
 
-    Raises ArgoError if there is no order.
+    Raises:
+        ArgoError: There is no order.
     """
     problem = found.planned.problem
     robust = suggest_robust_route(problem, spread, time_limit, seed)
     nominal, route = robust.nominal, robust.route
-    made = set(route.order)
+    visited = set(route.order)
     shortest = nominal.route == route
     text = f"robust: the best of {robust.tried} orders that were tried"
     if not shortest:
-        text += f"; the shortest one is in time with {robust.nominal_completion.probability:.1%}"
+        text += "; the shortest one is in time with a probability of "
+        text += f"{robust.nominal_completion.probability:.1%}"
     suggestion = replace(
         nominal,
         route=route,
         prize=robust.prize,
         cost=evaluate(problem, route).cost(problem.objective),
         proven=nominal.proven and shortest,
-        dropped=tuple(k for k in range(problem.size) if k not in made),
+        dropped=tuple(k for k in range(problem.size) if k not in visited),
         reasons=(*nominal.reasons, text),
     )
     return replace(found, suggestion=suggestion)
 
 
-def too_long(mission: Mission, site: OpenedSite) -> str | None:
-    """What is wrong if a mission in its new order takes longer than it may, reckoned on its own
-    ways: the order was chosen with one place for each checkpoint, wherever the robot comes from."""
+def duration_problem(mission: Mission, site: OpenedSite) -> str | None:
+    """Return a message if a mission in its new order takes longer than it may, otherwise None.
+
+    The search assumes one pose for each checkpoint; this computes the exact travel times, with
+    poses that depend on where the robot comes from.
+    """
     if mission.max_duration is None:
         return None
     found = analyse(mission, site.catalog, site.travel).diagnostics
@@ -195,15 +210,20 @@ def too_long(mission: Mission, site: OpenedSite) -> str | None:
 
 
 @stage("verifying the order")
-def verify(found: Suggested) -> Certificate:
-    """What is sure of all that is said of the order, checked apart from the search."""
-    return certify(found.planned.problem, found.suggestion, _VERIFIED)
+def verify_order(found: SuggestedOrder) -> Certificate:
+    """Check the claims about the order with code that is independent of the search."""
+    return certify(found.planned.problem, found.suggestion, _VERIFICATION_TIME)
 
 
-@stage("drawing how long the orders take")
-def completions(found: Suggested, spread: TravelSpread, seed: int) -> tuple[Completion, Completion]:
-    """How probable it is that the written order and the suggested one keep to all limits, if times
-    spread so. Raises Conflict if there is no order."""
+@stage("drawing random durations of both orders")
+def estimate_completions(
+    found: SuggestedOrder, spread: TravelSpread, seed: int
+) -> tuple[Completion, Completion]:
+    """Estimate how probable it is that the written and the suggested order keep all time limits.
+
+    Raises:
+        Conflict: There is no order.
+    """
     problem = found.planned.problem
     written, suggested = (
         completion(problem, tour, Draws(spread, _SAMPLES, generator(seed, "route risk")))

@@ -1,4 +1,4 @@
-"""Runs of missions: what they are told, and the spec that `argo_env.run.session` carries out."""
+"""Specs and events of runs, which `argo_env.run.session` carries out."""
 
 import json
 import logging
@@ -15,7 +15,7 @@ from argo_planner.use_cases.importing import ImportedMission, Upload
 _log = logging.getLogger(__name__)
 
 NO_MISSION = Mission(tasks=())
-"""stands in a spec until its mission is known"""
+"""mission of a spec until the real one is known"""
 
 EVENTS: dict[str, Event] = {
     **{str(kind): Occurred(kind) for kind in EventKind if kind is not EventKind.TIME_UP},
@@ -25,25 +25,30 @@ EVENTS: dict[str, Event] = {
     "give_back": GiveBack(),
     "cancel": Cancel(),
 }
-"""What a run can be told, by name."""
+"""events of a run that a person can report, by name"""
 READING = "reading"
-"""with what was read: `reading:8=4.2`"""
+"""kind of event with a reading, such as `reading:8=4.2`"""
 
 
-def event_named(name: str) -> Event:
-    """The event of that name. Raises NotFound if there is none, Invalid if it can't be told."""
-    kind, _, said = name.partition(":")
+def parse_event(name: str) -> Event:
+    """Return the event of that name.
+
+    Raises:
+        NotFound: There is no such event.
+        Invalid: Nobody can report it, or a reading has another form.
+    """
+    kind, _, value = name.partition(":")
     if kind == READING:
-        return _reading(said)
+        return _parse_reading(value)
     if name == EventKind.TIME_UP:
-        raise Invalid("it occurs by itself, at the mission's max_duration")
+        raise Invalid("this event occurs by itself, at the mission's maximum duration")
     if name not in EVENTS:
         raise NotFound(f"no event `{name}`; there are: {', '.join(EVENTS)}, {READING}:ID=VALUE")
     return EVENTS[name]
 
 
-def _reading(said: str) -> ReadingGiven:
-    id, _, value = said.partition("=")
+def _parse_reading(text: str) -> ReadingGiven:
+    id, _, value = text.partition("=")
     try:
         read = float(value)
     except ValueError:
@@ -54,7 +59,7 @@ def _reading(said: str) -> ReadingGiven:
 
 
 def is_spec(upload: Upload) -> bool:
-    """Whether it is the spec of a run: JSON with a mission in it, and how that is run."""
+    """Return True if an upload is the spec of a run: JSON with a mission, a drive and a seed."""
     content = upload.content
     if not isinstance(content, bytes) or b'"mission"' not in content:
         return False
@@ -65,9 +70,13 @@ def is_spec(upload: Upload) -> bool:
     return isinstance(data, dict) and {"mission", "drive", "seed"} <= data.keys()
 
 
-def spec_of(upload: Upload) -> RunSpec:
-    """The spec of a run. Raises Invalid, with the place, for one that makes no sense, and
-    DiagnosticError if its mission does not."""
+def load_spec(upload: Upload) -> RunSpec:
+    """Read and check the spec of a run.
+
+    Raises:
+        Invalid: The spec has errors; the message names the place.
+        DiagnosticError: Its mission has errors.
+    """
     assert isinstance(upload.content, bytes)
     spec = read_spec(upload.content, upload.name)
     lower(spec.mission, source_name=upload.name)
@@ -77,7 +86,7 @@ def spec_of(upload: Upload) -> RunSpec:
 def with_mission(
     spec: RunSpec, imported: ImportedMission, reordering: Reordering | None = None
 ) -> RunSpec:
-    """The spec of a run of that mission. Raises DiagnosticError for one that makes no sense."""
+    """Return the spec with a mission; raise DiagnosticError if the mission has errors."""
     lower(imported.mission, source_name=imported.source_name)
     known = {
         "mission": imported.mission,

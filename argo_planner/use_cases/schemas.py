@@ -6,7 +6,7 @@ from argo_compiler.schemas import SchemaName, read_schema
 
 
 class FileKind(StrEnum):
-    """The files that have a schema."""
+    """Kind of file that has a schema."""
 
     MISSION = "mission"
     MACHINE = "machine"
@@ -17,7 +17,7 @@ class FileKind(StrEnum):
 
 
 def schema(kind: FileKind) -> str:
-    """The JSON Schema of files of that kind."""
+    """Return the JSON Schema of a kind of file."""
     if kind in SchemaName:
         return read_schema(SchemaName(kind))
     from argo_compiler.schemas.generate import model_schema

@@ -1,4 +1,4 @@
-"""Which sites there are, whether one can be driven, and their descriptions."""
+"""List, check and description of sites."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ from argo_env.site.site_file import to_yaml
 
 @dataclass(frozen=True)
 class SiteSummary:
-    """What there is to know of a site before it is opened."""
+    """Summary of a site, known before it is opened."""
 
     name: str
     title: str
@@ -23,23 +23,23 @@ class SiteSummary:
 
 @dataclass(frozen=True)
 class SiteReport:
-    """Whether a site can be driven."""
+    """Result of the check of a site."""
 
     notes: tuple[str, ...]
-    """what is unlike real sites, but does no harm"""
+    """features that are unlike real sites, but do no harm"""
     flaws: tuple[Flaw, ...]
-    """what can't be reached, and what to do about it"""
+    """parts that can't be reached, with remedies"""
     standing: Standing | None = None
-    """where the robot can stand, if there are flaws"""
+    """poses at which the robot can stand; None: there are no flaws"""
 
     @property
     def errors(self) -> tuple[str, ...]:
-        """The flaws in words."""
+        """Messages of the flaws."""
         return tuple(flaw.message for flaw in self.flaws)
 
 
 def list_sites() -> tuple[SiteSummary, ...]:
-    """The sites that Argo ships."""
+    """Return summaries of the sites that Argo ships."""
     return tuple(
         SiteSummary(
             name, spec.title, len(spec.floors), sum(len(floor.checkpoints) for floor in spec.floors)
@@ -49,31 +49,36 @@ def list_sites() -> tuple[SiteSummary, ...]:
     )
 
 
-def check_site(site: OpenedSite) -> SiteReport:
-    """Looks for what the robot can't reach."""
+def make_site_report(site: OpenedSite) -> SiteReport:
+    """Find parts of a site that the robot can't reach."""
     found = look_over(site.navigator)
     return SiteReport(tuple(violations(site.site.spec)), found.flaws, found.standing)
 
 
 def draw_report(site: OpenedSite, report: SiteReport) -> bytes:
-    """The site as a PNG, with the places of what is wrong with it."""
-    from argo_env.pictures.site_plan import draw_site  # few ask for it, and it takes long to import
+    """Return a PNG of the site that marks its flaws."""
+    from argo_env.pictures.site_plan import draw_site  # rarely needed, and slow to import
 
     return draw_site(site.site, report.flaws, report.standing)
 
 
 def describe_site(site: OpenedSite, name: str) -> str:
-    """The YAML that describes the site, under another name: its own stands for another site, and
-    this one is there to be changed. Raises Conflict as `require_free_name`."""
+    """Return the YAML that describes the site, under a new name.
+
+    The copy is meant to be changed, and the old name stands for the site itself.
+
+    Raises:
+        Conflict: The name stands for another site.
+    """
     require_free_name(name)
     return to_yaml(site.site.spec.model_copy(update={"name": name}))
 
 
 def require_free_name(name: str) -> None:
-    """Raises Conflict if a site of that name would be taken for another one."""
+    """Raise Conflict if the name of a site stands for another site already."""
     if is_family(name):
-        raise Conflict(f"{PREFIX}… is no file to Argo but a site; choose another name")
+        raise Conflict(f"{PREFIX}… names a generated site, not a file; choose another name")
     if name in site_names():
         raise Conflict(
-            f"the site would be called {name}, as the one that Argo ships; choose another name"
+            f"the site would be called {name}, like the one that Argo ships; choose another name"
         )

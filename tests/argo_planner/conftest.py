@@ -11,7 +11,7 @@ from tests import yard
 
 
 def argo(*words: object, status: int | None = None) -> Result:
-    """Run the command in this process, to that exit status if one is given."""
+    """Run the command in this process; assert its exit status if one is given."""
     result = CliRunner().invoke(app, [*map(str, words)])
     assert status in (None, result.exit_code), f"{result.output}{result.exception}"
     return result
@@ -19,13 +19,13 @@ def argo(*words: object, status: int | None = None) -> Result:
 
 @pytest.fixture(autouse=True)
 def no_stages(monkeypatch: pytest.MonkeyPatch) -> None:
-    """On a busy machine anything may take so long that it is shown."""
+    """Show no stages, which a slow machine would show at random."""
     monkeypatch.setattr(stage_display, "AFTER", float("inf"))
 
 
 @pytest.fixture
 def quick_picture(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Stands for the picture of the site in a report, which takes long."""
+    """Replace the picture of the site in a report, which takes long to draw."""
     monkeypatch.setattr(
         "argo_planner.use_cases.reporting.write_overview",
         lambda *given: given[-1].write_bytes(b"a picture"),
@@ -39,7 +39,7 @@ def umad() -> OpenedSite:
 
 @pytest.fixture(scope="session")
 def yard_site() -> OpenedSite:
-    """Return the yard, opened."""
+    """Return the opened yard."""
     return yard.opened(yard.yard())
 
 

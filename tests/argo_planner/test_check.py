@@ -1,4 +1,4 @@
-"""What `argo check` finds in scripts and missions."""
+"""`argo check`: diagnostics of scripts and missions."""
 
 import json
 from pathlib import Path
@@ -93,7 +93,7 @@ WRONG = {"tasks": [{"name": "A", "action": "MEASURE", "object_id": "77"}]}
 
 @pytest.fixture
 def plan(monkeypatch, tmp_path: Path) -> Path:
-    """The file of a mission in the working folder."""
+    """Return the path of a mission in the working folder."""
     monkeypatch.chdir(tmp_path)
     return Path("plan.json")
 
@@ -145,8 +145,11 @@ def test_a_mission_to_very_many_places_is_checked_without_its_times(catalog, tmp
     path.write_text(json.dumps({"version": 3, "tasks": tasks}), encoding="utf-8")
 
     class NotAsked:
-        """Travel that must not be asked for anything."""
+        """Travel times that must not be used."""
 
     findings = check_source(read_upload(path), catalog, travel=NotAsked())
     (finding,) = [f for f in findings if f.code == "analysis.too-many-places"]
-    assert "1001 different places: nothing is said about its times" in finding.message
+    assert (
+        "1001 different poses: its times, its energy and its paths are not checked"
+        in finding.message
+    )

@@ -1,4 +1,4 @@
-"""A run is checked once on every way that leads to it, and before anything is made."""
+"""Each kind of run is checked exactly once, before any file is written."""
 
 import cProfile
 from collections import Counter
@@ -25,7 +25,7 @@ PLAN = mission(measure(2))
 
 
 def counted(work, *checks):
-    """Return how often the checks are made while the work is done, by whomever."""
+    """Return how often each check is called while the work is done."""
     profile = cProfile.Profile()
     profile.runcall(work)
     calls = Counter(

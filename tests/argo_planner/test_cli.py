@@ -1,4 +1,4 @@
-"""The command as a whole: its list of commands, what it imports, misspelt words, completion."""
+"""The command `argo` as a whole: its list of commands, imports, misspelt words, completion."""
 
 import os
 from pathlib import Path
@@ -43,7 +43,7 @@ MODULES = (
     "try: main()\n"
     "except SystemExit: print(*sys.modules, file=sys.stderr)"
 )
-"""a program that runs a command, and then prints what it has imported"""
+"""program that runs a command and then prints the imported modules"""
 
 
 def test_help_and_version_import_no_command_and_none_of_what_commands_need() -> None:
@@ -54,7 +54,7 @@ def test_help_and_version_import_no_command_and_none_of_what_commands_need() -> 
         assert not {name for name in loaded if name.startswith("argo_planner.commands.")}
 
 
-def test_what_was_checked_before_is_checked_without_numpy_and_yaml(tmp_path: Path) -> None:
+def test_a_repeated_check_imports_neither_numpy_nor_yaml(tmp_path: Path) -> None:
     script = tmp_path / "script.txt"
     script.write_text("Start in starting area 1. Read checkpoint 1.\n", encoding="utf-8")
     command = ["check", str(script), "--site", write_site(tmp_path / "yard.yaml")]
@@ -71,7 +71,7 @@ def test_what_was_checked_before_is_checked_without_numpy_and_yaml(tmp_path: Pat
 
 
 def complete(shell: str, words: str) -> str:
-    """What a shell is told when a person presses the tabulator after these words."""
+    """Return the completions that a shell gets when a person presses Tab after these words."""
     asked = {
         "bash": {"COMP_WORDS": words, "COMP_CWORD": str(len(words.split(" ")) - 1)},
         "zsh": {"_TYPER_COMPLETE_ARGS": words},
@@ -94,7 +94,7 @@ def test_a_shell_completes_commands_and_options(shell: str) -> None:
     assert "--site" in complete(shell, "argo check --s")
 
 
-def test_bash_completes_what_there_is_to_choose_from() -> None:
+def test_bash_completes_choices() -> None:
     assert complete("bash", "argo check --format ").split() == ["text", "json", "sarif"]
     assert complete("bash", "argo schema ma").split() == ["machine"]
 

@@ -1,4 +1,4 @@
-"""The end of a run: what was asked for is written, then shown; what is missing is said."""
+"""The end of a run: results are written, then shown; missing ones are reported."""
 
 from pathlib import Path
 
@@ -20,7 +20,7 @@ def record(yard_site):
 
 @pytest.fixture
 def conclude(record, yard_site, tmp_path, monkeypatch, capsys):
-    """Ends the run, which is kept in `run.journal`; the exit status and what is printed."""
+    """Return a function that ends a stored run, and returns the exit status and the output."""
     monkeypatch.chdir(tmp_path)
     Path("run.journal").write_text("the run")
     files = dict.fromkeys(REPORT_FILES, b"in short")
@@ -115,7 +115,7 @@ def test_a_film_is_interrupted_between_two_pictures(conclude, monkeypatch):
     assert [path.name for path in Path().iterdir()] == ["run.journal"]
 
 
-def test_what_makes_it_anew_replaces_what_the_run_was_to_replace(conclude):
+def test_the_retry_command_replaces_files_if_the_run_did(conclude):
     Path("run.gif").write_bytes(b"an older film")
     status, _, said = conclude(
         render="run.gif", kept=StoredRun(Path("run.journal"), force=True), came=Interrupted(15)

@@ -1,4 +1,4 @@
-"""`argo doctor`: what it says of the installation, and that it empties the cache."""
+"""`argo doctor`: its output about the installation, and the option `--empty-cache`."""
 
 import tomllib
 from importlib.util import find_spec
@@ -35,7 +35,7 @@ def test_what_it_shows(tmp_path, monkeypatch):
     assert not [path for path in tmp_path.rglob("*") if path.is_file()]
 
 
-def test_what_is_missing_comes_with_its_remedy(monkeypatch):
+def test_missing_extras_are_shown_with_their_install_command(monkeypatch):
     def without(name):
         return None if name in {"cv2", "mcap"} else find_spec(name)
 
@@ -49,10 +49,10 @@ def test_what_is_missing_comes_with_its_remedy(monkeypatch):
 def test_a_folder_that_can_not_be_used_is_named_with_the_reason(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("", encoding="utf-8")
     monkeypatch.setenv(cache.VARIABLE, str(tmp_path / "file"))
-    assert "nothing can be kept there, so each command builds its site anew: " in doctor()
-    assert examine().cache.flaw == "Not a directory"
+    assert "nothing can be stored there, so each command computes its site again: " in doctor()
+    assert examine().cache.write_problem == "Not a directory"
     refused = argo("doctor", "--empty-cache")
-    assert "the cache can't be emptied: Not a directory; name" in str(refused.exception)
+    assert "the cache can't be emptied: Not a directory; set" in str(refused.exception)
     assert "emptied, " not in refused.output
 
 

@@ -1,4 +1,4 @@
-"""What `--event TIME=KIND` may say."""
+"""The option `--event TIME=KIND`."""
 
 import pytest
 
@@ -38,17 +38,17 @@ def test_every_kind(kind):
         ("60=time_up", "occurs by itself"),
     ],
 )
-def test_what_is_refused(option, says):
+def test_wrong_events_are_refused(option, says):
     with pytest.raises(ArgoError, match=says):
         parse_events(["1=hot_spot", option])
 
 
-def test_the_help_names_what_may_be_said():
+def test_the_help_lists_valid_kinds():
     for kind in KINDS.split(", "):
         parse_events([f"0={kind}"])
 
 
-def test_persons_and_values_that_are_told():
+def test_takeovers_and_readings():
     assert parse_events(["5=take_over", "9=give_back", "7 = reading:8=4.2"]) == [
         (5.0, TakeOver()),
         (7.0, ReadingGiven("8", 4.2)),
@@ -57,6 +57,6 @@ def test_persons_and_values_that_are_told():
 
 
 @pytest.mark.parametrize("said", ["reading", "reading:8", "reading:=4", "reading:8=much"])
-def test_a_reading_says_of_what_and_which(said):
+def test_a_reading_needs_an_id_and_a_value(said):
     with pytest.raises(ArgoError, match="reading:ID=VALUE"):
         parse_events([f"5={said}"])

@@ -1,4 +1,4 @@
-"""Missions from bags and from isar, where a command takes a mission, and back to isar."""
+"""Import of missions from bags and isar, and export to isar."""
 
 import json
 
@@ -14,8 +14,7 @@ from argo_compiler.isar import InspectionView, to_isar
 from argo_compiler.ros import Storage, to_ros1_bag, to_ros2_bag
 from argo_planner.terminal.files import read_upload
 from argo_planner.use_cases.exporting import exporters
-from argo_planner.use_cases.importing import SourceKind, kind_of
-from argo_planner.use_cases.importing import load as load_upload
+from argo_planner.use_cases.importing import SourceKind, load_upload, source_kind
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.mission_writing import measure
 
@@ -46,7 +45,7 @@ def sources(tmp_path):
 def test_each_form_of_a_mission_is_read(sources):
     own, _, isar, *_ = sources
     for source in sources:
-        kind = kind_of(read_upload(source))
+        kind = source_kind(read_upload(source))
         assert kind is not SourceKind.SCRIPT
         assert (kind is SourceKind.MISSION) == (source == own)
         if source != isar:
@@ -81,7 +80,7 @@ def test_warnings_of_the_import_are_kept(tmp_path):
     assert finding.message.startswith("tasks[1].zoom: ")
 
 
-def test_isar_is_told_where_the_checkpoints_of_the_site_are(umad, navigator):
+def test_isar_gets_the_positions_of_the_checkpoints(umad, navigator):
     exported = exporters(umad)["isar"].export(PLAN, lower(PLAN))
     targets = [task["inspection"]["inspection_target"] for task in json.loads(exported)["tasks"]]
     assert [(t["x"], t["y"], t["z"]) for t in targets] == [

@@ -1,4 +1,4 @@
-"""`argo explain`: what was understood, said back so that reading it gives the same mission."""
+"""`argo explain`: its text is a script of the same mission."""
 
 import json
 import re
@@ -43,7 +43,7 @@ def mission_of(source: str) -> Mission:
 
 
 @pytest.mark.usefixtures("folder")
-def test_a_script_is_said_back_with_what_was_assumed() -> None:
+def test_an_explanation_contains_the_assumptions() -> None:
     said = explained("s.txt")
     assert "2. Check checkpoint #1, at 0.3 m/s." in said
     assert "#1 is gauge 1 on floor 1; abnormal is less than" in said
@@ -54,7 +54,7 @@ def test_a_script_is_said_back_with_what_was_assumed() -> None:
     assert "If a gas leak is detected, return to the docking station" in said
 
 
-def test_what_is_said_back_is_the_same_mission(folder: Path) -> None:
+def test_an_explanation_is_a_script_of_the_same_mission(folder: Path) -> None:
     (folder / "back.txt").write_text(explained("s.txt"), encoding="utf-8")
     assert mission_of("back.txt") == mission_of("s.txt")
 
@@ -71,7 +71,7 @@ def test_for_programs_it_is_data_with_a_schema() -> None:
 
 
 @pytest.mark.usefixtures("folder")
-def test_an_import_says_what_was_understood() -> None:
+def test_an_import_prints_the_explanation() -> None:
     result = argo("import", "s.txt", "-o", "m.json", "--site", "yard.yaml")
     assert "2. Check checkpoint #1, at 0.3 m/s." in result.stdout
 

@@ -1,4 +1,4 @@
-"""`argo export`: files and folders, and what is said when a format can't say something."""
+"""`argo export`: files, folders, and messages for what a format can't express."""
 
 import xml.etree.ElementTree as ET
 

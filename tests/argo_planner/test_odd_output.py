@@ -1,4 +1,4 @@
-"""Standard output that can't take what is printed."""
+"""Standard output that lacks characters or space."""
 
 import os
 import subprocess
@@ -13,7 +13,7 @@ ARGO = ("-m", "argo_planner")
 MISSION = (resources.scenarios() / "umad" / "missions" / "protocol_3.txt").read_text("utf-8")
 
 
-def test_letters_that_a_terminal_does_not_have_are_written_by_number(tmp_path: Path):
+def test_characters_that_a_terminal_lacks_are_escaped(tmp_path: Path):
     environment = {**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONPATH": str(ROOT)}
     name = "V\u00e4lve \u2603.txt"
     result = run_python(*ARGO, "check", name, cwd=tmp_path, env=environment, check=False)
@@ -26,7 +26,7 @@ def test_letters_that_a_terminal_does_not_have_are_written_by_number(tmp_path: P
 @pytest.mark.parametrize(
     ("command", "text"), [("check", "Once upon a time\n"), ("format", MISSION)]
 )
-def test_output_that_has_no_room_is_told_to_be_lost(tmp_path: Path, command: str, text: str):
+def test_output_without_space_is_reported(tmp_path: Path, command: str, text: str):
     (tmp_path / "script.txt").write_text(text, encoding="utf-8")
     with open("/dev/full", "w", encoding="utf-8") as full:
         streams = {"capture_output": False, "stdout": full, "stderr": subprocess.PIPE}

@@ -1,6 +1,6 @@
-"""Paths that lead nowhere: whatever they are given for, one message says which one is wrong.
+"""Paths that can't be read or written: one message names the wrong path in all commands.
 
-Python's `Path.exists` and its siblings raise where a folder can't be read or a name is too long.
+Python's `Path.exists` and its siblings raise if a folder can't be read or a name is too long.
 """
 
 import os
@@ -35,7 +35,7 @@ READS = {
     "resume {}": ".journal",
     "replay {}": ".mcap",
 }
-"""Commands that read a file, and what it is called like."""
+"""commands that read a file, with the suffix of the file"""
 
 WRITES = {
     "import s.txt -o {} --site darmstadt": ".json",
@@ -53,12 +53,12 @@ WRITES = {
     "run s.txt --drive route --render {} --site darmstadt": ".gif",
     "run s.txt --drive route --report {} --site darmstadt": "",
 }
-"""Commands that write a file or a folder."""
+"""commands that write a file or a folder, with its suffix"""
 
 
 @contextmanager
 def without_privileges() -> Iterator[None]:
-    """As a user whom permissions stop: not as root."""
+    """Run as a user whom permissions stop, unlike root."""
     before = os.geteuid()
     if before == 0:
         os.seteuid(NOBODY)
@@ -70,7 +70,7 @@ def without_privileges() -> Iterator[None]:
 
 @pytest.fixture(autouse=True)
 def folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """A working folder that every user may look into, unlike pytest's."""
+    """Return a working folder that every user can read, unlike that of pytest."""
     with tempfile.TemporaryDirectory() as name:
         Path(name).chmod(0o777)
         monkeypatch.chdir(name)
@@ -88,7 +88,7 @@ def _fill() -> None:
 
 
 def refusal(command: str, path: str) -> str:
-    """What is said about the path."""
+    """Return the message about the path."""
     words = [word.format(path) for word in command.split()]
     result = argo(*words)
     if not isinstance(result.exception, ArgoError | SystemExit) or not result.exit_code:
@@ -99,7 +99,7 @@ def refusal(command: str, path: str) -> str:
 
 
 @pytest.mark.parametrize("command", READS)
-def test_of_what_can_not_be_read_the_name_and_the_reason_are_said(command: str):
+def test_unreadable_paths_are_named_with_the_reason(command: str):
     suffix = READS[command]
     too_long = "n" * 250 + "e" * 20 + suffix
     assert "File name too long" in refusal(command, too_long)
@@ -110,9 +110,7 @@ def test_of_what_can_not_be_read_the_name_and_the_reason_are_said(command: str):
 
 
 @pytest.mark.parametrize("command", WRITES)
-def test_of_what_can_not_be_written_the_name_is_said_and_nothing_else_is_left(
-    folder: Path, command: str
-):
+def test_unwritable_paths_are_named_and_no_file_remains(folder: Path, command: str):
     suffix = WRITES[command]
     before = set(folder.iterdir())
     refusal(command, "n" * 250 + "e" * 20 + suffix)
@@ -132,5 +130,5 @@ def test_a_script_comes_whole_through_a_pipe(name: str):
     assert "2. Check checkpoint #1." in result.output
 
 
-def test_what_begins_like_no_recording_is_not_read_any_further():
+def test_an_endless_file_that_is_no_recording_is_refused():
     assert "is no .mcap file" in refusal("replay {}", "/dev/zero")

@@ -1,4 +1,4 @@
-"""No command writes over what it reads or what already exists, or two results to one place."""
+"""No command overwrites its inputs or existing files, or writes two results to one path."""
 
 from pathlib import Path
 
@@ -42,7 +42,7 @@ SCRIPT = "Mission Protocol #1\n1. Start in starting area 1.\n2. Check checkpoint
         ("sites site.yaml -o site.yaml", "is the input"),
     ],
 )
-def test_inputs_are_kept(monkeypatch, tmp_path: Path, command: str, says: str):
+def test_inputs_are_not_overwritten(monkeypatch, tmp_path: Path, command: str, says: str):
     monkeypatch.chdir(tmp_path)
     for name in ("s.txt", "m.json", "site.yaml", "r.yaml", "f.yaml", "j.mcap", "r.gif"):
         Path(name).write_text("mine", encoding="utf-8")
@@ -70,14 +70,14 @@ OUTPUTS = {
     "replay old.mcap --report report --render run.gif": ["report/report.html", "run.gif"],
     "sites yard.yaml -o new.yaml": ["new.yaml"],
 }  # fmt: skip
-"""What commands write."""
+"""files that commands write"""
 WORKING = [command for command in OUTPUTS if "old." not in command and "gif" not in command]
-"""Those that find what they read, and take no long time."""
+"""commands whose inputs exist, and that are fast"""
 
 
 @pytest.fixture
 def folder(monkeypatch, tmp_path: Path) -> Path:
-    """The working folder, with what the commands read."""
+    """Return the working folder, which contains the inputs of the commands."""
     monkeypatch.chdir(tmp_path)
     Path("s.txt").write_text(SCRIPT, encoding="utf-8")
     write_yard(tmp_path, m=mission(measure(1)))
@@ -119,7 +119,7 @@ def test_nothing_that_is_there_is_changed_without_force(folder: Path, data) -> N
 
 
 @pytest.mark.usefixtures("folder")
-def test_the_way_out_is_said() -> None:
+def test_the_message_names_the_remedy() -> None:
     put(["new.dot"])
     error = invoke("export m.json --to dot -o new.dot").exception
     assert isinstance(error, ArgoError)
@@ -164,7 +164,7 @@ def test_only_one_text_is_shown() -> None:
 
 
 @pytest.mark.usefixtures("folder")
-def test_what_is_no_file_is_always_written_to() -> None:
+def test_devices_are_always_written_to() -> None:
     Path("nowhere").symlink_to("/dev/null")
     for place in ("/dev/null", "nowhere"):
         assert invoke(f"compile m.json -o {place} --mermaid {place}").exit_code == 0
@@ -185,12 +185,10 @@ def test_what_is_no_file_is_always_written_to() -> None:
         ("replay run.mcap --render none/film.gif", "folder none does not exist"),
     ],
 )
-def test_a_place_that_can_not_be_written_to_is_said_before_any_work(
-    command: str, says: str
-) -> None:
+def test_unwritable_paths_are_reported_before_any_work(command: str, says: str) -> None:
     Path("taken").mkdir()
     Path("holding/report.html").mkdir(parents=True)
-    # Its site is never looked at.
+    # The site is never opened.
     error = argo(*command.split(), "--force").exception
     assert isinstance(error, ArgoError)
     assert says in str(error)

@@ -1,4 +1,4 @@
-"""`argo route`, and missions that are put in order before they are compiled or run."""
+"""`argo route`, and the option `--optimise` of other commands."""
 
 import json
 import re
@@ -20,7 +20,7 @@ DOCK = Pose(x=1.05, y=1.05, z=0.02)
 
 @pytest.fixture
 def argo(yard_site, monkeypatch):
-    """Runs `argo` in this process, on the yard, to an exit status; what it says."""
+    """Return a function that runs `argo` on the yard in this process, and returns its output."""
     for command in ("route", "compile", "run", "check", "format", "import_script"):
         monkeypatch.setattr(f"argo_planner.commands.{command}.open_site", lambda _: yard_site)
     monkeypatch.setenv("COLUMNS", "120")
@@ -34,7 +34,7 @@ def argo(yard_site, monkeypatch):
 
 @pytest.fixture
 def source(tmp_path):
-    """A mission that goes to and fro."""
+    """Return the path of a mission whose order makes detours."""
     far, near = waypoint("far", 5.5, 2.5), waypoint("near", 2.2, 1.05)
     written = mission(
         measure(2), near, measure(3), measure(1), far,
@@ -78,7 +78,7 @@ def test_what_does_not_fit_into_a_budget_is_left_out(argo, source, tmp_path):
 
 @pytest.mark.usefixtures("quick_picture")
 def test_a_routed_mission_keeps_its_limit_and_names_what_was_left_out(argo, source, tmp_path):
-    """From the written file through the check and a script to the report of its run."""
+    """Follow the limit from the written file through a check and a script to a report."""
     new, wanted, script = tmp_path / "new.json", tmp_path / "wanted.yaml", tmp_path / "new.txt"
     wanted.write_text("mandatory: [2]\n")
     said = argo(
@@ -103,9 +103,7 @@ def test_a_routed_mission_keeps_its_limit_and_names_what_was_left_out(argo, sour
     assert f"<dt>Left out when the order was chosen</dt><dd>{', '.join(after.left_out)}" in page
 
 
-def test_a_mission_that_is_too_long_on_its_own_ways_says_so_when_it_is_written(
-    argo, source, tmp_path
-):
+def test_a_written_mission_that_takes_too_long_is_noted(argo, source, tmp_path):
     new = tmp_path / "new.json"
     shown = argo("route", source, "--budget", "70 s", "-o", new)
     said = "the mission takes at least 1 min 12 s if nothing fails, longer than its maximum "
@@ -114,7 +112,7 @@ def test_a_mission_that_is_too_long_on_its_own_ways_says_so_when_it_is_written(
     assert said in argo("check", new, status=2)
 
 
-def test_what_no_order_meets_says_which_command_has_the_way_out(argo, source, tmp_path):
+def test_a_run_without_possible_order_names_the_route_command(argo, source, tmp_path):
     late = read_mission(source).model_copy(update={"max_duration": 3.0})
     write_mission(late, tmp_path / "late.json")
     said = argo("run", tmp_path / "late.json", "--optimise", status=1)
@@ -122,7 +120,7 @@ def test_what_no_order_meets_says_which_command_has_the_way_out(argo, source, tm
     assert "left out (--budget)" in argo("route", tmp_path / "late.json", status=2)
 
 
-def test_what_is_said_of_an_order_can_be_verified(argo, source):
+def test_claims_about_an_order_can_be_verified(argo, source):
     said = argo("route", source, "--verify")
     assert "Verified: the order meets all requirements and takes" in said
     assert "Verified: no order is better (all routes enumerated" in said
@@ -132,7 +130,7 @@ def test_what_is_said_of_an_order_can_be_verified(argo, source):
     assert "Verified: no order meets all requirements" in said
 
 
-def test_an_order_that_is_wrongly_said_to_be_the_best_is_a_defect(argo, source, monkeypatch):
+def test_a_wrong_claim_is_reported_as_a_defect(argo, source, monkeypatch):
     def turned(problem, *_, **__):
         route = Tour(tuple(range(problem.size))[::-1])
         cost = evaluate(problem, route).cost(problem.objective)
@@ -161,10 +159,10 @@ def test_one_requirement_that_can_not_be_met_is_named_alone(argo, source, tmp_pa
     wanted = tmp_path / "wanted.yaml"
     wanted.write_text("windows:\n- {what: 1, latest: 1 s}\n")
     said = argo("route", source, "--requirements", wanted, status=2)
-    assert "this can't be met: checkpoint 1 done by 1 s" in said
+    assert "this requirement can't be met: checkpoint 1 done by 1 s" in said
 
 
-def test_a_refusal_says_that_waits_are_reckoned_with_their_limits(argo, tmp_path):
+def test_a_refusal_states_the_assumed_duration_of_waits(argo, tmp_path):
     rule = WaitRule(event=EventKind.ALL_CLEAR, limit=90)
     waiting = mission(
         Task(name="W", action=Action.WAIT, wait=rule),
@@ -173,7 +171,7 @@ def test_a_refusal_says_that_waits_are_reckoned_with_their_limits(argo, tmp_path
     )  # fmt: skip
     write_mission(waiting, tmp_path / "waiting.json")
     said = argo("route", tmp_path / "waiting.json", "--verify", status=2)
-    assert "no order meets all of this if each WAIT takes its whole limit, though" in said
+    assert "no order meets all of these if each WAIT takes its whole limit, but" in said
     assert "Note: 'W' is assumed to take its whole limit" in said
     verified = "Verified: no order meets all requirements if each WAIT takes its whole limit ("
     assert verified in said
@@ -195,7 +193,7 @@ def test_a_budget_for_nothing_is_an_error(argo, source, tmp_path, extra):
     assert not written.exists()
 
 
-def test_an_order_that_waits_says_so_and_its_mission_waits(argo, source, tmp_path):
+def test_pauses_are_shown_and_written(argo, source, tmp_path):
     wanted, new = tmp_path / "wanted.yaml", tmp_path / "new.json"
     wanted.write_text("windows:\n- {what: 1, earliest: 30 min}\n")
     shown = argo("route", source, "--requirements", wanted, "-o", new)
@@ -244,7 +242,7 @@ def test_a_mission_is_compiled_in_its_best_order(argo, source, tmp_path):
 
 
 @pytest.mark.usefixtures("quick_picture")
-def test_a_run_in_its_best_order_says_so_in_its_report(argo, source, tmp_path):
+def test_the_report_of_a_reordered_run_shows_its_order(argo, source, tmp_path):
     report = tmp_path / "report"
     said = argo("run", source, "--optimise", "--drive", "route", "--report", report)
     assert "Predicted:" in said

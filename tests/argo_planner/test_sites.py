@@ -1,4 +1,4 @@
-"""`argo sites`, and the small test site that is shipped."""
+"""`argo sites`, and the small site that Argo ships."""
 
 import re
 import shlex
@@ -25,7 +25,7 @@ def hall_yaml():
 
 @pytest.fixture
 def look_over(tmp_path):
-    """Runs `argo sites` on a site that has flaws; what it says."""
+    """Return a function that runs `argo sites` on a site with flaws, and returns its output."""
 
     def call(site, *options):
         (tmp_path / "site.yaml").write_text(yaml.safe_dump(site, sort_keys=False), encoding="utf-8")
@@ -50,7 +50,7 @@ def test_a_site_that_can_be_driven_and_is_written_out(tmp_path):
     assert written.elements == shipped.elements
     assert f"{file}: written, site `copy`" in result.output
     taken = argo("sites", "umad", "-o", tmp_path / "darmstadt.yaml")
-    assert "would be called darmstadt, as the one that Argo ships" in str(taken.exception)
+    assert "would be called darmstadt, like the one that Argo ships" in str(taken.exception)
 
 
 DRAWN = "generated:floors=1,size=12x12,checkpoints=2,seed=1"
@@ -74,13 +74,13 @@ def test_a_generated_site_is_written_under_the_name_of_its_file(tmp_path):
 @pytest.mark.parametrize(
     ("name", "says"),
     [
-        ("site.txt", "ends in .yaml or .yml; name it so"),
-        ("site", "ends in .yaml or .yml; name it so"),
+        ("site.txt", "ends in .yaml or .yml: choose such a name"),
+        ("site", "ends in .yaml or .yml: choose such a name"),
         ("umad.yaml", "would be called umad"),
-        ("generated:floors=2.yaml", "is no file to Argo"),
+        ("generated:floors=2.yaml", "names a generated site, not a file"),
     ],
 )
-def test_where_no_site_would_be_found_again(tmp_path, name, says):
+def test_file_names_that_a_site_can_not_have(tmp_path, name, says):
     result = argo("sites", DRAWN, "-o", tmp_path / name)
     assert result.exit_code != 0
     assert says in str(result.exception)
@@ -96,7 +96,7 @@ def test_a_site_is_not_written_over_itself(tmp_path, hall_yaml):
 
 
 def test_stairs_that_do_not_end_at_the_next_floor(look_over, hall_yaml):
-    """Also where the robot would get over the step."""
+    """This is an error even if the robot could climb the step."""
     (flight,) = hall_yaml["towers"][0]["flights"]
     flight["rise"] -= 0.05 / flight["risers"]
     (error,) = [line for line in look_over(hall_yaml).splitlines() if "its flights rise" in line]
@@ -137,7 +137,7 @@ def test_a_site_that_can_not_be_driven(look_over, hall_yaml):
 
 
 def reds(picture):
-    """The number of pixels of the colour of what is wrong; checkpoints are orange."""
+    """Return the number of pixels in the colour of errors; checkpoints are orange."""
     red, green, blue = np.asarray(picture.convert("RGB")).astype(int).transpose(2, 0, 1)
     return ((red - green > 80) & (abs(green - blue) < 30)).sum()
 
@@ -163,8 +163,8 @@ def test_a_picture_shows_what_is_wrong_and_where(look_over, tmp_path, hall_yaml)
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["darmstadt", "--picture", "a.jpg"], "drawn as a .png"),
-        (["--picture", "a.png"], "say which"),
+        (["darmstadt", "--picture", "a.jpg"], "choose a name that ends in .png"),
+        (["--picture", "a.png"], "need a site: name one"),
     ],
 )
 def test_a_picture_that_can_not_be_drawn(arguments, says):

@@ -1,4 +1,4 @@
-"""What lasts is shown on standard error, and nothing else is."""
+"""Only stages that take long are shown, on standard error."""
 
 import io
 
@@ -13,7 +13,7 @@ from tests.yard import yard
 
 
 class Watch:
-    """A clock that is set."""
+    """A clock that the test sets."""
 
     now = 100.0
 
@@ -49,7 +49,7 @@ def test_lines_come_after_two_seconds_and_then_every_ten(watch):
     ]
 
 
-def test_what_says_nothing_for_long_is_shown_by_who_looks(watch):
+def test_a_silent_stage_is_shown_by_a_refresh(watch):
     shown, file = display(watch)
     shown("finding [the surface]", None, "")
     watch.now += 1.9
@@ -101,7 +101,7 @@ def test_quiet_is_quiet(watch):
 
 @pytest.fixture
 def argo_on_new_sites(tmp_path, monkeypatch):
-    """Runs `argo` in this process, where no site is kept and nothing is too short to be shown."""
+    """Return a function that runs `argo` in this process, without a cache, and shows all stages."""
 
     def drawn(*_):
         navigator = yard()
@@ -124,7 +124,7 @@ def argo_on_new_sites(tmp_path, monkeypatch):
 
 def test_a_site_that_is_made_anew_says_so_on_standard_error(argo_on_new_sites):
     told = argo_on_new_sites("told", "sites", "generated:seed=7")
-    lines = list(dict.fromkeys(told.stderr.splitlines()))  # the one who looks may repeat one
+    lines = list(dict.fromkeys(told.stderr.splitlines()))  # the refreshing thread may repeat one
     assert lines[0].startswith("making the site generated:")
     assert lines[0].endswith(",seed=7 …")
     assert lines[1] == lines[0].removesuffix(" …") + ": finding the walkable surface …"

@@ -1,4 +1,4 @@
-"""The record of a run on the terminal."""
+"""Output about the record of a run on the terminal."""
 
 import io
 
@@ -65,7 +65,7 @@ def record() -> RunRecord:
     )  # fmt: skip
 
 
-def test_everything_that_went_wrong_is_said(record: RunRecord) -> None:
+def test_all_problems_are_shown(record: RunRecord) -> None:
     text = shown(record)
     for part in (
         "abnormal", "9.50 bar", "1 to 2.5", "failed", "hidden behind x", "not docked",
@@ -98,7 +98,7 @@ def test_each_thing_that_the_headline_counts_has_a_line(record: RunRecord) -> No
     )
 
 
-def test_how_long_it_measured_is_told_where_there_is_room(record: RunRecord) -> None:
+def test_measuring_times_are_shown_on_wide_terminals(record: RunRecord) -> None:
     assert "measuring" not in shown(record)
     first = record.tasks[0].model_copy(update={"measuring": ((10.0, 16.0), (20.0, 30.0))})
     changed = record.model_copy(update={"tasks": (first, *record.tasks[1:])})
@@ -127,7 +127,7 @@ ALARM = Reaction(
 
 
 def waits(record: RunRecord, *interruptions: tuple[float, float, EventKind | None]) -> list[str]:
-    """The rows of what was waited for: for what, how often, since when, how long, how it ended."""
+    """Return the rows about waits: cause, number, first start, total time, outcome."""
     changed = record.model_copy(
         update={
             "mission": record.mission.model_copy(update={"reactions": (GAS, ALARM)}),
@@ -141,12 +141,12 @@ def waits(record: RunRecord, *interruptions: tuple[float, float, EventKind | Non
     return [" | ".join(filter(None, row)) for row in rows if row and row[0].startswith("waits")]
 
 
-def test_what_a_reaction_waited_for_is_said(record: RunRecord) -> None:
+def test_waits_of_reactions_are_shown(record: RunRecord) -> None:
     # The tasks run from 0 to 30 s and from 40 to 70 s.
     assert waits(record, (70.0, 95.0, EventKind.GAS_LEAK), (200.0, 230.0, EventKind.GAS_LEAK)) == [
         "waits for all clear (reaction to gas leak) | 2 | 01:10 | 00:55 | over"
     ]
-    # Of a reaction, what its drive took is no waiting.
+    # The drive of a reaction does not count as waiting.
     assert waits(record, (35.0, 75.0, EventKind.GAS_LEAK)) == [
         "waits for all clear (reaction to gas leak) | 1 | 01:10 | 00:05 | over"
     ]
@@ -168,8 +168,8 @@ def test_tasks_and_waits_stand_in_the_order_in_which_they_began(record: RunRecor
     assert waits == docks - 1
 
 
-def test_what_it_still_waits_for_in_the_end_is_said(record: RunRecord) -> None:
-    """A run is stopped at once when nothing more can come."""
+def test_waits_at_the_end_are_shown(record: RunRecord) -> None:
+    """A run stops at once if no event can end the wait."""
     alarm = (600.0, 700.0, EventKind.PLATFORM_ALARM), (700.0, 700.0, None)
     assert waits(record, alarm[0]) == [
         "waits for a person (reaction to platform alarm) | 1 | 10:00 | 01:40"
@@ -206,7 +206,7 @@ def test_visits_in_which_nothing_ran_as_the_window_was_over_are_counted(record: 
     ]
 
 
-def test_faults_that_did_not_happen_are_said(record: RunRecord) -> None:
+def test_faults_that_did_not_happen_are_shown(record: RunRecord) -> None:
     faults = (GasLeakFault(at=700.0), ConnectionLoss(at=700.1), GasLeakFault(at=5000.0))
     text = shown(record.model_copy(update={"faults": faults}))
     said = [line.strip() for line in text.splitlines() if "did not happen" in line]

@@ -1,4 +1,4 @@
-"""`-q` and `-v`: what is said beside the results, and that the results stay as they are."""
+"""`-q` and `-v` change the messages, but not the results."""
 
 import logging
 
@@ -15,7 +15,7 @@ SCRIPT = (
 
 @pytest.fixture(autouse=True)
 def folder(yard_site, monkeypatch, tmp_path):
-    """The working folder, with the script of a mission in the yard."""
+    """Return the working folder, which contains the script of a mission in the yard."""
     for command in ("run", "check", "import_script"):
         monkeypatch.setattr(f"argo_planner.commands.{command}.open_site", lambda _: yard_site)
     (tmp_path / "plan.txt").write_text(SCRIPT)
@@ -50,7 +50,7 @@ def test_the_stages_of_a_run_are_told_on_demand(arguments):
     assert "Success" in result.stdout
 
 
-def test_a_command_is_as_usual_after_one_that_was_not():
+def test_verbosity_lasts_for_one_command():
     argo("-vv", *RUN)
     assert "INFO" not in argo(*RUN).stderr
     argo(*RUN, "--quiet")

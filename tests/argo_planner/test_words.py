@@ -1,4 +1,4 @@
-"""What the libraries say in the words of the command line."""
+"""Error messages with the options and commands that help."""
 
 import pytest
 

@@ -84,7 +84,7 @@ def test_a_file_is_evaluated_and_what_failed_is_made_again(argo, file, tmp_path)
     argo("run", spec, "--report", tmp_path / "alone", status=1)
     record = reported(tmp_path / "alone")
     assert (record.result.duration, record.seed) == (failed[0].duration, failed[0].seed)
-    assert "--seed is decided already" in refused(argo("run", spec, "--seed", "3"))
+    assert "which sets --seed itself" in refused(argo("run", spec, "--seed", "3"))
 
 
 def test_again_does_nothing_and_says_the_same(argo, file, evaluated, out):
@@ -384,7 +384,7 @@ def test_ctrl_c_keeps_the_rows(argo, long_file, tmp_path):
     _, told = process.communicate(timeout=60)
     assert process.returncode == 130
     kept = count(out)
-    assert f"argo: interrupted; {kept} runs are kept in {out}" in told
+    assert f"argo: interrupted; {kept} runs are stored in {out}" in told
     assert kept >= 3
     assert argo("evaluate", long_file, "--out", out, "--no-report").returncode == 0
     assert count(out) == 120

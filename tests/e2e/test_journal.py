@@ -173,7 +173,7 @@ def test_kill_and_resume_by_the_command(
         process.kill()
     assert (refused.returncode, refused.stderr.count("in use")) == (2, 1)
     result = argo_process("resume", journal, "--report", tmp_path / "report", status=0)
-    assert "The run goes on at" in result.stderr
+    assert "The run continues at" in result.stderr
     record = reported(tmp_path / "report")
     told = announced(line + result.stderr)
     reference = simulated(PLAN, navigator, **settings(3))

@@ -230,8 +230,8 @@ SAID = {
     # results as scripts
     "run out": "out: error: is a directory",
     "run out/report.json": "out/report.json: error: is the report of a run, not a mission",
-    "run out/run.journal": "but the journal of a run (argo resume out/run.journal)",
-    "run run.mcap": "run.mcap: is no mission but the recording of a run (argo replay run.mcap)",
+    "run out/run.journal": "is the journal of a run, not a mission (argo resume out/run.journal)",
+    "run run.mcap": "run.mcap: is the recording of a run, not a mission (argo replay run.mcap)",
     # scripts and missions with a mistake
     "run ninety-nine.txt": "ninety-nine.txt:4:10: error: there is no checkpoint #99",
     "compile ninety-nine.txt -o c.json --mermaid c.mmd": "ninety-nine.txt:4:10:",
@@ -282,7 +282,7 @@ SAID = {
     "route any.txt --requirements braces.yaml": "braces.yaml:1:21: error: is not YAML",
     "route any.txt --requirements maybe.yaml": "`keep_order` has to be true or false",
     "route any.txt --requirements unknown.yaml": "the mission has no checkpoint 99",
-    "route any.txt --before 1,4 --before 4,1": "no order meets all of this",
+    "route any.txt --before 1,4 --before 4,1": "no order meets all of these",
     # numbers, times and durations
     "route any.txt --budget NaN": "`NaN` is no duration: write `20 min`",
     "route any.txt --budget 20:00": "`20:00` is no duration: write `20 min`",

@@ -17,7 +17,7 @@ from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.planning.site_warnings import unseen_from_poses
 from argo_env.worker_processes import end_with_parent
 from argo_planner.service.processes.context import CONTEXT
-from argo_planner.use_cases.checking import MOST_PLACES
+from argo_planner.use_cases.checking import MAX_POSES
 
 
 class AnalysisFound(Model):
@@ -73,7 +73,7 @@ def _analyse(reference: str, mission: Mission, revision: int) -> AnalysisFound:
         if has_errors(check(mission, site.catalog)):
             return AnalysisFound(revision=revision, problem="the mission has errors")
         poses = len({task.pose for task in mission.tasks if task.pose is not None})
-        travel = None if poses > MOST_PLACES else site.travel
+        travel = None if poses > MAX_POSES else site.travel
         analysis = analyse(mission, site.catalog, travel)
         unseen = tuple(unseen_from_poses(mission, site))
     except ArgoError as error:

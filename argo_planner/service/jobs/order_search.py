@@ -8,8 +8,8 @@ from argo_env.planning.opening import open_site
 from argo_env.run.record import Reordering
 from argo_planner.service.processes.job_process import ReportProgress
 from argo_planner.use_cases.importing import ImportedMission
-from argo_planner.use_cases.no_order import why_none
-from argo_planner.use_cases.routing import suggest_order, too_long
+from argo_planner.use_cases.no_order import explain_no_order
+from argo_planner.use_cases.routing import duration_problem, suggest_order
 
 
 class OrderProgress(Model):
@@ -58,8 +58,10 @@ def search_order(
         report(OrderProgress(time=progress.time, best=best, bound=progress.bound * unit))
 
     imported = ImportedMission(mission, "the mission", (), ())
-    found = suggest_order(imported, opened, requirements, time_limit=time_limit, heard=on_progress)
-    if why := why_none(found):
+    found = suggest_order(
+        imported, opened, requirements, time_limit=time_limit, on_progress=on_progress
+    )
+    if why := explain_no_order(found):
         return OrderFound(why_none=str(why), reasons=found.suggestion.reasons)
     reordered = found.mission
     visits = found.planned.visits
@@ -70,6 +72,6 @@ def search_order(
         reordering=found.reordering,
         left_out=left_out,
         reasons=(*found.planned.reasons, *found.suggestion.reasons),
-        warning=too_long(reordered, opened),
+        warning=duration_problem(reordered, opened),
         mission=reordered,
     )

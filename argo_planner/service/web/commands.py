@@ -34,7 +34,7 @@ from argo_planner.service.web.requests import (
     routes,
     said,
 )
-from argo_planner.use_cases.explaining import reading_of
+from argo_planner.use_cases.explaining import explain_mission
 from argo_planner.use_cases.importing import Upload, import_mission
 
 MOST_SCRIPT = 1_000_000
@@ -90,7 +90,7 @@ async def write_script(
 async def read_back(service: Service, _: Viewer, id: PlanId) -> Response:
     """The mission in plain sentences, task by task; `text` is a script that gives the same."""
     document = (await service.rooms.open(id)).document
-    reading = await asyncio.to_thread(reading_of, sound(document, service.site), service.site)
+    reading = await asyncio.to_thread(explain_mission, sound(document, service.site), service.site)
     return said(reading, revision=document.plan.revision)
 
 

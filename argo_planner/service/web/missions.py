@@ -44,7 +44,7 @@ from argo_planner.service.web.requests import (
     routes,
     said,
 )
-from argo_planner.use_cases.exporting import as_script, export_mission
+from argo_planner.use_cases.exporting import export_mission, to_script
 from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
 
 OF_MISSION = links(
@@ -317,7 +317,7 @@ def _exported(imported: ImportedMission, site: OpenedSite, format: str) -> tuple
     if format == "json":
         return imported.mission.model_dump_json(indent=2).encode(), ".json"
     if format == "script":
-        return as_script(imported, site).encode(), ".txt"
+        return to_script(imported, site).encode(), ".txt"
     content = export_mission(imported, site, format).content
     if isinstance(content, Mapping):
         packed = io.BytesIO()

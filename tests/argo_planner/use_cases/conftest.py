@@ -11,6 +11,6 @@ def site() -> OpenedSite:
 
 @pytest.fixture(autouse=True)
 def nothing_is_printed(capfd: pytest.CaptureFixture[str]):
-    """Neither by Python nor by a library below it."""
+    """Assert that neither Python nor a library in C prints anything."""
     yield
     assert capfd.readouterr() == ("", "")

@@ -1,4 +1,4 @@
-"""Missions from bytes: what an upload is, and what is said of one that is nothing."""
+"""Import of missions from bytes: kinds of uploads, and errors."""
 
 import pytest
 
@@ -9,7 +9,13 @@ from argo_compiler.hfsm import lower
 from argo_compiler.isar import to_isar
 from argo_compiler.ros import Storage, to_ros1_bag, to_ros2_bag
 from argo_env.planning.reading_places import inspection_views
-from argo_planner.use_cases.importing import SourceKind, Upload, import_mission, kind_of, load
+from argo_planner.use_cases.importing import (
+    SourceKind,
+    Upload,
+    import_mission,
+    load_upload,
+    source_kind,
+)
 from tests.yard import measure, mission
 
 SCRIPT = b"""Mission Protocol: one
@@ -53,9 +59,9 @@ def uploads(site):
 
 
 @pytest.mark.parametrize("kind", SourceKind)
-def test_what_an_upload_is_and_the_mission_in_it(uploads, site, kind):
+def test_uploads_are_recognized_and_imported(uploads, site, kind):
     for upload in uploads[kind]:
-        assert kind_of(upload) is kind
+        assert source_kind(upload) is kind
         imported = import_mission(upload, site)
         measured = [task.object_id for task in imported.mission.tasks if task.object_id]
         assert measured == ["1", "2"]
@@ -88,7 +94,7 @@ def test_a_bag_may_lie_on_this_machine(site, tmp_path):
          "invalid", "il.unknown-object"),
     ],
 )  # fmt: skip
-def test_what_can_not_be_read_says_so_by_its_name(site, upload, code, says):
+def test_errors_name_the_upload(site, upload, code, says):
     with pytest.raises(ArgoError) as caught:
         import_mission(upload, site)
     assert caught.value.code == code
@@ -97,10 +103,10 @@ def test_what_can_not_be_read_says_so_by_its_name(site, upload, code, says):
 
 
 def test_no_option_is_named(site):
-    """A service has none; the command line finds by the remedies what it calls them."""
+    """A service has no options; the command line finds them by the remedies."""
     mission_file = Upload("plan.json", mission_text(PLAN).encode())
     with pytest.raises(Invalid, match="has its areas already") as caught:
-        load(mission_file, site.catalog, start_area=1)
+        load_upload(mission_file, site.catalog, start_area=1)
     assert caught.value.remedies == (Remedy.CHOOSE_AREAS,)
     assert "--" not in str(caught.value)
     open_start = Upload("a.txt", b"Mission Protocol: one\n1. Check checkpoint #1.\n")

@@ -1,4 +1,4 @@
-"""Missions checked, compiled, exported, reordered and run, from bytes and without a file."""
+"""Use cases from bytes, without files: check, compile, export, reorder, run."""
 
 import json
 
@@ -19,18 +19,18 @@ from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_planner.use_cases.checking import Format, check_source, write_diagnostics
 from argo_planner.use_cases.compiling import compile_mission
-from argo_planner.use_cases.exporting import FORMATS, as_script, export_mission
+from argo_planner.use_cases.exporting import FORMATS, export_mission, to_script
 from argo_planner.use_cases.importing import Upload, import_mission
 from argo_planner.use_cases.no_order import require_order
 from argo_planner.use_cases.reporting import report_files
 from argo_planner.use_cases.routing import parse_requirements, require_limit, suggest_order
 from argo_planner.use_cases.running import (
     NO_MISSION,
-    event_named,
+    parse_event,
     with_mission,
 )
 from argo_planner.use_cases.schemas import FileKind, schema
-from argo_planner.use_cases.sites import check_site, describe_site, list_sites
+from argo_planner.use_cases.sites import describe_site, list_sites, make_site_report
 from tests.yard import measure, mission, waypoint
 
 DOCK = Pose(x=1.05, y=1.05, z=0.02)
@@ -65,7 +65,7 @@ def test_compiling(imported):
 
 
 def test_a_script_gives_the_mission_again(imported, site):
-    again = import_mission(Upload("plan.txt", as_script(imported, site).encode()), site)
+    again = import_mission(Upload("plan.txt", to_script(imported, site).encode()), site)
     assert [t.object_id for t in again.mission.tasks] == [t.object_id for t in PLAN.tasks]
 
 
@@ -76,7 +76,7 @@ def test_exporting(imported, site, format):
     assert exported.description
 
 
-def test_what_there_is_no_format_for(imported, site):
+def test_unknown_formats_are_refused(imported, site):
     with pytest.raises(NotFound, match="word: there is no such format"):
         export_mission(imported, site, "word")
 
@@ -119,12 +119,12 @@ def test_a_run_with_its_report(imported, site):
 
 
 def test_events_by_name():
-    assert event_named("pause") == Pause()
-    assert event_named("gas_leak") == Occurred(EventKind.GAS_LEAK)
+    assert parse_event("pause") == Pause()
+    assert parse_event("gas_leak") == Occurred(EventKind.GAS_LEAK)
     with pytest.raises(NotFound, match="no event `flood`"):
-        event_named("flood")
+        parse_event("flood")
     with pytest.raises(Invalid, match="by itself"):
-        event_named("time_up")
+        parse_event("time_up")
 
 
 def test_sites(site, tmp_path):
@@ -134,7 +134,7 @@ def test_sites(site, tmp_path):
         return open_site(str(path))
 
     assert {one.name for one in list_sites()} >= {"umad", "darmstadt"}
-    report = check_site(site)
+    report = make_site_report(site)
     assert report.errors == ()
     mine = describe_site(site, "mine")
     again = uploaded(mine.encode())

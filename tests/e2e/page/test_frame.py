@@ -31,8 +31,8 @@ def test_a_mission_is_made_named_deleted_and_taken_back(ann, service) -> None:
 @pytest.mark.long
 def test_a_script_that_leaves_its_areas_open_asks_for_them(ann, service) -> None:
     ann.page.set_input_files("#file", SCRIPT)
-    ann.page.get_by_label("It begins in area").select_option("1")
-    ann.page.get_by_label("It ends in area").select_option("2")
+    ann.page.get_by_label("Start area").select_option("1")
+    ann.page.get_by_label("End area").select_option("2")
     ann.click(ann.button("Import"))
     expect(ann.saved).to_have_text("Saved")
     id = ann.page.url.rpartition("/")[2]
@@ -117,9 +117,9 @@ def test_the_focus_is_never_lost(ann) -> None:
     ann.key("Enter")
     expect(name).to_have_text("Rounds")
     expect(name).to_be_focused()
-    ann.focus(ann.page.get_by_role("button", name="What is shown"))
+    ann.focus(ann.page.get_by_role("button", name="Display settings"))
     ann.key("Enter", "Tab", "Escape")
-    expect_focus("What is shown")
+    expect_focus("Display settings")
     ann.focus(ann.page.get_by_role("button", name="Mission: copy"))
     ann.key("Enter", "Tab", "Escape")
     expect(ann.page.locator("argo-mission-menu [popover]")).to_be_hidden()

@@ -233,12 +233,12 @@ def test_a_form_takes_times_as_people_write_them(ann, service, plan) -> None:
 @pytest.mark.long
 def test_a_condition_is_made_in_the_form(ann, service, plan) -> None:
     ann.click(row(ann, "A1"))
-    ann.click(ann.button("Go elsewhere on a condition"))
+    ann.click(ann.button("Add a conditional transition"))
     ann.page.get_by_label("is", exact=True).select_option("MEASURED_VALUE_LESS")
     bound = ann.page.get_by_label("Value", exact=True)
     bound.fill("2,5")
     bound.press("Enter")
-    then = ann.page.get_by_label("Go on with", exact=True).first
+    then = ann.page.get_by_label("Continue with", exact=True).first
     then.select_option("C4")
     expect(row(ann, "A1")).to_contain_text("is below 2.5")
 

@@ -45,7 +45,7 @@ def test_a_form_is_not_overwritten_by_others(browsers, address, plan, service) -
     name.fill("Gauge by the stairs")
     edit = {"kind": "change_task", "name": "A1", "retries": 2}
     assert service.command(plan, "*", edit).status_code == 200
-    expect(ann.page.get_by_label("Tried again, times")).to_have_value("2")
+    expect(ann.page.get_by_label("Retries")).to_have_value("2")
     expect(name).to_have_value("Gauge by the stairs")
     name.press("Enter")
     order(ann, "START", "Gauge by the stairs", "B2", "C4")
@@ -65,7 +65,7 @@ def test_a_stale_edit_says_what_was_changed(browsers, plan, service) -> None:
         log = ann.page.get_by_role("log")
         expect(log).to_contain_text("Bob changed A1")
         order(ann, "START", "A1", "B2", "C4")
-        ann.click(ann.button("Do it all the same"))
+        ann.click(ann.button("Apply anyway"))
         order(ann, "START", "B2", "C4")
         ann.complaints[:] = [said for said in ann.complaints if "WebSocket connection" not in said]
 

@@ -1,4 +1,4 @@
-/** What was clicked, in a card beside it, with what can be done there. */
+/** A card beside the clicked object, with the actions that it offers. */
 
 import type { Obstacle, Pose, WorldCheckpoint } from "../api/types";
 import { addMeasure, addStart, addTask } from "../list/adding";
@@ -100,7 +100,7 @@ export class SceneCard extends PageElement {
         <button class="main" id="measure" ?disabled=${!mayPlan()} @click=${() => added(addMeasure(String(one.id)))}>
           ${icon("gauge", 16)} ${texts.measure}
         </button>
-        ${stands ? this.stands(texts.standHere, stands, "WAYPOINT") : nothing}
+        ${stands ? this.stands(texts.driveHere, stands, "WAYPOINT") : nothing}
         <button @click=${() => (lookSignal.value = { kind: "checkpoint", id: String(one.id) })}>${texts.look}</button>
       </div>`;
   }
@@ -134,7 +134,7 @@ export class SceneCard extends PageElement {
       </div>`;
   }
 
-  /** Beside what it is about, and whole in the picture. */
+  /** Place the card beside its object, completely inside the view. */
   private stand(view: SceneView, mark: Mark): void {
     const seen = view.stage.project(mark.at);
     const { width, height } = view.stage.size;
@@ -155,7 +155,7 @@ export class SceneCard extends PageElement {
   }
 }
 
-/** What was asked for shows in the list and on the site, which the card would cover. */
+/** Close the card once a task is added: it would cover the list and the site where the task appears. */
 function added(adding: Promise<boolean>): void {
   void adding.then((done) => {
     if (done) opened.value = null;

@@ -1,4 +1,4 @@
-/** Both languages of an area, the second of the same shape as the first. */
+/** Combine the texts of an area in both languages; they must have the same keys. */
 export function both<Area>(en: Area, de: NoInfer<Area>): { readonly en: Area; readonly de: Area } {
   return { en, de };
 }

@@ -1,4 +1,4 @@
-/** All that the page says, in both languages. Each area has a file of its own. */
+/** All texts of the page in both languages, with a file for each area. */
 
 import { signal } from "@preact/signals-core";
 
@@ -29,12 +29,12 @@ const ALL: Record<Language, Texts> = { en: texts("en"), de: texts("de") };
 
 export const language = signal<Language>("en");
 
-/** The texts in the language that is chosen. */
+/** Return the texts in the chosen language. */
 export function t(): Texts {
   return ALL[language.value];
 }
 
-/** How dates are written: as the browser does it, where it speaks the language of the page. */
+/** Return the locale of dates: the browser's, if it has the page's language. */
 export function dateLocale(): string {
   return navigator.languages.find((one) => one.startsWith(language.value)) ?? language.value;
 }

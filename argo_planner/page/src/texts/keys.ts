@@ -1,4 +1,4 @@
-/** The sheet of keys. */
+/** The overview of keyboard shortcuts. */
 
 import { both } from "./both";
 
@@ -13,22 +13,22 @@ export const keys = both<Sheets>(
     everywhere: {
       title: "Everywhere",
       keys: [
-        ["?", "this sheet"],
-        ["Ctrl+Z", "undo what you did last"],
+        ["?", "this overview"],
+        ["Ctrl+Z", "undo your last edit"],
         ["Ctrl+Y", "redo it"],
-        ["F8", "start, watch and steer the run"],
-        ["F9", "take over from the run"],
-        ["Esc", "put the tool away, close a message, unselect"],
+        ["F8", "start, watch and control the run"],
+        ["F9", "take over the robot"],
+        ["Esc", "leave the tool, close a message, clear the selection"],
       ],
     },
     list: {
       title: "Tasks",
       keys: [
-        ["↑ ↓", "select the one above or below"],
+        ["↑ ↓", "select the task above or below"],
         ["Shift+↑ Shift+↓", "select several"],
         ["← →", "fold and unfold a group"],
-        ["Alt+↑ Alt+↓", "move what is selected"],
-        ["Alt+← Alt+→", "out of a group, into one"],
+        ["Alt+↑ Alt+↓", "move the selection"],
+        ["Alt+← Alt+→", "move out of a group, into a group"],
         ["Enter", "open the details"],
         ["F2", "rename"],
         ["v", "show it in the site"],
@@ -43,7 +43,7 @@ export const keys = both<Sheets>(
         ["m", "measure a checkpoint"],
         ["n", "navigation tool"],
         ["w", "waypoint at a place"],
-        ["g", "group what is selected"],
+        ["g", "group the selection"],
         ["o", "obstacle tool"],
       ],
     },
@@ -57,12 +57,12 @@ export const keys = both<Sheets>(
         ["PageUp PageDown", "floor above or below"],
       ],
     },
-    script: { title: "Script", keys: [["Ctrl+Enter", "apply what is written"]] },
+    script: { title: "Script", keys: [["Ctrl+Enter", "apply the text"]] },
     byHand: {
       title: "Driving by hand",
       keys: [
-        ["↑ W", "drive ahead, as long as it is held"],
-        ["↓ S", "drive back"],
+        ["↑ W", "drive forward while held"],
+        ["↓ S", "drive backward"],
         ["← A", "turn left"],
         ["→ D", "turn right"],
         ["Space", "stand still"],
@@ -75,21 +75,21 @@ export const keys = both<Sheets>(
       title: "Überall",
       keys: [
         ["?", "diese Übersicht"],
-        ["Strg+Z", "rückgängig machen, was Sie zuletzt taten"],
+        ["Strg+Z", "Ihre letzte Änderung rückgängig machen"],
         ["Strg+Y", "wiederholen"],
         ["F8", "Fahrt starten, verfolgen und steuern"],
-        ["F9", "die Fahrt von Hand übernehmen"],
-        ["Esc", "Werkzeug weglegen, Meldung schließen, Auswahl aufheben"],
+        ["F9", "den Roboter übernehmen"],
+        ["Esc", "Werkzeug verlassen, Meldung schließen, Auswahl aufheben"],
       ],
     },
     list: {
       title: "Aufgaben",
       keys: [
-        ["↑ ↓", "darüber oder darunter auswählen"],
+        ["↑ ↓", "Aufgabe darüber oder darunter auswählen"],
         ["Umschalt+↑ Umschalt+↓", "mehrere auswählen"],
         ["← →", "Gruppe zu- und aufklappen"],
-        ["Alt+↑ Alt+↓", "Ausgewähltes verschieben"],
-        ["Alt+← Alt+→", "aus einer Gruppe, in eine Gruppe"],
+        ["Alt+↑ Alt+↓", "Auswahl verschieben"],
+        ["Alt+← Alt+→", "aus einer Gruppe, in eine Gruppe verschieben"],
         ["Enter", "Details öffnen"],
         ["F2", "umbenennen"],
         ["v", "in der Anlage zeigen"],
@@ -104,7 +104,7 @@ export const keys = both<Sheets>(
         ["m", "einen Prüfpunkt messen"],
         ["n", "Navigationswerkzeug"],
         ["w", "Wegpunkt an einem Ort"],
-        ["g", "Ausgewähltes gruppieren"],
+        ["g", "Auswahl gruppieren"],
         ["o", "Hinderniswerkzeug"],
       ],
     },
@@ -114,11 +114,11 @@ export const keys = both<Sheets>(
         ["↑ ↓ ← →", "Kamera bewegen, oder den Umriss des Navigationswerkzeugs"],
         ["Umschalt+↑", "doppelt so schnell; fünf Felder mit dem Umriss"],
         [", .", "den Umriss drehen"],
-        ["Enter", "den Umriss setzen"],
+        ["Enter", "den Umriss platzieren"],
         ["Bild↑ Bild↓", "Stockwerk darüber oder darunter"],
       ],
     },
-    script: { title: "Skript", keys: [["Strg+Enter", "Geschriebenes anwenden"]] },
+    script: { title: "Skript", keys: [["Strg+Enter", "den Text anwenden"]] },
     byHand: {
       title: "Von Hand fahren",
       keys: [

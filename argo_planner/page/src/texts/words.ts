@@ -1,4 +1,4 @@
-/** Words of the field: actions, events, responses, comparisons. */
+/** Technical terms: actions, events, responses. */
 
 import { both } from "./both";
 
@@ -15,7 +15,7 @@ export const words = both(
       low_battery: "low battery",
       connection_lost: "connection lost",
       emergency_stop: "emergency stop",
-      dysfunction: "dysfunction of the robot",
+      dysfunction: "malfunction of the robot",
       abnormal_reading: "abnormal reading",
       time_up: "time is up",
       all_clear: "all clear",
@@ -23,14 +23,14 @@ export const words = both(
       connection_restored: "connection restored",
     },
     response: {
-      report: "report it only",
+      report: "report only",
       pause: "stop and wait",
       return: "return to a dock",
       safe_area: "drive to a safe area",
       abort: "end the mission",
     },
     afterwards: {
-      resume: "go on with the mission",
+      resume: "continue the mission",
       wait: "wait for a person",
       end: "end the mission",
     },
@@ -42,19 +42,19 @@ export const words = both(
     event: {
       gas_leak: "Gasleck",
       hot_spot: "heiße Stelle",
-      abnormal_sound: "ungewöhnliches Geräusch",
+      abnormal_sound: "auffälliges Geräusch",
       platform_alarm: "Plattformalarm",
       positive_obstacle: "Hindernis im Weg",
       negative_obstacle: "fehlende Bodenplatte",
       low_battery: "niedriger Ladestand",
       connection_lost: "Verbindung verloren",
       emergency_stop: "Not-Halt",
-      dysfunction: "Störung des Roboters",
-      abnormal_reading: "ungewöhnlicher Messwert",
+      dysfunction: "Fehlfunktion des Roboters",
+      abnormal_reading: "auffälliger Messwert",
       time_up: "Zeit abgelaufen",
       all_clear: "Entwarnung",
       battery_charged: "Batterie geladen",
-      connection_restored: "Verbindung wieder da",
+      connection_restored: "Verbindung wiederhergestellt",
     },
     response: {
       report: "nur melden",
@@ -64,7 +64,7 @@ export const words = both(
       abort: "die Mission beenden",
     },
     afterwards: {
-      resume: "mit der Mission weitermachen",
+      resume: "die Mission fortsetzen",
       wait: "auf eine Person warten",
       end: "die Mission beenden",
     },
@@ -73,7 +73,7 @@ export const words = both(
   },
 );
 
-/** A time in s as `1:05:20`, `5:20` or `12 s`. */
+/** Format a time (s) as `1:05:20 h`, `5:20 min` or `12 s`. */
 function duration(s: number): string {
   if (s < 60) return `${Math.round(10 * s) / 10} s`;
   const whole = Math.round(s);

@@ -1,26 +1,26 @@
-/** Requests to the service. Errors of any kind become a `Refusal` or an `Unreached`. */
+/** Requests to the service. Every error becomes a `Refusal` or an `Unreached`. */
 
 import createClient from "openapi-fetch";
 
 import type { paths } from "./schema";
 import type { Problem } from "./types";
 
-/** The service has refused a request, and has said why. */
+/** An error of a request that the service refused, with its reason. */
 export class Refusal extends Error {
   constructor(readonly problem: Problem) {
     super(problem.detail);
   }
 }
 
-/** No answer has come: the service is not there, or the network is not. */
+/** An error of a request that got no answer: the service or the network is not available. */
 export class Unreached extends Error {}
 
-/** The code of a service that has too much to do for now. */
+/** The error code of an overloaded service. */
 const FULL = "full";
 
 let author = "";
 
-/** Says who is working, with each request from now on. */
+/** Set the name of the person that all further requests carry. */
 export function workAs(name: string): void {
   author = name;
 }
@@ -43,7 +43,7 @@ interface Answer<T> {
   response: Response;
 }
 
-/** What a request has brought. Throws `Refusal` or `Unreached`. */
+/** Return the data of a response. Throws `Refusal` or `Unreached`. */
 export async function answered<T>(asked: Promise<Answer<T>>): Promise<T> {
   const { data, error, response } = await asked;
   if (response.ok) return data as T;
@@ -55,7 +55,7 @@ function isProblem(found: unknown): found is Problem {
   return typeof found === "object" && found !== null && "code" in found && "detail" in found;
 }
 
-/** A file of the service. Throws `Unreached`. */
+/** Download a file of the service. Throws `Unreached`. */
 export async function fetched(path: string): Promise<ArrayBuffer> {
   try {
     const response = await fetch(path);
@@ -66,13 +66,13 @@ export async function fetched(path: string): Promise<ArrayBuffer> {
   }
 }
 
-/** An id for a command or a request, which nobody else has. */
+/** Create a unique id for a command or a request. */
 export function newId(): string {
   const bytes = crypto.getRandomValues(new Uint8Array(12));
   return Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
 }
 
-/** Who is working, as sockets are told it. */
+/** Return the part of a socket's query that names the person. */
 export function authorQuery(): string {
   return author === "" ? "" : `author=${encodeURIComponent(encodeURIComponent(author))}`;
 }
@@ -81,8 +81,8 @@ export function pause(ms: number): Promise<void> {
   return new Promise((resolve) => setTimeout(resolve, ms));
 }
 
-/** What a request brings, which is sent again every `ms` while the service is not reached and it is
- * still wanted. Throws `Refusal`, and `Unreached` where it is not wanted any more. */
+/** Send a request, and repeat it every `ms` while the service can't be reached and the request is still
+ * wanted. Throws `Refusal`, or `Unreached` if the request is no longer wanted. */
 export async function untilReached<T>(send: () => Promise<T>, wanted: () => boolean, ms: number): Promise<T> {
   for (;;)
     try {

@@ -1,16 +1,16 @@
-/** A connection over which the service tells what happens. It comes back by itself. */
+/** A connection on which the service sends messages. It reconnects by itself. */
 
 const SOONEST_MS = 250;
 const LATEST_MS = 4_000;
 const GONE = 4404;
 
 export interface Telling<Message> {
-  /** Path and query of the socket, asked for at each attempt, so that it can say what is known. */
+  /** Returns path and query of the socket. It is called at each attempt, because the query names what is known. */
   address: () => string;
   heard: (message: Message) => void;
-  /** Whether the connection stands. */
+  /** Called when the connection opens or closes. */
   changed: (connected: boolean) => void;
-  /** What was followed is not there any more; the connection does not come back. */
+  /** Called when the mission or run no longer exists; the connection is not reopened. */
   gone?: () => void;
 }
 
@@ -38,7 +38,7 @@ export class LiveConnection<Message> {
     this.socket?.close();
   }
 
-  /** The browser has no network: the socket itself would notice only minutes later. */
+  /** The browser is offline. The socket itself would notice this only minutes later. */
   private readonly lost = (): void => {
     const socket = this.socket;
     if (socket === null) return;

@@ -1,4 +1,4 @@
-/** Short names for what the service's document describes. */
+/** Short names for the types of the service's OpenAPI document. */
 
 import type { components, webhooks } from "./schema";
 
@@ -50,7 +50,7 @@ export type RunState = Schemas["RunState"];
 export type RunAsked = Schemas["RunAsked"];
 export type RequestState = Schemas["RequestState"];
 export type Entry = Schemas["EntryTold"]["entry"];
-/** Any fault, without what only some kinds have. */
+/** The kind of any fault. */
 export type FaultKind = Schemas["BeginFault"]["fault"]["kind"];
 export type RunQuestion =
   import("./schema").operations["ask_run"]["requestBody"]["content"]["application/json"];

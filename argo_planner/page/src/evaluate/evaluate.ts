@@ -1,4 +1,4 @@
-/** The evaluation of the mission: in how many worlds it is a success, how sure that is, and what breaks it. */
+/** The panel of the evaluation: success rate in many worlds, its interval, and the failed runs. */
 
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { evaluation } from "./evaluation";
@@ -19,7 +19,7 @@ export class EvaluatePanel extends PageElement {
   `;
 
   override render() {
-    // What came of one comes first: below the form nobody would see it.
+    // The result comes first: below the form nobody would see it.
     return html`<div class="all">
       ${evaluation.value === null ? nothing : html`<argo-evaluate-result></argo-evaluate-result>`}
       <argo-evaluate-start></argo-evaluate-start>

@@ -1,4 +1,4 @@
-/** The evaluation of the mission that is open: begun, watched, ended, gone on with; its runs replayed. */
+/** The evaluations of the open mission: start, watch, stop and resume them, and replay their runs. */
 
 import { batch, computed, effect, signal } from "@preact/signals-core";
 
@@ -12,20 +12,20 @@ import { connected, jobs, planId, revision, takeJob } from "../state/plan";
 import { showReplay } from "../state/run";
 import { panel } from "../state/view";
 
-/** Of what is asked only what is given is sent. */
+/** The request's type, in which all fields are required; fields that are left out keep their defaults. */
 type Body = operations["evaluate_mission"]["requestBody"]["content"]["application/json"];
 
-/** The evaluations of all missions, as far as they were asked for, the newest first; without what came of them. */
+/** Evaluations of all missions as last read, the newest first; without their results. */
 const known = signal<readonly EvaluationJob[]>([]);
-/** Those of the mission. */
+/** Evaluations of the open mission. */
 export const evaluations = computed(() => known.value.filter((one) => one.mission === planId.value));
-/** One of another mission that is under way, so that none can begin here; null: none is known. */
+/** A running evaluation of another mission, because of which none can start here; null: none is known. */
 export const elsewhere = computed(
   () => known.value.find((one) => one.mission !== planId.value && one.state === "running") ?? null,
 );
-/** Id of the one that somebody chose to see; null: the newest. */
+/** Id of the evaluation that the person chose; null: the newest one is shown. */
 const chosen = signal<string | null>(null);
-/** The evaluation of the mission that is shown: the newest, whoever has begun it, or the one that was chosen; null: none is known. */
+/** The evaluation of the open mission that is shown: the newest one, or the chosen one; null: none is known. */
 export const evaluation = computed<EvaluationJob | null>(() => {
   let newest: EvaluationJob | null = null;
   for (const one of jobs.value.values()) {
@@ -35,28 +35,28 @@ export const evaluation = computed<EvaluationJob | null>(() => {
   }
   return newest;
 });
-/** Whether the mission was changed since it was begun. */
+/** Whether the mission was changed after the evaluation began. */
 export const evaluationIsStale = computed(
   () => evaluation.value !== null && evaluation.value.revision !== revision.value,
 );
-/** Key of the run that is being made again. */
+/** Key of the run that is being repeated; null: none is. */
 export const replaying = signal<string | null>(null);
 
-// Each mission is looked at anew.
+// A choice is valid for one mission only.
 effect(() => {
   heed(planId);
   chosen.value = null;
 });
 const state = computed(() => evaluation.value?.state ?? null);
-// What became of them while nobody could tell, and which ones there were before the page was opened, is asked for;
-// and again when one begins or ends.
+// Evaluations are read when a mission is opened, when the connection returns, and when an evaluation begins
+// or ends.
 effect(() => {
   const id = planId.value;
   heed(state);
   if (id !== null && connected.value) void ask(id);
 });
 
-/** Asks for all evaluations, and for what came of the newest one of the mission. */
+/** Read the list of all evaluations, and the result of the newest one of this mission. */
 async function ask(id: string): Promise<void> {
   try {
     const { jobs: all } = await answered(client.GET("/api/jobs"));
@@ -68,18 +68,18 @@ async function ask(id: string): Promise<void> {
   }
 }
 
-/** Reads what came of an evaluation of the mission `id`. */
+/** Read the result of an evaluation of the mission `id`. */
 async function read(job: string, id: string): Promise<void> {
   const whole = await answered(client.GET("/api/jobs/{id}", { params: { path: { id: job } } }));
   if (planId.peek() === id) takeJob(whole);
 }
 
-/** Asks whether another mission is evaluated. */
+/** Read the list of evaluations again. */
 export async function lookElsewhere(): Promise<void> {
   if (planId.value !== null) await ask(planId.value);
 }
 
-/** Shows another evaluation of the mission. */
+/** Show another evaluation of the mission. */
 export async function choose(job: string): Promise<void> {
   const id = planId.value;
   if (id === null) return;
@@ -89,7 +89,7 @@ export async function choose(job: string): Promise<void> {
   });
 }
 
-/** Deletes an evaluation that is over, with all that came of it. */
+/** Delete a finished evaluation and its results. */
 export async function forget(job: string): Promise<void> {
   await telling(async () => {
     await answered(client.DELETE("/api/evaluations/{id}", { params: { path: { id: job } } }));
@@ -101,7 +101,7 @@ export async function forget(job: string): Promise<void> {
   });
 }
 
-/** Begins one of the mission as it is. */
+/** Start an evaluation of the mission in its present state. */
 export async function evaluate(asked: Partial<EvaluationAsked>): Promise<void> {
   const id = planId.value;
   if (id === null) return;
@@ -123,7 +123,7 @@ export async function goOnWithEvaluation(id: string): Promise<void> {
   await taken(() => client.POST("/api/jobs/{id}/go_on", { params: { path: { id } } }));
 }
 
-/** Lets a run be made once more, and shows it in place of the robot's. */
+/** Repeat a run of an evaluation, and show it in place of the robot's run. */
 export async function replay(job: EvaluationJob, run: FailedRun): Promise<void> {
   if (replaying.value !== null) return;
   replaying.value = run.key;

@@ -1,4 +1,4 @@
-/** How an evaluation stands: the rate as it closes in, what breaks the mission, and each run that failed. */
+/** The result of an evaluation: success rate and interval, results by fault, failed runs. */
 
 import { svg } from "lit";
 
@@ -24,7 +24,7 @@ import {
 } from "./evaluation";
 
 const [WIDTH, HEIGHT] = [300, 110];
-/** What the service says of an evaluation that ended with it. */
+/** The service's message about an evaluation that ended because the service ended. */
 const SERVICE_ENDED = "the service ended before all was run";
 
 @customElement("argo-evaluate-result")
@@ -201,7 +201,7 @@ export class EvaluateResult extends PageElement {
     </section>`;
   }
 
-  /** Which evaluation of the mission is shown. */
+  /** The choice among several evaluations of the mission. */
   private choice(job: EvaluationJob) {
     const texts = t().evaluate;
     const all = evaluations.value;
@@ -273,7 +273,7 @@ export class EvaluateResult extends PageElement {
     </figure>`;
   }
 
-  /** What kind of interval it is, and so what it claims. */
+  /** Return the description of the interval's kind, which says what it claims. */
   private kind(job: EvaluationJob, now: EvaluationStanding): string {
     const kinds = t().evaluate.kinds;
     const cases = job.asked.faults.length + (job.asked.without_faults ? 1 : 0);
@@ -283,7 +283,7 @@ export class EvaluateResult extends PageElement {
     return now.by_faults.length > 1 ? kinds.worlds : kinds.anyTime;
   }
 
-  /** How many runs there are, of how many, and why not more. */
+  /** Return the number of runs, done and planned, and why there are no more. */
   private runs(job: EvaluationJob, now: EvaluationStanding): string {
     const texts = t().evaluate;
     const said =
@@ -350,7 +350,7 @@ function share(part: number): string {
   return percent(part, 1);
 }
 
-/** A number in percent as somebody gave it. */
+/** Format a share as a percentage with the digits that the person gave. */
 function percentOf(part: number): string {
   return percent(part, 4);
 }

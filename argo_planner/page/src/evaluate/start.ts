@@ -1,4 +1,4 @@
-/** Before an evaluation: in how many worlds, how they differ, and what is required. */
+/** The form of an evaluation: number of worlds, their differences, requirements. */
 
 import type { EvaluationAsked, FaultKind } from "../api/types";
 import "../run/faults";
@@ -14,7 +14,7 @@ import { elsewhere, evaluate, evaluation, evaluations } from "./evaluation";
 
 const WORLDS = [20, 100, 300, 1_000, 3_000, 10_000] as const;
 const DRIVES = ["route", "kinematic", "tracked"] as const;
-/** Ranges in percent. */
+/** Names of ranges that are given in percent. */
 const SHARES = ["charge", "capacity", "speed"] as const;
 
 @customElement("argo-evaluate-start")
@@ -160,12 +160,12 @@ export class EvaluateStart extends PageElement {
     await evaluate(asked as unknown as Partial<EvaluationAsked>);
     this.starting = false;
     await new Promise(requestAnimationFrame);
-    // What comes of it stands above the form.
+    // The result stands above the form.
     const root = this.getRootNode() as ShadowRoot;
     root.querySelector("argo-evaluate-result")?.scrollIntoView({ block: "start" });
   }
 
-  /** How worlds differ; null: a range makes no sense, and it is said which. */
+  /** Read the ranges of the form; null: a range is invalid, and `wrong` names it. */
   private variation(form: FormData): Record<string, readonly [number, number]> | null {
     const texts = t().evaluate;
     const found: Record<string, readonly [number, number]> = {};

@@ -1,4 +1,4 @@
-/** Conditions on readings: of ways, rounds and waits. */
+/** Forms of conditions on readings: of transitions, rounds and waits. */
 
 import type { Condition } from "../api/types";
 import { mayPlan } from "../state/session";
@@ -10,16 +10,16 @@ import type { Commit } from "./field";
 import { checkField, checkpointOptions, numberField, optionsOf, selectField, timeField } from "./parts";
 
 type Conditions = readonly Condition[];
-/** Takes what the conditions become, of what they are by then. */
+/** Changes the conditions. It gets their state when the edit is made, not when the form was drawn. */
 type Save = (change: (was: Conditions) => Conditions) => ReturnType<Commit>;
 
-/** The condition that a reading is above what is normal, to begin with. */
+/** Create the default condition: the reading is above its normal range. */
 export function aboveNormal(object_id: string): Condition {
   const param1 = checkpointsById.value.get(object_id)?.nominal.high ?? 0;
   return { type: "MEASURED_VALUE_GREATER", id: "", object_id, param1, inclusive: false };
 }
 
-/** The conditions, each with its fields, and a button for one more. */
+/** Render conditions with their fields, and a button that adds one. */
 export function conditionList(conditions: Conditions, save: Save, label: string) {
   const texts = t().forms;
   const add = () =>
@@ -86,7 +86,7 @@ function conditionForm(
   </fieldset>`;
 }
 
-/** What changes when a condition becomes one of another type: bounds come and go. */
+/** Return the fields that change with the type of a condition: bounds are added or removed. */
 function changedType(
   condition: Condition,
   type: Condition["type"],

@@ -1,5 +1,5 @@
-/** A field of a form. What is typed is kept until it is right: a refusal is said beside it, and what
- * others do meanwhile does not overwrite it. */
+/** A field of a form. It keeps invalid input and shows the reason beside it; edits of other people don't
+ * overwrite it. */
 
 import { tell } from "../state/notices";
 import { t } from "../texts";
@@ -11,7 +11,7 @@ export interface Option {
   readonly label: string;
 }
 
-/** Takes what was typed or chosen; why it was refused, null if it was not. */
+/** Saves the typed or chosen value. Returns the reason of a refusal, or null if it was saved. */
 export type Commit = (value: string) => Promise<string | null> | string | null;
 
 let count = 0;
@@ -68,9 +68,9 @@ export class FormField extends PageElement {
 
   @property() label = "";
   @property({ reflect: true }) kind: "text" | "long" | "select" | "check" = "text";
-  /** What it is now; for a box `true` or `false`. */
+  /** The saved value; `true` or `false` for a check box. */
   @property() value = "";
-  /** The unit, or what is normal. */
+  /** A unit or a normal range, shown beside the field. */
   @property() note = "";
   @property() placeholder = "";
   @property({ attribute: false }) options: readonly Option[] = [];
@@ -79,7 +79,7 @@ export class FormField extends PageElement {
   @state() private typed: string | null = null;
   @state() private wrong: string | null = null;
   @state() private overtaken = false;
-  /** Whether what was typed is on its way. */
+  /** Whether the typed value is being saved. */
   private taking = false;
   private readonly id_ = `field-${++count}`;
 
@@ -178,7 +178,7 @@ export class FormField extends PageElement {
 
   private async take(typed: string): Promise<void> {
     if (typed === this.value) return this.forget();
-    if (this.taking && typed === this.typed) return; // Enter, and then the focus went
+    if (this.taking && typed === this.typed) return; // Enter saves it, and the loss of focus would save it again
     this.typed = typed;
     this.overtaken = false;
     this.taking = true;

@@ -1,4 +1,4 @@
-/** The form of a group: a round, and what ends it. */
+/** The form of a group: its rounds, and what ends them. */
 
 import type { Group } from "../api/types";
 import { groupKey, ownName } from "../model/outline";
@@ -36,7 +36,7 @@ export function groupForm(group: Group) {
       set({ max_repeat_count: count ?? 0 }),
     )}
     ${timeField(texts.duration, group.max_repeat_duration || null, (time) =>
-      // One round is what a new group has: with a time it is to go round until that is up.
+      // A new group has one round. With a time limit its rounds are to be repeated until then.
       setOf((was) => ({
         max_repeat_duration: time ?? 0,
         ...(was.max_repeat_count === 1 && time ? { max_repeat_count: 0 } : {}),

@@ -1,4 +1,4 @@
-/** The form of the mission as a whole. */
+/** The form of the mission's header. */
 
 import type { Mission } from "../api/types";
 import { editHere } from "../state/commands";
@@ -13,7 +13,7 @@ import { optionsOf, poseFields, selectField, textField, timeField } from "./part
 
 type Fields = Partial<Omit<Mission, "version" | "tasks" | "groups" | "reactions">>;
 
-/** Sets fields of the mission, of what it is by then. */
+/** Change fields of the mission. `change` gets its state when the edit is made. */
 function setOf(change: (now: Mission) => Fields): Promise<string | null> {
   return editHere(() => (open.value === null ? [] : [{ kind: "set_header", ...change(open.value) }]));
 }
@@ -59,7 +59,7 @@ export function headerForm(mission: Mission) {
       : nothing}`;
 }
 
-/** Which tasks come before which others, whatever the order. */
+/** Render the pairs of tasks with a required order. */
 function befores(mission: Mission) {
   const texts = t().forms;
   const names = laterTasks.value;
@@ -102,7 +102,7 @@ function befores(mission: Mission) {
   </details>`;
 }
 
-/** Says why an edit was refused. */
+/** Show a notice if an edit was refused. */
 async function editing(work: () => Promise<string | null>): Promise<void> {
   const wrong = await work();
   if (wrong) tell("bad", wrong);

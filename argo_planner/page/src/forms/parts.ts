@@ -1,4 +1,4 @@
-/** Fields of the kinds that forms are made of: numbers, times, choices, places. */
+/** Fields that forms consist of: numbers, times, choices, poses. */
 
 import type { Pose } from "../api/types";
 import { mayPlan } from "../state/session";
@@ -16,7 +16,7 @@ export interface FieldOptions {
 
 const NONE: readonly Option[] = [];
 type Given = number | null | undefined;
-/** Takes the number that was typed, null where the field was left empty; what is wrong with it. */
+/** Saves a number, or null for an empty field. Returns the reason of a refusal. */
 type TakeNumber = (value: number | null) => ReturnType<Commit>;
 
 function field(
@@ -58,7 +58,7 @@ export function selectField(
   return field("select", label, value, commit, {}, all);
 }
 
-/** A number; empty is null. */
+/** Render a field for a number; empty means null. */
 export function numberField(label: string, value: Given, commit: TakeNumber, options: FieldOptions = {}) {
   const take = (text: string) => {
     if (text.trim() === "") return commit(null);
@@ -68,14 +68,14 @@ export function numberField(label: string, value: Given, commit: TakeNumber, opt
   return field("text", label, value === null || value === undefined ? "" : String(value), take, options);
 }
 
-/** A whole number; empty is null. */
+/** Render a field for a whole number; empty means null. */
 export function countField(label: string, value: Given, commit: TakeNumber, options: FieldOptions = {}) {
   const take: TakeNumber = (number) =>
     number === null || (Number.isInteger(number) && number >= 0) ? commit(number) : t().forms.noCount;
   return numberField(label, value, take, options);
 }
 
-/** A speed (m/s), at most what the robot drives; empty is null. */
+/** Render a field for a speed (m/s) up to the robot's highest speed; empty means null. */
 export function speedField(label: string, value: Given, commit: TakeNumber) {
   const most = world.value?.robot.speed ?? Infinity;
   const take: TakeNumber = (speed) =>
@@ -83,7 +83,7 @@ export function speedField(label: string, value: Given, commit: TakeNumber) {
   return numberField(label, value, take, { note: "m/s", placeholder: Number.isFinite(most) ? String(most) : "" });
 }
 
-/** A time, held in s; empty is null. */
+/** Render a field for a time (s); empty means null. */
 export function timeField(label: string, value: Given, commit: TakeNumber, options: FieldOptions = {}) {
   const take = (text: string) => {
     if (text.trim() === "") return commit(null);
@@ -94,7 +94,7 @@ export function timeField(label: string, value: Given, commit: TakeNumber, optio
   return field("text", label, shown, take, { placeholder: t().forms.likeTime, ...options });
 }
 
-/** Choices out of words of the field. */
+/** Return the options of a choice from a table of texts. */
 export function optionsOf(words: Readonly<Record<string, string>>): Option[] {
   return Object.entries(words).map(([value, label]) => ({ value, label }));
 }
@@ -106,10 +106,10 @@ export function checkpointOptions(): Option[] {
   }));
 }
 
-/** What becomes of a pose, of what it is by the time that it is changed. */
+/** Returns the new pose from the pose at the time of the edit. */
 export type PoseChange = (was: Pose | null) => Pose | null;
 
-/** A place on the site: a named one, or where exactly. */
+/** Render the fields of a pose: a named location, or coordinates. */
 export function poseFields(
   label: string,
   pose: Pose | null | undefined,

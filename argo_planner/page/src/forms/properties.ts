@@ -1,4 +1,4 @@
-/** The details of what is selected: a task, a group, a reaction, several tasks, or the mission. */
+/** The details of the selection: a task, a group, a reaction, several tasks, or the mission. */
 
 import { keyed } from "lit/directives/keyed.js";
 
@@ -80,7 +80,7 @@ export class PropertiesPanel extends PageElement {
     this.listen("open-details", ({ detail }) => this.focusField(detail));
   }
 
-  /** Puts the cursor into the field that is named, or the first one. */
+  /** Move the cursor into the field with this label, or into the first field. */
   private focusField(label: string | undefined): void {
     const fields = [...this.renderRoot.querySelectorAll<FormField>("argo-field")];
     (fields.find((field) => field.label === label) ?? fields[0])?.focus();
@@ -111,7 +111,7 @@ export class PropertiesPanel extends PageElement {
   }
 }
 
-/** What several tasks can be given at once. */
+/** Render the fields that can be set for several tasks at once. */
 function severalForm(tasks: readonly Task[]) {
   const texts = t().forms;
   const set = (fields: Partial<Task>) =>

@@ -1,4 +1,4 @@
-/** The form of a reaction: the event, the response, and what then. */
+/** The form of a reaction: event, response, and what follows. */
 
 import type { EventKind, Reaction } from "../api/types";
 import { reactionKey } from "../model/outline";
@@ -88,7 +88,7 @@ export function reactionForm(reaction: Reaction) {
     </button>`;
 }
 
-/** What changes with the response: fields that would have no effect go. */
+/** Return the fields that change with the response; fields without an effect are reset. */
 function responding(reaction: Reaction, response: Reaction["response"]): Partial<Reaction> {
   const place = world.value?.places[0]?.pose ?? world.value?.docks[0]?.pose ?? null;
   const holds = response !== "report" && response !== "abort";

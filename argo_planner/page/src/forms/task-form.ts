@@ -23,7 +23,7 @@ import {
   timeField,
 } from "./parts";
 
-/** Fields that are to change; of a function, what it says of the task as it is by then. */
+/** Saves fields of the task. A function gets the task in its state when the edit is made. */
 type Save = (fields: Fields | ((task: Task) => Fields)) => Promise<string | null>;
 type Fields = Partial<Omit<Task, "name" | "action" | "transitions" | "source" | "group">>;
 
@@ -173,7 +173,7 @@ function windowFields(task: Task, set: Save) {
       : nothing}`;
 }
 
-/** Where the mission goes on after the task. */
+/** Render the transitions of a task. */
 function ways(task: Task) {
   const texts = t().forms;
   const { conditional, onward } = parted(task);
@@ -231,7 +231,7 @@ function ways(task: Task) {
 
 interface Ways {
   readonly conditional: readonly Transition[];
-  /** Where it goes on where no condition holds; null: the mission ends there. */
+  /** The transition without conditions; null: the mission ends there. */
   readonly onward: Transition | null;
 }
 
@@ -242,12 +242,12 @@ function parted(task: Task): Ways {
   };
 }
 
-/** The task as it is by now. */
+/** Return the present state of the task. */
 function now(task: Task): Task {
   return tasksByName.value.get(task.name) ?? task;
 }
 
-/** Tasks that may follow. */
+/** Return the tasks that may follow. */
 function followers(task: Task) {
   return laterTasks.value.filter((name) => name !== task.name).map((name) => ({ value: name, label: name }));
 }

@@ -1,7 +1,7 @@
 /** Times as people write them. */
 
-/** The s of `90`, `90 s`, `1:30`, `1:30 min`, `1:05:00`, `10 min`, `1.5 h`, `2 h 30 min`, `20'`; null
- * for what is none. */
+/** Parse a time such as `90`, `90 s`, `1:30`, `1:30 min`, `1:05:00`, `10 min`, `1.5 h`, `2 h 30 min` or `20'`
+ * into seconds; null: the text is no time. */
 export function readTime(text: string): number | null {
   const said = text.trim().toLowerCase().replaceAll(",", ".");
   const clock = /^(?:(\d+):)?(\d{1,3}):(\d{1,2}(?:\.\d+)?)(?:\s*(?:h|min|s))?$/.exec(said);
@@ -22,7 +22,7 @@ export function readTime(text: string): number | null {
   return said === "" ? null : total;
 }
 
-/** A time (s) as it can be read again: `1 h 5 min`, `90 s`. */
+/** Format a time (s) so that `readTime` can parse it: `1 h 5 min`, `90 s`. */
 export function writeTime(seconds: number): string {
   if (seconds < 120 && seconds % 60 !== 0) return `${round(seconds)} s`;
   const hours = Math.floor(seconds / 3600);

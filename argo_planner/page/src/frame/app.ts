@@ -1,4 +1,4 @@
-/** The page as a whole: which mission is open, and where its parts stand. */
+/** The whole page: it opens the mission that the address names, and lays out the panels. */
 
 import { signal } from "@preact/signals-core";
 
@@ -132,13 +132,13 @@ export class ArgoApp extends PageElement {
     }
   `;
 
-  /** The mission that the address names, while it is being read. */
+  /** Id of the mission in the address while it is being read. */
   private readonly opening = signal<string | null>(null);
 
   constructor() {
     super();
     this.listen("hashchange", () => void this.followAddress());
-    // The browser asks whether to leave while something has not been sent.
+    // The browser asks for confirmation if edits have not been sent.
     this.listen("beforeunload", (event) => waiting.value > 0 && event.preventDefault());
     this.watch(() => {
       document.title = planName.value ? `${planName.value} – Argo` : "Argo";
@@ -151,7 +151,7 @@ export class ArgoApp extends PageElement {
     void this.begin();
   }
 
-  /** Reads what does not depend on the mission; tries again until the service is there. */
+  /** Read all that does not depend on the mission; repeat this until the service answers. */
   private async begin(): Promise<void> {
     void this.followAddress().then(readScene);
     followRobot();
@@ -162,7 +162,7 @@ export class ArgoApp extends PageElement {
     await untilReached(() => Promise.all([readService(), readWorld()]), isWanted, RETRY_MS).catch(tellError);
   }
 
-  /** Opens what the address says. Whatever is opened meanwhile goes before it. */
+  /** Open the mission or list that the address names. A later change of the address has precedence. */
   private async followAddress(): Promise<void> {
     const id = namedMission();
     if (id === (this.opening.value ?? planId.value)) return;
@@ -180,7 +180,7 @@ export class ArgoApp extends PageElement {
     try {
       await untilReached(() => openPlan(id, isMeant), isMeant, RETRY_MS);
       await this.updateComplete;
-      // Whatever had the focus is gone; keys work at once.
+      // The element with the focus is gone. Keys are to work at once.
       setTimeout(() => {
         if (document.activeElement === document.body) dispatchEvent(new CustomEvent("focus-list"));
       });
@@ -193,7 +193,7 @@ export class ArgoApp extends PageElement {
     }
   }
 
-  /** Not all that was done is sent: the mission stays open until it is, or somebody leaves it so. */
+  /** Keep a mission open whose edits have not all been sent, until they are or the person leaves it. */
   private stayFor(id: string | null): void {
     const leave = () => {
       closePlan();
@@ -203,7 +203,7 @@ export class ArgoApp extends PageElement {
     history.replaceState(null, "", addressOf(planId.value));
     const texts = t().frame;
     const told = tell("bad", texts.unsent(waiting.value), { actions: [{ label: texts.leaveAnyway, act: leave }] });
-    void settled().then(() => dismiss(told)); // it would not be so any more
+    void settled().then(() => dismiss(told)); // the message would no longer be true
   }
 
   override render() {
@@ -261,7 +261,7 @@ export class ArgoApp extends PageElement {
   }
 }
 
-/** The mission that the address names; null: none. */
+/** Return the id of the mission that the address names; null: none. */
 function namedMission(): string | null {
   return /^#\/missions\/([0-9a-f]+)$/.exec(location.hash)?.[1] ?? null;
 }
@@ -270,13 +270,13 @@ function addressOf(id: string | null): string {
   return id === null ? "#" : `#/missions/${id}`;
 }
 
-/** Whether all edits are sent, or are so within a moment. */
+/** Return whether all edits are sent, now or within a moment. */
 async function allSent(): Promise<boolean> {
   if (waiting.value > 0) await Promise.race([settled(), pause(SENT_WITHIN_MS)]);
   return waiting.value === 0;
 }
 
-/** Reads the scene, by far the largest part of the page, once the browser has nothing else to do. */
+/** Load the scene, the largest part of the page by far, when the browser is idle. */
 async function readScene(): Promise<void> {
   while (!customElements.get("argo-scene")) {
     await quiet();
@@ -289,7 +289,7 @@ async function readScene(): Promise<void> {
   }
 }
 
-/** Until the browser has nothing else to do, where it can tell. */
+/** Wait until the browser is idle, if it can tell. */
 function quiet(): Promise<void> {
   if (!("requestIdleCallback" in window)) return pause(0);
   return new Promise((resolve) => requestIdleCallback(() => resolve(), { timeout: RETRY_MS }));

@@ -1,4 +1,4 @@
-/** All missions: open, make, delete, take back out of the bin. */
+/** The list of missions: open, create, delete, restore. */
 
 import { answered, client, untilReached } from "../api/client";
 import type { PlanSummary } from "../api/types";
@@ -105,7 +105,7 @@ export class PageHome extends PageElement {
   override updated(): void {
     if (!this.focused && mayPlan()) {
       this.focused = true;
-      // Who was thrown out of a mission is not to make one with the next key.
+      // After a mission was deleted by others, the next key must not create a new one.
       if (!wasGone.value) this.renderRoot.querySelector<HTMLElement>("button.main")?.focus();
     }
   }

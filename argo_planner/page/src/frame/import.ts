@@ -1,4 +1,4 @@
-/** Bringing in a mission that somebody has written elsewhere. */
+/** The import of a mission from a file. */
 
 import { answered, client, Refusal } from "../api/client";
 import { tell, tellError } from "../state/notices";
@@ -81,7 +81,7 @@ export class MissionImport extends PageElement {
       ${this.areas()}`;
   }
 
-  /** Asks where a mission begins and ends whose script leaves that open. */
+  /** Ask for the start and end area if the script does not name them. */
   private areas() {
     const open = this.choice;
     const texts = t().frame;
@@ -151,7 +151,7 @@ export class MissionImport extends PageElement {
     }
   }
 
-  /** What is wrong with a file, with the lines where it is. */
+  /** Show the errors of a file with their lines. */
   private tellImport(name: string, error: unknown): void {
     if (!(error instanceof Refusal)) return tellError(error);
     const found = error.problem.diagnostics.filter((one) => one.severity === "error");
@@ -164,7 +164,7 @@ export class MissionImport extends PageElement {
   }
 }
 
-/** Whether all that is wrong with a script is that it leaves open where it begins or ends. */
+/** Return which areas the script leaves open; null: it has other errors. */
 function openAreas(error: Refusal): { start: boolean; end: boolean } | null {
   const errors = error.problem.diagnostics.filter((one) => one.severity === "error");
   if (errors.length === 0 || errors.some((one) => one.code !== "script.area-choice")) return null;

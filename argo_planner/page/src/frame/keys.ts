@@ -1,4 +1,4 @@
-/** The sheet of keys, which `?` opens, and the keys that work wherever the focus is. */
+/** The overview of keyboard shortcuts, which `?` opens, and the keys that work everywhere. */
 
 import { signal } from "@preact/signals-core";
 
@@ -14,7 +14,7 @@ import { panel, tool } from "../state/view";
 import { t } from "../texts";
 import { css, customElement, html, PageElement, query } from "../ui/element";
 
-/** Whether the sheet is open. */
+/** Whether the overview is open. */
 export const keysShown = signal(false);
 
 @customElement("argo-keys")
@@ -132,7 +132,7 @@ export class PageKeys extends PageElement {
   }
 }
 
-/** Whether the mission that is open drives the robot by itself. */
+/** Return whether the open mission is driving the robot autonomously. */
 function canTakeOver(): boolean {
   const now = run.value;
   if (now === null || now.status !== "running" || now.plan !== planId.value || !mayOperate()) return false;
@@ -144,19 +144,19 @@ async function takeOver(): Promise<void> {
   await ask({ kind: "take_over" });
 }
 
-/** Shows the run of the robot, with the focus on what comes next: not one of before, which can't be steered. */
+/** Show the robot's present run, not a past one, and move the focus to the next likely button. */
 function openRun(): void {
   if (runIsOn.value) void showRun(null);
   panel.value = "run";
   setTimeout(() => dispatchEvent(new CustomEvent("open-run")));
 }
 
-/** Whether a key is meant for a menu, which the browser closes with Escape. */
+/** Return whether a key belongs to a menu, which the browser closes with Escape. */
 function inPopover(event: KeyboardEvent): boolean {
   return event.composedPath().some((one) => one instanceof HTMLElement && one.matches(":popover-open"));
 }
 
-/** Whether a key is meant for a field or a dialog. */
+/** Return whether a key belongs to a field or a dialog. */
 export function isTyping(event: KeyboardEvent): boolean {
   return event.composedPath().some(
     (target) =>

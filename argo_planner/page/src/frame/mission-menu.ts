@@ -1,4 +1,4 @@
-/** What can be done with the mission as a whole: exported, kept as a version, copied. */
+/** The menu of the mission: export, save a version, copy. */
 
 import { answered, client } from "../api/client";
 import { commandId, withPlan } from "../state/commands";

@@ -1,4 +1,4 @@
-/** Messages above the strip of times, newest last. */
+/** Notices above the strip, the newest last. */
 
 import { dismiss, notices, type Notice } from "../state/notices";
 import { t } from "../texts";
@@ -37,7 +37,7 @@ export class PageNotices extends PageElement {
     article.bad {
       border-left-color: var(--bad);
     }
-    /* On a narrow page the buttons of the panel are at the bottom. */
+    /* On a narrow page the tab bar is at the bottom. */
     @media (max-width: 800px) {
       :host {
         top: 52px;

@@ -1,4 +1,4 @@
-/** What the robot does, wherever one is: it can be halted from there. */
+/** The robot's state in the top bar, with a button that pauses it. */
 
 import { isUnderWay, shownMode } from "../model/run-mode";
 import { modeWords } from "../run/mode-words";

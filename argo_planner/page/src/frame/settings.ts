@@ -1,4 +1,4 @@
-/** Who works here and in which language. */
+/** Settings: name and language. */
 
 import { author, service } from "../state/session";
 import { language, t } from "../texts";

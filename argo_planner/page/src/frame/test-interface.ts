@@ -1,20 +1,19 @@
-/** What end-to-end tests ask of the scene, which has no elements that they could look for. */
+/** Functions for end-to-end tests of the scene, which has no DOM elements to look for. */
 
 import type { Ground } from "../model/standing";
 
 export interface ArgoTestInterface {
-  /** Where a point of the site (m) is in the page (px), and whether it is in the picture and on a
-   * floor that is shown. */
+  /** Position of a point of the site (m) on the page (px), and whether it is inside the view on a shown floor. */
   project(x: number, y: number, z: number): { readonly x: number; readonly y: number; readonly visible: boolean };
-  /** Whether the site is there and all is drawn. */
+  /** Whether the site is loaded and completely drawn. */
   idle(): boolean;
-  /** Whether the robot can stand at a pose (m, rad); null: the maps are not there. */
+  /** Whether the robot can stand at a pose (m, rad); null: the maps are not loaded. */
   standing(x: number, y: number, z: number, yaw: number): Ground | null;
   camera(): {
     readonly position: readonly [number, number, number];
     readonly target: readonly [number, number, number];
   };
-  /** Draw calls and triangles of the last frame, and ms that a verdict under the pointer took. */
+  /** Draw calls and triangles of the last frame, and the durations (ms) of verdicts under the pointer. */
   figures(): { readonly calls: number; readonly triangles: number; readonly hover: readonly number[] };
 }
 

@@ -1,4 +1,4 @@
-/** The bar at the top: the mission's name, undo and redo, whoever else is there, what the robot does, settings. */
+/** The top bar: name of the mission, undo and redo, other people, the robot's state, settings. */
 
 import { answered, client } from "../api/client";
 import { telling } from "../state/notices";
@@ -107,7 +107,7 @@ export class PageTopbar extends PageElement {
     </header>`;
   }
 
-  /** Whether all that was done is on the service's disk. */
+  /** Render whether all edits are stored by the service. */
   private saved() {
     const texts = t().frame;
     const away = !connected.value;
@@ -146,7 +146,7 @@ export class PageTopbar extends PageElement {
     const field = event.target as HTMLInputElement;
     if (event.key === "Escape") field.value = planName.value;
     if (event.key !== "Enter" && event.key !== "Escape") return;
-    event.preventDefault(); // else it presses the button that takes the focus
+    event.preventDefault(); // otherwise Enter presses the button that gets the focus
     field.blur();
     void this.updateComplete.then(() => this.renderRoot.querySelector<HTMLElement>("button.name")?.focus());
   }

@@ -1,4 +1,4 @@
-/** What is done with what is selected: grouped, deleted, renamed, copied, pasted. */
+/** Actions on the selection: group, delete, rename, copy, paste. */
 
 import type { Group, Mission, Reaction } from "../api/types";
 import { copied, pasting, readCopied } from "../model/clipboard";
@@ -13,7 +13,7 @@ import { panel } from "../state/view";
 import { t } from "../texts";
 import { allRows, shownRows } from "./rows";
 
-/** Makes a group of what is selected, and opens its details. */
+/** Group the selection and open the details of the group. */
 export function groupChosen(): Promise<void> {
   return inTurn(async (make) => {
     const open = mission.value;
@@ -38,7 +38,7 @@ export function groupChosen(): Promise<void> {
   });
 }
 
-/** Deletes what is selected when its turn comes, and selects what comes next. */
+/** Delete the selection when its turn comes, and select the next row. */
 export function deleteChosen(): Promise<void> {
   return inTurn(async (make) => {
     const open = mission.value;
@@ -62,8 +62,8 @@ export function deleteChosen(): Promise<void> {
   });
 }
 
-/** Groups of which nothing would be left, the inner ones first. Their rounds are nothing any more, so that
- * their tasks can go one by one. */
+/** Return the groups that would become empty, the inner ones first. They are dissolved, so that their tasks
+ * can be removed one by one. */
 function emptied(open: Mission, gone: readonly string[]): string[] {
   const away = new Set(gone);
   const at = new Map(open.tasks.map((task, index) => [task.name, index]));
@@ -76,7 +76,7 @@ function emptied(open: Mission, gone: readonly string[]): string[] {
     .sort((a, b) => depth(b) - depth(a));
 }
 
-/** Gives a task or a group another name, and selects it under that. Whether it has that name. */
+/** Rename a task or a group and select it. Returns whether it has the new name. */
 export async function renameRow(row: Row, name: string): Promise<boolean> {
   if (row.kind === "task") {
     const old = row.task.name;
@@ -93,7 +93,7 @@ export async function renameRow(row: Row, name: string): Promise<boolean> {
   return done;
 }
 
-/** The tasks that are selected, as text; null: there are none. */
+/** Return the selected tasks as text; null: none are selected. */
 export function copyChosen(): string | null {
   const open = mission.value;
   const tasks = open === null ? [] : tasksOf(open, allRows.value, selection.value);
@@ -102,7 +102,7 @@ export function copyChosen(): string | null {
   return copied({ tasks, groups: open === null ? [] : groupsOf(open, selection.value) });
 }
 
-/** Adds the tasks of a text behind what is selected. */
+/** Add the tasks of a copied text after the selection. */
 export function paste(text: string): Promise<void> {
   return inTurn(async (make) => {
     const open = mission.value;
@@ -116,9 +116,9 @@ export function paste(text: string): Promise<void> {
   });
 }
 
-/** Shows the details of what is selected, with the cursor in a field. */
+/** Open the details of the selection, with the cursor in a field. */
 export function openDetails(label?: string): void {
   panel.value = "properties";
-  // Once they are there.
+  // The panel is rendered first.
   setTimeout(() => dispatchEvent(new CustomEvent("open-details", { detail: label })));
 }

@@ -1,4 +1,4 @@
-/** The menu of what can be added, and a field in which a checkpoint or a place is typed. */
+/** The menu of what can be added, and a field in which a checkpoint or a location is typed. */
 
 import type { Pose } from "../api/types";
 import { tell } from "../state/notices";
@@ -13,7 +13,7 @@ import { icon, type Icon } from "../ui/icons";
 import { addMeasure, addPlace, addReaction, addStart, addTask, addWait, isEmpty, lacksStart } from "./adding";
 import { type Choice, checkpointChoices, matching, placeChoices, typedPlace } from "./choices";
 
-/** Choices that show at once; more letters find the others. */
+/** The number of choices that are shown; typing finds the others. */
 const MOST = 60;
 
 @customElement("argo-add")
@@ -66,9 +66,9 @@ export class AddTasks extends PageElement {
   @state() private text = "";
   @state() private at = 0;
   @query("input") private readonly field!: HTMLInputElement | null;
-  /** What was added last since the field is open. */
+  /** The last added item since the field was opened. */
   @state() private added: string | null = null;
-  /** Where something was placed since the field is open; the mission may not have it yet. */
+  /** Poses that were added since the field was opened; the mission may not contain them yet. */
   private placed: Pose[] = [];
 
   constructor() {
@@ -77,7 +77,7 @@ export class AddTasks extends PageElement {
     this.listen("keydown", this.onEscape, true);
   }
 
-  /** Escape closes it wherever the focus is. */
+  /** Close the field on Escape, wherever the focus is. */
   private readonly onEscape = (event: KeyboardEvent): void => {
     if (event.key !== "Escape" || this.open === "") return;
     this.close();
@@ -98,7 +98,7 @@ export class AddTasks extends PageElement {
   }
 
   private async openField(which: "measure" | "place"): Promise<void> {
-    if (world.value === null) return; // the site is being read: there is nothing to choose from yet
+    if (world.value === null) return; // the site is being loaded: there is nothing to choose yet
     this.open = which;
     this.placed = [];
     this.added = null;
@@ -114,7 +114,7 @@ export class AddTasks extends PageElement {
   }
 
   private choices(): readonly Choice[] {
-    // What was added shows in the list, which the choices would cover.
+    // The added task is visible in the list, which the choices would cover.
     return this.added !== null && this.text === "" ? [] : this.allChoices().slice(0, MOST);
   }
 
@@ -234,7 +234,7 @@ export class AddTasks extends PageElement {
     event.stopPropagation();
   }
 
-  /** Adds what is chosen; the field stays for the next one, until Escape or a click elsewhere. */
+  /** Add the choice. The field stays open for the next one, until Escape or a click elsewhere. */
   private choose(choice: Choice): void {
     this.added = choice.label;
     this.text = "";
@@ -247,7 +247,7 @@ export class AddTasks extends PageElement {
     }
   }
 
-  /** Closes it, and does what was chosen; `details`: which goes on in the details. */
+  /** Close the menu and carry out the choice; `details`: the focus moves on to the details. */
   private end(act: () => unknown, details = false): void {
     this.close();
     if (details) panel.value = "properties";

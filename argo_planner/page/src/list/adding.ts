@@ -1,4 +1,4 @@
-/** What is added to the mission, behind what is selected. */
+/** Adding tasks and reactions to the mission, after the selection. */
 
 import type { Action, Mission, Pose, Reaction, Task } from "../api/types";
 import { freeName, numberedName, taskNames } from "../model/naming";
@@ -10,17 +10,17 @@ import { t } from "../texts";
 
 interface NewTask {
   readonly action: Action;
-  /** What it is to be called; another name is taken where there is such a task. */
+  /** The wanted name; if it is taken, a number is added. */
   readonly wanted: string;
   readonly fields: Partial<Task>;
 }
 
-/** Adds a task behind what is selected, and selects it. Whether it was added. */
+/** Add a task after the selection and select it. Returns whether it was added. */
 export function addTask(action: Action, wanted: string, fields: Partial<Task>): Promise<boolean> {
   return added(() => ({ action, wanted, fields }));
 }
 
-/** Adds a waypoint, or the start where `starts` says so of the mission. */
+/** Add a waypoint, or the start if `starts` returns true for the mission. */
 export function addPlace(pose: Pose, starts: (open: Mission) => boolean, name?: string): Promise<boolean> {
   return added((open) => {
     const action = starts(open) ? "START" : "WAYPOINT";
@@ -29,18 +29,18 @@ export function addPlace(pose: Pose, starts: (open: Mission) => boolean, name?: 
   });
 }
 
-/** Whether nothing is planned yet, so that the first place is where the robot starts. */
+/** Return whether the mission is empty, so that the first pose is the start. */
 export function isEmpty(open: Mission): boolean {
   return open.tasks.length === 0;
 }
 
-/** Adds a start, first of all; at a dock of a starting area the mission begins in that. */
+/** Add a start as the first task. If it is the dock of an area, that becomes the start area. */
 export function addStart(pose: Pose, area?: number): Promise<boolean> {
   const header = area === undefined ? [] : [{ kind: "set_header", start_area: area, dock: pose } as const];
   return added(() => ({ action: "START", wanted: "START", fields: { pose } }), header);
 }
 
-/** Adds what is to be added to the mission as it is when its turn comes, and edits it further. */
+/** Add a task to the mission in its state when the edit's turn comes, together with further edits. */
 function added(find: (open: Mission) => NewTask, further: readonly LooseEdit[] = []): Promise<boolean> {
   return inTurn(async (make) => {
     const open = mission.value;
@@ -57,7 +57,7 @@ function added(find: (open: Mission) => NewTask, further: readonly LooseEdit[] =
   });
 }
 
-/** Adds the measuring of a checkpoint. */
+/** Add a task that measures a checkpoint. */
 export function addMeasure(id: string): Promise<boolean> {
   return addTask("MEASURE", `MEASURE ${id}`, { object_id: id });
 }
@@ -66,7 +66,7 @@ export function addWait(): Promise<boolean> {
   return addTask("WAIT", "WAIT", { wait: { duration: 60, conditions: [] } });
 }
 
-/** Adds a reaction to the first event that has none yet; its form is for choosing another one. */
+/** Add a reaction to the first event without one; another event can be chosen in its form. */
 export async function addReaction(): Promise<boolean> {
   const had = new Set(mission.value?.reactions.map((one) => one.event));
   const events = Object.keys(t().words.event) as Reaction["event"][];
@@ -77,7 +77,7 @@ export async function addReaction(): Promise<boolean> {
   return done;
 }
 
-/** Whether the mission has no START yet. */
+/** Return whether the mission has no START yet. */
 export function lacksStart(open: Mission): boolean {
   return !open.tasks.some((task) => task.action === "START");
 }

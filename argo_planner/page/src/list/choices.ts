@@ -1,19 +1,19 @@
-/** What can be typed to name a checkpoint or a place. */
+/** Checkpoints and poses that can be typed by name, number or coordinates. */
 
 import type { Pose, World } from "../api/types";
 import { t } from "../texts";
 
-/** m within which a place is the same one */
+/** m within which two poses are the same */
 const SAME = 0.05;
 
 export interface Choice {
-  /** What is typed to find it. */
+  /** The text that is searched. */
   readonly label: string;
   readonly detail: string;
-  /** The number of a checkpoint. */
+  /** Id of a checkpoint. */
   readonly checkpoint?: string;
   readonly pose?: Pose;
-  /** What a task there is called. */
+  /** The name that a task there gets. */
   readonly name?: string;
 }
 
@@ -25,7 +25,7 @@ export function checkpointChoices(site: World): Choice[] {
   }));
 }
 
-/** Docks, places and corners of the floors by name; what is planned already comes last. */
+/** Return docks, locations and corners of the floors by name; poses that are already planned come last. */
 export function placeChoices(site: World, planned: readonly Pose[] = []): Choice[] {
   const isPlanned = ({ pose }: Choice) => planned.some((one) => pose !== undefined && isAt(one, pose));
   const all = namedPlaces(site);
@@ -60,7 +60,7 @@ function namedPlaces(site: World): Choice[] {
   ];
 }
 
-/** The place that is typed as `x y` or `x y floor` (m, on the floor's deck); null: none is. */
+/** Parse a pose typed as `x y` or `x y floor` (m, on the floor's deck); null: the text is no pose. */
 export function typedPlace(site: World, typed: string, floor: number | null): Choice | null {
   const found = /^(-?\d+(?:\.\d+)?)[\s;]+(-?\d+(?:\.\d+)?)(?:[\s;]+(\d+))?$/.exec(typed.trim());
   if (!found) return null;
@@ -71,7 +71,7 @@ export function typedPlace(site: World, typed: string, floor: number | null): Ch
   return { label: coordinates(pose), detail: deck.name, pose };
 }
 
-/** The choices that fit what was typed, the best ones first: a number means that checkpoint. */
+/** Return the choices that match the text, the best ones first: a number means that checkpoint. */
 export function matching(choices: readonly Choice[], typed: string): Choice[] {
   const text = typed.trim().toLowerCase().replace(/^#\s*/, "");
   if (text === "") return [...choices];

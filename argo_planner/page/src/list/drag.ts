@@ -1,4 +1,4 @@
-/** Dragging rows to another place in the list. */
+/** Dragging of rows to another position in the list. */
 
 import type { ReactiveController } from "lit";
 
@@ -12,14 +12,14 @@ import { moveTo } from "./moving";
 import { ROW_HEIGHT } from "./row";
 import { folded, shownRows } from "./rows";
 
-/** The row that an event is about. */
+/** Return the row that an event belongs to. */
 export function rowAt(event: Event): Row | null {
   const found = (event.target as HTMLElement).closest<HTMLElement>("[role=treeitem]");
   return found ? (shownRows.value[Number(found.dataset["index"])] ?? null) : null;
 }
 
 export class RowDrag implements ReactiveController {
-  /** Whether rows are dragged, and not a file or a text. */
+  /** Whether rows are dragged, rather than a file or a text. */
   private dragging = false;
   private to: { readonly row: Row; readonly side: Side } | null = null;
 
@@ -66,7 +66,7 @@ export class RowDrag implements ReactiveController {
     if (to) void moveTo(to.row, to.side);
   };
 
-  /** Where it would go. */
+  /** Render the position at which the rows would be dropped. */
   mark() {
     if (this.to === null) return nothing;
     const { row, side } = this.to;

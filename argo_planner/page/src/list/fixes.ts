@@ -1,4 +1,4 @@
-/** Ways out of what was found, where one click is enough. */
+/** Fixes of diagnostics that need only one click. */
 
 import type { Diagnostic, Transition } from "../api/types";
 import { type LooseEdit } from "../state/commands";
@@ -14,7 +14,7 @@ export interface Fix {
   readonly edits: () => LooseEdit[];
 }
 
-/** The way out of a finding; null where it takes thought. */
+/** Return the fix of a diagnostic; null: there is no simple one. */
 export function fixOf(found: Diagnostic): Fix | null {
   const texts = t().list.fixes;
   const key = keyOfSubject(found.subject);
@@ -50,7 +50,7 @@ export function fixOf(found: Diagnostic): Fix | null {
   }
 }
 
-/** The mission is to end docked and doesn't: from its last task it drives to the dock. */
+/** Let the mission end at its dock: add a task that drives there. */
 function driveHome(task: string | null): Fix | null {
   const open = mission.value;
   const area = open?.end_area ?? null;
@@ -63,7 +63,7 @@ function driveHome(task: string | null): Fix | null {
   };
 }
 
-/** The way that was meant, wherever it stands by then. */
+/** Remove the transition wherever it is when the edit is made. */
 function removeWay(task: string, at: number): () => LooseEdit[] {
   const meant = wayOf(task)?.[at];
   return () => {
@@ -76,7 +76,7 @@ function wayOf(task: string): readonly Transition[] | undefined {
   return tasksByName.value.get(task)?.transitions;
 }
 
-/** A condition compares a checkpoint that nothing measures: measure it first. */
+/** Measure a checkpoint first that a condition compares and no task measures. */
 function neverMeasured(found: Diagnostic): Fix | null {
   const id = /checkpoint '?#?(\d+)/.exec(found.message)?.[1];
   const first = mission.value?.tasks.find((task) => task.action !== "START");

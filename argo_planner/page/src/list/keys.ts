@@ -1,4 +1,4 @@
-/** The keys of the list. */
+/** Keyboard shortcuts of the list. */
 
 import { groupKey } from "../model/outline";
 import { select, selection } from "../state/plan";
@@ -7,7 +7,7 @@ import { deleteChosen, openDetails } from "./acting";
 import { enterGroup, leaveGroup, moveByStep } from "./moving";
 import { choose, fold, folded, shownRows } from "./rows";
 
-/** Does what a key means in the list; `page` is how many rows show. Whether it means anything. */
+/** Handle a key of the list; `page` is the number of visible rows. Returns whether the key was handled. */
 export function onListKey(event: KeyboardEvent, page: number): boolean {
   if (event.altKey) return onMovingKey(event.key);
   if (event.ctrlKey || event.metaKey) {
@@ -47,7 +47,8 @@ function onGoingKey(event: KeyboardEvent, page: number): boolean {
   return true;
 }
 
-/** Right unfolds a group, then goes into it; left folds it, or goes to the one around. */
+/** Handle the right arrow, which unfolds a group and then enters it, and the left arrow, which folds it or
+ * goes to the outer group. */
 function onFoldingKey(key: string): boolean {
   if (key !== "ArrowRight" && key !== "ArrowLeft") return false;
   const shown = shownRows.value;

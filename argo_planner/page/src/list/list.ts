@@ -1,5 +1,5 @@
-/** The mission as a list: nested groups that fold, reordered by hand or by keys. Only the rows that
- * are in view are in the page, so that thousands of tasks open and scroll as fast as ten. */
+/** The mission as a list of nested groups that can be folded and reordered by mouse or keyboard. Only visible
+ * rows are in the DOM, so that thousands of tasks open and scroll as fast as ten. */
 
 import { untracked } from "@preact/signals-core";
 import { repeat } from "lit/directives/repeat.js";
@@ -73,7 +73,7 @@ export class MissionList extends PageElement {
   @query("argo-add") private readonly adding!: AddTasks;
   @state() private top = 0;
   @state() private height = 800;
-  /** The row whose name is being typed, and what is in the field at first. */
+  /** The row that is being renamed, and the initial text of its field. */
   @state() private naming: { readonly key: string; readonly text: string } | null = null;
   private readonly drag: RowDrag = new RowDrag(this);
   private resized = new ResizeObserver(([entry]) => {
@@ -88,7 +88,7 @@ export class MissionList extends PageElement {
     this.listen("copy", this.onCopy);
     this.watch(() => {
       const key = selection.value.at(-1);
-      untracked(() => this.reveal(key)); // not again when the groups are folded
+      untracked(() => this.reveal(key)); // not again when groups are folded
     });
   }
 
@@ -175,7 +175,7 @@ export class MissionList extends PageElement {
     `;
   }
 
-  /** Brings a row into view, and opens the groups that it lies in. */
+  /** Scroll a row into view and unfold its groups. */
   private reveal(key: string | undefined): void {
     if (key === undefined || !this.hasUpdated) return;
     if (rowOf(key) === undefined) unfoldAround(key);
@@ -192,7 +192,7 @@ export class MissionList extends PageElement {
   private onClick(event: MouseEvent): void {
     const row = rowAt(event);
     if (!row) {
-      if (event.target === this.tree) select([]); // beside all rows: the mission itself
+      if (event.target === this.tree) select([]); // a click beside the rows selects the mission itself
       return;
     }
     if ((event.target as HTMLElement).closest(".fold")) fold(row, !folded.value.has(row.key));
@@ -204,7 +204,7 @@ export class MissionList extends PageElement {
     if (row) this.beginNaming(row);
   }
 
-  /** Keys that work wherever the focus is, but in fields. */
+  /** Handle keys that work everywhere but in fields. */
   private readonly onGlobalKey = (event: KeyboardEvent): void => {
     if (event.defaultPrevented || isTyping(event) || planId.value === null) return;
     if (event.ctrlKey || event.metaKey || event.altKey) return;
@@ -239,9 +239,9 @@ export class MissionList extends PageElement {
     if (mayPlan()) this.naming = { key: row.key, text: nameOf(row) };
   }
 
-  /** What was typed is taken; where it is refused, the field is there again with it. */
+  /** Save the typed name. If it is refused, the field opens again with the text. */
   private readonly onNamed = async (row: Row, name: string, byKey: boolean): Promise<void> => {
-    if (this.naming?.key !== row.key) return; // the field is losing the focus as it goes
+    if (this.naming?.key !== row.key) return; // the field loses the focus because it is removed
     this.naming = null;
     if (byKey) this.tree.focus();
     if (!(await renameRow(row, name))) this.nameAgain(row, name);

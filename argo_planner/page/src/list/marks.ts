@@ -1,5 +1,4 @@
-/** What stands beside the rows of the list: problems, how far a run is, who else is there, and what
- * is said of each row. */
+/** Marks and sentences of the rows: problems, run states, other people. */
 
 import { computed, effect, signal } from "@preact/signals-core";
 
@@ -18,17 +17,17 @@ export interface Marks {
   readonly problem: Diagnostic | null;
   readonly run: "done" | "abnormal" | "failed" | "byHand" | "active" | "skipped" | null;
   readonly people: readonly string[];
-  /** Whether somebody else has just changed it. */
+  /** Whether somebody else has just changed the task or group. */
   readonly changed: boolean;
 }
 
 const NONE: Marks = { problem: null, run: null, people: [], changed: false };
 const FLASH_MS = 1_600;
 
-/** All that the check and the analysis have found, errors first. */
+/** All diagnostics of the check and the analysis, errors first. */
 export const problems = computed<readonly Diagnostic[]>(() => {
   const rank = { error: 0, warning: 1, note: 2 };
-  // A mission without tasks says so itself.
+  // An empty list says this itself.
   const checked = findings.value.diagnostics.filter((one) => one.code !== "il.empty-mission");
   const analysed = analysis.value?.analysis?.diagnostics ?? [];
   const known = new Set(checked.map((one) => one.code + (one.subject ?? "") + one.message));
@@ -55,7 +54,7 @@ const selectedByOthers = computed(() => {
   return found;
 });
 
-/** Names of what somebody else has just changed. */
+/** Names of the tasks and groups that somebody else has just changed, and the timer that clears them. */
 let ending: ReturnType<typeof setTimeout> | undefined;
 const flashing = signal<ReadonlySet<string>>(new Set());
 effect(() => {
@@ -74,7 +73,7 @@ const OUTCOMES = {
   skipped: "skipped",
 } as const;
 
-/** Of the run that is shown, one by one: its pose changes many times a second, and they do not. */
+/** Parts of the shown run, separately: its pose changes many times a second, they do not. */
 const shownPlan = computed(() => shownRun.value?.plan);
 const shownOutcomes = computed(() => shownRun.value?.outcomes);
 const shownReadings = computed(() => shownRun.value?.readings);
@@ -85,13 +84,12 @@ const abnormal = computed(
   () => new Set((shownReadings.value ?? []).filter((one) => !one.normal).map((one) => String(one.checkpoint))),
 );
 
-/** Whether what a task measures was last read as abnormal. */
+/** Return whether the last reading of a task's checkpoint is abnormal. */
 function isAbnormal(task: string): boolean {
   return abnormal.value.has(tasksByName.value.get(task)?.object_id ?? "");
 }
 
-/** How far the tasks of the mission are: how their last visit has ended, which are to be skipped next, and
- * which one is under way. */
+/** State of each task in the run: outcome of its last visit, to be skipped, or in progress. */
 const runStates = computed(() => {
   const found = new Map<string, Marks["run"]>();
   if (shownPlan.value !== planId.value) return found;
@@ -104,7 +102,7 @@ const runStates = computed(() => {
   return found;
 });
 
-/** What stands beside a row. */
+/** Return the marks of a row. */
 export function marksOf(row: Row): Marks {
   const name = row.kind === "task" ? row.task.name : row.group.name;
   const problem = problemsBySubject.value.get(row.key) ?? null;
@@ -115,8 +113,8 @@ export function marksOf(row: Row): Marks {
   return { problem, run: state, people, changed };
 }
 
-/** Sentences of tasks and rounds, as long as they are of the mission as it is. A task that was not
- * changed since is said as before: the list does not flicker with each edit. */
+/** Sentences of tasks and groups from the script. A task that has not changed keeps its old sentence, so that
+ * the list doesn't flicker with each edit. */
 const sentences = computed(() => {
   const found = new Map<string, string>();
   if (broken.value) return found;
@@ -129,13 +127,13 @@ const sentences = computed(() => {
   return found;
 });
 
-/** What is said of a row: the script's own sentence, or until that is there our words. */
+/** Return the description of a row: the script's sentence, or the page's own words until it is loaded. */
 export function sentenceOf(row: Row): string {
   const own = row.kind === "task" ? describeTask(row.task, world.value) : describeGroup(row.group);
   return sentences.value.get(row.key) ?? own;
 }
 
-/** What a task does. */
+/** Describe the action of a task. */
 function describeTask(task: Task, world: World | null): string {
   const texts = t().list;
   if (task.action === "MEASURE") {
@@ -154,7 +152,7 @@ function describeTask(task: Task, world: World | null): string {
   return task.action === "START" ? texts.startsAt(at, floor) : texts.drivesTo(at, floor);
 }
 
-/** How often a group is done. */
+/** Describe how often a group is repeated. */
 function describeGroup(group: Group): string {
   const texts = t().list;
   const parts: string[] = [];
@@ -165,14 +163,14 @@ function describeGroup(group: Group): string {
   return parts.length > 0 ? parts.join(", ") : texts.endless;
 }
 
-/** Number of the floor at a height (m). */
+/** Return the number of the floor at a height (m). */
 function floorAt(z: number, world: World | null): number | null {
   let found: number | null = null;
   for (const floor of world?.floors ?? []) if (floor.z <= z + 0.5) found = floor.number;
   return found;
 }
 
-/** The key of what a diagnostic is about, such as `tasks['valve'].transitions`; null: the whole. */
+/** Return the key of a diagnostic's subject, such as `tasks['valve'].transitions`; null: the whole mission. */
 export function keyOfSubject(subject: string | null | undefined): string | null {
   const found = /^(tasks|groups|reactions)\['((?:[^'\\]|\\.)*)'\]/.exec(subject ?? "");
   if (!found) return null;

@@ -1,4 +1,4 @@
-/** What is selected, moved: beside a row, by a step, out of a group and into one. */
+/** Moving the selection: beside a row, by one step, out of a group and into one. */
 
 import { mission, selection } from "../state/plan";
 import { inTurn } from "../state/commands";
@@ -11,7 +11,7 @@ interface Target {
   readonly side: Side;
 }
 
-/** Moves what is selected beside a row. Whether it was moved. */
+/** Move the selection beside a row. Returns whether it was moved. */
 export function moveTo(target: Row, side: Side): Promise<boolean> {
   return moveWhere(() => ({ target, side }));
 }
@@ -20,7 +20,7 @@ export function moveByStep(direction: "up" | "down"): Promise<boolean> {
   return moveWhere(() => step(shownRows.value, selection.value, direction));
 }
 
-/** Out of the group that the selection lies in, behind it. */
+/** Move the selection out of its group, to the position after it. */
 export function leaveGroup(): Promise<boolean> {
   return moveWhere(() => {
     const row = allRows.value.find((one) => one.key === selection.value.at(-1));
@@ -31,7 +31,7 @@ export function leaveGroup(): Promise<boolean> {
   });
 }
 
-/** Into the group that stands right above, to its end, or the one right below. */
+/** Move the selection to the end of the group right above, or to the beginning of the one right below. */
 export function enterGroup(): Promise<boolean> {
   return moveWhere(() => {
     const all = allRows.value;
@@ -43,7 +43,7 @@ export function enterGroup(): Promise<boolean> {
   });
 }
 
-/** Moves what is selected beside the row that is found when its turn comes. */
+/** Move the selection beside the row that `find` returns when the edit's turn comes. */
 function moveWhere(find: () => Target | null): Promise<boolean> {
   return inTurn(async (make) => {
     const open = mission.value;

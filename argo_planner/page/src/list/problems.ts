@@ -1,5 +1,4 @@
-/** All that was found wrong or odd, at the top of the list: each leads to its task, and has its way
- * out as a button where there is one. */
+/** All diagnostics at the top of the list. Each selects its task, and has a button if there is a simple fix. */
 
 import type { Diagnostic } from "../api/types";
 import { inTurn } from "../state/commands";

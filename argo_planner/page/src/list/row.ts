@@ -113,13 +113,13 @@ export const rowStyles = css`
 export interface RowState {
   readonly chosen: boolean;
   readonly folded: boolean;
-  /** What is in the field for its name; null: there is no field. */
+  /** Initial text of the field for its name; null: there is no field. */
   readonly name: string | null;
-  /** How many rows there are. */
+  /** Total number of rows. */
   readonly of: number;
   readonly marks: Marks;
   readonly may: boolean;
-  /** Takes the name that was typed; `byKey`: the list is to have the focus again. */
+  /** Saves the typed name; `byKey`: the list is to get the focus back. */
   readonly onNamed: (row: Row, name: string, byKey: boolean) => Promise<void>;
 }
 

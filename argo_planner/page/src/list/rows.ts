@@ -1,11 +1,11 @@
-/** The rows of the list: all of them, those that show as groups are folded, and choosing of them. */
+/** The rows of the list: all of them, the visible ones, and their selection. */
 
 import { computed, signal } from "@preact/signals-core";
 
 import { outline, unfolded, type Row } from "../model/outline";
 import { mission, select, selection } from "../state/plan";
 
-/** Keys of the groups that are folded. */
+/** Keys of the folded groups. */
 export const folded = signal<ReadonlySet<string>>(new Set());
 
 export const allRows = computed<readonly Row[]>(() =>
@@ -13,7 +13,7 @@ export const allRows = computed<readonly Row[]>(() =>
 );
 export const shownRows = computed<readonly Row[]>(() => unfolded(allRows.value, folded.value));
 
-/** Folds a group, or unfolds it. */
+/** Fold a group, or unfold it. */
 export function fold(row: Row, closed: boolean): void {
   const keys = new Set(folded.value);
   if (closed) keys.add(row.key);
@@ -21,7 +21,7 @@ export function fold(row: Row, closed: boolean): void {
   folded.value = keys;
 }
 
-/** Unfolds all groups that a row lies in. */
+/** Unfold all groups around a row. */
 export function unfoldAround(key: string): void {
   const row = allRows.value.find((one) => one.key === key);
   if (!row) return;
@@ -32,15 +32,15 @@ export function unfoldAround(key: string): void {
   folded.value = new Set([...folded.value].filter((one) => !around.has(one)));
 }
 
-/** The row that was selected last, among those that show. */
+/** Return the visible row with a key. */
 export function rowOf(key: string | undefined): Row | undefined {
   return shownRows.value.find((row) => row.key === key);
 }
 
-/** Where Shift extends the selection from. */
+/** The row from which Shift extends the selection. */
 let anchor: string | null = null;
 
-/** Selects a row; with all between it and where one began, or beside what is selected. */
+/** Select a row; with `extend` all rows from the anchor to it, with `toggle` in addition to the selection. */
 export function choose(row: Row, extend: boolean, toggle: boolean): void {
   const shown = shownRows.value;
   const chosen = selection.value;
@@ -48,7 +48,7 @@ export function choose(row: Row, extend: boolean, toggle: boolean): void {
   if (extend && anchor !== null) {
     const to = shown.indexOf(row);
     const from = shown.findIndex((one) => one.key === anchor);
-    if (from < 0) return select([row.key]); // it is folded away
+    if (from < 0) return select([row.key]); // the anchor is folded away
     const between = shown.slice(Math.min(from, to), Math.max(from, to) + 1).map((one) => one.key);
     select([...between.filter((key) => key !== row.key), row.key]);
     return;

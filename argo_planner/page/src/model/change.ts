@@ -1,4 +1,4 @@
-/** What the service says is different in a mission, applied to the mission that the page has. */
+/** Changes of a mission that the service reports, applied to the page's copy. */
 
 import type { Group, Mission, MissionChange, Reaction, Task } from "../api/types";
 
@@ -10,7 +10,7 @@ interface ListChange<T extends Item> {
   readonly placed: readonly (readonly [string, string | null])[];
 }
 
-/** The mission after a change. */
+/** Return the mission after a change. */
 export function changed(mission: Mission, change: MissionChange): Mission {
   const header = { ...change.header };
   delete (header as { kind?: string }).kind;
@@ -27,7 +27,7 @@ export function changed(mission: Mission, change: MissionChange): Mission {
   };
 }
 
-/** Names of the tasks and groups that a change touches. */
+/** Return the names of tasks and groups, and the events of reactions, that a change affects. */
 export function touched(change: MissionChange): ReadonlySet<string> {
   const found = new Set<string>();
   for (const list of [change.tasks, change.groups, change.reactions]) {
@@ -39,7 +39,7 @@ export function touched(change: MissionChange): ReadonlySet<string> {
   return found;
 }
 
-/** Fields of the mission as a whole that a change sets. */
+/** Return the header fields that a change sets. */
 export function touchedHeader(change: MissionChange): ReadonlySet<string> {
   return new Set(Object.keys(change.header ?? {}).filter((field) => field !== "kind"));
 }
@@ -70,7 +70,7 @@ function listAfter<T extends Item>(
   return after;
 }
 
-/** What stands behind each name, and behind the beginning. */
+/** Return the successor of each name; null stands for the beginning of the list. */
 function linked(names: readonly string[]): Map<string | null, string | undefined> {
   const behind = new Map<string | null, string | undefined>();
   let last: string | null = null;

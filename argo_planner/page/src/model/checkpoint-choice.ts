@@ -1,4 +1,4 @@
-/** Checkpoints as they are chosen by typing: `#4 valve R25`. */
+/** Checkpoints in fields with suggestions: `#4 valve R25`. */
 
 import type { WorldCheckpoint } from "../api/types";
 
@@ -6,7 +6,7 @@ export function choiceOf(checkpoint: WorldCheckpoint): string {
   return `#${checkpoint.id} ${checkpoint.name}`;
 }
 
-/** The checkpoint that is meant: by its choice, its number or its name; null: none or several. */
+/** Return the checkpoint that the text names by suggestion, number or name; null: none, or several. */
 export function chosenCheckpoint(
   typed: string,
   checkpoints: readonly WorldCheckpoint[],

@@ -1,4 +1,4 @@
-/** Tasks and groups that are copied, and what pasting them does. */
+/** Copying of tasks and groups, and the edits that paste them. */
 
 import type { Group, Mission, Task } from "../api/types";
 import type { LooseEdit } from "../state/commands";
@@ -8,18 +8,18 @@ import type { Place } from "./places";
 
 const KIND = "argo-tasks";
 
-/** What is copied: tasks in their order, and groups of them, the outer ones first. */
+/** Copied tasks in their order, and their groups, the outer ones first. */
 export interface Copied {
   readonly tasks: readonly Task[];
   readonly groups: readonly Group[];
 }
 
-/** As text for the clipboard. */
+/** Return the copied tasks and groups as text for the clipboard. */
 export function copied({ tasks, groups }: Copied): string {
   return JSON.stringify({ kind: KIND, tasks, groups });
 }
 
-/** What a text from the clipboard holds; null if it is something else. */
+/** Parse a text from the clipboard; null: it contains no tasks. */
 export function readCopied(text: string): Copied | null {
   try {
     const found = JSON.parse(text) as { kind?: unknown; tasks?: unknown; groups?: unknown };
@@ -30,8 +30,8 @@ export function readCopied(text: string): Copied | null {
   }
 }
 
-/** Edits that put copies of tasks and groups at a place, under free names. Ways are kept where they
- * lead to a task that was copied too, those on conditions also where they lead to one that the mission has. */
+/** Return the edits that paste copies under free names at a position. Transitions between copied tasks are
+ * kept; conditional ones also if they lead to a task that the mission has. */
 export function pasting(
   mission: Mission,
   { tasks, groups }: Copied,
@@ -86,8 +86,8 @@ export function pasting(
   return { edits: [...edits, ...ways, ...wrapping(mission, { tasks, groups }, renamed)], names };
 }
 
-/** Edits that make groups of what was pasted, the inner ones first: their names follow from what they
- * come to lie in. */
+/** Return the edits that group the copies, the inner groups first: a group's full name depends on the group
+ * around it. */
 function wrapping(mission: Mission, { tasks, groups }: Copied, renamed: ReadonlyMap<string, string>): LooseEdit[] {
   const taken = new Set(mission.groups.map((group) => ownName(group.name)));
   const at = (name: string) => tasks.findIndex((task) => task.name === name);
@@ -103,7 +103,7 @@ function wrapping(mission: Mission, { tasks, groups }: Copied, renamed: Readonly
   return edits;
 }
 
-/** The task under a name, without what names others. */
+/** Return the task under another name, without references to other tasks. */
 function alone(task: Task, name: string): Task {
   const on_failure = task.on_failure === "branch" ? "continue" : task.on_failure;
   const others = { transitions: [], group: "", source: null, window: null, failure_target: null };

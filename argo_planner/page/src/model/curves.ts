@@ -1,22 +1,22 @@
-/** Curves as lines of a drawing: the best order and the bound over time, and a rate run by run. */
+/** Curves as SVG paths: best order and bound over time, success rate over the runs. */
 
 export interface Step {
   /** s since the search began */
   readonly time: number;
-  /** s that the best order takes; null: there is none yet */
+  /** s that the best order takes; null: none has been found */
   readonly best: number | null;
-  /** s less than which no order takes */
+  /** lower bound (s) on the duration of any order */
   readonly bound: number;
 }
 
 export interface Convergence {
-  /** points of a path in a drawing of the given size */
+  /** SVG path in a drawing of the given size */
   readonly best: string;
   readonly bound: string;
   readonly end: number;
 }
 
-/** Both as steps: each holds until the next one. */
+/** Return best order and bound as step functions. */
 export function convergence(steps: readonly Step[], width: number, height: number): Convergence | null {
   const last = steps.at(-1);
   if (last === undefined) return null;
@@ -47,20 +47,20 @@ export function convergence(steps: readonly Step[], width: number, height: numbe
 
 export interface RatePoint {
   readonly runs: number;
-  /** 0 to 1; null: no run counts */
+  /** 0 to 1; null: no run counts yet */
   readonly value: number | null;
   readonly low: number;
   readonly high: number;
 }
 
 export interface RateCurve {
-  /** points of a closed path: the interval */
+  /** closed SVG path: the interval */
   readonly band: string;
-  /** points of a path: the rate */
+  /** SVG path: the rate */
   readonly rate: string;
 }
 
-/** Both in a drawing of the given size, from the first run to the last of `most`; the whole height is 0 to 1. */
+/** Return rate and interval over the runs from 0 to `most`; the height of the drawing stands for 0 to 1. */
 export function rateCurve(points: readonly RatePoint[], most: number, width: number, height: number): RateCurve | null {
   const known = points.filter((one): one is RatePoint & { readonly value: number } => one.value !== null);
   const first = known[0];

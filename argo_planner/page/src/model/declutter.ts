@@ -1,14 +1,14 @@
-/** Which labels are shown and on which side of their points, so that none lies over another one. */
+/** Placement of labels beside their points, so that none covers another one. */
 
 export interface LabelWish {
   readonly key: string;
-  /** px, the point that it names */
+  /** px, the labelled point */
   readonly x: number;
   readonly y: number;
   /** px */
   readonly width: number;
   readonly height: number;
-  /** The higher, the sooner it gets a place. */
+  /** labels with a higher weight are placed first */
   readonly weight: number;
 }
 
@@ -17,7 +17,7 @@ export type Side = "right" | "left" | "above" | "below";
 export interface PlacedLabel {
   readonly key: string;
   readonly side: Side;
-  /** px, its corner at the left and top */
+  /** px, the top left corner */
   readonly left: number;
   readonly top: number;
   readonly width: number;
@@ -29,11 +29,11 @@ const SIDES: readonly Side[] = ["right", "left", "above", "below"];
 const AWAY = 9;
 const ABOVE = 13;
 const BETWEEN = 2;
-/** px, edge of a cell of the grid in which neighbours are found */
+/** px, edge of a cell of the grid in which neighbours are searched */
 const CELL = 120;
 
-/** Places labels in a view of a size (px). A label keeps the side that it had `before` if it can,
- * so that it does not jump about while the camera moves. */
+/** Place labels in a view of the given size (px). A label keeps its side of `before` if possible, so that it
+ * doesn't jump while the camera moves. */
 export function declutter(
   wishes: readonly LabelWish[],
   width: number,

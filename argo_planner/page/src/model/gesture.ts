@@ -1,6 +1,6 @@
-/** Whether what a pointer does is a click or a drag. */
+/** Distinction of clicks and drags of the pointer. */
 
-/** px that a pointer may move in a click. */
+/** px that the pointer may move during a click */
 export const CLICK_PX = 4;
 
 export interface Press {
@@ -8,7 +8,7 @@ export interface Press {
   readonly button: number;
   readonly x: number;
   readonly y: number;
-  /** Whether it has become a drag; a drag stays one, also where it comes back. */
+  /** Whether it has become a drag; it remains one if the pointer comes back. */
   readonly drag: boolean;
 }
 

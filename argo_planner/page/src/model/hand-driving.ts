@@ -1,4 +1,4 @@
-/** Driving by hand: which keys drive, and where to. */
+/** Driving by hand: keys, goals, and allowed paths. */
 
 import type { Pose } from "../api/types";
 
@@ -15,21 +15,21 @@ const KEYS: Readonly<Record<string, Direction>> = {
   KeyD: "right",
 };
 
-/** m ahead of the robot that are asked for, the first that can be driven. Further ones make the robot
- * drive on without standing still in between; whoever lets go of the key stops it anyway. */
+/** Distances (m) ahead of the robot, tried in this order. With a far goal the robot drives on without
+ * stopping in between; letting the key go stops it anyway. */
 export const REACHES: readonly number[] = [2, 1, 0.5, 0.25];
-const BACK = 0.5; // of the reach: backwards nobody looks as far
+const BACK = 0.5; // part of the distance that is used backwards, where the person sees less
 const TURN = Math.PI / 2; // rad
-const ROOM = 0.4; // m that a straight way may be longer, as places are on a grid
+const ROOM = 0.4; // m that a straight path may be longer than the distance, as poses are on a grid
 const LEAST = 0.08; // m
-const SOONEST = 0.3; // s: what takes less is no drive and no turn
+const SOONEST = 0.3; // s: shorter paths don't move or turn the robot
 
-/** The direction of a key by its `code`; null: it drives nowhere. */
+/** Return the driving direction of a key by its `code`; null: it is no driving key. */
 export function directionOf(code: string): Direction | null {
   return KEYS[code] ?? null;
 }
 
-/** The pose to ask for: `reach` m on, or turned in place. */
+/** Return the goal pose: `reach` m ahead, or turned in place. */
 export function goalOf(
   pose: readonly [number, number, number, number, number],
   direction: Direction,
@@ -41,7 +41,7 @@ export function goalOf(
     case "backward": {
       const way = direction === "forward" ? reach : -BACK * reach;
       const flat = way * Math.cos(pitch);
-      // On stairs it goes on as steeply as the robot stands; its pitch is positive with the front down.
+      // On stairs the goal follows the robot's pitch, which is positive with the front down.
       const up = -way * Math.sin(pitch);
       return { x: x + flat * Math.cos(yaw), y: y + flat * Math.sin(yaw), z: z + up, yaw };
     }
@@ -53,13 +53,13 @@ export function goalOf(
   }
 }
 
-/** How many reaches there are to try: a turn is possible or not. */
+/** Return the distances to try; a turn has only one. */
 export function reachesOf(direction: Direction): readonly number[] {
   return direction === "left" || direction === "right" ? [1, 0.5, 0.25] : REACHES;
 }
 
-/** Whether a way there is the straight one that was meant: neither a detour round something, nor so
- * short that the robot as good as stands there already. */
+/** Return whether a path leads straight to the goal: it is no detour, and not so short that the robot is
+ * already there. */
 export function isStraight(
   way: { readonly distance: number; readonly time?: number | null },
   direction: Direction,

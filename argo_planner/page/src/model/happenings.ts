@@ -1,4 +1,4 @@
-/** What is worth telling of a run, out of its many entries. */
+/** The noteworthy events of a run, from its many entries. */
 
 import type { Entry } from "../api/types";
 
@@ -17,13 +17,13 @@ export type Happening =
 export interface Told {
   /** s */
   readonly t: number;
-  /** number of the entry, from 0 on */
+  /** index of the entry */
   readonly entry: number;
   readonly what: Happening;
   readonly tone: "plain" | "good" | "warn" | "bad";
 }
 
-/** All happenings of the entries from one number to another, in order. */
+/** Return the events of the entries from index `from` to `to`, in order. */
 export function happenings(entries: readonly Entry[], from = 0, to = entries.length): Told[] {
   const found: Told[] = [];
   for (let at = from; at < to; at++) {
@@ -35,7 +35,7 @@ export function happenings(entries: readonly Entry[], from = 0, to = entries.len
   return found;
 }
 
-/** Most entries tell only where the robot was. */
+/** Return whether an entry only reports the robot's pose. */
 function isPlain(entry: Entry): boolean {
   return (
     entry.events.length === 0 &&
@@ -78,7 +78,7 @@ function* of(entry: Entry, isLast: boolean): Generator<[Happening, Told["tone"]]
     else if (task.outcome === "failed") yield [{ kind: "failed", task: task.task, why }, "bad"];
     else yield [{ kind: "stopped", task: task.task, why }, "warn"];
   }
-  // Where a run goes on after its end, it does so with an edited plan.
+  // A run that continues after its end does so with an edited mission.
   if (entry.ended)
     yield isLast ? [{ kind: "ended", stopped: entry.stopped ?? null }, "plain"] : [{ kind: "edited" }, "warn"];
 }

@@ -1,25 +1,25 @@
-/** The way of a mission leg by leg, as the strip shows it, and what limits it. */
+/** The legs of the mission's path and their limits, as the strip shows them. */
 
 import type { AnalysisFound, Mission, PreviewedMission } from "../api/types";
 
 export interface Leg {
-  /** number of the way in `preview.ways` */
+  /** index in `preview.ways` */
   readonly way: number;
   readonly task: string;
-  /** s, with the action or the wait */
+  /** s, including the action or the wait */
   readonly time: number;
-  /** s from the mission's start until it begins */
+  /** s from the mission's start to the start of the leg */
   readonly start: number;
   /** m */
   readonly distance: number;
   readonly climb: number;
   /** Wh */
   readonly energy: number;
-  /** why there is no way; null: there is one */
+  /** why there is no path; null: there is one */
   readonly problem: string | null;
 }
 
-/** The legs of the way that is driven if nothing goes wrong and no condition holds. */
+/** Return the legs that are driven if nothing goes wrong and no condition holds. */
 export function legsOf(preview: PreviewedMission, mission: Mission): Leg[] {
   const waits = new Map(
     mission.tasks.map((task) => [task.name, task.action === "WAIT" ? (task.wait?.duration ?? 0) : 0]),
@@ -36,7 +36,7 @@ export function legsOf(preview: PreviewedMission, mission: Mission): Leg[] {
   return legs;
 }
 
-/** At most so many bars: those that follow each other are put together under the name of the first. */
+/** Merge neighbouring legs until at most `most` remain; each has the name of its first leg. */
 export function gathered(legs: readonly Leg[], most: number): Leg[] {
   const each = Math.ceil(legs.length / most);
   if (each <= 1) return [...legs];
@@ -66,7 +66,7 @@ export function limited(value: number, limit: number | null | undefined): Limite
   return { value, limit: limit ?? null, broken: typeof limit === "number" && value > limit };
 }
 
-/** Whether a leg is under way when the mission's time is up. */
+/** Return whether a leg ends after the mission's time limit. */
 export function isTooLate(leg: Leg, limit: number | null): boolean {
   return limit !== null && leg.start + leg.time > limit;
 }
@@ -75,9 +75,9 @@ export interface BoundShown {
   readonly kind: "time" | "energy";
   readonly least: number | null;
   readonly most: number | null;
-  /** a path on which it takes most */
+  /** an execution with the highest value */
   readonly path: readonly PathPart[];
-  /** whether it may break the limit though the way that is drawn does not */
+  /** whether an execution may exceed the limit, even if the drawn one does not */
   readonly broken: boolean;
 }
 export interface PathPart {
@@ -89,7 +89,7 @@ export interface PathPart {
   readonly until: number;
 }
 
-/** What the analysis says of all paths, not only of the one that is drawn. */
+/** Return the bounds of the analysis over all executions, not only the drawn one. */
 export function boundsOf(found: AnalysisFound | null, limits: { time: number | null; energy: number | null }): BoundShown[] {
   const analysis = found?.analysis;
   if (!analysis) return [];
@@ -102,7 +102,7 @@ export function boundsOf(found: AnalysisFound | null, limits: { time: number | n
     const most = bounds.most.value;
     const limit = limits[kind];
     const path = bounds.most.path.map((part) => ({ ...part, task: part.task ?? null, group: part.group ?? null }));
-    // Without a bound, any limit may be broken.
+    // Without a bound, any limit may be exceeded.
     const broken = limit !== null && (most === null || most > limit);
     shown.push({ kind, least: bounds.least.value, most, path, broken });
   }

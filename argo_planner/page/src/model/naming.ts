@@ -1,8 +1,9 @@
-/** Names for what is new in a mission. */
+/** Names of new tasks and groups. */
 
 import type { Mission } from "../api/types";
 
-/** The wanted name, with a number where it is taken: `DOCK`, `DOCK (2)`, or as it is `numbered`. */
+/** Return the wanted name, or a numbered one if it is taken: `DOCK`, `DOCK (2)`, or the form that `numbered`
+ * returns. */
 export function freeName(
   wanted: string,
   taken: ReadonlySet<string>,
@@ -13,13 +14,13 @@ export function freeName(
   return name;
 }
 
-/** The first of `WAYPOINT 1`, `WAYPOINT 2` and so on that is free. */
+/** Return the first free name of `WAYPOINT 1`, `WAYPOINT 2` and so on. */
 export function numberedName(word: string, taken: ReadonlySet<string>): string {
   const numbered = (number: number) => `${word} ${number}`;
   return freeName(numbered(1), taken, numbered);
 }
 
-/** Names of the tasks of a mission. */
+/** Return the names of the mission's tasks. */
 export function taskNames(mission: Mission): Set<string> {
   return new Set(mission.tasks.map((task) => task.name));
 }

@@ -1,4 +1,4 @@
-/** The tasks of a mission in their nested groups, as the list shows them. */
+/** The tasks of a mission in their nested groups, as rows of the list. */
 
 import type { EventKind, Group, Mission, Task } from "../api/types";
 
@@ -6,9 +6,9 @@ export interface TaskRow {
   readonly kind: "task";
   readonly key: string;
   readonly task: Task;
-  /** In how many groups it lies. */
+  /** Number of groups around it. */
   readonly depth: number;
-  /** Name of the innermost group that it lies in. */
+  /** Name of the innermost group around it. */
   readonly inside: string | null;
 }
 
@@ -17,15 +17,15 @@ export interface GroupRow {
   readonly key: string;
   readonly group: Group;
   readonly depth: number;
-  /** How many tasks lie in it, in whatever depth. */
+  /** Number of tasks in it, at any depth. */
   readonly count: number;
-  /** Name of the group that it lies in. */
+  /** Name of the group around it. */
   readonly inside: string | null;
 }
 
 export type Row = TaskRow | GroupRow;
 
-/** What a task or a group is called in a selection. */
+/** Return the key of a task in a selection. */
 export function taskKey(name: string): string {
   return `task:${name}`;
 }
@@ -36,7 +36,7 @@ export function reactionKey(event: EventKind): string {
   return `reaction:${event}`;
 }
 
-/** The name behind a key. */
+/** Return the name in a key. */
 export function nameOfKey(key: string): string {
   return key.slice(key.indexOf(":") + 1);
 }
@@ -44,7 +44,7 @@ export function isTaskKey(key: string): boolean {
   return key.startsWith("task:");
 }
 
-/** All rows in their order, a group before what lies in it. */
+/** Return all rows in order, each group before its content. */
 export function outline(mission: Mission): Row[] {
   const at = new Map(mission.tasks.map((task, index) => [task.name, index]));
   const starting = new Map<number, { group: Group; last: number }[]>();
@@ -75,7 +75,7 @@ export function outline(mission: Mission): Row[] {
   return rows;
 }
 
-/** Rows that show when these groups are folded. */
+/** Return the rows that are visible if these groups are folded. */
 export function unfolded(rows: readonly Row[], folded: ReadonlySet<string>): Row[] {
   const shown: Row[] = [];
   let below = Infinity;
@@ -88,7 +88,7 @@ export function unfolded(rows: readonly Row[], folded: ReadonlySet<string>): Row
   return shown;
 }
 
-/** The name of a group without those that it lies in. */
+/** Return the name of a group without the groups around it. */
 export function ownName(group: string): string {
   return group.slice(group.lastIndexOf("/") + 1);
 }

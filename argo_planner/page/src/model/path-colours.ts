@@ -1,11 +1,9 @@
-/**
- * The colours of paths: by the time at which they are driven, and where one stands out. Dashed ways
- * and the route that is compared have colours of the theme, chosen in `scene/paths-view.ts`.
- */
+/** The colours of paths: by time, and for highlighted ones. Dashed paths and the compared route have colours
+ * of the theme, chosen in `scene/paths-view.ts`. */
 
 type Colour = readonly [number, number, number];
 
-/** From early to late: told apart without red and green. */
+/** From early to late; distinguishable without red and green. */
 const RAMP: readonly Colour[] = [
   [40, 120, 215],
   [128, 84, 205],
@@ -13,7 +11,7 @@ const RAMP: readonly Colour[] = [
   [240, 120, 40],
 ];
 
-/** sRGB, 0 to 255 each; `share` of the mission's time from 0 to 1. */
+/** Return a colour (sRGB, 0 to 255 each) for a `share` of the mission's time from 0 to 1. */
 export function timeColour(share: number): Colour {
   const at = Math.min(1, Math.max(0, share)) * (RAMP.length - 1);
   const first = Math.min(RAMP.length - 2, Math.floor(at));
@@ -22,7 +20,7 @@ export function timeColour(share: number): Colour {
   return [mixed(0), mixed(1), mixed(2)];
 }
 
-/** The colour of a path that stands out, on the page in its dark or light theme. */
+/** Return the colour of a highlighted path in the dark or light theme. */
 export function markedColour(dark: boolean): string {
   return dark ? "#ffffff" : "#0b1016";
 }

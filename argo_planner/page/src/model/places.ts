@@ -1,10 +1,10 @@
-/** Where tasks can be put, and the edits that put them there. */
+/** Positions of tasks in the list, and the edits that move tasks there. */
 
 import type { Group, Mission, Task } from "../api/types";
 import type { LooseEdit } from "../state/commands";
 import { isTaskKey, nameOfKey, ownName, type Row } from "./outline";
 
-/** A place between tasks: behind or before one, in a group or in none. */
+/** A position in the list: after or before a task, in a group or in none. */
 export interface Place {
   readonly after?: string;
   readonly before?: string;
@@ -13,7 +13,7 @@ export interface Place {
 
 export type Side = "before" | "after" | "into";
 
-/** The place beside a row. `into` is the beginning of a group. */
+/** Return the position beside a row; `into` means the beginning of a group. */
 export function placeAt(row: Row, side: Side): Place {
   const container = row.inside === null ? {} : { into: row.inside };
   if (row.kind === "task")
@@ -25,7 +25,7 @@ export function placeAt(row: Row, side: Side): Place {
   return { after: row.group.end, ...container };
 }
 
-/** Where a new task goes: behind the task or the group that was selected last, else to the end. */
+/** Return the position of a new task: after the last selected row, or at the end of the mission. */
 export function placeForNew(rows: readonly Row[], selection: readonly string[]): Place {
   const last = selection.at(-1);
   const row = rows.find((one) => one.key === last);
@@ -33,8 +33,7 @@ export function placeForNew(rows: readonly Row[], selection: readonly string[]):
   return placeAt(row, "after");
 }
 
-/** Edits that move what is selected to a place beside a row, in its order. None where it would
- * stay as it is. */
+/** Return the edits that move the selection beside a row; none if nothing changes. */
 export function moves(
   mission: Mission,
   rows: readonly Row[],
@@ -48,7 +47,7 @@ export function moves(
   if (place === null) return [];
   const taken = groupsOf(mission, selection);
   const edits: LooseEdit[] = [];
-  // Inner groups go first and come back first: their names follow from what they lie in.
+  // Inner groups are dissolved first and restored first: a group's full name depends on the group around it.
   for (const { name } of [...taken].reverse()) edits.push({ kind: "dissolve_group", name });
   for (const task of moved) {
     edits.push({ kind: "move_task", name: task.name, ...place });
@@ -59,7 +58,7 @@ export function moves(
   return edits;
 }
 
-/** All tasks of a selection, those of its groups included, in the order of the mission. */
+/** Return all selected tasks, including those of selected groups, in the order of the mission. */
 export function tasksOf(
   mission: Mission,
   rows: readonly Row[],
@@ -76,13 +75,12 @@ export function tasksOf(
   return mission.tasks.filter((task) => names.has(task.name));
 }
 
-/** The groups of a selection and those in them, the outer ones first. */
+/** Return the selected groups and the groups in them, the outer ones first. */
 export function groupsOf(mission: Mission, selection: readonly string[]): Group[] {
   return rootGroups(mission, selection).flatMap((group) => withInner(mission, group));
 }
 
-/** Where one step up or down leads to for what is selected, among the rows that show; null:
- * nowhere. */
+/** Return the target of one step up or down, among the visible rows; null: there is none. */
 export function step(
   rows: readonly Row[],
   selection: readonly string[],
@@ -101,7 +99,7 @@ export function step(
   const below = rows[last + 1];
   const end = rows[last];
   if (end && (below === undefined || below.depth < end.depth)) {
-    // The last one of a group leaves it.
+    // The last task of a group leaves it.
     const group = rows.find((row) => row.kind === "group" && row.group.name === end.inside);
     const root = chosen[rows.indexOf(group as Row)] === true;
     if (group && !root) return { target: group, side: "after" };
@@ -115,14 +113,14 @@ function depth(rows: readonly Row[], index: number): number {
   return rows[index]?.depth ?? 0;
 }
 
-/** Whether a row is selected, or lies in a group that is. */
+/** Return whether a row or a group around it is selected. */
 function inSelection(rows: readonly Row[], row: Row, selection: readonly string[]): boolean {
   if (selection.includes(row.key)) return true;
   const around = rows.find((one) => one.kind === "group" && one.group.name === row.inside);
   return around !== undefined && inSelection(rows, around, selection);
 }
 
-/** The groups of a selection that lie in no other one of it. */
+/** Return the selected groups that are in no other selected group. */
 function rootGroups(mission: Mission, selection: readonly string[]): Group[] {
   const names = new Set(selection.filter((key) => !isTaskKey(key)).map(nameOfKey));
   return mission.groups.filter(
@@ -132,14 +130,14 @@ function rootGroups(mission: Mission, selection: readonly string[]): Group[] {
   );
 }
 
-/** A group and those in it, the outer ones first. */
+/** Return a group and the groups in it, the outer ones first. */
 function withInner(mission: Mission, group: Group): Group[] {
   const inner = mission.groups.filter((one) => one.name.startsWith(`${group.name}/`));
   inner.sort((a, b) => a.name.split("/").length - b.name.split("/").length);
   return [group, ...inner];
 }
 
-/** The place, beside a task that is not itself moved; null if there is none. */
+/** Return the position relative to a task that is not moved itself; null: there is none. */
 function anchored(mission: Mission, moved: readonly Task[], place: Place): Place | null {
   const names = new Set(moved.map((task) => task.name));
   const anchor = place.after ?? place.before;

@@ -1,8 +1,8 @@
-/** Two orders of the same tasks beside each other. */
+/** Comparison of two orders of the same tasks. */
 
 export interface Placed {
   readonly name: string;
-  /** Whether others have gone past it: it is not among those that stand as they stood. */
+  /** Whether the task has changed its position relative to the tasks that stay. */
   readonly moved: boolean;
 }
 
@@ -11,8 +11,8 @@ export interface TwoOrders {
   readonly after: readonly Placed[];
 }
 
-/** Both orders with those marked that have changed their places; as few as explain it. What is left
- * out stands in the first one only, and is marked there. */
+/** Mark the tasks that have moved, as few as possible. Tasks that are left out appear in the first order
+ * only, and are marked there. */
 export function compared(before: readonly string[], after: readonly string[]): TwoOrders {
   const at = new Map(after.map((name, place) => [name, place]));
   const places = before.flatMap((name) => at.get(name) ?? []);
@@ -21,9 +21,9 @@ export function compared(before: readonly string[], after: readonly string[]): T
   return { before: before.map(placed), after: after.map(placed) };
 }
 
-/** A longest part of the numbers, in their order, that rises. */
+/** Return a longest increasing subsequence. */
 export function longestRise(numbers: readonly number[]): number[] {
-  const ends: number[] = []; // of each length the place of the smallest last number
+  const ends: number[] = []; // for each length, the index of the smallest last number
   const behind = new Array<number>(numbers.length).fill(-1);
   numbers.forEach((number, place) => {
     let low = 0;

@@ -1,4 +1,4 @@
-/** What a run was like at a time, made from what has happened in it. */
+/** The state of a run at a time, computed from its entries. */
 
 import type { Entry } from "../api/types";
 
@@ -11,19 +11,19 @@ export interface Moment {
   readonly t: number;
   /** x, y, z (m), yaw, pitch (rad) */
   readonly pose: Vector5;
-  /** of the battery, 0 to 1 */
+  /** share of the battery, 0 to 1 */
   readonly charge: number | null;
-  /** the task whose action was under way */
+  /** the task whose action was in progress */
   readonly task: string | null;
-  /** how the last visit of each task has ended */
+  /** outcome of the last visit of each task */
   readonly outcomes: ReadonlyMap<string, Outcome>;
-  /** the last reading of each checkpoint, in the order in which they were first read */
+  /** the last reading of each checkpoint, in the order of their first readings */
   readonly readings: readonly Reading[];
-  /** how many entries there were */
+  /** number of entries so far */
   readonly entries: number;
 }
 
-/** How many entries there were at a time. */
+/** Return the number of entries up to a time. */
 export function countUntil(entries: readonly Entry[], t: number): number {
   let low = 0;
   let high = entries.length;
@@ -35,7 +35,7 @@ export function countUntil(entries: readonly Entry[], t: number): number {
   return low;
 }
 
-/** The run at a time (s); null before its first entry. */
+/** Return the state of the run at a time (s); null before its first entry. */
 export function momentAt(entries: readonly Entry[], t: number): Moment | null {
   const count = countUntil(entries, t);
   const last = entries[count - 1];
@@ -52,7 +52,7 @@ export function momentAt(entries: readonly Entry[], t: number): Moment | null {
   };
 }
 
-/** How the last visit of each task among the first entries has ended. */
+/** Return the outcome of each task's last visit in the first `count` entries. */
 export function outcomesOf(entries: readonly Entry[], count = entries.length): Map<string, Outcome> {
   const found = new Map<string, Outcome>();
   for (let at = 0; at < count; at++) {
@@ -67,7 +67,7 @@ export function outcomesOf(entries: readonly Entry[], count = entries.length): M
   return found;
 }
 
-/** The last reading of each checkpoint among the first entries. */
+/** Return the last reading of each checkpoint in the first `count` entries. */
 export function readingsOf(entries: readonly Entry[], count = entries.length): Reading[] {
   const found = new Map<number, Reading>();
   for (let at = 0; at < count; at++) {

@@ -1,28 +1,28 @@
-/** Ways as ribbons on the ground: cut at floors, beside each other where they are driven again. */
+/** Paths as ribbons on the ground: split by floor, side by side where a path is driven again. */
 
-/** A row of a previewed way: s, m, m, m, rad. */
+/** A point of a previewed path: time (s), x, y, z (m), yaw (rad). */
 export type WayPoint = readonly [number, number, number, number, number];
 
 export interface RibbonLeg {
-  /** number of the way in the preview */
+  /** index in the preview's `ways` */
   readonly way: number;
   readonly points: readonly WayPoint[];
-  /** s from the mission's start until it begins */
+  /** s from the mission's start to the start of the leg */
   readonly start: number;
   readonly dashed: boolean;
 }
 
 export interface Sample {
-  /** m, moved aside */
+  /** m, after the sideways shift */
   readonly x: number;
   readonly y: number;
   readonly z: number;
-  /** where it goes to, of length 1 */
+  /** direction of motion, a unit vector */
   readonly dx: number;
   readonly dy: number;
   /** s from the mission's start */
   readonly t: number;
-  /** m from its beginning */
+  /** m from the start of the path */
   readonly along: number;
 }
 
@@ -30,17 +30,17 @@ export interface RibbonPath extends RibbonLeg {
   readonly samples: readonly Sample[];
 }
 
-/** m between samples, between ribbons beside each other, and at which ways are the same one */
+/** m between samples, between neighbouring ribbons, and within which paths are the same */
 const EVERY = 0.25;
 const SPACING = 0.13;
 const SAME = 0.25;
 const STOREY = 0.5;
-/** How far aside ribbons go at most: aisles are narrow. */
+/** Highest number of ribbons side by side: aisles are narrow. */
 const MOST_LANES = 5;
-/** Samples over which a ribbon moves aside. */
+/** Number of samples over which a ribbon shifts sideways. */
 const SMOOTH = 4;
 
-/** The legs in their order, each beside those that went the same way before. */
+/** Return the legs in order, each beside the earlier legs on the same path. */
 export function ribbonPaths(legs: readonly RibbonLeg[]): RibbonPath[] {
   const driven = new Map<string, Set<number>>();
   return legs.map((leg) => {
@@ -56,7 +56,7 @@ export function ribbonPaths(legs: readonly RibbonLeg[]): RibbonPath[] {
   });
 }
 
-/** Points at even distances; where the robot turns in place there is only one. */
+/** Return points at even distances; where the robot turns in place there is only one. */
 function sampled({ points, start }: RibbonLeg): Sample[] {
   const samples: Sample[] = [];
   let along = 0;
@@ -80,7 +80,7 @@ function sampled({ points, start }: RibbonLeg): Sample[] {
         t: start + at(t0, t1),
         along: along + flat * part,
       };
-      // Where it bends there is a sample with either direction.
+      // A bend gets a sample for either direction.
       if (step > 0 || last === null || last.dx !== dx || last.dy !== dy) samples.push(one);
       last = one;
     }
@@ -89,7 +89,7 @@ function sampled({ points, start }: RibbonLeg): Sample[] {
   return samples;
 }
 
-/** How many legs went here before, forth or back. */
+/** Return the number of earlier legs here, in either direction. */
 function before(driven: ReadonlyMap<string, ReadonlySet<number>>, sample: Sample): number {
   const found = new Set<number>();
   for (let i = -1; i <= 1; i++)
@@ -98,18 +98,18 @@ function before(driven: ReadonlyMap<string, ReadonlySet<number>>, sample: Sample
 }
 
 function cell({ x, y, z, dx, dy }: Sample, i: number, j: number): string {
-  // Ways that only cross have another direction; forth and back are the same one.
+  // Crossing paths differ in direction; there and back count as the same.
   const turn = Math.round((Math.atan2(dy, dx) / Math.PI) * 4);
   const direction = ((turn % 4) + 4) % 4;
   return `${Math.floor(x / SAME) + i} ${Math.floor(y / SAME) + j} ${Math.round(z / STOREY)} ${direction}`;
 }
 
-/** The first stays in the middle, those after it go to the right and the left of it by turns. */
+/** Keep the first ribbon in the middle, and shift the others alternately to its right and left. */
 function movedAside(samples: readonly Sample[], lanes: readonly number[]): Sample[] {
   const asides = samples.map(({ dx, dy }, i) => {
     const lane = Math.max(...lanes.slice(Math.max(0, i - 2), i + 3));
     const side = (lane % 2 === 0 ? -1 : 1) * Math.ceil(lane / 2) * SPACING;
-    // The right of one direction, whichever way it is driven: forth and back do not swap sides.
+    // The side depends on the line, not on the direction of motion: there and back don't swap sides.
     const forth = dx > 1e-6 || (Math.abs(dx) <= 1e-6 && dy > 0) ? 1 : -1;
     return [side * forth * dy, -side * forth * dx] as const;
   });
@@ -120,13 +120,13 @@ function movedAside(samples: readonly Sample[], lanes: readonly number[]): Sampl
   });
 }
 
-/** Triangles to draw: three corners of x, y, z (m) each, and the time (s) at each corner. */
+/** Triangles to draw: corners as x, y, z (m), and the time (s) at each corner. */
 export interface Triangles {
   readonly corners: number[];
   readonly times: number[];
 }
 
-/** The ribbon of a path by floor, as wide as `width` (m). */
+/** Return the ribbon of a path by floor, `width` m wide. */
 export function ribbon(
   path: RibbonPath,
   width: number,
@@ -146,7 +146,7 @@ export function ribbon(
   return into;
 }
 
-/** Arrowheads along a path, which show where it goes. */
+/** Return arrowheads along a path. */
 export function arrows(
   path: RibbonPath,
   size: number,

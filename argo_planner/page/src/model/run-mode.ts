@@ -1,4 +1,4 @@
-/** How a run stands, in the one word that people act by. */
+/** The mode of a run, in one word by which people act. */
 
 import type { RequestState, RunState } from "../api/types";
 
@@ -23,12 +23,12 @@ export function shownMode(run: RunState): ShownMode {
     case "ended":
       return run.headline?.tone ?? "notice";
     case "running":
-      // Someone who has told the robot to stand still must see when it does.
+      // A person who has told the robot to stop must see when it stands.
       return run.mode === "paused" && run.moving ? "stopping" : run.mode;
   }
 }
 
-/** Whether a request of this kind is on its way. */
+/** Return whether a request of this kind is in progress. */
 export function isUnderWay(run: RunState, kind: string): boolean {
   return run.requests.some((one) => one.kind === kind && !isOver(one));
 }
@@ -37,14 +37,14 @@ export function isOver(request: RequestState): boolean {
   return request.progress !== "accepted" && request.progress !== "under way";
 }
 
-/** What the panel tells of the requests: those that are not over, and the last ones that are. */
+/** Return the requests that the panel shows: all open ones, and the last `past` finished ones. */
 export function shownRequests(requests: readonly RequestState[], past: number): RequestState[] {
   const open = requests.filter((one) => !isOver(one));
   const over = requests.filter(isOver);
   return [...over.slice(Math.max(0, over.length - past)), ...open].reverse();
 }
 
-/** Who has taken the robot over last; null: that is not known. */
+/** Return who has taken the robot over last; null: unknown. */
 export function takenOverBy(run: RunState): string | null {
   return run.requests.findLast((one) => one.kind === "take_over" && one.progress === "confirmed")?.by ?? null;
 }

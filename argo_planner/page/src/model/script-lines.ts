@@ -1,4 +1,4 @@
-/** Which lines of a script say what. Lines are counted from 1 on. */
+/** The lines of a script and the tasks that they belong to. Lines are counted from 1. */
 
 import type { Diagnostic, MissionReading } from "../api/types";
 
@@ -9,8 +9,7 @@ export interface Lines {
 
 type Entry = MissionReading["entries"][number];
 
-/** The lines of each task and group in a script that the service has written: its steps have
- * numbers. */
+/** Return the lines of each task and group in a script that the service wrote, with numbered steps. */
 export function linesBySteps(text: string, entries: readonly Entry[]): Map<string, Lines> {
   const lines = text.split("\n");
   const steps = new Map<number, Lines>();
@@ -26,7 +25,7 @@ export function linesBySteps(text: string, entries: readonly Entry[]): Map<strin
   return found;
 }
 
-/** The same in the script that a mission was made from. */
+/** Return the lines of each task and group in the script that the mission was made from. */
 export function linesBySource(text: string, entries: readonly Entry[]): Map<string, Lines> {
   const lines = text.split("\n");
   const found = new Map<string, Lines>();
@@ -36,29 +35,30 @@ export function linesBySource(text: string, entries: readonly Entry[]): Map<stri
   return found;
 }
 
-/** A step goes on in the lines behind it that are indented. */
+/** Return the last line of a step: indented lines continue it. */
 function blockEnd(lines: readonly string[], at: number): number {
   let end = at + 1;
   while (/^\s+\S/.test(lines[end] ?? "") && !/^\s*\d+\.\s/.test(lines[end] ?? "")) end++;
   return end;
 }
 
-/** What is said in a line. */
+/** Return the task or group of a line. */
 export function nameInLine(lines: ReadonlyMap<string, Lines>, line: number): string | null {
   for (const [name, { from, to }] of lines) if (from <= line && line <= to) return name;
   return null;
 }
 
-/** The line of a place in the text, and where in the text a line and column is. */
+/** Return the line of an offset in the text. */
 export function lineOf(text: string, at: number): number {
   return text.slice(0, at).split("\n").length;
 }
+/** Return the offset of a line and column in the text. */
 export function placeOf(text: string, line: number, column: number): number {
   const before = text.split("\n").slice(0, line - 1);
   return Math.min(text.length, before.reduce((sum, one) => sum + one.length + 1, 0) + column - 1);
 }
 
-/** The worst of what is said of each line. */
+/** Return the worst severity of each line. */
 export function severities(diagnostics: readonly Diagnostic[]): Map<number, Diagnostic["severity"]> {
   const rank = { error: 2, warning: 1, note: 0 };
   const found = new Map<number, Diagnostic["severity"]>();

@@ -1,23 +1,23 @@
-/** Where the robot can stand: the maps of the service, read without asking it again. */
+/** Maps of the poses at which the robot can stand, read without further requests to the service. */
 
 import type { WorldFloor } from "../api/types";
 
 export type Ground = "none" | "too_near" | "too_steep" | "cut_off" | "closed" | "reached";
 
-/** A floor's cells with one heading. Cells above each other are in layers, the lower one first. */
+/** The cells of a floor for one heading. Cells above each other are in layers, the lower one first. */
 export interface StandingMap {
   readonly floor: number;
   readonly heading: number;
   /** rad */
   readonly yaw: number;
-  /** m, the corner of least x and y of the first cell */
+  /** m, the corner of the first cell with the least x and y */
   readonly origin: readonly [number, number];
   /** m, edge of a cell */
   readonly cell: number;
   readonly layers: number;
   readonly rows: number;
   readonly columns: number;
-  /** m, of the floor, and the unit of the heights above it */
+  /** m, height of the floor, and the unit of the heights above it */
   readonly z: number;
   readonly step: number;
   /** by code */
@@ -26,24 +26,24 @@ export interface StandingMap {
   readonly heights: Int16Array;
 }
 
-/** What holds somewhere. */
+/** The verdict on a pose. */
 export interface Standing {
   readonly ground: Ground;
-  /** m, of the ground there; of where it was asked for, if there is none */
+  /** m, height of the ground there, or the given height if there is none */
   readonly z: number;
 }
 
-/** Headings that are nearer than this (rad) to one of the maps are that one. */
+/** Headings within this angle (rad) of a map's heading use that map alone. */
 const SAME = 0.01;
 const NEWLINE = 10;
-/** What is said where the neighbouring headings differ: the first of them. */
+/** The order of verdicts: if the neighbouring headings differ, the first one counts. */
 const WORST: readonly Ground[] = ["none", "too_near", "too_steep", "closed", "cut_off", "reached"];
 
 interface Header extends Omit<StandingMap, "grounds" | "codes" | "heights"> {
   readonly codes: Readonly<Record<Ground, number>>;
 }
 
-/** Reads a map as it comes from the service. */
+/** Parse a map from the service. */
 export async function readStandingMap(content: ArrayBuffer): Promise<StandingMap> {
   const bytes = new Uint8Array(content);
   const end = bytes.indexOf(NEWLINE);
@@ -59,7 +59,7 @@ export async function readStandingMap(content: ArrayBuffer): Promise<StandingMap
   return { ...header, grounds, codes: new Uint8Array(body, 0, count), heights };
 }
 
-/** What holds for the cell that a place (m) lies in; of several, for the nearest in height. */
+/** Return the verdict of the cell at a point (m); among several layers, of the nearest in height. */
 export function standingAt(map: StandingMap, x: number, y: number, z: number): Standing {
   const column = Math.floor((x - map.origin[0]) / map.cell);
   const row = Math.floor((y - map.origin[1]) / map.cell);
@@ -79,7 +79,7 @@ export function standingAt(map: StandingMap, x: number, y: number, z: number): S
   return found;
 }
 
-/** The maps of a floor that tell of a heading (rad): one, or those of the headings beside it. */
+/** Return the indices of the maps for a heading (rad): one, or those of the two neighbouring headings. */
 export function headingsBeside(yaw: number, headings: readonly number[]): number[] {
   const count = headings.length;
   const part = (yaw / (2 * Math.PI)) * count;
@@ -89,7 +89,7 @@ export function headingsBeside(yaw: number, headings: readonly number[]): number
   return [at(Math.floor(part)), at(Math.ceil(part))];
 }
 
-/** Whether the robot can stand somewhere with a heading (rad); null: the maps are not there yet. */
+/** Return whether the robot can stand at a pose (m, rad); null: the maps are not loaded. */
 export function verdictAt(
   map: (heading: number) => StandingMap | undefined,
   headings: readonly number[],
@@ -108,7 +108,7 @@ export function verdictAt(
   return worst;
 }
 
-/** The floor whose map a height (m) belongs to. */
+/** Return the floor whose map covers a height (m). */
 export function floorOf(floors: readonly WorldFloor[], z: number): WorldFloor | undefined {
   return floors.findLast((floor) => floor.z - 0.1 <= z) ?? floors[0];
 }

@@ -1,4 +1,4 @@
-/** What a search has found: while it goes on, and beside the order as it is. */
+/** The progress and result of a search, beside the current order. */
 
 import { svg } from "lit";
 

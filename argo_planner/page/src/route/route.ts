@@ -1,4 +1,4 @@
-/** What the best order has to keep to, and the search for it. */
+/** The requirements of the best order, and the search for it. */
 
 import { readTime, writeTime } from "../forms/times";
 import { parts } from "../run/parts";
@@ -79,7 +79,7 @@ export class RoutePanel extends PageElement {
     </div>`;
   }
 
-  /** An order that is kept can't be bettered. */
+  /** Render a button that allows other orders, if the mission fixes its order. */
   private fixed() {
     if (mission.value === null || mission.value.order === "any" || laterTasks.value.length < 2) return nothing;
     return html`<div class="row">
@@ -169,7 +169,7 @@ export class RoutePanel extends PageElement {
     return this.renderRoot.querySelector<HTMLInputElement>(`#${id}`)?.value ?? "";
   }
 
-  /** A time as it was understood, or marked as none. */
+  /** Format the time in a field as it was understood, or mark it as invalid. */
   private tidy(event: Event): void {
     const field = event.target as HTMLInputElement;
     const read = readTime(field.value);

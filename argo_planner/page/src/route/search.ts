@@ -1,4 +1,4 @@
-/** The search for an order of the mission that is open: begun, watched, ended, taken. */
+/** The search for an order of the open mission: start it, stop it, accept its result. */
 
 import { batch, computed, effect, signal } from "@preact/signals-core";
 
@@ -17,22 +17,22 @@ export interface Asked {
   readonly windows: readonly { readonly what: string; readonly earliest: number; readonly latest: number | null }[];
 }
 
-/** Of the requirements only what is given is sent. */
+/** The request's type, in which all fields are required; fields that are left out keep their defaults. */
 type SearchAsked =
   operations["suggest_order"]["requestBody"]["content"]["application/json"];
 
-/** The search that is shown; null: none. */
+/** The shown search; null: none. */
 const shown = signal<OrderJob | null>(null);
 let plan: string | null = null;
 let previewed = "";
 
-/** How it stands, by what was told last. */
+/** The newest state of the shown search. */
 export const job = computed<OrderJob | null>(() => {
   const known = shown.value;
   const newest = known === null ? undefined : jobs.value.get(known.id);
   return newest?.kind === "order" ? newest : known;
 });
-/** Whether the mission was changed since the search began. */
+/** Whether the mission was changed after the search began. */
 export const jobIsStale = computed(() => job.value !== null && job.value.revision !== revision.value);
 
 effect(() => {
@@ -49,7 +49,7 @@ effect(() => {
   }
 });
 
-// What became of it while nobody could tell is asked for.
+// When the connection returns, the state of the search is read again.
 effect(() => {
   const known = job.peek();
   if (!connected.value || known === null || isOver(known)) return;
@@ -67,7 +67,7 @@ function isOver(one: OrderJob): boolean {
   return one.state !== "running";
 }
 
-/** Shows the ways in that order on the site, to be compared with those of now. */
+/** Show the paths of the suggested order on the site, to compare them with the present ones. */
 async function preview(id: string): Promise<void> {
   try {
     const ways = await answered(client.GET("/api/jobs/{id}/preview", { params: { path: { id } } }));

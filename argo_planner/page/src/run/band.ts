@@ -1,4 +1,4 @@
-/** At a glance: who has the robot, what it does, how far it is. */
+/** The run at a glance: who controls the robot, what it does, and its progress. */
 
 import type { Outcome } from "../model/replay";
 import { shownMode, type ShownMode } from "../model/run-mode";
@@ -24,7 +24,7 @@ const SIGNS: Record<ShownMode, Icon> = {
   notice: "flag",
   bad: "warning",
 };
-/** Of the battery: below it a robot should be on its way home. */
+/** Share of the battery below which the robot should return. */
 const LOW_CHARGE = 0.2;
 
 @customElement("argo-run-band")
@@ -32,7 +32,7 @@ export class RunBand extends PageElement {
   static override styles = [
     parts,
     css`
-      /* Who has the robot stays in sight, however far down somebody looks. */
+      /* Who controls the robot stays visible while the panel scrolls. */
       :host {
         display: contents;
       }
@@ -189,14 +189,14 @@ export class RunBand extends PageElement {
     const all = there.tasks.filter((task) => task.action !== "START");
     const done = all.filter((task) => ["done", "by hand"].includes(now.outcomes.get(task.name) ?? ""));
     const broken = all.some((task) => now.outcomes.get(task.name) === "failed");
-    // Of a mission that was changed since, nobody here knows how many tasks it had.
+    // The number of tasks is unknown if the mission was changed after the run began.
     if (run.revision !== revision.value)
       return this.row("done", t().frame.tasks, t().run.tasksDoneOnly(doneOf(now.outcomes)));
     const part = all.length === 0 ? 0 : done.length / all.length;
     return this.row("done", t().frame.tasks, t().run.tasksDone(done.length, all.length), part, broken);
   }
 
-  /** A value with its name, and as a `part` of what it may be, if that is known. */
+  /** Render a value with its name, and as a `part` of its limit if that is known. */
   private row(id: string, name: string, said: string, part: number | null = null, broken = false) {
     const width = `${Math.min(100, Math.max(0, 100 * (part ?? 0)))}%`;
     return html`<dt>${name}</dt>

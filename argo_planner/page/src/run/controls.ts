@@ -1,4 +1,4 @@
-/** What can be asked of a run as a whole. */
+/** The requests to a run as a whole. */
 
 import type { RequestState } from "../api/types";
 import { isOver, isUnderWay, shownRequests } from "../model/run-mode";
@@ -90,7 +90,8 @@ export class RunControls extends PageElement {
     const rest = [this.simple("cancel", "danger"), this.simple("stop", "danger"), this.speed()];
     switch (state.mode) {
       case "supervised":
-        // Whoever has edited the mission wants it driven so, and else it has to be said.
+        // With edits, the main button gives the robot back with them; the other one states that it ignores
+        // them.
         return this.isEdited()
           ? [this.giveBackEdited(), this.simple("give_back", "", t().run.giveBackUnedited), ...rest]
           : [this.simple("give_back", "main"), ...rest];
@@ -116,7 +117,7 @@ export class RunControls extends PageElement {
     </button>`;
   }
 
-  /** Whether the mission of the run was changed since the run has it. */
+  /** Return whether the mission has a newer revision than the run. */
   private isEdited(): boolean {
     const state = run.value;
     return state !== null && state.plan === planId.value && state.revision !== revision.value;
@@ -149,7 +150,7 @@ export class RunControls extends PageElement {
     </label>`;
   }
 
-  /** How the camera follows the robot. */
+  /** Render the choice of how the camera follows the robot. */
   private follow() {
     const texts = t().scene;
     return html`<label class="wide">
@@ -160,7 +161,7 @@ export class RunControls extends PageElement {
     </label>`;
   }
 
-  /** What was asked, and how far that is. */
+  /** Render the last requests and their progress. */
   private asked() {
     const all = (run.value?.requests ?? []).filter((one) => !isStep(one));
     const shown = shownRequests(all, PAST_REQUESTS);
@@ -185,7 +186,8 @@ export class RunControls extends PageElement {
   }
 }
 
-/** Driving with the keys asks for many small things; the robot itself shows that they are done. */
+/** Return whether a request is a step of driving by keys; there are many, and the robot itself shows that
+ * they are done. */
 function isStep(request: RequestState): boolean {
   return isOver(request) && (request.kind === "drive_to" || request.kind === "stop_by_hand");
 }

@@ -1,4 +1,4 @@
-/** What has happened in the run, newest first. A click goes back to that time. */
+/** The events of the run, the newest first. A click goes back to that time. */
 
 import { computed } from "@preact/signals-core";
 
@@ -13,7 +13,7 @@ import { parts } from "./parts";
 const MOST = 100;
 const SIGNS: Record<Told["tone"], Icon> = { plain: "right", good: "check", warn: "hand", bad: "warning" };
 
-/** A happening in words. */
+/** Describe an event of a run. */
 export function inWords(what: Happening): string {
   const told = t().run.told;
   switch (what.kind) {

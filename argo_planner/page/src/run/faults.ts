@@ -1,4 +1,4 @@
-/** What is to go wrong: kinds of faults, chosen one by one. */
+/** The choice of faults, one by one. */
 
 import type { FaultKind } from "../api/types";
 import { t } from "../texts";
@@ -10,7 +10,7 @@ import { parts } from "./parts";
 /** All kinds of faults, in the order of the texts. */
 export const FAULTS = Object.keys(run.en.fault) as readonly FaultKind[];
 
-/** Fires `chosen` with all that are chosen, as soon as they change. */
+/** Fires `chosen` with all chosen faults when they change. */
 @customElement("argo-faults")
 export class FaultChoice extends PageElement {
   static override styles = [

@@ -1,5 +1,4 @@
-/** Drives the robot as long as a key is held: asks for a place ahead, and stops it when the key is
- * let go. */
+/** Driving while a key is held: request a pose ahead, and stop the robot when the key is released. */
 
 import { effect, signal } from "@preact/signals-core";
 
@@ -10,14 +9,14 @@ import { isOver } from "../model/run-mode";
 import { ask } from "../state/asking";
 import { robotPose, run } from "../state/run";
 
-/** Where somebody wants to drive now; null: nowhere. */
+/** The wanted direction; null: none. */
 export const wanted = signal<Direction | null>(null);
-/** Whether the way there can't be driven. */
+/** Whether there is no drivable path in the wanted direction. */
 export const blocked = signal(false);
 
 let driving = false;
 
-/** From now on the robot drives there; null: it stops. */
+/** Drive in a direction from now on; null: stop. */
 export function drive(direction: Direction | null): void {
   if (wanted.value === direction) return;
   wanted.value = direction;
@@ -38,8 +37,7 @@ async function driveOn(): Promise<void> {
   wanted.value = null;
 }
 
-/** Drives in a direction until it is not wanted any more or the place ahead is reached. Whether
- * there was a way. */
+/** Drive in a direction until it is no longer wanted or the goal is reached. Returns whether there was a path. */
 async function step(direction: Direction): Promise<boolean> {
   for (const reach of reachesOf(direction)) {
     const from = robotPose.value;
@@ -61,8 +59,8 @@ async function step(direction: Direction): Promise<boolean> {
   return false;
 }
 
-/** Whether the robot would drive straight there. It finds its way round things by itself, which
- * nobody wants who holds a key. */
+/** Return whether the robot would drive straight to the goal. The navigator avoids obstacles, but a person
+ * who holds a key expects no detour. */
 async function isFree(
   from: readonly [number, number, number, number, number],
   goal: Pose,
@@ -80,7 +78,7 @@ async function isFree(
   }
 }
 
-/** How a request has ended; null: something else is wanted by now, or the run is over. */
+/** Wait for the end of a request; null: another direction is wanted, or the run has ended. */
 function over(id: string, direction: Direction | null): Promise<string | null> {
   return until(() => {
     const found = run.value?.requests.find((one) => one.id === id);
@@ -94,7 +92,7 @@ function changed(direction: Direction): Promise<null> {
   return until(() => (wanted.value === direction ? null : { value: null }));
 }
 
-/** What comes of it, as soon as something does. */
+/** Wait until `found` returns a value. */
 function until<T>(found: () => { readonly value: T } | null): Promise<T> {
   return new Promise((resolve) => {
     let done = false;

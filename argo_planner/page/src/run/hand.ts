@@ -1,4 +1,4 @@
-/** A person has the robot: what they let it do. */
+/** The panel of driving by hand, while a person controls the robot. */
 
 import { isTyping } from "../frame/keys";
 import { chosenCheckpoint } from "../model/checkpoint-choice";
@@ -71,7 +71,7 @@ export class RunHand extends PageElement {
   ];
 
   @state() private withKeys = false;
-  /** The task that was chosen here, or is selected in the list. */
+  /** The task chosen here or selected in the list. */
   @state() private task = "";
   private speedBefore: number | null | undefined;
 
@@ -133,7 +133,7 @@ export class RunHand extends PageElement {
     </section>`;
   }
 
-  /** A task of the mission, done or skipped. */
+  /** Render the choice of a task to do or to skip. */
   private ofTasks(off: boolean, busy: boolean) {
     const texts = t().run;
     const tasks = laterTasks.value;
@@ -179,7 +179,7 @@ export class RunHand extends PageElement {
     if (!event.repeat) drive(direction);
   }
 
-  /** Nobody can steer what moves many times as fast as it really would: meanwhile it is real time. */
+  /** Switch driving by keys on or off. It sets the simulation to real time, as nobody can steer a faster robot. */
   private driveWithKeys(on: boolean): void {
     this.withKeys = on;
     if (!on) drive(null);

@@ -1,11 +1,11 @@
-/** How a run stands, in the words for whoever looks. */
+/** The mode of a run, in words. */
 
 import type { RunState } from "../api/types";
 import { shownMode, takenOverBy } from "../model/run-mode";
 import { isMe } from "../state/session";
 import { t } from "../texts";
 
-/** Says also whether it is whoever looks that has the robot. */
+/** Return the mode in words; it also says whether the person at the page controls the robot. */
 export function modeWords(run: RunState): string {
   const mode = shownMode(run);
   const by = mode === "supervised" ? takenOverBy(run) : null;

@@ -1,23 +1,23 @@
-/** What the panels of runs, evaluations and orders share: their look, speeds, and the checkpoints to choose from. */
+/** Shared parts of the panels for runs, evaluations and orders: styles, speeds, list of checkpoints. */
 
 import { choiceOf } from "../model/checkpoint-choice";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { css, html } from "../ui/element";
 
-/** Simulated seconds a second. */
+/** Simulated seconds per second; null: as fast as possible. */
 export const SPEEDS: readonly (number | null)[] = [0.5, 1, 2, 5, 10, 30, null];
 
 export function speedName(speed: number | null): string {
   return speed === null ? t().run.fullSpeed : t().run.times(speed);
 }
 
-/** The speed that an option stands for. */
+/** Return the speed of an option. */
 export function readSpeed(value: string): number | null {
   return value === "null" ? null : Number(value);
 }
 
-/** The checkpoints as a list that a field offers. */
+/** Render the checkpoints as suggestions of a field. */
 export function checkpointList(id: string) {
   return html`<datalist id=${id}>
     ${(world.value?.checkpoints ?? []).map((one) => html`<option value=${choiceOf(one)}></option>`)}

@@ -1,4 +1,4 @@
-/** What was read: each on the scale of its instrument, with the picture that it comes from. */
+/** The readings: each on the scale of its instrument, with the camera picture that it was read from. */
 
 import { computed } from "@preact/signals-core";
 import { svg } from "lit";
@@ -142,7 +142,7 @@ export class RunReadings extends PageElement {
     </li>`;
   }
 
-  /** Pictures are taken by the camera only, and not kept of what was made again. */
+  /** Render the picture of a reading. Only the camera takes pictures, and repeated runs have none. */
   private picture(reading: Reading) {
     const run = shownRunState.value;
     if (run?.sensor !== "camera" || pastRun.value?.evaluated) return nothing;

@@ -1,4 +1,4 @@
-/** The run: begun, watched, steered, and gone back over. */
+/** The panel of the run: start it, watch it, control it, go back in time. */
 
 import { client, answered } from "../api/client";
 import type { FailedRun, RunState } from "../api/types";
@@ -72,7 +72,7 @@ export class RunPanel extends PageElement {
     this.listen("open-run", () => this.focusMain());
   }
 
-  /** Puts the focus on what comes next: start, go on, give back, pause. */
+  /** Move the focus to the next likely button: start, continue, give back, or pause. */
   private focusMain(): void {
     for (const part of this.renderRoot.querySelectorAll("argo-run-start, argo-run-controls")) {
       const main = part.shadowRoot?.querySelector<HTMLElement>("button.main:not(:disabled)");
@@ -118,7 +118,7 @@ export class RunPanel extends PageElement {
       ${byHand ? html`<argo-run-hand></argo-run-hand>` : nothing}`;
   }
 
-  /** Which run of this mission is shown. */
+  /** Render the choice among the runs of this mission. */
   private choice() {
     const texts = t().run;
     const others = this.past.filter((one) => one.id !== run.value?.id);
@@ -136,7 +136,7 @@ export class RunPanel extends PageElement {
     return t().run.pastRunOf(dateAndTime(one.begun), one.headline?.word ?? one.status);
   }
 
-  /** A run of an evaluation says which one it is, and leads back. */
+  /** Render the description of an evaluation's run, and a button that leads back. */
   private evaluated(one: FailedRun) {
     const texts = t().evaluate;
     return html`<div class="evaluated" id="evaluated">
@@ -162,7 +162,7 @@ export class RunPanel extends PageElement {
     await telling(() => showRun(id === "" ? null : id));
   }
 
-  /** The runs of this mission, asked for again when a run begins or ends. */
+  /** Read the runs of this mission again if a run has begun or ended. */
   private async list(): Promise<void> {
     const about = `${planId.value ?? ""} ${run.value?.id ?? ""} ${run.value?.status ?? ""}`;
     if (about === this.listed) return;

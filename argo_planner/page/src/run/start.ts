@@ -1,4 +1,4 @@
-/** Before a run: how the mission is to be driven. */
+/** The form of a run: its settings. */
 
 import type { FaultKind, RunAsked } from "../api/types";
 import { choiceOf, chosenCheckpoint } from "../model/checkpoint-choice";
@@ -116,8 +116,8 @@ export class RunStart extends PageElement {
     this.values = new Map([...this.values].filter(([other]) => other !== id));
   }
 
-  /** Why no run can be started now. The button can have the focus nevertheless: the keys lead to it before all
-   * is checked, and who can't see the page hears the reason there. */
+  /** Return why no run can start now. The button can have the focus nevertheless: keys reach it before the
+   * check is done, and a screen reader announces the reason there. */
   private whyNot(): string | null {
     const texts = t().run;
     if (!mayOperate()) return texts.mayNotOperate;

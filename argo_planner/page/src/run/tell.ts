@@ -1,5 +1,4 @@
-/** What a person tells the run: something has happened, somebody has read a value, or something is to
- * go wrong in the simulation. */
+/** Reports of a person to the run: an event, a reading, or a fault in the simulation. */
 
 import type { EventKind, FaultKind } from "../api/types";
 import { chosenCheckpoint } from "../model/checkpoint-choice";
@@ -13,7 +12,7 @@ import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { checkpointList, parts } from "./parts";
 import { FAULTS } from "./faults";
 
-const OWN: readonly string[] = ["time_up"]; // that occur by themselves only
+const OWN: readonly string[] = ["time_up"]; // events that only the run itself raises
 
 @customElement("argo-run-tell")
 export class RunTell extends PageElement {

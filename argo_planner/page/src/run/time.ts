@@ -1,4 +1,4 @@
-/** Back in time: a slider over the run, with a mark for all that has happened. */
+/** A slider that goes back in time, with a mark for each event. */
 
 import { computed } from "@preact/signals-core";
 import { svg } from "lit";
@@ -9,7 +9,7 @@ import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { parts } from "./parts";
 
-const STEP = 0.5; // s, as often as a run keeps where the robot was
+const STEP = 0.5; // s, the interval at which a run stores the robot's pose
 const MOST_MARKS = 300;
 
 const all = computed(() => happenings(shownEntries.value));

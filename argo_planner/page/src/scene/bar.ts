@@ -1,4 +1,4 @@
-/** Tools, the camera's buttons, and what of the site is shown. */
+/** Tools, camera buttons, and display settings. */
 
 import { runIsOn, shownRun } from "../state/run";
 import { mayPlan } from "../state/session";

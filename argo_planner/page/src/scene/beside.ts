@@ -1,4 +1,4 @@
-/** Words that stand beside what moves in the picture: the ghost and the robot. */
+/** Texts beside moving objects of the scene: the ghost and the robot. */
 
 import { modeWords } from "../run/mode-words";
 import { shownRunState, shownTime } from "../state/run";
@@ -8,7 +8,7 @@ import { ghost, verdictWords } from "./navigate";
 import type { RobotView } from "./robot-view";
 import type { SceneView } from "./view";
 
-/** Why the robot can't stand where the ghost is. */
+/** Place the verdict beside the ghost. */
 export function besideGhost(view: SceneView, element: HTMLElement | null): void {
   const at = ghost.value;
   heed(view.frames);
@@ -21,7 +21,7 @@ export function besideGhost(view: SceneView, element: HTMLElement | null): void 
   element.style.setProperty("transform", `translate(${Math.round(seen.x + 22)}px, ${Math.round(seen.y + 14)}px)`);
 }
 
-/** Who has the robot. */
+/** Place the mode of the run above the robot. */
 export function aboveRobot(view: SceneView, robot: RobotView, element: HTMLElement | null): void {
   const told = robot.told.value;
   heed(view.frames);

@@ -1,4 +1,4 @@
-/** The camera: turned and moved by hand, by keys, and to what somebody wants to see. */
+/** The camera: moved by mouse, by keys, and to requested views. */
 
 import CameraControls from "camera-controls";
 import {
@@ -23,13 +23,13 @@ CameraControls.install({
 });
 
 const { ACTION } = CameraControls;
-/** rad: how the site is looked at first, from the south-west and above */
+/** rad: the initial view, from the south-west and above */
 const [AZIMUTH, POLAR] = [-0.6, 0.95];
-/** Of the distance to what is looked at, that the camera moves in a second. */
+/** Distance that the camera moves in a second, relative to its distance from the target. */
 const PACE = 0.35;
-/** Of the diagonal of the site: nearly half, as it is not seen from its corners. */
+/** Radius of the view relative to the site's diagonal: less than half, as the site is not seen from its corners. */
 const TIGHT = 0.48;
-/** rad and m: where a checkpoint is looked at from, the first one that is free is taken */
+/** rad and m: viewpoints of a checkpoint; the first one with a free line of sight is used */
 const TURNS = [0.35, -0.35, 0.8, -0.8, 0, 1.2, -1.2];
 const HEIGHTS = [0.5, 0.75, 0.25, 1.05];
 const NEAR = [2.6, 3.6, 1.8];
@@ -41,10 +41,10 @@ export class SiteCamera {
   readonly controls: CameraControls;
   private readonly keys = new Set<string>();
   private fast = false;
-  /** px a frame, by the pointer at an edge */
+  /** px per frame, by the pointer at an edge */
   private push = { x: 0, y: 0 };
   private site: World | null = null;
-  /** Whether it is still as it was when the site was opened. */
+  /** Whether the camera is still in its initial position. */
   private untouched = true;
 
   constructor(private readonly stage: Stage) {
@@ -69,14 +69,13 @@ export class SiteCamera {
     stage.canvas.addEventListener("wheel", stage.need, { passive: true });
   }
 
-  /** Whoever turns or moves the camera wants to look elsewhere than after the robot; nearer and farther is
-   * no such wish. */
+  /** Stop following the robot when the person turns or moves the camera; zooming doesn't count. */
   private readonly moved = (): void => {
     const { currentAction } = this.controls;
     if (currentAction !== ACTION.NONE && currentAction !== ACTION.DOLLY) following.value = "off";
   };
 
-  /** Whether the wheel changes the distance; else it is the tool's. */
+  /** Whether the wheel zooms; otherwise it belongs to the tool. */
   set wheel(on: boolean) {
     this.controls.mouseButtons.wheel = on ? ACTION.DOLLY : ACTION.NONE;
   }
@@ -87,14 +86,14 @@ export class SiteCamera {
     this.untouched = true;
   }
 
-  /** The picture has another size: the site is whole in it until somebody moves the camera. */
+  /** Fit the whole site into a resized view, until somebody moves the camera. */
   resized(): void {
     if (!this.untouched || this.site === null) return;
     void this.controls.fitToSphere(this.around(null), false);
     this.untouched = true;
   }
 
-  /** Looks at all floors up to a number. */
+  /** Show all floors up to a number. */
   async showAll(highest: number | null, glide = true): Promise<void> {
     this.controls.normalizeRotations();
     await Promise.all([
@@ -117,7 +116,7 @@ export class SiteCamera {
     );
   }
 
-  /** Looks at a floor from where the camera was, or at all of them. */
+  /** Move the target to a floor, or show all floors. */
   toFloor(floor: WorldFloor | null): void {
     const at = this.controls.getTarget(new Vector3());
     if (floor === null) void this.controls.fitToSphere(this.around(null), true);
@@ -125,21 +124,21 @@ export class SiteCamera {
     this.stage.need();
   }
 
-  /** Looks down on the site from above, the north up. */
+  /** Look down from above, north up. */
   topView(): void {
     this.controls.normalizeRotations();
     void this.controls.rotateTo(0, 0.001, true);
     this.stage.need();
   }
 
-  /** Looks at a point from a distance (m), from where the camera is now. */
+  /** Look at a point from a distance (m), in the present direction. */
   lookAt(point: Vector3, away: number, glide = true): void {
     void this.controls.moveTo(point.x, point.y, point.z, glide);
     void this.controls.dollyTo(away, glide);
     this.stage.need();
   }
 
-  /** Goes to where the face of a checkpoint is seen. */
+  /** Move to where the face of a checkpoint is visible. */
   lookAtFace(checkpoint: WorldCheckpoint, free: Free): void {
     const face = new Vector3(...checkpoint.position);
     const from = (turn: number, height: number, away: number) => {
@@ -156,10 +155,10 @@ export class SiteCamera {
     this.stage.need();
   }
 
-  /** Goes along with the robot. */
+  /** Follow the robot. */
   follow(at: Vector3, yaw: number, how: "behind" | "above"): void {
     const { away, polar } = FOLLOW[how];
-    // The azimuth is 0 in the south, and the camera is behind whoever looks along `yaw`.
+    // Azimuth 0 is in the south; the camera is behind the robot, which looks along `yaw`.
     const wanted = how === "behind" ? yaw - Math.PI / 2 : 0;
     const { azimuthAngle } = this.controls;
     const turn = Math.atan2(Math.sin(wanted - azimuthAngle), Math.cos(wanted - azimuthAngle));
@@ -169,7 +168,7 @@ export class SiteCamera {
     this.stage.need();
   }
 
-  /** Nearer or farther, in steps. */
+  /** Zoom in by steps; out if they are negative. */
   zoom(steps: number): void {
     void this.controls.dollyTo(this.controls.distance * 0.75 ** steps, true);
     this.stage.need();
@@ -180,7 +179,7 @@ export class SiteCamera {
     this.stage.need();
   }
 
-  /** An arrow key goes down or up. */
+  /** Handle an arrow key that is pressed or released. */
   key(key: string, down: boolean, fast: boolean): void {
     if (down) following.value = "off";
     this.fast = fast;
@@ -194,7 +193,7 @@ export class SiteCamera {
     this.push = { x: 0, y: 0 };
   }
 
-  /** The pointer is at an edge of the picture: -1, 0 or 1 along each axis. */
+  /** Move while the pointer is at an edge of the view: -1, 0 or 1 for each axis. */
   edge(x: number, y: number): void {
     this.push = { x, y };
     if (x !== 0 || y !== 0) this.stage.need();

@@ -1,4 +1,4 @@
-/** The gauges and valves themselves, all of a kind drawn at once. */
+/** Models of gauges and valves, drawn as one instanced mesh for each kind. */
 
 import { Color, Group, InstancedMesh, Matrix4, MeshLambertMaterial, DoubleSide } from "three";
 
@@ -8,14 +8,13 @@ import { merged, wholeModel } from "./geometry";
 import { type GlbNode, type GlbPart, readGlb } from "./glb";
 import type { Stage } from "./stage";
 
-/** They are small; so that they are seen they are drawn this much larger. */
+/** Scale factor of the models, which would be too small to see. */
 const LARGER = 1.6;
 const FACE = [0.85, 0.86, 0.84] as const;
-/** Of the colour of a tint: what it is of is still to be seen. */
+/** Strength of a tint; the model's own colour remains visible. */
 const TINT = 0.45;
 
-/** The plate of a gauge that is the foremost is its face, which is told without what is painted on
- * it, and dark. */
+/** Colour the face of a gauge, which is its foremost part. The model has no textures, so it would be dark. */
 function withFace(nodes: readonly GlbNode[]): GlbNode[] {
   const front = (part: GlbPart) => part.positions.reduce((most, x, i) => (i % 3 === 0 ? Math.max(most, x) : most), -Infinity);
   const [body, ...others] = nodes;
@@ -35,7 +34,7 @@ export class Gauges {
     stage.scene.add(this.group);
   }
 
-  /** Reads the kinds that there are. Throws `Unreached`. */
+  /** Load the kinds that the site has. Throws `Unreached`. */
   async load(site: World, cancelled: () => boolean): Promise<void> {
     const kinds = [...new Set(site.checkpoints.map((one) => one.kind))];
     const found = await Promise.all(
@@ -56,7 +55,7 @@ export class Gauges {
     this.tints = new Map();
   }
 
-  /** Draws those on floors that are shown. */
+  /** Draw the models on shown floors. */
   show(isShown: (floor: number) => boolean): void {
     const place = new Matrix4();
     for (const { mesh, all } of this.kinds) {
@@ -70,7 +69,7 @@ export class Gauges {
     this.stage.need();
   }
 
-  /** Tints some by their number; only what is different from before is touched. */
+  /** Tint some models by their id; unchanged ones are not touched. */
   tint(tints: ReadonlyMap<number, string>): void {
     for (const { mesh, all } of this.kinds)
       all.forEach((one, i) => {

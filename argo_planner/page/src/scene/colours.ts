@@ -22,7 +22,7 @@ export const colours: Signal<Colours> = signal(read("light"));
 
 effect(() => {
   const now = theme.value;
-  // The page's own style follows in the same moment.
+  // The page's style changes in the same task.
   queueMicrotask(() => (colours.value = read(now)));
 });
 

@@ -1,4 +1,4 @@
-/** Where the north is, and how long a metre is in the picture. */
+/** The compass and the scale bar. */
 
 import { Vector3 } from "three";
 
@@ -89,7 +89,7 @@ export class SceneCompass extends PageElement {
       </div>`;
   }
 
-  /** The longest of the round lengths that fits, where the camera looks at. */
+  /** Return the longest round length that fits, at the camera's target. */
   private scale(view: SceneView): { readonly length: number; readonly width: number } {
     const { camera } = view.stage;
     const away = camera.position.distanceTo(view.camera.controls.getTarget(new Vector3()));

@@ -1,4 +1,4 @@
-/** Points of the same size from afar and near: one for each thing that can be clicked. */
+/** Points of constant size in pixels, one for each clickable object. */
 
 import {
   BufferAttribute,
@@ -18,7 +18,7 @@ export interface Dot {
   readonly at: Vector3;
   readonly colour: string;
   readonly rim: string;
-  /** px across */
+  /** px, the diameter */
   readonly size: number;
 }
 
@@ -32,7 +32,7 @@ const VERTEX = `
   varying float across;
   void main() {
     vec4 seen = modelViewMatrix * vec4(position, 1.0);
-    seen.xyz *= 1.0 - 0.22 / max(0.5, length(seen.xyz)); // in front of what it stands on
+    seen.xyz *= 1.0 - 0.22 / max(0.5, length(seen.xyz)); // in front of the object that it marks
     gl_Position = projectionMatrix * seen;
     gl_PointSize = size * ratio;
     across = size;
@@ -55,7 +55,7 @@ const FRAGMENT = `
 export class Dots {
   private readonly geometry = new BufferGeometry();
   private readonly seen = material(1, LessEqualDepth);
-  /** What is behind something is seen through it, faintly. */
+  /** Points behind other objects are drawn faintly. */
   private readonly behind = material(0.28, GreaterDepth);
   private readonly both = [new Points(this.geometry, this.seen), new Points(this.geometry, this.behind)];
   private dots: readonly Dot[] = [];
@@ -72,11 +72,11 @@ export class Dots {
     }
   }
 
-  /** Shows these; what has stayed where it was is only given its colour. */
+  /** Draw these points; those that have not moved only get their colours. */
   show(dots: readonly Dot[]): void {
     const same = dots.length === this.dots.length && dots.every((dot, i) => dot.key === this.dots[i]?.key && dot.at.equals(this.dots[i].at));
     if (!same) {
-      this.geometry.dispose(); // else the buffers of before stay on the graphics card
+      this.geometry.dispose(); // otherwise the old buffers stay on the graphics card
       this.geometry.setAttribute("position", new BufferAttribute(new Float32Array(dots.flatMap(({ at }) => at.toArray())), 3));
       this.geometry.setAttribute("color", new BufferAttribute(new Float32Array(3 * dots.length), 3));
       this.geometry.setAttribute("rim", new BufferAttribute(new Float32Array(3 * dots.length), 3));

@@ -1,4 +1,4 @@
-/** The floors as a stack of small plans: a click shows the site up to one of them. */
+/** The floors as a stack of small plans; a click shows the site up to that floor. */
 
 import { svg } from "lit";
 
@@ -113,7 +113,7 @@ export class SceneFloors extends PageElement {
     </button>`;
   }
 
-  /** The plates of a floor, the checkpoints of the mission there, and the robot. */
+  /** Render the plates of a floor, the mission's checkpoints there, and the robot. */
   private plan(floor: WorldFloor) {
     const site = world.value;
     if (site === null) return nothing;

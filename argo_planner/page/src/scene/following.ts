@@ -1,10 +1,10 @@
-/** How the camera may follow the robot, to be chosen from. */
+/** The choice of how the camera follows the robot. */
 
 import { following } from "../state/view";
 import { t } from "../texts";
 import { valueOf } from "../ui/controls";
 
-/** The ways with their names, which are put behind a word. */
+/** Return the choices with their names, each behind a prefix. */
 export function waysToFollow(word = ""): (readonly [typeof following.value, string])[] {
   const { followOff, followBehind, followAbove } = t().scene;
   return [

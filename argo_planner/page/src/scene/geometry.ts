@@ -1,16 +1,16 @@
-/** Triangles of several parts as one geometry, so that they are drawn at once. */
+/** Merging of triangles of several parts into one geometry, so that they are drawn at once. */
 
 import { BufferAttribute, BufferGeometry, Matrix4, Quaternion, Vector3 } from "three";
 
 import type { GlbNode, GlbPart } from "./glb";
 
-/** A part, and where it stands. */
+/** A part and its transform. */
 export interface PlacedPart {
   readonly part: GlbPart;
   readonly place?: Matrix4;
 }
 
-/** All parts together, each corner with the colour of its part. */
+/** Merge parts into one geometry; each vertex has the colour of its part. */
 export function merged(parts: readonly PlacedPart[]): BufferGeometry {
   const corners = parts.reduce((sum, { part }) => sum + part.positions.length, 0);
   const triangles = parts.reduce((sum, { part }) => sum + part.index.length, 0);
@@ -38,7 +38,7 @@ export function merged(parts: readonly PlacedPart[]): BufferGeometry {
   return geometry;
 }
 
-/** All parts of a model, its joints as they are told. */
+/** Return all parts of a model, with its joints as given. */
 export function wholeModel(nodes: readonly GlbNode[]): PlacedPart[] {
   const places: Matrix4[] = [];
   const parts: PlacedPart[] = [];

@@ -1,15 +1,15 @@
-/** GLB files as the service writes them: nodes with plain triangles, no textures. */
+/** Parser of the service's GLB files: nodes with plain triangles, no textures. */
 
 export interface GlbPart {
   readonly positions: Float32Array;
   readonly index: Uint16Array | Uint32Array;
-  /** linear, 0 to 1 */
+  /** linear RGB, 0 to 1 */
   readonly colour: readonly [number, number, number];
 }
 
 export interface GlbNode {
   readonly name: string;
-  /** Number of the node that carries it; null: it lies in the site's frame. */
+  /** Index of the parent node; null: the node is in the site's frame. */
   readonly parent: number | null;
   readonly position: readonly [number, number, number];
   /** quaternion x, y, z, w */
@@ -47,7 +47,7 @@ interface Primitive {
 const MAGIC = 0x46546c67;
 const SHORT = 5123;
 
-/** The nodes below the one that turns z up into y up, those that carry others first. */
+/** Return the nodes below the one that turns z up into y up, parents before children. */
 export function readGlb(content: ArrayBuffer): GlbNode[] {
   const view = new DataView(content);
   if (view.getUint32(0, true) !== MAGIC) throw new Error("this is no GLB file");

@@ -1,5 +1,4 @@
-/** What lies and stands on the ground for the mission: arrows where the robot will stand, docks,
- * places, and obstacles. */
+/** Marks on the ground: arrows at the poses of tasks and locations, docks, obstacles. */
 
 import {
   BoxGeometry,
@@ -35,7 +34,7 @@ export class GroundMarks {
     stage.scene.add(this.group);
   }
 
-  /** An arrow for each task at a pose, and one for each place. */
+  /** Show an arrow for each task with a pose, and for each location. */
   showArrows(marks: readonly Mark[], isShown: (floor: number) => boolean, colours: Colours): void {
     const all = marks
       .filter(({ subject, floor }) => (subject.kind === "task" || subject.kind === "place") && isShown(floor))
@@ -83,7 +82,7 @@ export class GroundMarks {
   }
 }
 
-/** A box that stands somewhere. */
+/** Create a box at a pose. */
 export function box(pose: Obstacle["pose"], size: readonly number[], colour: string, opacity: number): Mesh {
   const [length = 1, width = 1, height = 1] = size;
   const material = new MeshLambertMaterial({ color: colour, transparent: true, opacity });

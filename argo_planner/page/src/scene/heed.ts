@@ -1,4 +1,4 @@
-/** Has whatever is drawn or computed follow signals whose values it does not need. */
+/** Make an effect or a computed value depend on signals whose values it does not use. */
 export function heed(...signals: readonly { readonly value: unknown }[]): readonly unknown[] {
   return signals.map((one) => one.value);
 }

@@ -19,7 +19,7 @@ const ARROWS: Readonly<Record<string, readonly [number, number]>> = {
   ArrowRight: [1, 0],
 };
 
-/** Does what a key means in the scene. Whether it means something. */
+/** Handle a key of the scene. Returns whether it was handled. */
 export function onSceneKey(event: KeyboardEvent, { view, place }: Keyed): boolean {
   if (event.ctrlKey || event.metaKey || event.altKey) return false;
   const arrow = ARROWS[event.key];
@@ -52,19 +52,19 @@ function turn(view: SceneView, steps: number): void {
   turnGhost(steps);
 }
 
-/** The ghost begins in the middle of the picture. */
+/** Place the ghost in the middle of the view. */
 function begin(view: SceneView): void {
   const middle = ghost.value === null ? middleOf(view) : undefined;
   if (middle) beginAt(middle.x, middle.y, middle.z);
 }
 
-/** Where the middle of the picture meets the ground (m), else the first dock. */
+/** Return the point of the ground in the middle of the view (m), or else the first dock. */
 function middleOf(view: SceneView): { readonly x: number; readonly y: number; readonly z: number } | undefined {
   const { width, height } = view.stage.size;
   return view.site.hitWays(view.rayAt(width / 2, height / 2))?.point ?? world.value?.docks[0]?.pose;
 }
 
-/** Along the axis of the site that is the nearest to where the arrow shows in the picture. */
+/** Move along the axis of the site that is nearest to the arrow's direction in the view. */
 function step(
   view: SceneView,
   [right, up]: readonly [number, number],
@@ -77,7 +77,7 @@ function step(
   move((up * forwardX + right * forwardY) * cells, (up * forwardY - right * forwardX) * cells);
 }
 
-/** Shows the floor above or below; the ghost goes along. */
+/** Show the floor above or below; the ghost moves with it. */
 function changeFloor(view: SceneView, by: number): void {
   const floors = world.value?.floors ?? [];
   const at = shownFloor.value === null ? floors.length : floors.findIndex((floor) => floor.number === shownFloor.value);

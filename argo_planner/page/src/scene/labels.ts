@@ -1,4 +1,4 @@
-/** Names beside the marks, as text over the picture. The pointer goes through them. */
+/** Text labels beside the marks. They don't catch the pointer. */
 
 import type { Vector3 } from "three";
 
@@ -9,9 +9,9 @@ import type { Stage } from "./stage";
 const FONT = "12px system-ui, 'Segoe UI', Roboto, 'Noto Sans', sans-serif";
 const HEIGHT = 20;
 const [PADDING, BADGE] = [12, 12];
-/** px: longer names are cut. */
+/** px: longer names are truncated */
 const WIDEST = 190;
-/** More of them would hide the site. */
+/** More labels would hide the site. */
 const MOST = 60;
 
 interface Shown {
@@ -31,7 +31,7 @@ export class Labels {
     private readonly stage: Stage,
   ) {}
 
-  /** Places labels; those of what is `behind` something come last, and are faint. */
+  /** Place labels; those of marks `behind` other objects come last, and are faint. */
   update(marks: readonly Mark[], behind: ReadonlySet<string>): void {
     const { width, height } = this.stage.size;
     const wishes: LabelWish[] = [];
@@ -53,7 +53,7 @@ export class Labels {
       }
   }
 
-  /** The key of the label at a point (px). */
+  /** Return the key of the label at a point (px). */
   at(x: number, y: number): string | null {
     const found = this.placed.find(
       (one) => x >= one.left && x < one.left + one.width && y >= one.top && y < one.top + one.height,

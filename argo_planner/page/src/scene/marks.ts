@@ -1,4 +1,4 @@
-/** What of the site and of the mission has a mark in the scene that can be clicked. */
+/** Clickable marks of the site and the mission in the scene. */
 
 import { computed, signal } from "@preact/signals-core";
 import { Vector3 } from "three";
@@ -25,22 +25,22 @@ export interface Mark {
   readonly at: Vector3;
   readonly floor: number;
   readonly text: string;
-  /** Numbers in the mission, as the list has them. */
+  /** Numbers of the tasks, as in the list. */
   readonly numbers: string;
-  /** What was read there. */
+  /** The last reading there. */
   readonly value: string;
   readonly tone: "plain" | "planned" | "chosen" | "good" | "bad" | "active" | "dim";
   readonly weight: number;
-  /** Keys of the tasks that it stands for. */
+  /** Keys of the tasks that the mark stands for. */
   readonly tasks: readonly string[];
 }
 
-/** The mark whose card is open, by its key. */
+/** Key of the mark whose card is open. */
 export const opened = signal<string | null>(null);
 
 const RAISED = 0.12;
 
-/** Numbers of the tasks that measure a checkpoint, and the tasks, by its id. */
+/** The tasks that measure a checkpoint and their numbers, by its id. */
 export const measuring = computed(() => {
   const found = new Map<string, { readonly numbers: number[]; readonly tasks: Task[] }>();
   mission.value?.tasks.forEach((task, index) => {
@@ -53,13 +53,12 @@ export const measuring = computed(() => {
   return found;
 });
 
-/** What the run that is shown tells, if it is one of this mission. */
+/** The shown run, if it belongs to this mission. */
 const told = computed(() => {
   const now = shownRun.value;
   return now !== null && now.plan === planId.value ? now : null;
 });
-/** As text, which is the same until something else has been read: all marks are made anew then, and
- * not with each pose and state. */
+/** Readings as text, so that marks are made again when a reading changes, and not with each pose. */
 const toldReadings = computed(() => told.value?.readings);
 const readingsText = computed(() => JSON.stringify(toldReadings.value ?? []));
 const readings = computed(() => {
@@ -111,7 +110,7 @@ function checkpointMark(checkpoint: WorldCheckpoint): Mark {
   };
 }
 
-/** What a mark has that stands at a pose, raised by that many m, and of which nothing else is told. */
+/** Return the default fields of a mark at a pose, raised by `raised` m. */
 function standing(site: World, { x, y, z }: Pose, raised = RAISED) {
   const floor = floorOf(site.floors, z)?.number ?? 1;
   return { at: new Vector3(x, y, z + raised), floor, numbers: "", value: "", tasks: [] };
@@ -139,7 +138,7 @@ function taskMarks(site: World): Mark[] {
   return found;
 }
 
-/** Where a task takes place; START without a pose is in the dock of its area. */
+/** Return the pose of a task; START without a pose is at the dock of its area. */
 export function poseOf(task: Task, site: World): Pose | null {
   if (task.pose) return task.pose;
   if (task.action !== "START") return null;
@@ -175,7 +174,7 @@ function obstacleMark(site: World, obstacle: Obstacle): Mark {
   };
 }
 
-/** Selects the task to which a way leads. */
+/** Select the task that a path leads to. */
 export function chooseWay(way: number, add: boolean): void {
   const target = preview.value?.ways[way]?.target;
   if (target === undefined) return;

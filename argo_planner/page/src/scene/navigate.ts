@@ -1,4 +1,4 @@
-/** The navigation tool: a ghost of the robot that can be put where the robot can stand. */
+/** The navigation tool: a ghost of the robot that can be placed where the robot can stand. */
 
 import { computed, effect, signal } from "@preact/signals-core";
 import type { Ray, Vector3 } from "three";
@@ -23,19 +23,19 @@ export interface GhostPose {
   readonly verdict: Standing | null;
 }
 
-/** Cells that the ghost goes by in a step with Shift. */
+/** Cells per step with Shift. */
 export const FAST_CELLS = 5;
 const TURN = Math.PI / 4;
-/** m: heights that belong to the ground on which the ghost is. */
+/** m: height differences that belong to the same ground */
 const STEP_UP = 0.3;
-/** How many steps a ray may go through, and how thick they are (m). */
+/** Highest number of stair steps that a ray passes through, and their thickness (m). */
 const MOST_STEPS = 12;
 const THROUGH = 0.02;
 
 const placed = signal<Omit<GhostPose, "verdict" | "floor"> | null>(null);
 let yaw = 0;
 
-/** Where the ghost is and whether the robot can stand there; null: it is nowhere. */
+/** Pose of the ghost and whether the robot can stand there; null: there is no ghost. */
 export const ghost = computed<GhostPose | null>(() => {
   const at = placed.value;
   const site = world.value;
@@ -49,7 +49,7 @@ function posed(at: Omit<GhostPose, "verdict" | "floor">, verdict: Standing | nul
   return { ...at, z, floor: floorOf(world.peek()?.floors ?? [], z)?.number ?? 1, verdict };
 }
 
-/** The tool is taken: the maps are read. */
+/** Select the tool: load the maps. */
 export function takeGhost(): void {
   const site = world.value;
   if (site !== null) readMaps(site, shownFloor.peek() ?? site.floors.at(-1)?.number ?? 1);
@@ -59,8 +59,8 @@ export function hideGhost(): void {
   placed.value = null;
 }
 
-/** Puts the ghost where a ray meets the ground; through stairs on which the robot can't stand, if it
- * can behind them. */
+/** Move the ghost to where a ray hits the ground. The ray passes through stairs on which the robot can't
+ * stand if it can stand behind them. */
 export function hover(ray: Ray, site: Site): void {
   const first = site.hitWays(ray);
   let hit = first;
@@ -71,7 +71,7 @@ export function hover(ray: Ray, site: Site): void {
   placed.value = meant && { x: meant.point.x, y: meant.point.y, z: meant.point.z, yaw };
 }
 
-/** Whether it is above the deck of its floor, and the robot can't stand there. */
+/** Return whether a point is above its floor's deck and the robot can't stand there. */
 function isStep(point: Vector3): boolean {
   const floor = floorOf(world.peek()?.floors ?? [], point.z);
   return floor !== undefined && point.z > floor.z + STEP_UP && groundAt(point) !== "reached";
@@ -81,18 +81,18 @@ function groundAt({ x, y, z }: Vector3): string | undefined {
   return standing(x, y, z, yaw)?.ground;
 }
 
-/** Puts the ghost somewhere, if it is nowhere. */
+/** Place the ghost, if there is none. */
 export function beginAt(x: number, y: number, z: number): void {
   placed.value ??= { x: middle(x), y: middle(y), z, yaw };
 }
 
-/** Turns the ghost by steps of an eighth, counter-clockwise. */
+/** Turn the ghost counter-clockwise by steps of 45°. */
 export function turnGhost(steps: number): void {
   yaw = Math.atan2(Math.sin(yaw + steps * TURN), Math.cos(yaw + steps * TURN));
   if (placed.value !== null) placed.value = { ...placed.value, yaw };
 }
 
-/** Moves the ghost by cells, along the ground on which it is. */
+/** Move the ghost by cells, along its ground. */
 export function moveGhost(columns: number, rows: number): void {
   const at = placed.value;
   const cell = world.value?.cell ?? 0.1;
@@ -108,12 +108,12 @@ export function moveGhost(columns: number, rows: number): void {
   placed.value = { x: middle(x), y: middle(y), z, yaw: at.yaw };
 }
 
-/** Puts the ghost on another floor. */
+/** Move the ghost to another floor. */
 export function liftGhost(z: number): void {
   if (placed.value !== null) placed.value = { ...placed.value, z };
 }
 
-/** The middle of the cell, so that steps go from cell to cell. */
+/** Return the middle of the cell, so that steps go from cell to cell. */
 function middle(value: number): number {
   const cell = world.value?.cell ?? 0.1;
   return Math.round((Math.floor(value / cell + 1e-6) + 0.5) * cell * 1e6) / 1e6;
@@ -122,7 +122,7 @@ function middle(value: number): number {
 /** Whether the next click sets the start. */
 export const setsStart = computed(() => mission.value !== null && lacksStart(mission.value));
 
-/** Adds a task where the ghost is, if the robot can stand there. Whether it was added. */
+/** Add a task at the ghost, if the robot can stand there. Returns whether it was added. */
 export async function placeGhost(): Promise<boolean> {
   const at = await judged();
   if (at?.verdict?.ground !== "reached") return false;
@@ -131,8 +131,7 @@ export async function placeGhost(): Promise<boolean> {
   return addPlace(pose, lacksStart);
 }
 
-/** The ghost once it is known whether the robot can stand there: right after the tool was taken, the
- * maps may still be on their way. */
+/** Return the ghost with its verdict. Right after the tool was selected, the maps may still be loading. */
 function judged(): Promise<GhostPose | null> {
   const at = placed.peek();
   return new Promise((resolve) => {
@@ -147,7 +146,7 @@ function judged(): Promise<GhostPose | null> {
   });
 }
 
-/** What holds where the ghost is, in words. */
+/** Return the verdict on the ghost in words. */
 export function verdictWords(at: GhostPose | null): string {
   const texts = t().scene;
   if (at === null) return texts.offSite;
@@ -156,12 +155,12 @@ export function verdictWords(at: GhostPose | null): string {
   return at.verdict.ground !== "reached" && standsTurned(at) ? `${said} – ${texts.turnIt}` : said;
 }
 
-/** Whether the robot could stand there if it were turned. */
+/** Return whether the robot could stand there with another heading. */
 function standsTurned({ x, y, z }: GhostPose): boolean {
   return world.peek()?.headings.some((other) => standing(x, y, z, other)?.ground === "reached") ?? false;
 }
 
-/** Where the ghost is, in words. */
+/** Describe the pose of the ghost. */
 export function ghostWords(at: GhostPose): string {
   const texts = t().scene;
   const eighth = Math.round(at.yaw / TURN);

@@ -1,4 +1,4 @@
-/** What the obstacle that is being put up is called, and how high it is. */
+/** The form of a new obstacle: name and height. */
 
 import { tool } from "../state/view";
 import { t } from "../texts";

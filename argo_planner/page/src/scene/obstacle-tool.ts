@@ -16,11 +16,11 @@ interface Corner {
 /** m */
 const LEAST = 0.1;
 const MOST = 20;
-/** m that a key moves a corner by */
+/** m per key press */
 const STEP = 0.1;
 export const FIRST_HEIGHT = 0.5;
 
-/** The corners that were clicked, and the one at which the pointer is. */
+/** The clicked corners, and the one under the pointer. */
 export const corners = signal<{
   readonly first: Corner | null;
   readonly second: Corner | null;
@@ -28,7 +28,7 @@ export const corners = signal<{
 } | null>(null);
 export const height = signal(FIRST_HEIGHT);
 
-/** The box as it would be put up. */
+/** The box that would be added. */
 export const spanned = computed<Pick<Obstacle, "pose" | "size"> | null>(() => {
   const { first = null, second = null, pointed = null } = corners.value ?? {};
   const other = second ?? pointed;
@@ -51,13 +51,13 @@ export function clickCorner(hit: Hit | null): void {
   if (hit !== null) takeCorner(cornerOf(hit));
 }
 
-/** Takes the corner at which the keys are. */
+/** Set the corner that the keys have moved. */
 export function takePointed(): void {
   const at = corners.value?.pointed;
   if (at) takeCorner(at);
 }
 
-/** Points at a corner, if nothing points at one yet. */
+/** Place the moved corner, if there is none. */
 export function beginCorner(at: Corner): void {
   const now = corners.value;
   if (now?.second || now?.pointed) return;
@@ -65,7 +65,7 @@ export function beginCorner(at: Corner): void {
   corners.value = { first: now?.first ?? null, second: null, pointed };
 }
 
-/** Moves the corner at which the keys are by steps along x and y. */
+/** Move the corner by steps along x and y. */
 export function moveCorner(columns: number, rows: number): void {
   const now = corners.value;
   if (!now?.pointed || now.second) return;
@@ -73,7 +73,7 @@ export function moveCorner(columns: number, rows: number): void {
   corners.value = { ...now, pointed: { x: rounded(x + STEP * columns), y: rounded(y + STEP * rows), z } };
 }
 
-/** Points at a corner on another floor (m). */
+/** Move the corner to another floor (m). */
 export function liftCorner(z: number): void {
   const now = corners.value;
   if (now?.pointed && now.first === null) corners.value = { ...now, pointed: { ...now.pointed, z } };
@@ -91,7 +91,7 @@ export function hideCorners(): void {
   corners.value = null;
 }
 
-/** Puts the box up. Whether it stands there. */
+/** Add the box as an obstacle. Returns whether it was added. */
 export async function putUp(name: string): Promise<boolean> {
   const box = spanned.value;
   if (box === null) return false;

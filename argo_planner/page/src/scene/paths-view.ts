@@ -1,5 +1,4 @@
-/** The ways of the mission, as they will be driven, coloured by time; the leg at which somebody
- * points, or whose task is selected, stands out. */
+/** The paths of the mission, coloured by time. The leg under the pointer or of the selected task is highlighted. */
 
 import { computed, effect } from "@preact/signals-core";
 import {
@@ -31,7 +30,7 @@ import type { SceneView } from "./view";
 
 /** m */
 const [WIDTH, THIN, WIDE, ABOVE, ARROW, ARROWS] = [0.13, 0.06, 0.26, 0.07, 0.2, 1.6];
-/** px around a way in which the pointer means it */
+/** px within which the pointer hits a path */
 const NEAR_PX = 7;
 
 type Paint = (t: number) => Color;
@@ -42,9 +41,9 @@ export class PathsView {
   private readonly compared = new Group();
   private readonly stops: (() => void)[];
 
-  /** The ways with their ribbons, and when the mission is over. */
+  /** The paths with their ribbons, and the end time of the mission. */
   private readonly paths = computed(() => pathsOf(preview.value));
-  /** Ways that stand out. */
+  /** The highlighted paths. */
   private readonly meant = computed(() => {
     const found = new Set<number>();
     if (hoveredLeg.value !== null) found.add(hoveredLeg.value);
@@ -90,7 +89,7 @@ export class PathsView {
     ];
   }
 
-  /** The way that is seen at a point of the picture (px), by its number. */
+  /** Return the index of the path at a point of the view (px). */
   wayAt(x: number, y: number): number | null {
     if (!pathsShown.peek()) return null;
     const highest = shownFloor.peek();

@@ -1,18 +1,18 @@
-/** What the pointer does over the picture: it points, clicks, or drags, which is the camera's. */
+/** Pointer input of the scene: pointing, clicks, and drags, which move the camera. */
 
 import { moved, pressed, type Press } from "../model/gesture";
 
 export interface PointerTold {
   pointed(x: number, y: number): void;
   left(): void;
-  /** `add`: with Ctrl or the command key. */
+  /** `add`: with Ctrl or the command key */
   clicked(x: number, y: number, add: boolean): void;
   clickedRight(x: number, y: number): void;
-  /** The wheel was turned; whether that was for a tool, and not for the camera. */
+  /** Handles the wheel; returns whether a tool used it, so that the camera doesn't. */
   wheeled(steps: number): boolean;
 }
 
-/** px that a touchpad tells for a notch of a wheel */
+/** px that a touchpad reports for one notch of a wheel */
 const NOTCH_PX = 50;
 
 export class PointerWatch {
@@ -29,7 +29,7 @@ export class PointerWatch {
     element.addEventListener("pointerleave", () => this.press === null && told.left(), { signal });
     element.addEventListener("contextmenu", (event) => event.preventDefault(), { signal });
     element.addEventListener("wheel", this.wheel, { signal, passive: false });
-    // Before the camera hears of it: what is still a click does not turn it.
+    // The camera gets the event later: a click must not turn it.
     window.addEventListener("pointermove", this.move, { signal, capture: true });
     window.addEventListener("pointerup", this.up, { signal, capture: true });
     window.addEventListener("pointercancel", () => (this.press = null), { signal, capture: true });
@@ -45,7 +45,7 @@ export class PointerWatch {
   }
 
   private readonly down = (event: PointerEvent): void => {
-    // A second finger makes it a gesture of the camera.
+    // A second finger makes it a camera gesture.
     const drag = this.press !== null;
     this.press = { ...pressed(event.pointerId, event.button, event.clientX, event.clientY), drag };
   };
@@ -70,7 +70,7 @@ export class PointerWatch {
     else if (press.button === 2) this.told.clickedRight(...place);
   };
 
-  /** Wheels turn in notches; touchpads tell small parts of them. */
+  /** Convert wheel events to notches; touchpads report small parts of them. */
   private readonly wheel = (event: WheelEvent): void => {
     const { deltaY, deltaMode } = event;
     const notch = deltaMode !== WheelEvent.DOM_DELTA_PIXEL || Math.abs(deltaY) >= NOTCH_PX;

@@ -1,4 +1,4 @@
-/** The robot of the run that is shown, or at the start of the mission, and the ghost of the tool. */
+/** The robot of the shown run, or at the mission's start, and the ghost of the navigation tool. */
 
 import { computed, effect, signal } from "@preact/signals-core";
 import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, Vector3 } from "three";
@@ -21,18 +21,18 @@ import type { SceneView } from "./view";
 
 type Vector5 = readonly [number, number, number, number, number];
 const RETRY_MS = 1_500;
-/** s in which the drawn robot is most of the way where the told one is */
+/** s, time constant with which the drawn robot approaches the reported pose */
 const SMOOTH = 0.09;
-/** m that the robot does not drive at once: it is put there */
+/** m: over longer distances the robot is moved at once */
 const JUMP = 1.5;
 const STILL = 0.002;
-/** Nobody has the robot any more. */
+/** Modes in which the run is over. */
 const OVER: ReadonlySet<ShownMode> = new Set(["good", "notice", "bad"]);
 const TRAIL_Z = 0.06;
-/** m, of its top above the ground */
+/** m, height of its top above the ground */
 const TOP = 1.1;
 
-// They stay the same with most poses.
+// These values rarely change with a new pose.
 const trailPlan = computed(() => shownRun.value?.plan);
 const trailLength = computed(() => shownRun.value?.entries ?? 0);
 
@@ -42,12 +42,12 @@ export class RobotView {
   private target: Vector5 | null = null;
   private now: Vector5 | null = null;
   private mode: ShownMode | null = null;
-  /** What it was drawn by last. */
+  /** The values of the last update. */
   private aimed: readonly unknown[] = [];
   private drawnTrail: readonly unknown[] = [];
   private readonly trail = new Line(new BufferGeometry(), new LineBasicMaterial());
   private readonly stops: (() => void)[] = [];
-  /** Where the robot is drawn, and how its run stands; null: there is none. */
+  /** Position of the drawn robot and mode of its run; null: there is none. */
   readonly told = signal<{ readonly at: Vector3; readonly floor: number; readonly mode: ShownMode } | null>(null);
   private over = false;
   private loaded = "";
@@ -102,18 +102,18 @@ export class RobotView {
     this.showGhost();
   }
 
-  /** Where the robot is to be drawn, and whose it is. */
+  /** Set the pose at which the robot is to be drawn, and its mode. */
   private aim(): void {
     const now = shownRun.value;
     const state = shownRunState.value;
     const site = world.value;
     if (site === null) return;
-    // A run of another mission that is over says nothing of this one.
+    // A finished run of another mission is not shown here.
     const tells = now !== null && state !== null && (now.plan === planId.value || (run.value === state && state.status !== "ended"));
     this.target = tells ? now.pose : startOf(site);
     this.mode = tells ? shownMode(state) : null;
     this.body?.mark(this.mode && ringColour(this.mode, colours.value));
-    // Poses come several times a second, also of a robot that stands: it is not drawn anew.
+    // Poses arrive several times a second, also if the robot stands: then it is not drawn again.
     const pose = this.target ?? [];
     const aimed = [this.body, this.mode, now === null, ...heed(colours, shownFloor, following), ...pose];
     if (same(aimed, this.aimed)) return;
@@ -153,7 +153,7 @@ export class RobotView {
     this.view.stage.need();
   }
 
-  /** The way that was driven so far, on the floors that are shown. */
+  /** Draw the path that was driven so far, on the shown floors. */
   private showTrail(): void {
     const highest = shownFloor.value;
     const site = world.value;
@@ -165,7 +165,7 @@ export class RobotView {
       const stays = point.every((value, i) => value === points.at(i - 3));
       if (!stays && (highest === null || floor <= highest)) points.push(...point);
     }
-    // A robot that stands tells how it is as well.
+    // A standing robot sends entries as well.
     const drawn = [colours.value, ...points];
     if (same(drawn, this.drawnTrail)) return;
     this.drawnTrail = drawn;
@@ -182,14 +182,14 @@ function same(one: readonly unknown[], other: readonly unknown[]): boolean {
   return one.length === other.length && one.every((value, i) => value === other[i]);
 }
 
-/** Where the robot is before it has been started. */
+/** Return the pose of the robot before it is started. */
 function startOf(site: World): Vector5 | null {
   const start = mission.value?.tasks.find((task) => task.action === "START");
   const pose = start ? poseOf(start, site) : site.docks[0]?.pose;
   return pose ? [pose.x, pose.y, pose.z, pose.yaw, 0] : null;
 }
 
-/** As the run's band has them: who has the robot is seen at a glance. */
+/** Return the ring's colour, which is that of the run's band. */
 function ringColour(mode: ShownMode, now: Colours): string {
   switch (mode) {
     case "autonomous":

@@ -1,4 +1,4 @@
-/** The robot as it is drawn: the one that drives, and the ghost of the navigation tool. */
+/** Models of the robot: the driving one and the ghost. */
 
 import {
   Color,
@@ -18,10 +18,10 @@ import { merged, wholeModel } from "./geometry";
 import type { GlbNode } from "./glb";
 import { dispose } from "./stage";
 
-/** m above the ground, so that what lies on it is seen. */
+/** m above the ground, so that flat marks stay visible */
 const ABOVE = 0.03;
 
-/** The robot with a ring around it that says who has it. */
+/** The robot with a ring whose colour shows who controls it. */
 export class RobotBody {
   readonly group = new Group();
   private readonly body = new Group();
@@ -49,7 +49,7 @@ export class RobotBody {
     this.body.rotation.set(0, pitch, yaw);
   }
 
-  /** The colour of the ring; null: there is none. */
+  /** Set the colour of the ring; null: no ring. */
   mark(colour: string | null): void {
     this.ring.visible = colour !== null;
     if (colour !== null) this.ring.material.color.set(colour);
@@ -60,7 +60,7 @@ export class RobotBody {
   }
 }
 
-/** The robot as it would stand somewhere. */
+/** The translucent robot at a possible pose. */
 export class Ghost {
   readonly group = new Group();
   private readonly body: Mesh;
@@ -75,7 +75,7 @@ export class Ghost {
     transparent: true,
     opacity: 0.5,
     depthWrite: false,
-    depthTest: false, // it is seen where something stands before it
+    depthTest: false, // visible through objects before it
   });
 
   constructor(nodes: readonly GlbNode[], site: World) {
@@ -103,7 +103,7 @@ export class Ghost {
   }
 }
 
-/** An arrowhead that lies on the ground and points along x. */
+/** Create an arrowhead on the ground that points along x. */
 export function arrowShape(length: number, width: number): ShapeGeometry {
   const shape = new Shape();
   shape.moveTo(0, -width / 2);

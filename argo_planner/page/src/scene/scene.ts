@@ -1,4 +1,4 @@
-/** The site, drawn: the floors, the checkpoints, the mission on them, and the robot. */
+/** The scene: floors, checkpoints, the mission and the robot. */
 
 import { effect, signal } from "@preact/signals-core";
 
@@ -33,7 +33,7 @@ import { SceneView } from "./view";
 import { chooseWay, type Mark, opened } from "./marks";
 import { PathsView } from "./paths-view";
 
-/** px from an edge of the picture at which the pointer moves the camera */
+/** px from an edge of the view within which the pointer moves the camera */
 const EDGE_PX = 14;
 const SAID_AFTER_MS = 350;
 const MOST_TIMES = 500;
@@ -54,9 +54,9 @@ export class ScenePanel extends PageElement {
   private parts: { dispose(): void }[] = [];
   private stops: (() => void)[] = [];
   private saying: ReturnType<typeof setTimeout> | undefined;
-  /** Whether the ghost was moved by keys last. */
+  /** Whether the ghost was last moved by keys. */
   private keyed = false;
-  /** The way at which the pointer is; whoever else points at one is not disturbed. */
+  /** The path under the pointer; a leg pointed at elsewhere is left alone. */
   private pointed: number | null = null;
 
   constructor() {
@@ -93,7 +93,7 @@ export class ScenePanel extends PageElement {
     try {
       view = new SceneView(this.canvas, this.labels);
     } catch {
-      this.broken.value = true; // without WebGL
+      this.broken.value = true; // no WebGL
       return;
     }
     const sizes = new ResizeObserver(() => view.resize(this.picture.clientWidth, this.picture.clientHeight));
@@ -121,7 +121,7 @@ export class ScenePanel extends PageElement {
     this.view.value = view;
   }
 
-  /** What the tool in hand needs. */
+  /** Set up the selected tool. */
   private take(view: SceneView): void {
     const now = tool.value;
     view.camera.wheel = now !== "navigate";
@@ -131,7 +131,7 @@ export class ScenePanel extends PageElement {
     if (now !== "obstacle") hideCorners();
   }
 
-  /** Draws the box of the obstacle tool, before it stands there; returns what takes it away. */
+  /** Draw the box of the obstacle tool before it is added; return a function that removes it. */
   private drawSpanned(view: SceneView): () => void {
     const shown = spanned.value;
     const mesh = shown && box(shown.pose, shown.size, colours.value.warn, 0.55);
@@ -185,7 +185,7 @@ export class ScenePanel extends PageElement {
     this.pointed = meant;
   }
 
-  /** Notes how long a verdict takes, for those who measure it. */
+  /** Record how long a verdict takes, for measurements. */
   private timed(view: SceneView, work: () => void): void {
     const begun = performance.now();
     work();
@@ -206,7 +206,7 @@ export class ScenePanel extends PageElement {
     });
   }
 
-  /** The card closes with a click elsewhere, and with Escape. */
+  /** Close the card on a click elsewhere; `onEscape` closes it by key. */
   private readonly onElsewhere = (event: Event): void => {
     if (!event.composedPath().includes(this)) opened.value = null;
   };
@@ -235,7 +235,7 @@ export class ScenePanel extends PageElement {
     event.stopPropagation();
   };
 
-  /** Says what holds at the ghost, once it rests. */
+  /** Announce the verdict on the ghost once it rests. */
   private announce(): void {
     const at = ghost.value;
     clearTimeout(this.saying);

@@ -1,11 +1,11 @@
-/** What somebody likes to see of the site. Kept in the browser. */
+/** Display settings of the site. They are stored in the browser. */
 
 import { effect, signal } from "@preact/signals-core";
 
 import { keep, kept } from "../state/session";
 import { HIDEABLE, type Hideable } from "./site";
 
-/** Whether the camera moves where the pointer is at an edge. */
+/** Whether the camera moves while the pointer is at an edge. */
 export const edgesMove = signal(kept("edges") === "on");
 export const labelsShown = signal(kept("labels") !== "off");
 export const pathsShown = signal(kept("paths") !== "off");

@@ -1,4 +1,4 @@
-/** The solids of the site, floor by floor, and what a ray hits of those that are shown. */
+/** The solids of the site by floor, and ray casts against the shown ones. */
 
 import { DoubleSide, Group, Mesh, MeshLambertMaterial, Ray, Vector3 } from "three";
 import { MeshBVH } from "three-mesh-bvh";
@@ -9,12 +9,12 @@ import { merged } from "./geometry";
 import { type GlbNode, readGlb } from "./glb";
 import { dispose, type Stage } from "./stage";
 
-/** What can be hidden on all floors. */
+/** Kinds of solids that can be hidden on all floors. */
 export type Hideable = "pipe" | "vessel" | "structure";
 export const HIDEABLE: readonly Hideable[] = ["pipe", "vessel", "structure"];
 type Layer = Hideable | "base";
 
-/** What the robot can drive on. */
+/** Names of the solids that the robot can drive on. */
 const DRIVEN_ON = new Set(["ground", "deck", "stair"]);
 const AT_ONCE = 4;
 
@@ -23,7 +23,7 @@ interface Storey {
   readonly group: Group;
   readonly layers: ReadonlyMap<Layer, Mesh>;
   readonly ways: MeshBVH;
-  /** of the meshes of `layers`, made when they are needed first */
+  /** of the meshes of `layers`, built on first use */
   readonly solids: Map<Layer, MeshBVH>;
 }
 
@@ -48,7 +48,7 @@ export class Site {
     stage.scene.add(this.root);
   }
 
-  /** Reads the floors of a site, the lowest first. Throws `Unreached`. */
+  /** Load the floors of a site, the lowest first. Throws `Unreached`. */
   async load(site: World, cancelled: () => boolean): Promise<void> {
     const detail = site.floors.length > 8 ? "coarse" : "full";
     const waiting = site.floors.map((floor) => floor.number);
@@ -68,7 +68,7 @@ export class Site {
     this.show(this.highest, this.hidden);
   }
 
-  /** Shows the floors up to a number (null: all), without what is hidden. */
+  /** Show the floors up to a number (null: all), without the hidden kinds. */
   show(highest: number | null, hidden: ReadonlySet<Hideable>): void {
     this.highest = highest;
     this.hidden = hidden;
@@ -83,7 +83,7 @@ export class Site {
     return this.highest === null || floor <= this.highest;
   }
 
-  /** What a ray meets first, beyond a distance (m), of that on which the robot can drive. */
+  /** Return the first drivable surface that a ray hits beyond a distance (m). */
   hitWays(ray: Ray, beyond = 0): Hit | null {
     let nearest: Hit | null = null;
     for (const storey of this.storeys) {
@@ -95,8 +95,8 @@ export class Site {
     return nearest;
   }
 
-  /** Whether something that is shown lies between two points; what is very near to the second one
-   * may belong to it. */
+  /** Return whether a shown solid lies between two points. Solids within `near` m of the second point may
+   * belong to it, and don't count. */
   isBetween(from: Vector3, to: Vector3, near = 0.35, onlyWays = false): boolean {
     const far = from.distanceTo(to) - near;
     const ray = new Ray(from, to.clone().sub(from).normalize());
@@ -119,7 +119,7 @@ export class Site {
     if (mesh?.visible !== true) return false;
     let bvh = storey.solids.get(layer);
     if (bvh === undefined) {
-      // It sorts the triangles; the drawn ones stay as they are.
+      // An indirect BVH doesn't reorder the triangles of the drawn mesh.
       bvh = new MeshBVH(mesh.geometry, { indirect: true });
       storey.solids.set(layer, bvh);
     }

@@ -1,5 +1,4 @@
-/** The picture: it is drawn only when something has changed, and coarser while it moves where the
- * machine is slow. */
+/** The renderer. It draws only after changes, and on slow machines with fewer pixels during motion. */
 
 import {
   BasicShadowMap,
@@ -25,22 +24,22 @@ const COARSEST = 0.45;
 /** ms without a frame after which nothing moves */
 const REST_MS = 160;
 const FINE_SLOW = 1.5;
-/** Frames after which the fineness is looked at again. */
+/** Number of frames after which the resolution is adapted. */
 const WINDOW = 5;
-/** m below a surface at which shadows fall on it: they are drawn in steps */
+/** m below a surface at which shadows fall on it, as the shadow map is coarse */
 const BIAS = 0.07;
 const SHADOW_PX = 2048;
-/** Without a graphics card. */
+/** For rendering without a graphics card. */
 const SHADOW_PX_SLOW = 1024;
 
-/** What moves by itself: told the time since the last frame (s), says whether it goes on. */
+/** An animation: it gets the time since the last frame (s), and returns whether it goes on. */
 export type Moving = (dt: number) => boolean;
 
 export class Stage {
   readonly scene = new Scene();
   readonly camera = new PerspectiveCamera(38, 1, 0.1, 400);
   readonly moving = new Set<Moving>();
-  /** Called behind each frame. */
+  /** Called after each frame. */
   readonly drawn = new Set<() => void>();
   readonly slow: boolean;
   private readonly renderer: WebGLRenderer;
@@ -51,7 +50,7 @@ export class Stage {
   private refining = false;
   private drawnAt = -Infinity;
   private last = 0;
-  /** Pixels of the picture in one of the page: while it moves, at most then, and at rest. */
+  /** Rendered pixels per CSS pixel: during motion, its upper limit then, and at rest. */
   private ratio = 2;
   private most = 1;
   private finest = 1;
@@ -76,12 +75,12 @@ export class Stage {
     canvas.addEventListener("webglcontextrestored", this.restored);
   }
 
-  /** Draws anew, with the next frame of the browser. */
+  /** Request a new frame. */
   readonly need = (): void => {
     if (this.asked === 0 && !this.over) this.asked = requestAnimationFrame(this.frame);
   };
 
-  /** What stands on the site has changed, and so have the shadows. */
+  /** Render shadows again after solids have changed. */
   needShadows(): void {
     this.renderer.shadowMap.needsUpdate = true;
     this.need();
@@ -100,7 +99,7 @@ export class Stage {
   resize(width: number, height: number): void {
     this.width = Math.max(1, width);
     this.height = Math.max(1, height);
-    // Without a graphics card, edges are smoothed where nothing moves, by a finer picture.
+    // Without a graphics card, a still picture gets a higher resolution in place of antialiasing.
     this.finest = this.slow ? FINE_SLOW * Math.min(1, devicePixelRatio) : Math.min(devicePixelRatio, 2);
     this.most = this.slow ? Math.min(1, this.finest) : this.finest;
     this.ratio = Math.min(this.ratio, this.most);
@@ -114,7 +113,7 @@ export class Stage {
     return { width: this.width, height: this.height };
   }
 
-  /** Light for a theme, which falls on all between two corners (m). */
+  /** Set the light of a theme. */
   light(colours: Colours): void {
     this.scene.background = new Color(colours.sky);
     this.sky.color.set(colours.skyLight);
@@ -140,7 +139,7 @@ export class Stage {
     this.needShadows();
   }
 
-  /** Where a point (m) is in the picture (px), and how far away; behind the camera it is nowhere. */
+  /** Return the position of a point (m) in the view (px) and its depth; null: it is behind the camera. */
   project(point: Vector3): { readonly x: number; readonly y: number; readonly depth: number } | null {
     SEEN.copy(point).applyMatrix4(this.camera.matrixWorldInverse);
     const depth = -SEEN.z;
@@ -168,7 +167,7 @@ export class Stage {
     let on = false;
     for (const move of [...this.moving]) on = move(dt) || on;
     if (running && on) this.adapt(ms);
-    // Frames that follow each other soon are coarse as well: the pointer moves the ghost.
+    // Frames in quick succession, as when the pointer moves the ghost, have a low resolution as well.
     const coarse = !this.refining && (on || time - this.drawnAt < REST_MS);
     this.fit(coarse ? this.ratio : this.finest);
     clearTimeout(this.resting);
@@ -188,7 +187,7 @@ export class Stage {
     for (const told of this.drawn) told();
   };
 
-  /** Coarser where frames take long, finer where they do not. */
+  /** Lower the resolution if frames take long, raise it if they don't. */
   private adapt(ms: number): void {
     this.times.push(ms);
     if (this.times.length < WINDOW) return;
@@ -210,7 +209,7 @@ export class Stage {
 
 const SEEN = new Vector3();
 
-/** Gives back what a part of the scene has in the memory of the graphics card. */
+/** Free the graphics memory of an object. */
 export function dispose(object: Object3D): void {
   object.traverse((one) => {
     if (!(one instanceof Mesh || one instanceof Points)) return;
@@ -221,7 +220,7 @@ export function dispose(object: Object3D): void {
   object.removeFromParent();
 }
 
-/** Whether the browser draws without a graphics card. */
+/** Return whether the browser renders without a graphics card. */
 function isSoftware(): boolean {
   const gl = document.createElement("canvas").getContext("webgl2");
   if (gl === null) return true;

@@ -1,4 +1,4 @@
-/** The maps of where the robot can stand, read once for each state of the site. */
+/** The maps of where the robot can stand, loaded once for each state of the site. */
 
 import { signal } from "@preact/signals-core";
 
@@ -13,11 +13,10 @@ const maps = new Map<string, StandingMap>();
 let digest = "";
 let reading = "";
 
-/** How many maps there are, which tells when there are more. */
+/** Number of loaded maps, a signal for their users. */
 export const mapsRead = signal(0);
 
-/** Reads the maps of all floors, beginning with one of them, so that no request is needed while
- * the pointer moves. */
+/** Load the maps of all floors, beginning with `first`, so that no request is needed while the pointer moves. */
 export function readMaps(site: World, first: number): void {
   if (reading === site.digest) return;
   reading = digest = site.digest;
@@ -45,7 +44,7 @@ async function read(of: string, waiting: string[]): Promise<void> {
   }
 }
 
-/** Whether the robot can stand at a place (m, rad); null: that is not known yet. */
+/** Return whether the robot can stand at a pose (m, rad); null: unknown yet. */
 export function standing(x: number, y: number, z: number, yaw: number): Standing | null {
   const site = world.peek();
   if (site === null || site.digest !== digest) return null;

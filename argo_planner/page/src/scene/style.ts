@@ -1,8 +1,8 @@
-/** How what lies over the picture looks. */
+/** Styles of elements over the scene. */
 
 import { css } from "../ui/element";
 
-/** What floats over the picture, in elements of its own. */
+/** Styles of elements that float over the scene. */
 export const floating = css`
   :host {
     position: absolute;

@@ -1,4 +1,4 @@
-/** The scene behind the picture: reads the site, and shows what the page's signals say. */
+/** The parts of the scene: it loads the site, and draws what the page's signals say. */
 
 import { batch, effect, signal } from "@preact/signals-core";
 import { Ray, Vector2, Vector3 } from "three";
@@ -24,10 +24,10 @@ import { Site } from "./site";
 import { Stage } from "./stage";
 import { standing } from "./standing-maps";
 
-/** px around a mark in which a click means it */
+/** px within which a click hits a mark */
 const NEAR_PX = 13;
 const RETRY_MS = 1_500;
-/** ms after which it is looked again what lies behind something, while the camera moves */
+/** ms between tests of which marks are hidden behind objects, while the camera moves */
 const LOOK_MS = 250;
 
 export type Loading = "loading" | "there" | "failed";
@@ -37,7 +37,7 @@ export class SceneView {
   readonly camera: SiteCamera;
   readonly site: Site;
   readonly loading = signal<Loading>("loading");
-  /** How often a frame was drawn; for what hangs on points of the site. */
+  /** Number of drawn frames, a signal for elements at points of the site. */
   readonly frames = signal(0);
   /** ms that the last verdicts under the pointer took */
   hoverTimes: readonly number[] = [];
@@ -82,7 +82,7 @@ export class SceneView {
     this.camera.resized();
   }
 
-  /** A ray from the camera through a point of the picture (px). */
+  /** Return the ray from the camera through a point of the view (px). */
   rayAt(x: number, y: number): Ray {
     const { width, height } = this.stage.size;
     const { camera } = this.stage;
@@ -91,14 +91,14 @@ export class SceneView {
     return new Ray(camera.position.clone(), far.sub(camera.position).normalize());
   }
 
-  /** Where a point of the site (m) is in the picture (px); null: not in it. */
+  /** Return the position of a point of the site (m) in the view (px); null: outside. */
   project({ x, y, z }: { readonly x: number; readonly y: number; readonly z: number }): { x: number; y: number } | null {
     const seen = this.stage.project(new Vector3(x, y, z));
     const { width, height } = this.stage.size;
     return seen === null || seen.x < 0 || seen.y < 0 || seen.x > width || seen.y > height ? null : seen;
   }
 
-  /** What a click at a point (px) means: a label, else the mark that is nearest. */
+  /** Return the mark at a point (px): the nearest one, or else that of a label. */
   markAt(x: number, y: number): Mark | null {
     const key = this.labels.at(x, y);
     let best: Mark | null = null;
@@ -108,7 +108,7 @@ export class SceneView {
       if (seen === null) continue;
       const away = Math.hypot(seen.x - x, seen.y - y);
       if (away > NEAR_PX) continue;
-      // What is seen goes before what lies behind something, and what is near before what is far.
+      // Visible marks come before hidden ones, and near ones before far ones.
       const rank = away + (this.isBehind(mark) ? 6 : 0) + seen.depth / 100;
       if (rank < least) [least, best] = [rank, mark];
     }
@@ -119,7 +119,7 @@ export class SceneView {
     return this.shown.find((mark) => mark.key === key) ?? null;
   }
 
-  /** Chooses what was clicked. */
+  /** Select the clicked mark. */
   choose(mark: Mark | null, add: boolean): void {
     batch(() => {
       if (mark === null) {
@@ -198,7 +198,7 @@ export class SceneView {
     this.looked = 0;
   }
 
-  /** Goes to what somebody wants to see. */
+  /** Move the camera to the requested view. */
   private fulfil(): void {
     const wish = look.value;
     const site = world.value;

@@ -1,4 +1,4 @@
-/** The script that somebody is writing. It is theirs until it is applied: nothing takes it away. */
+/** The draft of a script. It is kept until the person applies or discards it. */
 
 import { batch, computed, effect, signal } from "@preact/signals-core";
 
@@ -13,23 +13,23 @@ import { readNotes } from "./notes";
 interface Base {
   readonly revision: number;
   readonly text: string;
-  /** Whether it is what somebody has written, and not the service. */
+  /** Whether a person wrote the text, and not the service. */
   readonly own: boolean;
 }
 
-/** The mission as a script, and of which revision; null: not read yet. */
+/** The mission as a script, with its revision; null: not loaded. */
 export const base = signal<Base | null>(null);
 export const draft = signal("");
-/** What the service said of the draft that it refused. */
+/** The diagnostics of a rejected draft, with its text. */
 export const refused = signal<{ readonly text: string; readonly found: readonly Diagnostic[] } | null>(null);
-/** Why the mission can't be said as a script. */
+/** Why the mission can't be written as a script. */
 export const unsaid = signal<string | null>(null);
-/** A text that was put aside for the one of the mission. */
+/** The last discarded draft, which can be restored. */
 export const aside = signal<string | null>(null);
 export const applying = signal(false);
 
 export const dirty = computed(() => base.value !== null && draft.value !== base.value.text);
-/** Whether the mission was changed since the draft was begun. */
+/** Whether the mission was changed after the draft was begun. */
 export const overtaken = computed(() => dirty.value && base.value?.revision !== revision.value);
 
 const PAUSE_MS = 300;
@@ -48,7 +48,7 @@ effect(() => {
 });
 
 function begin(id: string | null): void {
-  if (keeping !== undefined) keepDraft(); // of the mission that was open
+  if (keeping !== undefined) keepDraft(); // of the previous mission
   plan = id;
   batch(() => {
     base.value = refused.value = unsaid.value = aside.value = null;
@@ -65,7 +65,7 @@ async function read(id: string, at: number): Promise<void> {
         parseAs: "text",
       }),
     );
-    // What was applied meanwhile keeps its own words.
+    // An applied draft keeps its own wording.
     if (base.value?.revision === at) return;
     if (planId.value === id && revision.value === at) takeBase({ revision: at, text, own: false });
   } catch (error) {
@@ -75,14 +75,14 @@ async function read(id: string, at: number): Promise<void> {
   }
 }
 
-/** The mission reads like this now. What somebody is writing stays. */
+/** Take a new script of the mission. A changed draft stays. */
 function takeBase(now: Base): void {
   const first = base.value === null;
   batch(() => {
     unsaid.value = null;
     const before = first ? kept(draftName()) : null;
     if (before && before !== now.text) {
-      // From another day: it goes on with the revision that it was begun on, which is not this one.
+      // A stored draft of an earlier day was begun on another revision; 0 marks it as outdated.
       base.value = { ...now, revision: 0 };
       draft.value = before;
     } else if (!dirty.value) {
@@ -109,7 +109,7 @@ function draftName(): string {
   return `draft.${plan ?? ""}`;
 }
 
-/** Takes the mission's script in place of the draft, which is put aside. */
+/** Discard the draft for the mission's script. */
 export async function takeTheirs(): Promise<void> {
   const id = planId.value;
   if (id === null) return;
@@ -129,7 +129,7 @@ export function takeAside(): void {
   write(text);
 }
 
-/** Puts what the draft says in place of the mission; `anyway`: whatever was changed meanwhile. */
+/** Replace the mission by the draft; `anyway`: even if the mission was changed meanwhile. */
 export async function apply(anyway = false): Promise<void> {
   const id = planId.value;
   const from = base.value;
@@ -150,14 +150,14 @@ export async function apply(anyway = false): Promise<void> {
     void readNotes(id, false);
     batch(() => {
       refused.value = null;
-      // Its own words and remarks stay until the mission is changed in another way.
+      // The text keeps its wording and comments until the mission is changed in another way.
       base.value = { revision: done.revision.number, text: script, own: true };
     });
     keepDraft();
   } catch (error) {
     if (error instanceof Refusal && error.problem.diagnostics.length > 0)
       refused.value = { text: script, found: error.problem.diagnostics };
-    // Where it was changed meanwhile, the panel says so, and nothing is overwritten.
+    // If the mission was changed meanwhile, the panel says so, and nothing is overwritten.
     else if (!(error instanceof Refusal && error.problem.code === "stale-revision")) tellError(error);
   } finally {
     applying.value = false;

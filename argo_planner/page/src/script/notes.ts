@@ -1,5 +1,5 @@
-/** What the last import of the mission healed or took for something, to be confirmed by a person. What
- * is confirmed is kept in the browser. */
+/** Notes of the last import: unclear passages that a person has to confirm. Confirmed ones are stored in the
+ * browser. */
 
 import { effect, signal } from "@preact/signals-core";
 
@@ -16,7 +16,7 @@ export interface Note {
   readonly said: Diagnostic;
 }
 
-/** Those that nobody has confirmed here. */
+/** The notes that have not been confirmed in this browser. */
 export const openNotes = signal<readonly Note[]>([]);
 
 let plan: string | null = null;
@@ -32,7 +32,7 @@ effect(() => {
   if (id !== null) void readNotes(id, opened);
 });
 
-/** Reads what is open; `opened`: the mission was opened just now, and somebody is to look. */
+/** Read the open notes; `opened`: the mission was opened just now, so a notice points to them. */
 export async function readNotes(id: string, opened: boolean): Promise<void> {
   try {
     const found = await answered(

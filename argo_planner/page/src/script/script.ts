@@ -1,4 +1,4 @@
-/** The mission as text, edited either way. */
+/** The panel of the script. */
 
 import { broken } from "../state/plan";
 import { mayPlan } from "../state/session";

@@ -1,4 +1,4 @@
-/** The sheet on which the script is written: numbered lines, marked where something is wrong or selected. */
+/** The editor of the script: numbered lines, with marks of diagnostics and of the selection. */
 
 import type { Diagnostic } from "../api/types";
 import { groupKey, nameOfKey, taskKey } from "../model/outline";
@@ -39,7 +39,7 @@ export class ScriptSheet extends PageElement {
     .paper:focus-within {
       outline: 2px solid var(--accent);
     }
-    /* The text lies over a mirror of itself, which has the numbers and the marks. */
+    /* The text area lies over a mirror of the text, which draws the numbers and marks. */
     .sheet {
       display: grid;
       min-height: 100%;
@@ -148,7 +148,7 @@ export class ScriptSheet extends PageElement {
     </div></div>`;
   }
 
-  /** Where in the text each task stands, as long as the text is the mission. */
+  /** Return the lines of each task, while the text is that of the mission. */
   private places(): Map<string, Lines> {
     const from = base.value;
     const read = reading.value;
@@ -170,7 +170,7 @@ export class ScriptSheet extends PageElement {
     if (mayPlan() && dirty.value && !overtaken.value) void apply();
   }
 
-  /** Whoever clicks into the text means the task there. */
+  /** Select the task at the cursor. */
   private onClick(): void {
     const field = this.field;
     if (field === null || dirty.value || field.selectionStart !== field.selectionEnd) return;
@@ -178,7 +178,7 @@ export class ScriptSheet extends PageElement {
     if (name !== null) select([tasksByName.value.has(name) ? taskKey(name) : groupKey(name)]);
   }
 
-  /** Puts the cursor where something was found. */
+  /** Move the cursor to a diagnostic. */
   goTo({ span }: Diagnostic): void {
     const field = this.field;
     if (!span || field === null) return;

@@ -1,4 +1,4 @@
-/** What is asked of the robot: to begin a run, and all that a person may ask of one. */
+/** Requests to the robot: start a run, and control it. */
 
 import { signal } from "@preact/signals-core";
 
@@ -10,13 +10,14 @@ import { revision } from "./plan";
 import { quiet, run, takeState } from "./run";
 
 const RETRY_MS = 500;
-/** ms after which a question that has not reached the service is given up: what the robot is to do is not
- * to be done when nobody expects it any more. To stand still is never too late. */
+/** ms after which a request that has not reached the service is given up: a late motion would surprise
+ * people. Stopping is never too late. */
 const PATIENCE_MS = 3_000;
 const PATIENCE_TO_STOP_MS = 60_000;
 const STOPS: ReadonlySet<string> = new Set(["pause", "stop", "stop_by_hand"]);
 
-/** Begins a run of the mission as it is. Whether it has begun; a notice says why not. */
+/** Start a run of the mission in its present state. Returns whether it has begun; otherwise a notice gives
+ * the reason. */
 export function startRun(asked: Partial<RunAsked>): Promise<boolean> {
   return withPlan(async (id) => {
     const begun = await answered(
@@ -29,19 +30,19 @@ export function startRun(asked: Partial<RunAsked>): Promise<boolean> {
   });
 }
 
-/** A question without its id, which is given to it when it is asked. */
+/** A request without its id, which `ask` adds. */
 export type Question = RunQuestion extends infer One
   ? One extends { readonly id: string }
     ? Partial<Omit<One, "id" | "kind">> & { readonly kind: One extends { readonly kind?: infer K } ? NonNullable<K> : never }
     : never
   : never;
 
-/** Kinds of the questions that have not reached the service yet. */
+/** Kinds of the requests that have not reached the service yet. */
 export const asking = signal<readonly string[]>([]);
 
-/** Asks something of the run. What became of it so far; null if it was refused at once, or did not reach
- * the service in time. `quietly`: no notice says so if nothing comes of it. `wanted`: whether it still
- * is, where it is sent again. */
+/** Send a request to the run. Returns its state so far; null if it was refused or did not reach the service
+ * in time. `quietly`: no notice reports a refusal or failure. `wanted`: whether the request is still wanted
+ * when it is sent again. */
 export function ask(
   question: Question,
   quietly = false,
@@ -54,7 +55,7 @@ export function ask(
   return asked(question.kind, send, quietly, wanted);
 }
 
-/** Gives the robot back with the mission as it is edited now. */
+/** Give the robot back with the edited mission. */
 export async function giveBackEdited(): Promise<RequestState | null> {
   await settled();
   const body = { id: newId() };

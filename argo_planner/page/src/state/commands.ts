@@ -1,4 +1,4 @@
-/** What is asked of the mission that is open: edits, undone and made again, one after the other. */
+/** Commands to the open mission: edits, undo and redo, sent one after the other. */
 
 import { signal } from "@preact/signals-core";
 
@@ -9,7 +9,7 @@ import { t } from "../texts";
 import { messageOf, tell, tellError, telling } from "./notices";
 import { doneSince, planId, revision, take, takeRevision } from "./plan";
 
-/** An edit of which only what is given is sent. */
+/** An edit of which optional fields may be left out. */
 export type LooseEdit = Edit extends infer One
   ? One extends { readonly kind?: infer Kind }
     ? { readonly kind: NonNullable<Kind> } & Partial<Loose<Omit<One, "kind">>>
@@ -23,32 +23,32 @@ type Command =
 
 const RETRY_MS = 1_000;
 
-/** How many commands wait for an answer. */
+/** Number of commands without an answer. */
 export const waiting = signal(0);
 
 let queue: Promise<unknown> = Promise.resolve();
-/** Ids of the commands that were asked for here. */
+/** Ids of this page's commands. */
 const own = new Set<string>();
 
-/** An id for a command that is asked for here. */
+/** Create the id of a command of this page. */
 export function commandId(): string {
   const id = newId();
   own.add(id);
   return id;
 }
 
-/** Whether a revision came of what was asked for here. */
+/** Return whether a revision was made by this page. */
 export function isOwn(made: Revision): boolean {
   return own.has(made.id);
 }
 
-/** Until all that was asked for so far is answered. */
+/** Wait until all commands so far are answered. */
 export async function settled(): Promise<void> {
   await queue;
 }
 
-/** Asks the service for something about the mission that is open, once all edits are answered; a notice
- * says why it was not done. Whether it was. */
+/** Send a request about the open mission, once all edits are answered. Returns whether it succeeded;
+ * otherwise a notice gives the reason. */
 export async function withPlan(work: (id: string) => Promise<unknown>): Promise<boolean> {
   const id = planId.value;
   if (id === null) return false;
@@ -56,21 +56,21 @@ export async function withPlan(work: (id: string) => Promise<unknown>): Promise<
   return telling(() => work(id));
 }
 
-/** Makes edits, all of them or none. Whether they were made; if not, a notice says why. */
+/** Make edits, all of them or none. Returns whether they were made; otherwise a notice gives the reason. */
 export function edit(...edits: LooseEdit[]): Promise<boolean> {
   return inTurn((make) => make(...edits));
 }
 
-/** Edits that depend on how the mission is when their turn comes: keys may be pressed faster than
- * the service answers. `work` is called when all edits before it are done. */
+/** Make edits that depend on the mission's state when their turn comes: keys may be pressed faster than the
+ * service answers. `work` is called when all earlier edits are done. */
 export function inTurn<T>(work: (make: typeof edit) => Promise<T>): Promise<T> {
   return queued((seen) =>
     work((...edits) => carriedOut({ kind: "edit", edits }, tellError, seen)),
   );
 }
 
-/** Makes the edits of a form, which says at the field why they were refused; null: they were made.
- * They are asked for when all edits before them are done. */
+/** Make the edits of a form, when all earlier edits are done. Returns the reason of a refusal, for the field;
+ * null: they were made. */
 export async function editHere(edits: () => readonly LooseEdit[]): Promise<string | null> {
   let said = "";
   const refused = (error: unknown) => {
@@ -89,13 +89,13 @@ export function redo(): Promise<boolean> {
   return queued((seen) => carriedOut({ kind: "redo" }, tellError, seen));
 }
 
-/** What was seen when something was asked for: a mission, and its revision. */
+/** The mission and revision that the person saw when giving a command. */
 interface Seen {
   readonly plan: string | null;
   readonly revision: number;
 }
 
-/** Commands are sent one after the other. Each is told what was seen when it was asked for. */
+/** Run commands one after the other. Each gets the state that the person saw when giving it. */
 function queued<T>(work: (seen: Seen) => Promise<T>): Promise<T> {
   const seen = { plan: planId.value, revision: revision.value };
   waiting.value++;
@@ -124,7 +124,7 @@ async function carriedOut(
       await tried(plan, id, asked);
       return true;
     } catch (error) {
-      // It may have been carried out: the same id makes sending it again harmless.
+      // The command may have been carried out: with the same id it can safely be sent again.
       if (error instanceof Unreached) {
         tell("warn", t().frame.offline);
         await pause(RETRY_MS);
@@ -137,7 +137,7 @@ async function carriedOut(
   return false;
 }
 
-/** Sends a command once. Where it is stale, takes what was done meanwhile before it throws that. */
+/** Send a command once. If it is stale, take the missed revisions before throwing that error. */
 async function tried(plan: string, id: string, asked: Command): Promise<void> {
   try {
     const done = await sent(plan, id, asked, `"${revision.value}"`);
@@ -161,7 +161,7 @@ function sent(plan: string, id: string, asked: Command, made: string): Promise<C
   );
 }
 
-/** Takes what was done meanwhile, or the whole mission where that is not known any more. */
+/** Take the missed revisions, or the whole mission if they are no longer known. */
 async function caughtUp(plan: string, since: readonly Revision[] | null): Promise<void> {
   const state =
     since === null
@@ -172,7 +172,7 @@ async function caughtUp(plan: string, since: readonly Revision[] | null): Promis
   else for (const one of since ?? []) takeRevision(one);
 }
 
-/** Whether what others did touches nothing that the command is about. */
+/** Return whether the revisions of others touch nothing that the command is about. */
 function isApart(asked: Command, since: readonly Revision[] | null): boolean {
   if (since === null) return false;
   if (asked.kind !== "edit") return true;

@@ -1,4 +1,4 @@
-/** What the page tells whoever looks: short messages, some with a way out. */
+/** Notices of the page: short messages, some with buttons. */
 
 import { signal } from "@preact/signals-core";
 
@@ -14,12 +14,12 @@ export interface Notice {
 }
 
 export const notices = signal<readonly Notice[]>([]);
-/** ms after which a message goes, if there is nothing to be chosen in it */
+/** ms after which a notice without buttons disappears */
 const STAYS_MS = { info: 5_000, warn: 15_000, bad: 25_000 };
 const MOST = 3;
 let count = 0;
 
-/** Tells something; the id under which it can be dismissed. */
+/** Show a notice. Returns its id, by which it can be dismissed. */
 export function tell(
   tone: Notice["tone"],
   text: string,
@@ -33,12 +33,12 @@ export function tell(
   return id;
 }
 
-/** Nothing goes that nobody could have seen. */
+/** Dismiss a notice after a time, but not while the page is hidden. */
 function dismissLater(id: number, ms: number): void {
   setTimeout(() => (document.hidden ? dismissLater(id, ms) : dismiss(id)), ms);
 }
 
-/** Takes the newest message away. */
+/** Dismiss the newest notice. */
 export function dismissNewest(): void {
   notices.value = notices.value.slice(0, -1);
 }
@@ -47,7 +47,7 @@ export function dismiss(id: number): void {
   notices.value = notices.value.filter((one) => one.id !== id);
 }
 
-/** Tells of an error; anything that is no answer of the service is thrown on. */
+/** Show an error of a request as a notice; rethrow all other errors. */
 export function tellError(error: unknown): void {
   if (error instanceof Refusal) {
     const { diagnostics } = error.problem;
@@ -58,7 +58,7 @@ export function tellError(error: unknown): void {
   } else throw error;
 }
 
-/** Does what the service is asked for; a notice says why not. Whether it was done. */
+/** Carry out requests to the service. Returns whether they succeeded; otherwise a notice gives the reason. */
 export async function telling(work: () => Promise<unknown>): Promise<boolean> {
   try {
     await work();
@@ -69,7 +69,7 @@ export async function telling(work: () => Promise<unknown>): Promise<boolean> {
   }
 }
 
-/** Why something was refused, in a sentence. */
+/** Return the reason of a refusal as a sentence. */
 export function messageOf(refusal: Refusal): string {
   const errors = refusal.problem.diagnostics.filter((one) => one.severity === "error");
   return errors.length > 0 ? errors.map((one) => one.message).join("; ") : refusal.problem.detail;

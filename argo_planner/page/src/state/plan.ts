@@ -1,4 +1,4 @@
-/** The mission that is open, as the service has it, and what is asked of it. */
+/** The open mission, as the service has it. */
 
 import { batch, computed, signal } from "@preact/signals-core";
 
@@ -32,33 +32,33 @@ export const planName = signal("");
 export const mission = signal<Mission | null>(null);
 export const revision = signal(0);
 export const findings = signal<Findings>({ diagnostics: [], more: 0 });
-/** Whether the mission has errors, with which it can be neither reckoned nor driven. */
+/** Whether the mission has errors, with which it can neither be previewed nor driven. */
 export const broken = computed(() => findings.value.diagnostics.some((one) => one.severity === "error"));
-/** The last analysis, which may be of an earlier revision. */
+/** The last analysis, possibly of an earlier revision. */
 export const analysis = signal<AnalysisFound | null>(null);
 export const versions = signal<readonly VersionSummary[]>([]);
 export const undoable = signal<readonly number[]>([]);
 export const redoable = signal<readonly number[]>([]);
-/** Whoever else has the mission open; without this page. */
+/** The other people and windows that have the mission open. */
 export const others = signal<readonly Member[]>([]);
 /** The newest state of each job of the mission, by id. */
 export const jobs = signal<ReadonlyMap<string, OrderJob | EvaluationJob>>(new Map());
 export const connected = signal(false);
 /** Whether somebody else has deleted the mission that was open last. */
 export const wasGone = signal(false);
-/** Keys of what is selected (`taskKey`, `groupKey`, `reactionKey`), the last one last. */
+/** Keys of the selection (`taskKey`, `groupKey`, `reactionKey`), in the order of selection. */
 export const selection = signal<readonly string[]>([]);
-/** What was done last, by whomever: to flash what others have changed. */
+/** The last revision by anybody, used to highlight changes of others. */
 export const lastRevision = signal<Revision | null>(null);
 
 export const tasksByName = computed(
   () => new Map((mission.value?.tasks ?? []).map((task) => [task.name, task])),
 );
-/** Names of all tasks but START, in their order. */
+/** Names of all tasks but START, in order. */
 export const laterTasks = computed(() =>
   (mission.value?.tasks ?? []).filter((task) => task.action !== "START").map((task) => task.name),
 );
-/** The one task that is selected, if it is one. */
+/** The selected task, if exactly one is selected. */
 export const chosenTask = computed(() => {
   const [key, second] = selection.value;
   if (key === undefined || second !== undefined || !isTaskKey(key)) return null;
@@ -66,12 +66,12 @@ export const chosenTask = computed(() => {
 });
 
 let live: LiveConnection<RoomMessage> | null = null;
-/** What this page is called among the members. */
+/** This page's id among the members. */
 let self = "";
-/** The last revisions in order, by whomever. */
+/** The last revisions in order, by anybody. */
 const recent: Revision[] = [];
 
-/** Opens a mission, if it is still meant once it is there. Throws `Refusal` or `Unreached`. */
+/** Open a mission, unless `isMeant` returns false once it is loaded. Throws `Refusal` or `Unreached`. */
 export async function openPlan(id: string, isMeant: () => boolean): Promise<void> {
   const state = await answered(client.GET("/api/missions/{id}", { params: { path: { id } } }));
   if (!isMeant()) return;
@@ -89,14 +89,14 @@ export async function openPlan(id: string, isMeant: () => boolean): Promise<void
       connected.value = there;
       if (there) {
         tellSelection();
-        obstaclesChanged(); // nobody tells of those that were put up meanwhile
+        obstaclesChanged(); // no message reports obstacles that were added meanwhile
       } else void stillThere(id);
     },
     gone,
   });
 }
 
-/** The connection has ended: perhaps as the mission is not there any more. */
+/** Check whether the mission still exists, as its connection has ended. */
 async function stillThere(id: string): Promise<void> {
   try {
     await answered(client.GET("/api/missions/{id}/versions", { params: { path: { id } } }));
@@ -130,7 +130,7 @@ export function closePlan(): void {
   });
 }
 
-/** Takes how a job stands. */
+/** Take the new state of a job. */
 export function takeJob(job: OrderJob | EvaluationJob): void {
   jobs.value = new Map(jobs.peek()).set(job.id, job);
 }
@@ -140,14 +140,14 @@ export function select(keys: readonly string[]): void {
   tellSelection();
 }
 
-/** What was done since a revision; null: that is not known any more. */
+/** Return the revisions after a known one; null: they are no longer known. */
 export function doneSince(known: number): readonly Revision[] | null {
   if (known === revision.value) return [];
   if ((recent[0]?.number ?? Infinity) > known + 1) return null;
   return recent.filter((one) => one.number > known);
 }
 
-/** Takes what the service tells of the plan. */
+/** Take the plan's state from an answer of the service. */
 export function take(told: PlanState | CommandDone): void {
   batch(() => {
     if ("mission" in told) {
@@ -166,7 +166,7 @@ export function take(told: PlanState | CommandDone): void {
   });
 }
 
-/** Takes a step of the plan, if it is the next one. */
+/** Apply a revision, if it is the next one. */
 export function takeRevision(made: Revision): void {
   if (mission.value === null || made.number !== revision.value + 1) return;
   const before = mission.value;
@@ -219,12 +219,12 @@ function heard(message: RoomMessage): void {
         obstaclesChanged();
         break;
       case "deleted":
-        break; // the connection ends, and says so itself
+        break; // the connection ends, which is reported separately
     }
   });
 }
 
-/** What the same person has done in another window can be undone here as well. */
+/** Add a revision by the same person, even from another window, to those that can be undone. */
 function takeUndoable(made: Revision): void {
   if (made.kind === "edit" || made.kind === "replace") {
     undoable.value = [...undoable.value, made.number];
@@ -236,7 +236,7 @@ function takeMembers(members: readonly Member[]): void {
   others.value = members.filter((member) => member.client !== self);
 }
 
-/** Takes out of the selection what is not there any more, and says who took it away. */
+/** Remove deleted items from the selection, and report who deleted them. */
 function keepSelection(by: string | null): void {
   const open = mission.value;
   const keys = new Set([

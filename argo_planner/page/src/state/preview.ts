@@ -1,4 +1,4 @@
-/** The ways of the mission as they will be driven, asked for anew after each change. */
+/** The paths of the mission, requested again after each change. */
 
 import { batch, computed, effect, signal } from "@preact/signals-core";
 
@@ -8,18 +8,18 @@ import { messageOf } from "./notices";
 import { broken, mission, planId, revision } from "./plan";
 import { obstacleRevision } from "./world";
 
-/** Of the last revision without errors that was reckoned; null until there is one, and where the ways of
- * the mission as it is were refused. */
+/** The preview of the last revision without errors; null before the first one, and if the present paths were
+ * refused. */
 export const preview = signal<PreviewedMission | null>(null);
-/** The revision and the obstacles that `preview` is of. */
+/** The revision and the obstacles of `preview`. */
 const previewed = signal("");
-/** Why there are no ways of the mission as it is; null: there are, or it is not known yet. */
+/** Why the mission has no paths; null: it has, or this is not known yet. */
 export const previewRefused = signal<string | null>(null);
-/** Whether what `preview` says is of the mission as it is, on the site as it is. */
+/** Whether `preview` belongs to the present mission and site. */
 export const previewIsNew = computed(() => previewed.value === state());
-/** The mission in another order, to be compared with it. */
+/** The mission in another order, for comparison. */
 export const comparedPreview = signal<PreviewedMission | null>(null);
-/** The number of the way in `preview.ways` at which somebody points. */
+/** Index in `preview.ways` of the leg under the pointer. */
 export const hoveredLeg = signal<number | null>(null);
 
 const AFTER_MS = 250;

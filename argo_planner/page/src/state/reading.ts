@@ -1,4 +1,4 @@
-/** The mission in the script's own sentences, read again a moment after each change. */
+/** The mission in sentences of the script, read again shortly after each change. */
 
 import { effect, signal } from "@preact/signals-core";
 
@@ -6,7 +6,7 @@ import { answered, client, Refusal, Unreached } from "../api/client";
 import type { MissionReading } from "../api/types";
 import { broken, mission, planId, revision } from "./plan";
 
-/** What was read last, and of which revision; null: nothing yet. */
+/** The last sentences and their revision; null: none yet. */
 export const reading = signal<{ revision: number; reading: MissionReading } | null>(null);
 
 const PAUSE_MS = 300;
@@ -31,7 +31,7 @@ async function read(id: string, at: number): Promise<void> {
     );
     if (planId.value === id && revision.value === at) reading.value = { revision: at, reading: found };
   } catch (error) {
-    // Until it is read, after the next change at the latest, the list says it in its own words.
+    // Until they are read, at the latest after the next change, the list uses its own words.
     if (error instanceof Unreached && planId.value === id && revision.value === at)
       waiting = setTimeout(() => void read(id, at), RETRY_MS);
     if (!(error instanceof Refusal || error instanceof Unreached)) throw error;

@@ -1,4 +1,4 @@
-/** The run that the robot is in or was in last, as the service tells it; or one that was, gone back over. */
+/** The present or last run of the robot, or a past run that is replayed. */
 
 import { batch, computed, effect, signal } from "@preact/signals-core";
 
@@ -26,40 +26,40 @@ export interface RobotPose {
 
 export const run = signal<RunState | null>(null);
 export const robotPose = signal<RobotPose | null>(null);
-/** What has happened in the run, in order. */
+/** The entries of the run, in order. */
 export const entries = signal<readonly Entry[]>([]);
-/** Whether a run is under way, or waits to go on. */
+/** Whether a run is in progress or interrupted. */
 export const runIsOn = computed(() => run.value !== null && run.value.status !== "ended");
 export const robotConnected = signal(false);
 
 export interface PastRun {
   readonly state: RunState;
   readonly entries: readonly Entry[];
-  /** The run of an evaluation it is, made once more. */
+  /** The run of an evaluation that was repeated. */
   readonly evaluated?: FailedRun;
 }
-/** A run that was, which is shown in place of the one of the robot; null: that one is. */
+/** A past run that is shown in place of the robot's; null: the robot's run is shown. */
 export const pastRun = signal<PastRun | null>(null);
-/** s of the run that is shown, to which the page goes back; null: its newest moment. */
+/** The time (s) of the shown run to which the page has gone back; null: its latest moment. */
 export const shownTime = signal<number | null>(null);
 effect(() => {
   const plan = planId.value;
   const past = pastRun.peek();
   if (past !== null && past.state.plan !== plan) pastRun.value = shownTime.value = null;
 });
-/** The run that is shown: a past one, or the robot's. */
+/** The state of the shown run: a past one, or the robot's. */
 export const shownRunState = computed(() => pastRun.value?.state ?? run.value);
 export const shownEntries = computed(() => pastRun.value?.entries ?? entries.value);
 
-/** What the run that is shown is or was like at the time that is shown: where the robot is, what is
- * done and read. For the scene and the list, in place of the live values. */
+/** The shown run at the shown time: pose, outcomes and readings. The scene and the list use it in place of
+ * live values. */
 export interface ShownRun extends Moment {
   /** id of the mission */
   readonly plan: string;
-  /** Whether it is the robot as it is now. */
+  /** Whether it is the robot's present state. */
   readonly live: boolean;
 }
-/** Made anew with entries only, and not with each pose. */
+/** Computed again for new entries only, not for each pose. */
 const shownMoment = computed(() => momentAt(shownEntries.value, shownTime.value ?? Infinity));
 export const shownRun = computed<ShownRun | null>(() => {
   const state = shownRunState.value;
@@ -86,9 +86,9 @@ export const shownRun = computed<ShownRun | null>(() => {
   };
 });
 
-/** Entries come one by one, and many at once when the page opens; they are shown together. */
+/** Interval at which entries are shown together; many arrive at once when the page opens. */
 const ENTRIES_MS = 40;
-/** Ids of requests of which no notice says that nothing comes of them. */
+/** Ids of requests whose failure is not shown as a notice. */
 export const quiet = new Set<string>();
 let live: LiveConnection<RunMessage> | null = null;
 let shownLast = 0;
@@ -96,7 +96,7 @@ let comeIn: Entry[] = [];
 let showing: ReturnType<typeof setTimeout> | undefined;
 let catchingUp = false;
 
-/** Follows whatever the robot does, from now on. */
+/** Follow the robot from now on. */
 export function followRobot(): void {
   live ??= new LiveConnection<RunMessage>({
     address: () => `/api/robot/live?${[since(), authorQuery()].filter(Boolean).join("&")}`,
@@ -110,7 +110,7 @@ function since(): string {
   return known > 0 ? `since=${known}` : "";
 }
 
-/** Shows a run that was; null: the robot's. Throws `Refusal` or `Unreached`. */
+/** Show a past run; null: the robot's. Throws `Refusal` or `Unreached`. */
 export async function showRun(id: string | null): Promise<void> {
   if (id === null || id === run.value?.id) {
     shownLast++;
@@ -130,7 +130,7 @@ export async function showRun(id: string | null): Promise<void> {
   });
 }
 
-/** Shows a run of an evaluation as it went, unless another mission is open by now. */
+/** Show a repeated run of an evaluation, unless another mission is open by now. */
 export function showReplay({ state, entries }: ReplayedRun, evaluated: FailedRun): void {
   if (planId.value !== state.plan) return;
   shownLast++;
@@ -140,7 +140,7 @@ export function showReplay({ state, entries }: ReplayedRun, evaluated: FailedRun
   });
 }
 
-/** The entries of a run after the first `since`. Throws `Refusal` or `Unreached`. */
+/** Read the entries of a run after the first `since`. Throws `Refusal` or `Unreached`. */
 async function entriesOf(id: string, since: number): Promise<Entry[]> {
   const found: Entry[] = [];
   for (;;) {
@@ -153,7 +153,7 @@ async function entriesOf(id: string, since: number): Promise<Entry[]> {
   }
 }
 
-/** Takes how the run of the robot stands. */
+/** Take the new state of the robot's run. */
 export function takeState(state: RunState | null): void {
   batch(() => {
     if (state?.id !== run.value?.id) {
@@ -161,7 +161,7 @@ export function takeState(state: RunState | null): void {
       comeIn = [];
       robotPose.value = null;
       shownTime.value = null;
-      // Whoever has begun another run wants to see it.
+      // A new run is shown in place of a past one.
       if (state?.status !== "ended") pastRun.value = null;
     }
     run.value = state;
@@ -172,7 +172,7 @@ function heard(message: RunMessage): void {
   switch (message.kind) {
     case "state":
       takeState(message.state);
-      // Those of a run that began and ended while nothing was heard are not told one by one.
+      // No messages bring the entries of a run that began and ended during a lost connection.
       if (message.state?.status === "ended" && message.state.entries > entries.value.length + comeIn.length)
         void catchUp(message.state.id);
       break;
@@ -189,7 +189,7 @@ function heard(message: RunMessage): void {
   }
 }
 
-/** Requests come before the state that has them, so that whoever has asked hears at once. */
+/** Take the state of a request. It arrives before the run's state, so that the page can react at once. */
 function takeRequest(id: string, request: RequestState): void {
   const now = run.value;
   if (now?.id === id) {
@@ -215,7 +215,7 @@ function showComeIn(): void {
   comeIn = [];
 }
 
-/** Reads the entries that were not told here, as another run was known when it began. */
+/** Read entries that arrived while another run was known here. */
 async function catchUp(id: string): Promise<void> {
   if (catchingUp) return;
   catchingUp = true;

@@ -1,4 +1,4 @@
-/** Who works here, and how they like the page. Kept in the browser where it lets us. */
+/** The person and the settings of the page, stored in the browser if possible. */
 
 import { effect, signal } from "@preact/signals-core";
 
@@ -8,27 +8,27 @@ import { language, type Language } from "../texts";
 
 export type Theme = "light" | "dark";
 
-/** What the service is, and what whoever looks may do; null until it has said so. */
+/** The service and the person's role; null until the service has answered. */
 export const service = signal<ServiceSummary | null>(null);
 export const author = signal(kept("author") ?? "");
 export const theme = signal<Theme>(firstTheme());
 
-/** Whether something was done under the name of whoever looks. */
+/** Return whether a name is that of the person at the page. */
 export function isMe(name: string): boolean {
   return name === (service.value?.named ? service.value.author : author.value || "somebody");
 }
 
-/** Whether they may change missions. */
+/** Return whether the person may change missions. */
 export function mayPlan(): boolean {
   return service.value !== null && service.value.role !== "view";
 }
 
-/** Whether they may start and steer runs. */
+/** Return whether the person may start and control runs. */
 export function mayOperate(): boolean {
   return service.value?.role === "operate";
 }
 
-/** Reads what was kept, and keeps what changes. */
+/** Read the stored settings, and store changes. */
 export function beginSession(): void {
   language.value = firstLanguage();
   effect(() => {
@@ -45,7 +45,7 @@ export function beginSession(): void {
   });
 }
 
-/** Asks the service who it is. Throws `Refusal` or `Unreached`. */
+/** Read the summary of the service. Throws `Refusal` or `Unreached`. */
 export async function readService(): Promise<void> {
   service.value = await answered(client.GET("/api/service"));
 }
@@ -62,12 +62,12 @@ function firstLanguage(): Language {
   return navigator.language.startsWith("de") ? "de" : "en";
 }
 
-/** What the browser keeps under a name; null if it keeps nothing. */
+/** Return a setting stored in the browser; null: there is none. */
 export function kept(name: string): string | null {
   try {
     return localStorage.getItem(`argo.${name}`);
   } catch {
-    return null; // storage is switched off
+    return null; // storage is disabled
   }
 }
 
@@ -75,6 +75,6 @@ export function keep(name: string, value: string): void {
   try {
     localStorage.setItem(`argo.${name}`, value);
   } catch {
-    // storage is switched off or full: it is not known next time
+    // storage is disabled or full: the setting is lost
   }
 }

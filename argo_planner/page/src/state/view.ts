@@ -1,36 +1,36 @@
-/** What of the site is shown and how, and what the pointer does there. */
+/** The view of the site and the selected tool. */
 
 import { signal } from "@preact/signals-core";
 
 import type { Pose, Task } from "../api/types";
 
-/** What a click in the scene does: choose, place the robot's next task, or put an obstacle up. */
+/** Effect of a click in the scene: select, add a task at the ghost, or add an obstacle. */
 export type Tool = "select" | "navigate" | "obstacle";
 
 export const tool = signal<Tool>("select");
-/** Number of the floor that is shown with all below it; null: all floors. */
+/** Number of the highest shown floor; null: all floors are shown. */
 export const shownFloor = signal<number | null>(null);
-/** How the camera follows the robot of the run that is shown. */
+/** How the camera follows the robot of the shown run. */
 export const following = signal<"off" | "behind" | "above">("off");
 
-/** A wish to see something, which the scene fulfils. */
+/** A requested view of the scene. */
 export type Look =
   | { readonly kind: "pose"; readonly pose: Pose }
   | { readonly kind: "checkpoint"; readonly id: string }
   | { readonly kind: "all" };
 export const look = signal<Look | null>(null);
 
-/** Shows where a task is done: the face of its checkpoint, or its place. */
+/** Request a view of a task: the face of its checkpoint, or its pose. */
 export function lookAt(task: Task): void {
   if (task.object_id) look.value = { kind: "checkpoint", id: task.object_id };
   else if (task.pose) look.value = { kind: "pose", pose: task.pose };
 }
 
-/** The part of the page at the right that is open; on narrow screens the only one. */
+/** The open panel at the right; on narrow screens the only one. */
 export type Panel = "properties" | "script" | "route" | "evaluate" | "run";
 export const panel = signal<Panel>("properties");
 
-/** As another mission is opened: nothing of what was seen and in hand with the one before. */
+/** Reset the view and the tools when another mission is opened. */
 export function resetView(): void {
   tool.value = "select";
   shownFloor.value = null;

@@ -1,4 +1,4 @@
-/** The site: what stands on it, and where the robot can stand. */
+/** The site and its obstacles. */
 
 import { batch, computed, signal } from "@preact/signals-core";
 
@@ -7,32 +7,32 @@ import type { Obstacle, World } from "../api/types";
 import { tellError, telling } from "./notices";
 
 export const world = signal<World | null>(null);
-/** How often the obstacles have changed; what depends on them is asked for again. */
+/** Revision of the obstacles; what depends on them is read again when it changes. */
 export const obstacleRevision = signal(0);
 
 export const checkpointsById = computed(
   () => new Map((world.value?.checkpoints ?? []).map((one) => [String(one.id), one])),
 );
 
-/** Reads the site. Throws `Refusal` or `Unreached`. */
+/** Read the site. Throws `Refusal` or `Unreached`. */
 export async function readWorld(): Promise<void> {
   const [found, obstacles] = await Promise.all([
     answered(client.GET("/api/world")),
     answered(client.GET("/api/world/obstacles")),
   ]);
   const older = world.value !== null && obstacles.revision < obstacleRevision.value;
-  if (older) return; // another reading was faster
+  if (older) return; // a newer answer came first
   batch(() => {
-    // Those that the revision is of: the other answer may be of a moment before or after.
+    // The obstacles of this revision: the other answer may be older or newer.
     world.value = { ...found, obstacles: obstacles.obstacles };
     obstacleRevision.value = obstacles.revision;
   });
 }
 
-/** The obstacles may be others: reads the site again if they are. */
+/** Read the site again if its obstacles have changed. */
 export function obstaclesChanged(): void {
   readAgain().catch((error: unknown) => {
-    if (!(error instanceof Unreached)) tellError(error); // the connection comes back, and asks again
+    if (!(error instanceof Unreached)) tellError(error); // it is read again when the connection returns
   });
 }
 
@@ -41,7 +41,7 @@ async function readAgain(): Promise<void> {
   if (world.value === null || revision !== obstacleRevision.value) await readWorld();
 }
 
-/** Puts an obstacle on the site. Whether it stands there. */
+/** Add an obstacle to the site. Returns whether it was added. */
 export function addObstacle(obstacle: Omit<Obstacle, "id">): Promise<boolean> {
   return putObstacles([...(world.value?.obstacles ?? []), { ...obstacle, id: newId() }]);
 }

@@ -1,4 +1,4 @@
-/** Times, distances, climbs and battery of the way, leg by leg and altogether, against the limits. */
+/** The strip: time, distance, climb and battery for each leg and in total, with their limits. */
 
 import { gathered, isTooLate, legsOf, type Leg } from "../model/legs";
 import { isTaskKey, nameOfKey, taskKey } from "../model/outline";
@@ -147,13 +147,13 @@ export class StripPanel extends PageElement {
   }
 }
 
-/** The leg at which somebody points. */
+/** Describe the leg under the pointer. */
 function pointedAt(legs: readonly Leg[]) {
   const leg = legs.find((one) => one.way === hoveredLeg.value);
   return leg === undefined ? nothing : (leg.problem ?? legWords(leg));
 }
 
-/** The legs as bars, as wide as they take long. */
+/** Render the legs as bars; their widths show the times. */
 function barView(legs: readonly Leg[], limit: number | null) {
   const last = legs.at(-1);
   const end = last === undefined ? 0 : last.start + last.time;
@@ -187,13 +187,13 @@ function barView(legs: readonly Leg[], limit: number | null) {
   </div>`;
 }
 
-/** A leg in words. */
+/** Describe a leg. */
 function legWords({ task, time, distance, climb, energy }: Leg): string {
   const used = share(energy, world.value?.robot.battery ?? 0);
   return t().strip.leg(task, seconds(time), metres(distance), metres(climb), used);
 }
 
-/** The legs as rows. */
+/** Render the legs as table rows. */
 function legTable(legs: readonly Leg[], limit: number | null) {
   const texts = t().strip;
   return html`<table>

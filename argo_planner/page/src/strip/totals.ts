@@ -1,5 +1,5 @@
-/** How long the mission takes and how much of the battery, against the limits; what it may be on any path,
- * and the path on which it is most. */
+/** Totals of time and battery with their limits, their bounds over all executions, and the execution with the
+ * highest value. */
 
 import type { PreviewedMission } from "../api/types";
 import { boundsOf, limited, type BoundShown, type Limited } from "../model/legs";
@@ -101,7 +101,7 @@ export class StripTotals extends PageElement {
     </span>`;
   }
 
-  /** What it may be on any path; a click shows the path on which it is most. */
+  /** Render the bounds over all executions; a click shows the execution with the highest value. */
   private bound(bound: BoundShown) {
     const texts = t().strip;
     const isTime = bound.kind === "time";
@@ -152,13 +152,13 @@ export class StripTotals extends PageElement {
   }
 }
 
-/** Whether the mission is more than each of its tasks once. */
+/** Return whether the mission may take more than each task once, which the totals do not include. */
 function isPart(found: PreviewedMission): boolean {
   const groups = mission.value?.groups ?? [];
   return found.at_least.length > 0 || groups.some((group) => group.max_repeat_count !== 1);
 }
 
-/** Wh */
+/** Return the battery's capacity (Wh). */
 function battery(): number {
   return world.value?.robot.battery ?? 0;
 }

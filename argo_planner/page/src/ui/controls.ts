@@ -1,22 +1,22 @@
-/** Buttons and choices that parts of the page have in common. */
+/** Shared buttons and choices. */
 
 import { html, nothing } from "./element";
 import { icon, type Icon } from "./icons";
 
 interface IconButton {
-  /** What the pointer shows, where it is more or less than the label. */
+  /** Text of the tooltip, if it differs from the label. */
   readonly title?: string | typeof nothing;
   readonly disabled?: boolean;
   readonly pressed?: boolean;
   readonly expanded?: boolean;
   readonly size?: number;
-  /** Id of the menu that it opens. */
+  /** Id of the menu that the button opens. */
   readonly opens?: string;
-  /** Further classes. */
+  /** Further CSS classes. */
   readonly look?: string;
 }
 
-/** A button that shows an icon only; the label is what it says to who can't see it. */
+/** Render a button with an icon only; screen readers announce its label. */
 export function iconButton(sign: Icon, label: string, act: ((event: Event) => unknown) | null, more: IconButton = {}) {
   return html`<button
     type="button"
@@ -35,14 +35,14 @@ export function iconButton(sign: Icon, label: string, act: ((event: Event) => un
 
 type Option<Value> = readonly [value: Value, label: unknown];
 
-/** The options of a choice. */
+/** Render the options of a choice. */
 export function options<Value>(all: readonly Option<Value>[], chosen?: Value) {
   return all.map(
     ([value, label]) => html`<option value=${String(value)} .selected=${value === chosen}>${label}</option>`,
   );
 }
 
-/** A choice of a form with its label. */
+/** Render a choice with its label, for a form. */
 export function choice<Value>(label: string, name: string, all: readonly Option<Value>[], chosen?: Value) {
   return html`<label>
     ${label}
@@ -52,7 +52,7 @@ export function choice<Value>(label: string, name: string, all: readonly Option<
   </label>`;
 }
 
-/** What is chosen or typed in the field that an event comes from. */
+/** Return the value of the field that an event comes from. */
 export function valueOf(event: Event): string {
   return (event.target as HTMLInputElement | HTMLSelectElement).value;
 }

@@ -1,5 +1,5 @@
-/** What all parts of the page are made of: Lit elements that are drawn anew when a signal changes
- * which they have read, with the same look of buttons and fields. */
+/** The base of all elements: Lit elements that render again when a signal changes that they have read, with
+ * common styles of buttons and fields. */
 
 import { SignalWatcher } from "@lit-labs/preact-signals";
 import { effect } from "@preact/signals-core";
@@ -178,7 +178,7 @@ declare global {
   }
 }
 
-/** An element of the page; its own styles come behind those that all have. */
+/** An element of the page; its own styles follow the common ones. */
 export class PageElement extends SignalWatcher(LitElement) {
   protected static override finalizeStyles(styles: CSSResultGroup = []) {
     return super.finalizeStyles([look, styles]);
@@ -195,7 +195,7 @@ export class PageElement extends SignalWatcher(LitElement) {
     return root;
   }
 
-  /** Listens to what the window is told, as long as the element is in the page. */
+  /** Listen to an event of the window while the element is connected. */
   protected listen<Type extends keyof WindowEventMap>(
     type: Type,
     heard: (event: WindowEventMap[Type]) => void,
@@ -207,7 +207,7 @@ export class PageElement extends SignalWatcher(LitElement) {
     });
   }
 
-  /** Does something now and whenever a signal changes that it reads, as long as the element is in the page. */
+  /** Run a function now, and again whenever a signal changes that it reads, while the element is connected. */
   protected watch(work: () => void): void {
     let stop = () => {};
     this.addController({

@@ -2,12 +2,12 @@
 
 import { dateLocale, language, t } from "../texts";
 
-/** A number with at most so many digits behind the point. */
+/** Format a number with at most `digits` decimals. */
 export function figure(value: number, digits = 2): string {
   return value.toLocaleString(language.value, { maximumFractionDigits: digits });
 }
 
-/** A part of 1. */
+/** Format a share of 1 as a percentage. */
 export function percent(part: number, digits = 0): string {
   return `${figure(100 * part, digits)} %`;
 }
@@ -20,12 +20,12 @@ export function metres(m: number): string {
   return `${figure(m, m < 10 ? 1 : 0)} m`;
 }
 
-/** When something was, with seconds where it is told apart from what was just before. */
+/** Format a time stamp. */
 export function dateAndTime(time: string, dateStyle: "short" | "medium" = "medium", timeStyle: "short" | "medium" = "short") {
   return new Date(time).toLocaleString(dateLocale(), { dateStyle, timeStyle });
 }
 
-/** Wh as a share of what the battery gives, which says more; of an unknown battery as they are. */
+/** Format an energy (Wh) as a share of the battery's capacity, or in Wh if that is unknown. */
 export function share(wh: number, battery: number): string {
   return battery > 0 ? percent(wh / battery, wh < battery / 10 ? 1 : 0) : `${figure(wh, 0)} Wh`;
 }

@@ -1,14 +1,14 @@
-/** The focus stays near where it was: where the element that has it goes, or can't be used any more, it
- * goes to what is left beside it. Without that, keys and screen readers begin anew at the top. */
+/** Focus restoration: if the focused element disappears or is disabled, the nearest remaining element gets
+ * the focus. Otherwise keys and screen readers would start at the top again. */
 
 const FOCUSABLE = "button, a[href], input, select, textarea, summary, [tabindex]";
 
-/** The element that had the focus last, and all around it, from the inside out. */
+/** The last focused element and its ancestors, from the inside out. */
 let last: readonly HTMLElement[] = [];
 let asked = false;
 
-/** Notes what has the focus in a shadow tree. A move within a tree is not told outside of it, so each of them
- * is listened to. */
+/** Record the focused element of a shadow tree. Moves inside a tree are not reported outside, so each tree is
+ * listened to. */
 export function noteFocus(event: Event): void {
   const at = event.composedPath()[0];
   if (at instanceof HTMLElement && at === event.target) last = [...around(at)];
@@ -19,7 +19,7 @@ function* around(element: HTMLElement): Generator<HTMLElement> {
     if (at instanceof HTMLElement) yield at;
 }
 
-/** Looks, once all is drawn, whether the focus was lost. */
+/** Check after rendering whether the focus was lost, and restore it. */
 export function keepFocus(): void {
   if (asked) return;
   asked = true;
@@ -27,14 +27,14 @@ export function keepFocus(): void {
     asked = false;
     const [had] = last;
     if (had === undefined || document.activeElement !== document.body) return;
-    if (had.isConnected && !had.matches(":disabled") && had.checkVisibility()) return; // it was let go
+    if (had.isConnected && !had.matches(":disabled") && had.checkVisibility()) return; // the person moved the focus away
     const beside = nearest();
     if (beside) beside.focus();
     else dispatchEvent(new CustomEvent("focus-list"));
   });
 }
 
-/** What is left beside it in the same part of the page. */
+/** Return the nearest usable element in the same part of the page. */
 function nearest(): HTMLElement | undefined {
   for (const part of last.slice(1)) {
     if (part.localName === "main" || part.localName === "argo-app") return undefined;
@@ -46,7 +46,7 @@ function nearest(): HTMLElement | undefined {
   return undefined;
 }
 
-/** All that could have the focus in an element, shadow trees included, in the order of the page. */
+/** Yield all focusable elements in an element, including shadow trees, in document order. */
 function* within(element: HTMLElement): Generator<HTMLElement> {
   for (const inner of (element.shadowRoot ?? element).querySelectorAll<HTMLElement>("*")) {
     if (inner.matches(FOCUSABLE)) yield inner;

@@ -1,4 +1,4 @@
-/** Icons as lines of 24 by 24, drawn in the colour of the text. */
+/** Icons as lines in a 24 × 24 grid, in the colour of the text. */
 
 import { svg } from "lit";
 import { html } from "./element";
@@ -51,7 +51,7 @@ const PATHS = {
 
 export type Icon = keyof typeof PATHS;
 
-/** An icon; what it stands for is said beside it or in the label of its button. */
+/** Render an icon. Its meaning is given beside it or by the label of its button. */
 export function icon(name: Icon, size = 18) {
   return html`<svg
     viewBox="0 0 24 24"

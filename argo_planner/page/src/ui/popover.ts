@@ -1,6 +1,6 @@
-/** Menus that the browser itself opens and closes. */
+/** Menus that the browser opens and closes (popovers). */
 
-/** Closes a menu that the focus has left. */
+/** Close a menu when it loses the focus. */
 export function closeLeft(event: FocusEvent): void {
   const menu = event.currentTarget as HTMLElement;
   const to = event.relatedTarget;
@@ -8,7 +8,7 @@ export function closeLeft(event: FocusEvent): void {
   if (!to.matches("[popovertarget]")) menu.hidePopover(); // its button closes it by itself
 }
 
-/** Gives the focus back to the button of a menu that was closed with the focus in it. */
+/** Return the focus to the button of a menu that was closed with the focus in it. */
 export function closed(event: ToggleEvent): void {
   const menu = event.currentTarget as HTMLElement;
   const root = menu.getRootNode() as ShadowRoot;

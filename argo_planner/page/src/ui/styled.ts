@@ -1,5 +1,5 @@
-/** Styles that are reckoned: `<div ${styled({ width: "40%" })}>`. Lit's own `styleMap` writes an
- * attribute at first, which the page's content security policy forbids. */
+/** Computed styles: `<div ${styled({ width: "40%" })}>`. Lit's own `styleMap` first writes an attribute,
+ * which the page's content security policy forbids. */
 
 import { noChange, type ElementPart } from "lit";
 import { Directive, directive } from "lit/directive.js";

@@ -31,7 +31,7 @@ export function group(name: string, start: string, end: string): Group {
   };
 }
 
-/** A mission of tasks with these names, and groups over them. */
+/** Create a mission with tasks of these names, and groups. */
 export function mission(names: string, ...groups: Group[]): Mission {
   return {
     version: 3,

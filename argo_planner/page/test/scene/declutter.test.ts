@@ -6,7 +6,7 @@ function wish(key: string, x: number, y: number, weight = 1): LabelWish {
   return { key, x, y, width: 80, height: 20, weight };
 }
 
-/** The same sequence of numbers between 0 and 1 each time. */
+/** Return a generator of the same sequence of numbers between 0 and 1 each time. */
 function numbers(): () => number {
   let seed = 7;
   return () => (seed = (seed * 16_807) % 2_147_483_647) / 2_147_483_647;

@@ -7,7 +7,7 @@ import { floorOf, type Ground, headingsBeside, readStandingMap, standingAt, type
 const GROUNDS: readonly Ground[] = ["none", "too_near", "too_steep", "cut_off", "closed", "reached"];
 const EIGHTHS = Array.from({ length: 8 }, (_, k) => (k * Math.PI) / 4);
 
-/** Two layers of 2 rows and 3 columns from (1, 2) on, cells of 0.5 m. */
+/** Create a map of two layers, each 2 rows by 3 columns of 0.5 m cells, from (1, 2) on. */
 function map(codes: readonly number[], heights: readonly number[] = []): StandingMap {
   return {
     floor: 1,

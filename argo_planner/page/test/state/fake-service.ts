@@ -1,4 +1,4 @@
-/** A service that answers what a test says, and keeps what it was asked. */
+/** A fake service: it answers as the test says, and records the requests. */
 
 import { vi } from "vitest";
 
@@ -9,10 +9,10 @@ export interface Asked {
   readonly ifMatch: string | null;
 }
 
-/** What is answered: a status with a body, or nothing, as the service is not reached. */
+/** A status with a body; null: the service is not reached. */
 export type Answer = readonly [status: number, body: unknown] | null;
 
-/** What a request is made of, as the client makes it. */
+/** The parts of a `Request` that the client uses. */
 class FakeRequest {
   readonly method: string;
   readonly headers: Headers;
@@ -51,18 +51,18 @@ function fakeFetch(request: FakeRequest): Promise<unknown> {
   });
 }
 
-// The client keeps both as it is made: whoever imports this does so before anything of the page.
+// The client stores both when it is loaded, so this module must be imported before anything of the page.
 vi.stubGlobal("Request", FakeRequest);
 vi.stubGlobal("fetch", fakeFetch);
 
-/** From now on the service answers so; what it is asked. */
+/** Set the answers of the service; return the requests that it gets. */
 export function fakeService(answers: (asked: Asked) => Answer): Asked[] {
   answer = answers;
   asked = [];
   return asked;
 }
 
-/** A refusal of the service. */
+/** Return a refusal of the service. */
 export function problem(status: number, code: string, more: object = {}) {
   return [status, { status, code, detail: code, diagnostics: [], remedies: [], ...more }] as const;
 }

@@ -1,14 +1,15 @@
-"""How many times as fast the code is today as that of another checkout.
+"""Comparison of this checkout's speed with that of another checkout.
 
     git worktree add ../before COMMIT
     python -m benchmarks.against ../before                       # all cases
     python -m benchmarks.against ../before drive-contact kinematic --repeats 7
 
-Both run the same cases, those of this file, in turn with each other and each time in a process of
-their own, so that what slows the machine down slows both; each has a cache of its own, which a turn
-that does not count fills. A line for a case tells how many times as fast it is today: by the
-median of the ratios of the turns, and by the ratio of the least times, both of wall time; and by
-the least processor time, of all threads and child processes, which other work disturbs least.
+Both checkouts run the cases of this file alternately, each time in a new process, so that other
+load on the machine slows both. Each checkout has its own cache, which a first run fills that is not
+counted. Each case gets one line with three ratios, the time of the other checkout over that of this
+one: the median of the ratios of wall time in each repeat, the ratio of the shortest wall times, and
+the ratio of the shortest processor times. Processor time is that of all threads and child
+processes; other load disturbs it least.
 """
 
 import argparse
@@ -29,12 +30,14 @@ ROOT = Path(__file__).resolve().parents[1]
 MISSIONS = ROOT / "scenarios" / "umad" / "missions"
 
 Work = Callable[[], object]
-"""What is timed; each call does the same work, or the next piece of it."""
+"""Function that is timed; each call does the same work, or the next piece of it."""
 
 
-def drive_random(*, turning: bool = False) -> Work:
-    """Return 50 steps of Drive-v0 with random actions, as at the start of training; `turning`:
-    those that only turn to and fro, where there is room to."""
+def prepare_random_drive(*, turning: bool = False) -> Work:
+    """Return the work of 50 steps of Drive-v0 with random actions, as at the start of training.
+
+    With `turning` the robot only turns to and fro, where there is room for it.
+    """
     import numpy as np
 
     env = _drive_env(3)
@@ -50,8 +53,8 @@ def drive_random(*, turning: bool = False) -> Work:
     return work
 
 
-def drive_contact() -> Work:
-    """50 steps of Drive-v0 ahead, against a wall that the robot has reached before."""
+def prepare_contact_drive() -> Work:
+    """Return the work of 50 steps of Drive-v0 straight ahead, against a wall already reached."""
     import numpy as np
 
     env = _drive_env(1)
@@ -67,15 +70,18 @@ def drive_contact() -> Work:
     return work
 
 
-def mission_run(
+def prepare_mission_run(
     drive: str,
     file: str = "mission_1.txt",
     areas: Sequence[int] = (1, 2),
     *,
     again: bool = False,
 ) -> Work:
-    """Return a run of a shipped mission with a drive. The first one of a process imports the
-    simulator and plans the ways, too; `again`: after such a run."""
+    """Return the work of one run of a shipped mission with a drive.
+
+    The first run in a process also imports the simulator and plans the paths; with `again` such a
+    run is made beforehand, without being timed.
+    """
     from argo_env.planning import open_site
     from argo_env.run.session import simulate
     from argo_env.run.spec import RunSpec
@@ -90,10 +96,13 @@ def mission_run(
     return lambda: simulate(spec, site)
 
 
-def episodes(seeds: Sequence[int], *, again: bool = False) -> Work:
-    """Return episodes of Inspect-v0 of 40 steps at most, one with each seed in turn, with actions
-    that can be taken, as at the start of training: most of their ways are planned for the first
-    time. `again`: after one of each, when their ways are known, as in the course of training."""
+def prepare_episodes(seeds: Sequence[int], *, again: bool = False) -> Work:
+    """Return the work of one episode of Inspect-v0, at most 40 random legal actions.
+
+    Each call takes the next of the seeds. As at the start of training, most paths are planned for
+    the first time. With `again` an episode of each seed is run beforehand, so that the paths are
+    known, as later in training.
+    """
     import gymnasium as gym
     import numpy as np
 
@@ -101,10 +110,10 @@ def episodes(seeds: Sequence[int], *, again: bool = False) -> Work:
 
     env: Any = gym.make("argo/Inspect-v0", disable_env_checker=True)
     env.reset(seed=100)
-    turns = cycle(seeds)
+    next_seeds = cycle(seeds)
 
     def work() -> None:
-        seed = next(turns)
+        seed = next(next_seeds)
         env.reset(seed=seed)
         rng = np.random.default_rng(seed)
         for _ in range(40):
@@ -118,9 +127,11 @@ def episodes(seeds: Sequence[int], *, again: bool = False) -> Work:
     return work
 
 
-def importing() -> Work:
-    """Import a script of 2,000 tasks, most of whose lines differ; what makes the script is of this
-    checkout."""
+def prepare_import() -> Work:
+    """Return the import of a script of 2,000 tasks, most of whose lines differ.
+
+    The script is always made by the code of this checkout.
+    """
     from compile import make_catalog, make_script  # beside this file
 
     from argo_compiler.script import import_script
@@ -131,13 +142,13 @@ def importing() -> Work:
     return lambda: import_script(script, catalog)
 
 
-def report() -> Work:
-    """The report of a run of mission #1 with its picture, as the second one on a site."""
+def prepare_report() -> Work:
+    """Return the writing of a report of mission #1 with its picture, the second one on a site."""
     from argo_env.planning import open_site
     from argo_planner.use_cases.reporting import report_files
 
     site = open_site("umad").prepare()
-    record: Any = mission_run("route")()
+    record: Any = prepare_mission_run("route")()
 
     def work() -> object:
         return report_files(record, site.site, site.robot)
@@ -146,13 +157,13 @@ def report() -> Work:
     return work
 
 
-def film() -> Work:
-    """A film of mission #1, 20 times as fast as it was."""
+def prepare_film() -> Work:
+    """Return the rendering of a film of mission #1 at 20 times its speed."""
     from argo_env.pictures import write_film
     from argo_env.planning import open_site
 
     site = open_site("umad").prepare()
-    record: Any = mission_run("route")()
+    record: Any = prepare_mission_run("route")()
 
     def work() -> None:
         with tempfile.TemporaryDirectory() as folder:
@@ -162,21 +173,21 @@ def film() -> Work:
 
 
 CASES: dict[str, tuple[Callable[[], Work], int]] = {
-    "drive-free": (partial(drive_random, turning=True), 4),
-    "drive-random": (drive_random, 4),
-    "drive-contact": (drive_contact, 4),
-    "kinematic": (partial(mission_run, "kinematic", again=True), 3),
-    "kinematic-first": (partial(mission_run, "kinematic"), 1),
-    "kinematic-rounds": (partial(mission_run, "kinematic", "protocol_3.txt", ()), 1),
-    "tracked": (partial(mission_run, "tracked"), 1),
-    "route": (partial(mission_run, "route", again=True), 10),
-    "inspect": (partial(episodes, range(1_000_000)), 3),
-    "inspect-known": (partial(episodes, range(3), again=True), 3),
-    "import": (importing, 1),
-    "report": (report, 1),
-    "film": (film, 1),
+    "drive-free": (partial(prepare_random_drive, turning=True), 4),
+    "drive-random": (prepare_random_drive, 4),
+    "drive-contact": (prepare_contact_drive, 4),
+    "kinematic": (partial(prepare_mission_run, "kinematic", again=True), 3),
+    "kinematic-first": (partial(prepare_mission_run, "kinematic"), 1),
+    "kinematic-rounds": (partial(prepare_mission_run, "kinematic", "protocol_3.txt", ()), 1),
+    "tracked": (partial(prepare_mission_run, "tracked"), 1),
+    "route": (partial(prepare_mission_run, "route", again=True), 10),
+    "inspect": (partial(prepare_episodes, range(1_000_000)), 3),
+    "inspect-known": (partial(prepare_episodes, range(3), again=True), 3),
+    "import": (prepare_import, 1),
+    "report": (prepare_report, 1),
+    "film": (prepare_film, 1),
 }
-"""What prepares the work of each case, and how many times a process does it."""
+"""Function that prepares the work of each case, and the number of times a process does it."""
 
 
 def _drive_env(seed: int) -> Any:
@@ -190,33 +201,36 @@ def _drive_env(seed: int) -> Any:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Print a line for each case."""
+    """Print one line for each case."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("checkout", type=Path, help="folder with the code to compare with")
     parser.add_argument("cases", nargs="*", metavar="case", help=", ".join(CASES))
-    parser.add_argument("--repeats", type=int, default=5, help="turns that count")
+    parser.add_argument("--repeats", type=int, default=5, help="repeats that are counted")
     options = parser.parse_args(arguments)
     for name in options.cases:
         if name not in CASES:
-            parser.error(f"there is no case {name}; there are: {', '.join(CASES)}")
+            parser.error(f"there is no case {name}; choose from: {', '.join(CASES)}")
     before = options.checkout.resolve()
     if not (before / "argo_env").is_dir():
-        parser.error(f"{before} is no checkout: it has no folder argo_env")
-    print(f"{'case':<20} {'median':>7} {'least':>7} {'CPU':>7}   before and today (least)")
+        parser.error(f"{before} is not a checkout of Argo: it has no folder argo_env")
+    print(f"{'case':<20} {'median':>7} {'minimum':>7} {'CPU':>7}   before and today (minimum)")
     with tempfile.TemporaryDirectory() as caches:
         for name in options.cases or CASES:
-            print(compare(name, before, Path(caches), options.repeats), flush=True)
+            print(compare_case(name, before, Path(caches), options.repeats), flush=True)
 
 
-def compare(name: str, before: Path, caches: Path, repeats: int) -> str:
-    """The line of a case."""
-    turns = [
-        [timed(name, root, caches / cache) for root, cache in ((before, "before"), (ROOT, "today"))]
+def compare_case(name: str, before: Path, caches: Path, repeats: int) -> str:
+    """Return the line of the table for a case."""
+    times = [
+        [
+            time_in_process(name, root, caches / cache)
+            for root, cache in ((before, "before"), (ROOT, "today"))
+        ]
         for _ in range(repeats + 1)
     ][1:]
-    old, new = ([turn[k] for turn in turns] for k in (0, 1))
+    old, new = ([pair[k] for pair in times] for k in (0, 1))
     paired = median(a[0] / b[0] for a, b in zip(old, new, strict=True))
     (old_wall, old_cpu), (new_wall, new_cpu) = (
         (min(wall for wall, _ in all), min(cpu for _, cpu in all)) for all in (old, new)
@@ -227,8 +241,8 @@ def compare(name: str, before: Path, caches: Path, repeats: int) -> str:
     )
 
 
-def timed(name: str, root: Path, cache: Path) -> tuple[float, float]:
-    """Wall and processor time (s) of the work of a case with the code of a checkout."""
+def time_in_process(name: str, root: Path, cache: Path) -> tuple[float, float]:
+    """Return the wall and processor time (s) of a case with the code of a checkout."""
     environment = os.environ | {"PYTHONPATH": str(root), "ARGO_CACHE_DIR": str(cache)}
     command = (sys.executable, __file__, "--time", name, str(root))
     done = subprocess.run(
@@ -239,11 +253,11 @@ def timed(name: str, root: Path, cache: Path) -> tuple[float, float]:
 
 
 def time_here(name: str, root: str) -> None:
-    """Times a case in this process; prints wall and processor time (s) as JSON."""
+    """Time a case in this process, and print wall and processor time (s) as JSON."""
     import argo_env
 
     if not Path(argo_env.__file__).is_relative_to(root):
-        raise SystemExit(f"argo_env is that of {argo_env.__file__}, not of {root}")
+        raise SystemExit(f"argo_env was imported from {argo_env.__file__}, not from {root}")
     prepare, calls = CASES[name]
     work = prepare()
     wall, cpu = time.perf_counter(), sum(os.times()[:4])

@@ -1,27 +1,27 @@
-"""How long a mission takes from script text to an executable machine, and how that grows.
+"""Time from script text to an executable machine, and its growth with the number of tasks.
 
     python benchmarks/compile.py
     python benchmarks/compile.py --sizes 1000 10000 --repeats 5
 
-The script is made for each number of tasks, always the same one. Of its steps
+The script for a number of tasks is always the same. Of its steps
 
 - 35 % measure one checkpoint, by number or by name, in several wordings;
-- 15 % drive to a place, an area or coordinates of their own;
-- 15 % measure or drive with a manner: retries, what to do after a failure, a speed;
-- 15 % measure and decide by one or two conditions where to go on;
-- 10 % give two commands joined by `and`, or a task with a name of its own;
-- 10 % patrol one of three floors, four tasks each, for a time of their own;
+- 15 % drive to a named pose, an area or coordinates, which differ;
+- 15 % measure or drive with a modifier: retries, the handling of a failure, a speed;
+- 15 % measure, and choose the next step by one or two conditions;
+- 10 % give two orders joined by `and`, or a task with its own name;
+- 10 % patrol one of three floors, with four tasks each, for a duration that differs;
 
-and for every fifty steps one line repeats ten of them as a group. Numbers, names and coordinates
-differ from line to line. `parse` includes healing, `resolve` names and links the tasks, `lower`
-checks the mission first. Times are CPU seconds of this process (all stages run on one core and wait
-for nothing), the median of the repeats, after the grammars have been loaded, which is shown once.
-Growth is the time for a task over that at the size before: 1 is linear. The memory is the most that
-Python objects took at once, in a run of its own.
+and for every fifty steps one line repeats eleven of them as a group. Numbers, names and coordinates
+differ from line to line. `parse` includes the correction of misspellings, `resolve` names and links
+the tasks, and `lower` checks the mission first. Times are CPU seconds of this process, in which all
+stages run on one core without waiting. They are medians of the repeats, after the grammars have
+been loaded; that time is printed once. Growth is the time for a task over that at the previous
+size: 1 is linear. Memory is the peak of Python objects, measured in a separate run.
 
-For scale, the same number of flat states, each with one transition to the next, is declared in
-python-statemachine where it is installed. That reads no script, checks nothing and nests nothing:
-it is the least that building a machine of this size takes there.
+For comparison, the same number of flat states, each with one transition to the next, is declared in
+python-statemachine if it is installed. That neither reads a script nor checks or nests anything, so
+it is a lower limit of the time to build a machine of this size there.
 """
 
 import argparse
@@ -53,7 +53,7 @@ SIZES = (1_000, 10_000, 30_000, 100_000)
 
 
 def make_catalog() -> Catalog:
-    """A made-up site of three floors with sixty checkpoints."""
+    """Return an invented site of three floors with sixty checkpoints."""
     kinds = list(CheckpointKind)
     scale = Interval(low=0, high=100)
     checkpoints = tuple(
@@ -82,31 +82,33 @@ def make_catalog() -> Catalog:
 
 
 def make_script(tasks: int, catalog: Catalog) -> str:
-    """A protocol of that many tasks besides START; see above for what it is made of."""
+    """Return a script of that many tasks besides START; the module describes its lines."""
     draw = random.Random(tasks)
     lines = ["Mission Protocol #1", "Maximum duration: 900 h", ""]
     lines.append("1. Set the starting point in starting area 1.")
-    readings = {"valve": "position", "pressure gauge": "value", "liquid level gauge": "level"}
+    quantities = {"valve": "position", "pressure gauge": "value", "liquid level gauge": "level"}
     step = 1
     groups = []
-    left = tasks
-    while left > 0:
+    remaining = tasks
+    while remaining > 0:
         step += 1
         checkpoint = draw.choice(catalog.checkpoints)
         k = checkpoint.id
         kind = draw.random()
-        planned = 1
-        if left >= 4 and kind < 0.10:
-            said = f"Patrol floor {draw.randint(1, 3)} in circles for {draw.randint(2, 90)} minutes"
-            planned = 4
-        elif left >= 2 and kind < 0.15:
-            said = f"Check checkpoint #{k} and go to the front of the site"
-            planned = 2
+        added = 1
+        if remaining >= 4 and kind < 0.10:
+            sentence = (
+                f"Patrol floor {draw.randint(1, 3)} in circles for {draw.randint(2, 90)} minutes"
+            )
+            added = 4
+        elif remaining >= 2 and kind < 0.15:
+            sentence = f"Check checkpoint #{k} and go to the front of the site"
+            added = 2
         elif kind < 0.20:
-            said = f'"look {step}": inspect checkpoint #{k}'
+            sentence = f'"look {step}": inspect checkpoint #{k}'
         elif kind < 0.35:
             to = max(2, step - draw.randint(1, 20))
-            said = draw.choice(
+            sentence = draw.choice(
                 [
                     f"Check #{k}; if it is above {draw.randint(50, 99)} bar, skip to step {to}",
                     f"Check checkpoint #{k}. If the value is between {draw.randint(1, 20)} and"
@@ -117,7 +119,7 @@ def make_script(tasks: int, catalog: Catalog) -> str:
                 ]
             )
         elif kind < 0.50:
-            said = draw.choice(
+            sentence = draw.choice(
                 [
                     f"Check checkpoint #{k}, retry {draw.randint(2, 5)} times",
                     f"Inspect #{k}; if it fails, abort the mission",
@@ -125,7 +127,7 @@ def make_script(tasks: int, catalog: Catalog) -> str:
                 ]
             )
         elif kind < 0.65:
-            said = draw.choice(
+            sentence = draw.choice(
                 [
                     "Go to the front of the site",
                     "Drive to starting area 1",
@@ -134,58 +136,58 @@ def make_script(tasks: int, catalog: Catalog) -> str:
                 ]
             )
         else:
-            reading = readings[checkpoint.kind]
-            said = draw.choice(
+            quantity = quantities[checkpoint.kind]
+            sentence = draw.choice(
                 [
                     f"Check the checkpoint #{k}",
                     f"Let the robot measure checkpoint {k}",
-                    f"Read the {reading} of {checkpoint.name}",
+                    f"Read the {quantity} of {checkpoint.name}",
                 ]
             )
-        lines.append(f"{step}. {said}.")
-        left -= planned
+        lines.append(f"{step}. {sentence}.")
+        remaining -= added
         if step % 50 == 0:
             groups.append(f"Repeat steps {step - 20} to {step - 10} {draw.randint(2, 5)} times.")
     return "\n".join(lines + groups) + "\n"
 
 
-def _names(catalog: Catalog) -> tuple[list[str], str, list[str]]:
-    """The names of places, of the script, and of checkpoints, as `parse` takes them."""
+def _parse_arguments(catalog: Catalog) -> tuple[list[str], str, list[str]]:
+    """Return the names of poses, of the script, and of checkpoints, as `parse` takes them."""
     places = [place.name for place in catalog.places]
     return places, "script", [checkpoint.name for checkpoint in catalog.checkpoints]
 
 
-def stages(text: str, catalog: Catalog) -> dict[str, float]:
-    """Seconds of each stage from the text to an executor."""
+def time_stages(text: str, catalog: Catalog) -> dict[str, float]:
+    """Return the CPU seconds of each stage from the text to an executor, and their sum."""
     seconds: dict[str, float] = {}
 
-    def timed(name: str, stage: Callable[..., Any], *arguments: Any) -> Any:
+    def time_stage(name: str, stage: Callable[..., Any], *arguments: Any) -> Any:
         gc.collect()
         began = time.process_time()
         result = stage(*arguments)
         seconds[name] = time.process_time() - began
         return result
 
-    script = timed("parse", parse, text, *_names(catalog))
-    resolved = timed("resolve", resolve_script, script, catalog)
-    machine = timed("lower", lower, resolved.mission)
-    timed("executor", Executor, machine)
+    script = time_stage("parse", parse, text, *_parse_arguments(catalog))
+    resolved = time_stage("resolve", resolve_script, script, catalog)
+    machine = time_stage("lower", lower, resolved.mission)
+    time_stage("executor", Executor, machine)
     seconds["total"] = sum(seconds.values())
     return seconds
 
 
 def peak_memory(text: str, catalog: Catalog) -> float:
-    """MB that Python objects took at most on the way."""
+    """Return the peak memory of Python objects from the text to an executor, in MB."""
     tracemalloc.start()
-    mission = resolve_script(parse(text, *_names(catalog)), catalog).mission
+    mission = resolve_script(parse(text, *_parse_arguments(catalog)), catalog).mission
     Executor(lower(mission))
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     return peak / 1e6
 
 
-def flat_statemachine(states: int) -> float:
-    """Seconds to declare a flat chain of states in python-statemachine, and to make an instance."""
+def time_flat_statemachine(states: int) -> float:
+    """Return the CPU seconds to declare and create a chain of states in python-statemachine."""
     from statemachine import State, StateMachine
 
     began = time.process_time()
@@ -201,28 +203,30 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sizes", type=int, nargs="+", default=SIZES, help="numbers of tasks")
-    parser.add_argument("--repeats", type=int, default=3, help="of which the median is shown")
+    parser.add_argument(
+        "--repeats", type=int, default=3, help="repeats, of which the median is printed"
+    )
     parser.add_argument(
         "--states",
         type=int,
         default=1_000,
-        help="of python-statemachine, which takes minutes for more",
+        help="states in python-statemachine, which takes minutes for more",
     )
-    given = parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
     from argo_compiler.script.syntax.repeats import repeats
 
     catalog = make_catalog()
     began = time.process_time()
-    stages(make_script(200, catalog), catalog)
+    time_stages(make_script(200, catalog), catalog)
     print(f"first mission of 200 tasks, grammars loaded: {time.process_time() - began:.2f} s\n")
     print(f"{'tasks':>7} {'stage':<9} {'seconds':>9} {'µs/task':>9} {'growth per task':>16}")
     before: dict[str, float] = {}
-    for size in given.sizes:
+    for size in options.sizes:
         text = make_script(size, catalog)
         runs = []
-        for _ in range(given.repeats):
-            repeats.cache_clear()  # lines that the compiler has read before
-            runs.append(stages(text, catalog))
+        for _ in range(options.repeats):
+            repeats.cache_clear()  # clears lines that were read before
+            runs.append(time_stages(text, catalog))
         for stage in runs[0]:
             median = statistics.median(run[stage] for run in runs)
             each = median / size * 1e6
@@ -234,10 +238,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if importlib.util.find_spec("statemachine") is None:
         print("python-statemachine is not installed: no flat machine to compare with")
         return
-    seconds = flat_statemachine(given.states)
+    seconds = time_flat_statemachine(options.states)
     print(
-        f"python-statemachine, {given.states} flat states: {seconds:.3f} s,"
-        f" {seconds / given.states * 1e6:.1f} µs/state"
+        f"python-statemachine, {options.states} flat states: {seconds:.3f} s,"
+        f" {seconds / options.states * 1e6:.1f} µs/state"
     )
 
 

@@ -1,16 +1,16 @@
-"""How fast evaluations are: runs a second, what is lost beside the simulation, and two workers
-beside one, for each back end.
+"""Speed of evaluations: runs per second, time outside the simulation, and gain of a second worker.
 
     python -m benchmarks.evaluate
     python -m benchmarks.evaluate --runs 1000 --kinematic 100 --backend processes
     python -m benchmarks.evaluate --power
 
-The time outside the simulation is that of the whole with one worker, without its start, less that
-of its runs, each of which its worker times. Two workers are held against one by the same runs one
-after the other in this process, in turn with them in parts, so that other work on the machine slows
-both. Memory is the most that workers have taken by the first and by the last
-tenth of the runs.
-With `--power`: how often two plans with a known difference are told apart.
+It measures each back end. The time outside the simulation is the wall time of all runs with one
+worker, without its start, minus the sum of the runs' times, which the worker measures. For the
+comparison of two workers with one, this process makes the same runs one after the other, in parts
+that alternate with those of the workers, so that other load on the machine slows both. Memory is
+the peak of a worker in the first and in the last tenth of the runs.
+
+`--power` prints how often the comparison of two plans detects a known difference.
 """
 
 import argparse
@@ -36,132 +36,137 @@ SCRIPT = Path("scenarios/umad/missions/mission_1.txt")
 _PARTS = 5
 
 
-def plan_of(drive: str, seeds: range) -> EvaluationPlan:
-    """Mission #1 with a drive, in the worlds of these seeds."""
+def make_plan(drive: str, seeds: range) -> EvaluationPlan:
+    """Return the plan of mission #1 with a drive, in the worlds of these seeds."""
     upload = Upload(str(SCRIPT), SCRIPT.read_bytes())
     mission = import_mission(upload, open_site("umad").prepare(), 1, 2).mission
     case = EvaluationCase(mission="mission 1", spec=RunSpec(mission=mission, drive=drive))
     return EvaluationPlan(cases=(case,), seeds=tuple(seeds))
 
 
-def watched(order: WorkOrder) -> RunRow:
-    """A run whose row says how long it took (s), and how much memory its worker has taken (MB) by
-    its end."""
+def timed_run(order: WorkOrder) -> RunRow:
+    """Execute a run, and add its time (s) and the peak memory of its worker (MB) to its row."""
     begun = time.perf_counter()
     row = execute_run(order)
-    taken = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    world = {"seconds": time.perf_counter() - begun, "memory": taken}
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    world = {"seconds": time.perf_counter() - begun, "memory": peak}
     return row.model_copy(update={"world": world})
 
 
-def parts(seeds: int) -> Iterator[range]:
-    """The seeds in some parts, each as large as the others."""
+def seed_parts(seeds: int) -> Iterator[range]:
+    """Yield the seeds in up to five parts of the same size; the last one may be smaller."""
     size = -(-seeds // _PARTS)
     for first in range(0, seeds, size):
         yield range(first, min(seeds, first + size))
 
 
 @dataclass(frozen=True)
-class Measured:
-    """What so many workers made of some runs."""
+class Timing:
+    """Times and memory of some runs with a number of workers."""
 
-    took: float
-    """s"""
+    elapsed: float
+    """wall time in s"""
     running: float
-    """s that the runs took in their workers, all together"""
+    """sum of the runs' times in their workers, in s"""
     alone: float
-    """s that the same runs took one after the other in this process, in turn with them"""
+    """time of the same runs one after the other in this process, in s"""
     memory: tuple[float, ...]
-    """MB that a worker had taken at most by the end of each run"""
+    """peak memory of the worker by the end of each run, in MB"""
 
 
-def measured(name: str, drive: str, runs: int, workers: int) -> Measured:
-    """Makes the runs with so many workers of a back end."""
-    plan = plan_of(drive, range(runs))
-    took, running, alone = 0.0, 0.0, 0.0
+def time_runs(name: str, drive: str, runs: int, workers: int) -> Timing:
+    """Make the runs with a number of workers of a back end, and alternately in this process."""
+    plan = make_plan(drive, range(runs))
+    elapsed, running, alone = 0.0, 0.0, 0.0
     memory: list[float] = []
     backend = make_backend(name, workers)
-    try:  # they open the site
-        list(EvaluationRunner(plan_of(drive, range(10_000, 10_008)), backend).rows_as_completed())
-        for run in plan_of(drive, range(20_000, 20_002)).runs():
+    try:  # the first runs open the site in the workers and in this process
+        list(EvaluationRunner(make_plan(drive, range(10_000, 10_008)), backend).rows_as_completed())
+        for run in make_plan(drive, range(20_000, 20_002)).runs():
             execute_run(WorkOrder("", plan.cases[0], run.spec, {}))
-        for part in parts(runs):
+        for part in seed_parts(runs):
             partial = plan.model_copy(update={"seeds": tuple(part)})
             begun = time.perf_counter()
-            evaluating = EvaluationRunner(partial, backend, call=watched)
+            evaluating = EvaluationRunner(partial, backend, call=timed_run)
             rows = list(evaluating.rows_as_completed())
-            took += time.perf_counter() - begun
+            elapsed += time.perf_counter() - begun
             assert [row.outcome for row in rows] == [RunOutcome.SUCCESS] * len(part)
             running += sum(row.world["seconds"] for row in rows)
             memory += [row.world["memory"] for row in rows]
             begun = time.perf_counter()
             for run in partial.runs():
-                watched(WorkOrder("", partial.cases[0], run.spec, {}))
+                timed_run(WorkOrder("", partial.cases[0], run.spec, {}))
             alone += time.perf_counter() - begun
     finally:
         backend.close()
-    return Measured(took, running, alone, tuple(memory))
+    return Timing(elapsed, running, alone, tuple(memory))
 
 
-def measure(name: str, drive: str, runs: int) -> None:
-    """Prints what a back end makes of so many runs."""
-    one, two = (measured(name, drive, runs, workers) for workers in (1, 2))
-    # Each is held against this process at the same time, so that other work counts on both sides.
-    times = (two.alone / two.took) / (one.alone / one.took)
+def measure_backend(name: str, drive: str, runs: int) -> None:
+    """Print the figures of a back end for a number of runs."""
+    one, two = (time_runs(name, drive, runs, workers) for workers in (1, 2))
+    # Each is relative to this process at the same time, so that other load affects both sides.
+    gain = (two.alone / two.elapsed) / (one.alone / one.elapsed)
     tenth = max(1, runs // 10)
     print(
-        f"{name:<10} {drive:<10} {runs:>5} runs: {runs / one.took:6.1f} a second with one worker, "
-        f"{runs / two.took:6.1f} with two ({times:.2f} times as many), "
-        f"{100 * (one.took / one.running - 1):5.1f} % beside the simulation, memory of a worker "
-        f"{max(two.memory[:tenth]):.0f} MB after a tenth of the runs, "
+        f"{name:<10} {drive:<10} {runs:>5} runs: {runs / one.elapsed:6.1f} a second with one "
+        f"worker, {runs / two.elapsed:6.1f} with two ({gain:.2f} times as many), "
+        f"{100 * (one.elapsed / one.running - 1):5.1f} % outside the simulation, memory of a "
+        f"worker {max(two.memory[:tenth]):.0f} MB after a tenth of the runs, "
         f"{max(two.memory[-tenth:]):.0f} MB after all",
         flush=True,
     )
 
 
 def show_power(comparisons: int) -> None:
-    """Prints how often plans are told apart whose difference is known, and how often one that is
-    compared with itself is."""
+    """Print the power of comparisons, and how often they find a difference where there is none."""
     rng = np.random.default_rng(0)
     for worlds in (100, 300, 1_000):
         for better, worse in ((0.95, 0.90), (0.98, 0.95)):
-            # As hard worlds are hard for both: half of what fails fails together.
+            # Difficult worlds are difficult for both plans: half of the failures are common.
             common = (1 - better) / 2
             only_better, only_worse = (1 - worse) - common, (1 - better) - common
             counts = rng.multinomial(
                 worlds, [only_better, only_worse, 1 - only_better - only_worse], comparisons
             )
-            found = sum(
+            detected = sum(
                 SuccessPairs(int(both), int(a), int(b), 0).p_value <= 0.05 for a, b, both in counts
             )
             expected = power(worlds, only_better, only_worse)
             print(
-                f"{worlds:>5} worlds, {better:.0%} beside {worse:.0%}: told apart in "
-                f"{found / comparisons:.0%} of {comparisons} comparisons ({expected:.0%} reckoned)"
+                f"{worlds:>5} worlds, {better:.0%} and {worse:.0%}: detected in "
+                f"{detected / comparisons:.0%} of {comparisons} comparisons "
+                f"({expected:.0%} expected)"
             )
-    same = 0
+    errors = 0
     for _ in range(comparisons):
-        done = rng.random(300) < 0.9
-        same += SuccessPairs.from_successes(done, done).p_value <= 0.05
-    print(f"a plan beside itself: a difference in {same} of {comparisons} comparisons")
+        successes = rng.random(300) < 0.9
+        errors += SuccessPairs.from_successes(successes, successes).p_value <= 0.05
+    print(f"a plan and itself: a difference in {errors} of {comparisons} comparisons")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Measure what the command line asks for."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--runs", type=int, default=200, help="with `route`")
+    parser.add_argument("--runs", type=int, default=200, help="runs with `route`")
     parser.add_argument("--kinematic", type=int, default=20, help="runs with `kinematic`")
-    parser.add_argument("--backend", choices=[*BACKENDS], nargs="*", default=[*BACKENDS])
-    parser.add_argument("--power", action="store_true", help="of comparisons, and nothing else")
-    parser.add_argument("--comparisons", type=int, default=2_000, help="of --power")
-    asked = parser.parse_args(arguments)
-    if asked.power:
-        show_power(asked.comparisons)
+    parser.add_argument(
+        "--backend", choices=[*BACKENDS], nargs="*", default=[*BACKENDS], help="back ends"
+    )
+    parser.add_argument(
+        "--power", action="store_true", help="measure the power of comparisons only"
+    )
+    parser.add_argument(
+        "--comparisons", type=int, default=2_000, help="number of comparisons with --power"
+    )
+    options = parser.parse_args(arguments)
+    if options.power:
+        show_power(options.comparisons)
         return
-    for name in asked.backend:
-        for drive, runs in (("route", asked.runs), ("kinematic", asked.kinematic)):
+    for name in options.backend:
+        for drive, runs in (("route", options.runs), ("kinematic", options.kinematic)):
             if runs:
-                measure(name, drive, runs)
+                measure_backend(name, drive, runs)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The calibration of a robot, fitted to drives whose times were taken."""
+"""Fit of a robot's calibration to timed drives."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from argo_env.navigation.path import Motion
 from argo_env.robot.spec import Calibration, MotionKind, MotionPace, RobotSpec
 
 _DIGITS = 4
-_MOST = 10.0  # times slower than told, or s lost, that a motion is taken to be
+_MOST = 10.0  # upper limit of a motion's nominal time factor, and of the seconds that it loses
 
 
 @dataclass(frozen=True)
@@ -21,15 +21,18 @@ class TimedDrive:
     motions: tuple[Motion, ...]
     seconds: float
     velocity: float | None = None
-    """m/s that was asked for on the flat, None for the robot's own"""
+    """m/s that was commanded on the flat; None: the robot's own speed"""
 
 
-def fit(drives: Iterable[TimedDrive], robot: RobotSpec) -> Calibration:
-    """The calibration with the least squared error over all `drives`.
+def fit_calibration(drives: Iterable[TimedDrive], robot: RobotSpec) -> Calibration:
+    """Return the calibration with the least squared error over all drives.
 
-    The time of a drive is linear in what is looked for: for each kind of motion its length over the
-    told speed, times 1 / share, and the number of motions times the time lost. A kind that is never
-    driven is taken to go as told. Raises ValueError if there are no drives.
+    The time of a drive is linear in the unknowns: for each kind of motion, the time at the
+    commanded speed times 1 / share, plus the number of motions times the seconds lost. A kind that
+    is never driven keeps share 1 and loses no time.
+
+    Raises:
+        ValueError: There are no drives.
     """
     drives = [d for d in drives if d.motions]
     if not drives:
@@ -39,14 +42,14 @@ def fit(drives: Iterable[TimedDrive], robot: RobotSpec) -> Calibration:
     for row, drive in zip(matrix, drives, strict=True):
         for motion in drive.motions:
             k = 2 * kinds.index(motion.kind)
-            row[k] += told_seconds(motion, robot, drive.velocity)
+            row[k] += nominal_seconds(motion, robot, drive.velocity)
             row[k + 1] += 1.0
     seconds = np.array([drive.seconds for drive in drives])
     driven = matrix.any(axis=0)
     low = np.tile([1.0 / _MOST, 0.0], len(kinds))
-    found = lsq_linear(matrix[:, driven], seconds, (low[driven], _MOST))
+    solution = lsq_linear(matrix[:, driven], seconds, (low[driven], _MOST))
     values = np.tile([1.0, 0.0], len(kinds))
-    values[driven] = found.x
+    values[driven] = solution.x
     return Calibration(
         **{
             kind: MotionPace(share=round(1.0 / slower, _DIGITS), lost=round(lost, _DIGITS))
@@ -55,15 +58,15 @@ def fit(drives: Iterable[TimedDrive], robot: RobotSpec) -> Calibration:
     )
 
 
-def told_seconds(motion: Motion, robot: RobotSpec, velocity: float | None = None) -> float:
-    """s that a motion would take if the robot were as fast as it is told to be, all the way."""
+def nominal_seconds(motion: Motion, robot: RobotSpec, velocity: float | None = None) -> float:
+    """Return the seconds of a motion at the commanded speed from its start to its end."""
     if motion.turn:
         return abs(motion.turn) / robot.target_speed(motion.kind)
     return motion.length / motion.speed(robot, velocity)
 
 
-def errors(drives: Sequence[TimedDrive], robot: RobotSpec) -> NDArray[np.float64]:
-    """s by which each drive took longer than the robot's calibration says, shape (n,)."""
+def prediction_errors(drives: Sequence[TimedDrive], robot: RobotSpec) -> NDArray[np.float64]:
+    """Return measured minus predicted seconds of each drive, shape (n,)."""
     return np.array(
         [d.seconds - sum(m.duration(robot, d.velocity) for m in d.motions) for d in drives]
     )

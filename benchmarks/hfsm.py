@@ -1,4 +1,4 @@
-"""How many events a second machines take, Argo's and others', on the same nested mission.
+"""Events per second of Argo's and other state machines on the same nested mission.
 
     python benchmarks/hfsm.py            # needs the extra `bench`
     python benchmarks/hfsm.py --states
@@ -7,14 +7,14 @@ The mission, repeated for as long as there are events:
 
     A, then Alpha three times (B, then Beta twice (D, E), then C), then F
 
-but after C with a value above 8, Alpha is left at once. Each event is the end of the present task's
-action, with the value that was measured. In each library the mission is built as its users would,
-with its own nesting, guards and callbacks, and it is checked to go through the same tasks before it
-is timed. All take the same events in the same process, in turn; the figures are medians of the
-repeats, in CPU time, and building is not part of them.
+but after C with a value above 8, Alpha is left at once. Each event is the end of the current task's
+action, with the measured value. In each library the mission is built as its users would build it,
+with the library's nesting, guards and callbacks. Before the timing, each machine is checked to
+execute the same tasks. All machines handle the same events in the same process, in turn; the
+figures are medians of the repeats, in CPU time, without the time to build a machine.
 
-`--states` counts what has to be written by hand, or is made, for one mission with pause, stop,
-going home, recharging and going on.
+`--states` counts the states that are written by hand, or made, for one mission with pause, stop,
+return home, recharging and resumption.
 """
 
 import argparse
@@ -49,19 +49,19 @@ EVENTS = 5_000
 
 ISAR = "isar 1.34.28"
 ISAR_STATES = 26
-"""flat states of its machine: the members of `States` in isar/state_machine/states_enum.py"""
+"""number of flat states: the members of `States` in isar/state_machine/states_enum.py"""
 ISAR_STATES_FOR_THESE = 17
-"""of them without those for losing the robot, protective stops, lockdown and maintenance"""
+"""number without those for a lost robot, protective stops, lockdown and maintenance"""
 
 Run = Callable[[Sequence[float]], list[str]]
-"""Takes the values of the events; returns the task that each of them ended."""
+"""Function from the values of the events to the task that each event ended."""
 
 
-def argo() -> Run:
-    """Argo: tasks and groups, lowered."""
+def build_argo() -> Run:
+    """Build the machine in Argo, by lowering tasks and groups."""
 
-    def task(name: str, *ways: Transition) -> Task:
-        return Task(name=name, action=Action.MEASURE, object_id=name, transitions=ways)
+    def task(name: str, *transitions: Transition) -> Task:
+        return Task(name=name, action=Action.MEASURE, object_id=name, transitions=transitions)
 
     high = Condition(type=ConditionType.GREATER, object_id="C", param1=HIGH)
     order = ["A", "B", "D", "E", "C", "F"]
@@ -97,7 +97,7 @@ def argo() -> Run:
 
 
 class Rounds:
-    """The counters of the rounds, for libraries that have none."""
+    """Counters of the rounds, for libraries that have none."""
 
     def __init__(self) -> None:
         self.alpha = 1
@@ -125,12 +125,12 @@ class Rounds:
         return value > HIGH
 
 
-def transitions_flat() -> Run:
-    """transitions, without nesting: entering a group is written into each way that does so."""
+def build_flat_transitions() -> Run:
+    """Build it in transitions without nesting: each transition into a group resets its counter."""
     from transitions import Machine
 
     model: Any = Rounds()
-    ways = [
+    rows = [
         {"trigger": "ended", "source": "A", "dest": "B", "before": "enter_alpha"},
         {"trigger": "ended", "source": "B", "dest": "D", "before": "enter_beta"},
         {"trigger": "ended", "source": "D", "dest": "E"},
@@ -143,20 +143,20 @@ def transitions_flat() -> Run:
         {"trigger": "ended", "source": "C", "dest": "F"},
         {"trigger": "ended", "source": "F", "dest": "A"},
     ]  # fmt: skip
-    Machine(model, states=list("ABDECF"), transitions=ways, initial="A", auto_transitions=False)
+    Machine(model, states=list("ABDECF"), transitions=rows, initial="A", auto_transitions=False)
 
-    return _ending(model)
+    return _transitions_run(model)
 
 
-def transitions_nested() -> Run:
-    """transitions' HierarchicalMachine."""
+def build_hierarchical_transitions() -> Run:
+    """Build it in transitions with HierarchicalMachine."""
     from transitions.extensions import HierarchicalMachine
 
     model: Any = Rounds()
     beta = {"name": "Beta", "initial": "D", "children": ["D", "E"], "on_enter": "enter_beta"}
     alpha = {"name": "Alpha", "initial": "B", "children": ["B", beta, "C"],
              "on_enter": "enter_alpha"}  # fmt: skip
-    ways = [
+    rows = [
         {"trigger": "ended", "source": "A", "dest": "Alpha"},
         {"trigger": "ended", "source": "Alpha_B", "dest": "Alpha_Beta"},
         {"trigger": "ended", "source": "Alpha_Beta_D", "dest": "Alpha_Beta_E"},
@@ -170,14 +170,14 @@ def transitions_nested() -> Run:
         {"trigger": "ended", "source": "F", "dest": "A"},
     ]  # fmt: skip
     HierarchicalMachine(
-        model, states=["A", alpha, "F"], transitions=ways, initial="A", auto_transitions=False
+        model, states=["A", alpha, "F"], transitions=rows, initial="A", auto_transitions=False
     )
 
-    return _ending(model)
+    return _transitions_run(model)
 
 
-def _ending(model: Any) -> Run:
-    """Return what ends the tasks of a model of transitions; a state's last letter is its task."""
+def _transitions_run(model: Any) -> Run:
+    """Return the function that runs a model of transitions; a state's last letter is its task."""
 
     def run(values: Sequence[float]) -> list[str]:
         ended = []
@@ -189,8 +189,8 @@ def _ending(model: Any) -> Run:
     return run
 
 
-def python_statemachine() -> Run:
-    """python-statemachine's own API, with compound states."""
+def build_python_statemachine() -> Run:
+    """Build it in python-statemachine with compound states."""
     from statemachine import State, StateChart
 
     class Night(StateChart[Any]):
@@ -263,8 +263,8 @@ statechart:
 """
 
 
-def sismic() -> Run:
-    """sismic, from its YAML."""
+def build_sismic() -> Run:
+    """Build it in sismic from its YAML."""
     from sismic.interpreter import Interpreter
     from sismic.io import import_from_yaml
 
@@ -281,24 +281,24 @@ def sismic() -> Run:
     return run
 
 
-def py_trees() -> Run:
-    """py_trees: sequences and repeats, one tick for each event."""
+def build_py_trees() -> Run:
+    """Build it in py_trees as sequences and repeats, with one tick for each event."""
     import py_trees as pt
 
-    present: dict[str, Any] = {"value": None, "last": 0.0}
+    values_seen: dict[str, Any] = {"value": None, "last": 0.0}
     ended: list[str] = []
 
     class Measure(pt.behaviour.Behaviour):
         def update(self) -> Any:
-            if present["value"] is None:
+            if values_seen["value"] is None:
                 return pt.common.Status.RUNNING
-            present["last"], present["value"] = present["value"], None
+            values_seen["last"], values_seen["value"] = values_seen["value"], None
             ended.append(self.name)
             return pt.common.Status.SUCCESS
 
     class NotHigh(pt.behaviour.Behaviour):
         def update(self) -> Any:
-            high = present["last"] > HIGH
+            high = values_seen["last"] > HIGH
             return pt.common.Status.FAILURE if high else pt.common.Status.SUCCESS
 
     def sequence(name: str, *children: Any) -> Any:
@@ -313,43 +313,43 @@ def py_trees() -> Run:
 
     def run(values: Sequence[float]) -> list[str]:
         for value in values:
-            present["value"] = value
+            values_seen["value"] = value
             tree.tick()
         return ended
 
     return run
 
 
-PEERS: dict[str, tuple[Callable[[], Run], bool]] = {
-    "Argo": (argo, True),
-    "transitions, flat": (transitions_flat, False),
-    "transitions, hierarchical": (transitions_nested, True),
-    "python-statemachine": (python_statemachine, True),
-    "sismic": (sismic, True),
-    "py_trees": (py_trees, True),
+MACHINES: dict[str, tuple[Callable[[], Run], bool]] = {
+    "Argo": (build_argo, True),
+    "transitions, flat": (build_flat_transitions, False),
+    "transitions, hierarchical": (build_hierarchical_transitions, True),
+    "python-statemachine": (build_python_statemachine, True),
+    "sismic": (build_sismic, True),
+    "py_trees": (build_py_trees, True),
 }
-"""by name: how the machine is built, and whether it is nested"""
+"""function that builds each machine, and whether the machine is hierarchical"""
 
 MISSING = [
     name
-    for name in PEERS
+    for name in MACHINES
     if name != "Argo" and not find_spec(name.partition(",")[0].replace("python-", ""))
 ]
 for name in MISSING:
-    del PEERS[name]
+    del MACHINES[name]
 
 
-def measure(
-    count: int, repeats: int, machines: Mapping[str, tuple[Callable[[], Run], bool]] = PEERS
+def measure_rates(
+    count: int, repeats: int, machines: Mapping[str, tuple[Callable[[], Run], bool]] = MACHINES
 ) -> dict[str, float]:
-    """Events a second of each machine, the medians of so many repeats."""
+    """Return the events per second of each machine, the medians of the repeats."""
     generator = random.Random(0)
     values = [generator.uniform(0.0, 10.0) for _ in range(count)]
-    expected = argo()(values)
+    expected = build_argo()(values)
     rates: dict[str, list[float]] = {name: [] for name in machines}
     for name, (build, _) in machines.items():
         if build()(values) != expected:
-            raise SystemExit(f"{name} goes through other tasks")
+            raise SystemExit(f"{name} executes other tasks than Argo")
     for _ in range(repeats):
         for name, (build, _) in machines.items():
             run = build()
@@ -357,28 +357,28 @@ def measure(
             before = time.process_time()
             run(values)
             rates[name].append(count / (time.process_time() - before))
-    return {name: statistics.median(found) for name, found in rates.items()}
+    return {name: statistics.median(repeated) for name, repeated in rates.items()}
 
 
-def compare(count: int, repeats: int) -> None:
-    """Prints the table."""
-    rates = measure(count, repeats)
-    nesting = [rates[name] for name, (_, nests) in PEERS.items() if nests and name != "Argo"]
-    nested = max(nesting, default=math.nan)
+def print_rates(count: int, repeats: int) -> None:
+    """Print the table."""
+    rates = measure_rates(count, repeats)
+    peers = [rates[name] for name, (_, nested) in MACHINES.items() if nested and name != "Argo"]
+    fastest = max(peers, default=math.nan)
     print(f"{count} events, median of {repeats} repeats, CPU time\n")
-    print(f"{'':28}{'events/s':>12}{'to the fastest hierarchical peer':>36}")
+    print(f"{'':28}{'events/s':>12}{'times the fastest hierarchical peer':>36}")
     for name, rate in sorted(rates.items(), key=lambda item: -item[1]):
-        print(f"{name:28}{rate:12,.0f}{rate / nested:36.2f}")
+        print(f"{name:28}{rate:12,.0f}{rate / fastest:36.2f}")
     if MISSING:
-        print(f"left out, as not installed: {'; '.join(MISSING)}")
+        print(f"not installed: {'; '.join(MISSING)}")
 
 
-def states() -> None:
-    """Counts the states of one mission that can be paused, stopped, sent home and recharged."""
-    here = Pose(x=0, y=0, z=0)
+def print_states() -> None:
+    """Print the number of states of a mission with pause, stop, return home and recharging."""
+    dock = Pose(x=0, y=0, z=0)
     mission = Mission(
         tasks=(Task(name="inspect", action=Action.MEASURE, object_id="1"),),
-        dock=here,
+        dock=dock,
         reactions=(
             Reaction(
                 event=EventKind.LOW_BATTERY,
@@ -389,23 +389,23 @@ def states() -> None:
         ),
     )
     hfsm = lower(mission)
-    made = len(hfsm.composites) + len(hfsm.leaves) + len(hfsm.reactions) + 1
-    print(f"Argo: {made} states, all made from the mission; 0 written by hand")
+    count = len(hfsm.composites) + len(hfsm.leaves) + len(hfsm.reactions) + 1
+    print(f"Argo: {count} states, all made from the mission; 0 written by hand")
     print("      pause, resume and stop belong to every machine and need no state of their own")
     print(f"{ISAR}: {ISAR_STATES} written by hand, {ISAR_STATES_FOR_THESE} of them for these")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Measure or count what the command line asks for."""
+    """Measure rates or count states, as the command line asks."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--events", type=int, default=EVENTS)
-    parser.add_argument("--repeats", type=int, default=7)
+    parser.add_argument("--events", type=int, default=EVENTS, help="number of events")
+    parser.add_argument("--repeats", type=int, default=7, help="repeats of each machine")
     parser.add_argument("--states", action="store_true", help="count states instead")
-    given = parser.parse_args(arguments)
-    if given.states:
-        states()
+    options = parser.parse_args(arguments)
+    if options.states:
+        print_states()
     else:
-        compare(given.events, given.repeats)
+        print_rates(options.events, options.repeats)
 
 
 if __name__ == "__main__":

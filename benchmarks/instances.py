@@ -1,19 +1,21 @@
-"""Route problems from the files that researchers exchange: TSPLIB, OPLib and TSPTW.
+"""Reader of published route problems in the formats TSPLIB, OPLib and TSPTW.
 
-Of the readers that are kept up, vrplib 2.2 takes each line of a matrix for a row of it, where these
-files break rows at will, leaves Euclidean distances unrounded and knows no pseudo-Euclidean ones;
-tsplib95 has had no release since 2020. So this one is our own. TSPLIB's form and distances are
-those of G. Reinelt, "TSPLIB 95", Heidelberg 1995, sections 1 and 2; OPLib adds scores to them.
+No maintained reader fits. vrplib 2.2 takes each line of a matrix as one of its rows, but these
+files break rows anywhere; it does not round Euclidean distances and does not support
+pseudo-Euclidean ones. tsplib95 has had no release since 2020. The format and the distances of
+TSPLIB are those of G. Reinelt, "TSPLIB 95", Heidelberg 1995, sections 1 and 2; OPLib adds scores to
+them.
 
 Tours with time windows (M. López-Ibáñez and C. Blum, "Benchmark instances for the travelling
-salesman problem with time windows", 2020) come in two layouts. A matrix, as all of them are
-collected there: the number of nodes, the travel times, which hold the service at the node that is
-left, and a window for each node; what comes after `#` is a comment. Or coordinates, as Gendreau et
-al. and Ohlmann and Thomas published theirs: after a line `CUST NO. ...` a row `number x y demand
-opens closes service` for each node, up to one with the number 999. Times are then Euclidean
-distances without their decimals, which breaks the triangle inequality; so each, row by row, is made
-as short as the best way over one other node. That gives the collected matrices, to the last one
-of 140. The first node is the depot.
+salesman problem with time windows", 2020) have one of two layouts. The first node is the depot.
+
+- Matrix, the layout of that collection: the number of nodes, the travel times, which include the
+  service at the node that is left, and a window for each node. Text after `#` is a comment.
+- Coordinates, as published by Gendreau et al. and by Ohlmann and Thomas: after `CUST NO. ...` a
+  row `number x y demand opens closes service` for each node, up to a row with the number 999.
+  Times are Euclidean distances without their decimals. As this violates the triangle inequality,
+  each time is reduced, row by row, to that of the best path over one other node. The results equal
+  the matrices of the collection, for all 140 problems.
 """
 
 import re
@@ -38,15 +40,15 @@ from argo_compiler.route.problem import (
 
 MAX_BYTES = 100_000_000
 MAX_NODES = 3000
-"""Far above any problem that is solved in minutes, and below what would exhaust the memory."""
+"""largest number of nodes, far above any problem that is solved in minutes, and within memory"""
 LARGEST = 10**10
-"""the greatest number that is read: its sums stay far from where whole numbers overflow"""
+"""largest absolute value that is accepted; its sums stay far from an overflow of 64-bit integers"""
 FORBIDDEN = -1
-"""in a sequential ordering problem: the column's node comes before the row's"""
+"""entry of a sequential ordering problem's matrix if the column's node precedes the row's"""
 
 _FILE = "TSPLIB, OPLib or TSPTW file"
 _CORRECT = "correct it there"
-_OF_NUMBERS = frozenset("0123456789+-.eE \t\r\f\v")
+_NUMBER_CHARACTERS = frozenset("0123456789+-.eE \t\r\f\v")
 _KEYWORD = re.compile(r"\s*([A-Za-z][A-Za-z_0-9]*)\s*(?::\s*(.*?)\s*)?", re.ASCII)
 _TRIANGLES = {
     "UPPER_ROW": (np.triu_indices, 1),
@@ -54,14 +56,14 @@ _TRIANGLES = {
     "UPPER_DIAG_ROW": (np.triu_indices, 0),
     "LOWER_DIAG_ROW": (np.tril_indices, 0),
 }
-_OF_COORDINATES = ("EUC_2D", "CEIL_2D", "ATT", "GEO")
+_COORDINATE_TYPES = ("EUC_2D", "CEIL_2D", "ATT", "GEO")
 _PI, _EARTH_KM = 3.141592, 6378.388  # as TSPLIB defines them
 _MAX_DECIMALS = 5
 _COLUMNS, _AFTER_LAST = 7, 999
 
 
 class Kind(StrEnum):
-    """The kinds of problems that files hold, as they name them."""
+    """Kind of a problem, with the name that files use."""
 
     TSP = "TSP"
     ATSP = "ATSP"
@@ -76,36 +78,38 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class NamedProblem:
-    """A problem that was read from a file, and how its visits and values are those of the file."""
+    """Problem read from a file, with the file's numbers of its nodes and its unit of values."""
 
     name: str
-    """of the file: TSPLIB's and OPLib's own names don't always tell files apart"""
+    """name of the file, as the names in TSPLIB and OPLib files are not always unique"""
     kind: Kind
     problem: RouteProblem
     nodes: tuple[int, ...]
-    """the number of the node of each visit, as the file counts, which is from 1"""
+    """number of the node of each visit; files count from 1"""
     start_score: int = 0
-    """what the start itself is worth: files count it, a route problem does not"""
+    """score of the start, which files count and a route problem does not"""
 
-    def value(self, prize: int, cost: int) -> float:
-        """Return what the file's literature tells of a route, or a bound, with that prize and cost:
-        the score where it is the aim, else the cost in the file's unit."""
+    def published_value(self, prize: int, cost: int) -> float:
+        """Return the value that publications state for a route or bound of this prize and cost.
+
+        It is the score if the objective is the prize, otherwise the cost in the file's unit.
+        """
         if self.problem.objective == Objective.PRIZE:
             return prize + self.start_score
         return cost * self.problem.unit
 
-    def route(self, nodes: Sequence[int]) -> Tour:
-        """Return the route through these nodes; the start and the end may be among them."""
+    def make_route(self, nodes: Sequence[int]) -> Tour:
+        """Return the route through these nodes; the start and the end are left out."""
         visits = {node: visit for visit, node in enumerate(self.nodes)}
         return Tour(tuple(visits[node] for node in nodes if node in visits))
 
 
 @dataclass(frozen=True)
 class KnownRoute:
-    """A route as OPLib publishes it; not always the best one."""
+    """Route published by OPLib, which need not be the best one."""
 
     nodes: tuple[int, ...]
-    """as the file counts, the depot first"""
+    """numbers of the nodes, counted from 1, the depot first"""
     score: int
     cost: int
 
@@ -113,161 +117,171 @@ class KnownRoute:
 def read_route_problem(path: Path) -> NamedProblem:
     """Return the problem in a TSPLIB (TSP, ATSP, SOP), OPLib or TSPTW file.
 
-    Raises ArgoError, with the line where there is one, if the file can't be read or holds none.
+    Raises:
+        ArgoError: The file can't be read or has no such problem. The message names the line if one
+            line is at fault.
     """
     file = _read(path)
     first = next(line for line in file.lines if line.strip()).lstrip()
     try:
-        return _time_windows(file) if first[0] in "0123456789#!" else _tsplib(_keywords(file))
+        return (
+            _parse_time_windows(file)
+            if first[0] in "0123456789#!"
+            else _parse_tsplib(_parse_keywords(file))
+        )
     except ArgoError as error:
         if str(path) in str(error):
             raise
-        raise ArgoError(f"{path}: {error}") from None  # a RouteProblem knows no file
+        raise ArgoError(f"{path}: {error}") from None  # RouteProblem does not know the file
 
 
 def read_known_route(path: Path) -> KnownRoute:
-    """Return the route in a `.sol` file of OPLib. Raises ArgoError if there is none."""
-    keywords = _keywords(_read(path))
+    """Return the route in a `.sol` file of OPLib; raises ArgoError if there is none."""
+    keywords = _parse_keywords(_read(path))
     numbers = keywords.section("NODE_SEQUENCE")
-    nodes = numbers.take(keywords.number("ROUTE_NODES"), "NODE_SEQUENCE_SECTION")
+    nodes = numbers.take(keywords.whole_number("ROUTE_NODES"), "NODE_SEQUENCE_SECTION")
     wrong = (nodes < 1) | (nodes != np.rint(nodes))
-    numbers.refuse(wrong, "is no node", "nodes are counted from 1")
-    score, cost = keywords.number("ROUTE_SCORE"), keywords.number("ROUTE_COST")
+    numbers.raise_if(wrong, "is no node", "nodes are counted from 1")
+    score, cost = keywords.whole_number("ROUTE_SCORE"), keywords.whole_number("ROUTE_COST")
     return KnownRoute(tuple(int(node) for node in nodes), score, cost)
 
 
 @dataclass(frozen=True)
 class _File:
-    """A text file, by its lines, which count from 0."""
+    """Text file as its lines, counted from 0."""
 
     path: Path
     lines: tuple[str, ...]
 
-    def wrong(self, line: int | None, what: str, way_out: str) -> ArgoError:
-        """Return the error that says so. None: the file as a whole."""
+    def error(self, line: int | None, problem: str, remedy: str) -> ArgoError:
+        """Return an error at a line, or about the file as a whole if the line is None."""
         place = f"{self.path}" if line is None else f"{self.path}:{line + 1}"
-        return ArgoError(f"{place}: {what}; {way_out}")
+        return ArgoError(f"{place}: {problem}; {remedy}")
 
-    def nodes(self, line: int | None, count: float, least: int) -> int:
-        """Return the number of nodes that is stated there. Raises ArgoError if it can't be one."""
-        if count != int(count) or count < least:
-            raise self.wrong(line, f"{count:g} nodes are no problem", f"it needs {least} or more")
+    def check_node_count(self, line: int | None, count: float, minimum: int) -> int:
+        """Return a number of nodes as an integer; raises ArgoError if it is out of range."""
+        if count != int(count) or count < minimum:
+            problem = f"{count:g} nodes are no problem"
+            raise self.error(line, problem, f"a problem needs {minimum} or more")
         if count > MAX_NODES:
-            said = f"it has {count:.0f} nodes"
-            raise self.wrong(line, said, f"at most {MAX_NODES} are read: take a part")
+            problem = f"it has {count:.0f} nodes"
+            raise self.error(line, problem, f"at most {MAX_NODES} are read: take a part")
         return int(count)
 
 
 def _read(path: Path) -> _File:
     text = read_text(path, _FILE, MAX_BYTES)
     if not text.strip():
-        raise ArgoError(f"{path}: is empty; name a {_FILE}")
+        raise ArgoError(f"{path}: the file is empty; name a {_FILE}")
     return _File(path, tuple(text.splitlines()))
 
 
 class _Numbers:
-    """The numbers in some lines of a file, taken from the first to the last. Has state: how far it
-    has come."""
+    """Numbers in some lines of a file, taken one after the other. Has state: the next number."""
 
     def __init__(self, file: _File, lines: Iterable[int]) -> None:
-        """Raises ArgoError at the first thing that is no number."""
+        """Read the numbers of the lines; raises ArgoError at the first word that is no number."""
         self._file = file
         self._lines = list(lines)
-        rows = [_numbers(file, line) for line in self._lines]
+        rows = [_parse_numbers(file, line) for line in self._lines]
         self._line = [line for line, row in zip(self._lines, rows, strict=True) for _ in row]
-        """of each number"""
+        """line of each number"""
         self._values = np.array([value for row in rows for value in row], dtype=np.float64)
         self._next = 0
 
     @property
-    def left(self) -> int:
-        """Return how many numbers have not been taken."""
+    def remaining(self) -> int:
+        """Count of numbers that have not been taken."""
         return len(self._values) - self._next
 
-    def take(self, count: int, what: str) -> NDArray[np.float64]:
-        """Return the next ones. Raises ArgoError, with what they are of, if they are too few."""
-        if self.left < count:
-            said = f"of {count} numbers for {what} there are {self.left}"
+    def take(self, count: int, subject: str) -> NDArray[np.float64]:
+        """Return the next numbers; raises ArgoError that names the subject if some are missing."""
+        if self.remaining < count:
+            problem = f"of {count} numbers for {subject} there are {self.remaining}"
             last = self._lines[-1] if self._lines else None
-            raise self._file.wrong(last, said, "is the file complete?")
+            raise self._file.error(last, problem, "is the file complete?")
         self._next += count
         return self._values[self._next - count : self._next]
 
     def skip(self, value: float) -> None:
-        """Leave out the next one if it is this."""
-        if self.left and self._values[self._next] == value:
+        """Skip the next number if it is equal to a value."""
+        if self.remaining and self._values[self._next] == value:
             self._next += 1
 
-    def refuse(self, wrong: NDArray[np.bool_], what: str, way_out: str) -> None:
-        """Raises ArgoError at the line of the first of the numbers taken last that is wrong."""
+    def raise_if(self, wrong: NDArray[np.bool_], problem: str, remedy: str) -> None:
+        """Raise ArgoError at the first wrong number of those taken last, if there is one."""
         if wrong.any():
             first = self._next - wrong.size + int(np.flatnonzero(wrong)[0])
-            raise self._file.wrong(self._line[first], f"{self._values[first]:g} {what}", way_out)
+            problem = f"{self._values[first]:g} {problem}"
+            raise self._file.error(self._line[first], problem, remedy)
 
-    def finish(self, what: str) -> None:
-        """Raises ArgoError if there are more numbers than those that were taken."""
-        if self.left:
-            said = f"there are {self.left} numbers more than {what} needs"
-            way_out = "does the number of nodes agree with them?"
-            raise self._file.wrong(self._line[self._next], said, way_out)
+    def expect_end(self, subject: str) -> None:
+        """Raise ArgoError if there are more numbers than those that were taken."""
+        if self.remaining:
+            problem = f"there are {self.remaining} numbers more than {subject} needs"
+            remedy = "does the number of nodes agree with them?"
+            raise self._file.error(self._line[self._next], problem, remedy)
 
 
-def _numbers(file: _File, line: int) -> list[float]:
-    found = []
+def _parse_numbers(file: _File, line: int) -> list[float]:
+    numbers = []
     for word in file.lines[line].split():
         try:
-            # float() reads `nan`, `1_000` and other digits too
-            value = float(word) if _OF_NUMBERS.issuperset(word) else np.nan
+            # float() also accepts `nan`, `1_000` and digits of other scripts.
+            value = float(word) if _NUMBER_CHARACTERS.issuperset(word) else np.nan
         except ValueError:
             value = np.nan
         if not abs(value) <= LARGEST:
-            raise file.wrong(line, f"`{word[:40]}` is no number of up to {LARGEST}", _CORRECT)
-        found.append(value)
-    return found
+            raise file.error(line, f"`{word[:40]}` is no number of up to {LARGEST}", _CORRECT)
+        numbers.append(value)
+    return numbers
 
 
 @dataclass(frozen=True)
 class _Keywords:
-    """The keywords of a TSPLIB or OPLib file with their values, and its sections of numbers."""
+    """Keywords of a TSPLIB or OPLib file with their values, and its sections of numbers."""
 
     file: _File
     values: Mapping[str, tuple[int, str]]
-    """by keyword: the line, the value"""
+    """line and value by keyword"""
     sections: Mapping[str, range]
-    """by keyword, without `_SECTION`: the lines with its numbers"""
+    """lines with the numbers of each section, by keyword without `_SECTION`"""
 
-    def given(self, keyword: str) -> tuple[int, str]:
-        """Return the line of a keyword, and its value. Raises ArgoError if it is not there."""
+    def value_of(self, keyword: str) -> tuple[int, str]:
+        """Return the line and the value of a keyword; raises ArgoError if it is missing."""
         if keyword not in self.values:
-            raise self.file.wrong(None, f"it has no {keyword}", f"add a line `{keyword}: ...`")
+            raise self.file.error(None, f"it has no {keyword}", f"add a line `{keyword}: ...`")
         return self.values[keyword]
 
-    def number(self, keyword: str) -> int:
-        """Return the whole number that is given for it. Raises ArgoError if none is."""
-        line, text = self.given(keyword)
+    def whole_number(self, keyword: str) -> int:
+        """Return the whole number of a keyword; raises ArgoError if it is missing or not whole."""
+        line, text = self.value_of(keyword)
         try:
             if abs(number := int(text)) <= LARGEST:
                 return number
         except ValueError:
             pass
-        said = f"{keyword} `{text[:40]}` is no whole number of up to {LARGEST}"
-        raise self.file.wrong(line, said, _CORRECT)
+        problem = f"{keyword} `{text[:40]}` is no whole number of up to {LARGEST}"
+        raise self.file.error(line, problem, _CORRECT)
 
     def section(self, keyword: str) -> _Numbers:
-        """Return the numbers of a section. Raises ArgoError if there is no such section."""
+        """Return the numbers of a section; raises ArgoError if it is missing."""
         if keyword not in self.sections:
-            way_out = "add it, or is the file cut off?"
-            raise self.file.wrong(None, f"it has no {keyword}_SECTION", way_out)
+            remedy = "add it, or is the file cut off?"
+            raise self.file.error(None, f"it has no {keyword}_SECTION", remedy)
         return _Numbers(self.file, self.sections[keyword])
 
-    def unknown(self, keyword: str, what: str, known: Iterable[str]) -> ArgoError:
-        """Return the error at the keyword's line that its value is not among the known ones."""
-        return self.file.wrong(self.values[keyword][0], what, f"there are: {', '.join(known)}")
+    def unknown_value(self, keyword: str, problem: str, known: Iterable[str]) -> ArgoError:
+        """Return an error at the keyword's line that lists the known values."""
+        return self.file.error(self.values[keyword][0], problem, f"there are: {', '.join(known)}")
 
 
-def _keywords(file: _File) -> _Keywords:
-    """Return what the file says. Raises ArgoError at a line that is neither keyword nor number, or
-    that says again what was said."""
+def _parse_keywords(file: _File) -> _Keywords:
+    """Return the keywords and sections of a file.
+
+    Raises:
+        ArgoError: A line is neither keyword nor number, or repeats a keyword.
+    """
     values: dict[str, tuple[int, str]] = {}
     sections: dict[str, range] = {}
     section: str | None = None
@@ -278,14 +292,14 @@ def _keywords(file: _File) -> _Keywords:
         if match is None and section is not None:
             sections[section] = range(sections[section].start, line + 1)
         elif match is None and text.strip():
-            said = f"`{text.strip()[:40]}` is no keyword with its value"
-            raise file.wrong(line, said, f"is this a {_FILE}?")
+            problem = f"`{text.strip()[:40]}` is no keyword with its value"
+            raise file.error(line, problem, f"is this a {_FILE}?")
         elif match is not None:
             keyword, value = match[1].upper(), match[2] or ""
             name = keyword.removesuffix("_SECTION")
             section = name if name != keyword else None
             if keyword != "COMMENT" and (keyword in values or name in sections):
-                raise file.wrong(line, f"{keyword} stands here again", "remove one of the two")
+                raise file.error(line, f"{keyword} is given a second time", "remove one of the two")
             if section is None:
                 values.setdefault(keyword, (line, value))
             else:
@@ -293,23 +307,24 @@ def _keywords(file: _File) -> _Keywords:
     return _Keywords(file, values, sections)
 
 
-def _tsplib(keywords: _Keywords) -> NamedProblem:
-    kind = keywords.given("TYPE")[1].partition(" ")[0]
-    of_keywords = (Kind.TSP, Kind.ATSP, Kind.SOP, Kind.OP)
-    least = 2 if kind == Kind.SOP else 1
-    line, count = keywords.given("DIMENSION")[0], keywords.number("DIMENSION")
-    nodes = keywords.file.nodes(line, count, least)
-    if kind not in of_keywords:
-        raise keywords.unknown("TYPE", f"problems of TYPE `{kind}` are not read", of_keywords)
+def _parse_tsplib(keywords: _Keywords) -> NamedProblem:
+    kind = keywords.value_of("TYPE")[1].partition(" ")[0]
+    known = (Kind.TSP, Kind.ATSP, Kind.SOP, Kind.OP)
+    minimum = 2 if kind == Kind.SOP else 1
+    line, count = keywords.value_of("DIMENSION")[0], keywords.whole_number("DIMENSION")
+    nodes = keywords.file.check_node_count(line, count, minimum)
+    if kind not in known:
+        raise keywords.unknown_value("TYPE", f"problems of TYPE `{kind}` are not read", known)
     distances = _distances(keywords, nodes)
     np.fill_diagonal(distances, 0)
     if kind == Kind.SOP:
-        return _ordering(keywords, distances)
+        return _make_ordering_problem(keywords, distances)
     if (distances == FORBIDDEN).any():
-        said = "it has distances of -1, which order nodes"
-        raise keywords.file.wrong(keywords.given("TYPE")[0], said, "is its TYPE meant to be SOP?")
+        message = "it has distances of -1, which stand for precedence"
+        remedy = "is its TYPE meant to be SOP?"
+        raise keywords.file.error(keywords.value_of("TYPE")[0], message, remedy)
     if kind == Kind.OP:
-        return _orienteering(keywords, distances)
+        return _make_orienteering_problem(keywords, distances)
     visited = tuple(range(2, nodes + 1))
     visits = tuple(Visit(f"node {node}") for node in visited)
     problem = RouteProblem(visits, _round_trip(distances, 0))
@@ -317,13 +332,15 @@ def _tsplib(keywords: _Keywords) -> NamedProblem:
 
 
 def _round_trip(distances: NDArray[np.int64], start: int) -> NDArray[np.int64]:
-    """Return the travel times of a RouteProblem whose visits are all nodes but the start, from
-    which the route goes and to which it returns."""
+    """Return the travel times of a RouteProblem for a round trip from the start.
+
+    All other nodes are visits; the last row and column belong to the start.
+    """
     last = [node for node in range(len(distances)) if node != start] + [start]
     return np.ascontiguousarray(distances[np.ix_(last, last)])
 
 
-def _ordering(keywords: _Keywords, distances: NDArray[np.int64]) -> NamedProblem:
+def _make_ordering_problem(keywords: _Keywords, distances: NDArray[np.int64]) -> NamedProblem:
     size = len(distances)
     nodes = tuple(range(2, size))
     precedences = tuple(
@@ -332,13 +349,13 @@ def _ordering(keywords: _Keywords, distances: NDArray[np.int64]) -> NamedProblem
         if 0 < before < size - 1 and 0 < after < size - 1
     )
     if (distances[0, 1:] == FORBIDDEN).any() or (distances[:-1, -1] == FORBIDDEN).any():
-        raise keywords.file.wrong(
-            keywords.given("DIMENSION")[0],
-            "by its -1, a node comes before the first or after the last",
+        raise keywords.file.error(
+            keywords.value_of("DIMENSION")[0],
+            "a -1 puts a node before the first or after the last one",
             "number the nodes so that 1 is the first and the last the end",
         )
     possible = np.where(distances == FORBIDDEN, NEVER, distances)
-    # The row of the start is the first node's, the column of the end the last one's.
+    # The last row is that of the start, node 1; the last column is that of the end, the last node.
     travel = np.zeros((size - 1, size - 1), dtype=np.int64)
     travel[:-1, :] = possible[1:-1, 1:]
     travel[-1, :] = possible[0, 1:]
@@ -347,25 +364,25 @@ def _ordering(keywords: _Keywords, distances: NDArray[np.int64]) -> NamedProblem
     return NamedProblem(keywords.file.path.stem, Kind.SOP, problem, nodes)
 
 
-def _orienteering(keywords: _Keywords, distances: NDArray[np.int64]) -> NamedProblem:
+def _make_orienteering_problem(keywords: _Keywords, distances: NDArray[np.int64]) -> NamedProblem:
     size = len(distances)
-    scores = _by_node(keywords, "NODE_SCORE", size, 1)[:, 0]
+    scores = _take_node_values(keywords, "NODE_SCORE", size, 1)[:, 0]
     for node in np.flatnonzero((scores < 0) | (scores != np.rint(scores))):
-        said = f"the score of node {node + 1} is {scores[node]:g}"
+        message = f"the score of node {node + 1} is {scores[node]:g}"
         line = keywords.sections["NODE_SCORE"].start - 1
-        raise keywords.file.wrong(line, said, "scores are whole numbers from 0")
+        raise keywords.file.error(line, message, "scores are whole numbers from 0")
     numbers = keywords.section("DEPOT")
     depots = numbers.take(1, "DEPOT_SECTION")
     known = np.isin(depots, np.arange(1, size + 1))
-    numbers.refuse(~known, "is no node", f"there are 1 to {size}")
+    numbers.raise_if(~known, "is no node", f"there are 1 to {size}")
     numbers.skip(-1)
-    numbers.finish("one depot")
+    numbers.expect_end("one depot")
     depot = int(depots[0]) - 1
     nodes = tuple(node + 1 for node in range(size) if node != depot)
-    limit = keywords.number("COST_LIMIT")
+    limit = keywords.whole_number("COST_LIMIT")
     if limit < 0:
-        line = keywords.given("COST_LIMIT")[0]
-        raise keywords.file.wrong(line, f"the COST_LIMIT {limit} is negative", _CORRECT)
+        line = keywords.value_of("COST_LIMIT")[0]
+        raise keywords.file.error(line, f"the COST_LIMIT {limit} is negative", _CORRECT)
     problem = RouteProblem(
         tuple(
             Visit(f"node {node}", mandatory=False, prize=int(scores[node - 1])) for node in nodes
@@ -379,58 +396,65 @@ def _orienteering(keywords: _Keywords, distances: NDArray[np.int64]) -> NamedPro
 
 
 def _distances(keywords: _Keywords, nodes: int) -> NDArray[np.int64]:
-    """Return the distances from row to column, shape (nodes, nodes)."""
-    kind = keywords.given("EDGE_WEIGHT_TYPE")[1]
-    if kind in _OF_COORDINATES:
-        return _between(_by_node(keywords, "NODE_COORD", nodes, 2), kind)
+    """Return the distances from each row's node to each column's, shape (nodes, nodes)."""
+    kind = keywords.value_of("EDGE_WEIGHT_TYPE")[1]
+    if kind in _COORDINATE_TYPES:
+        return _coordinate_distances(_take_node_values(keywords, "NODE_COORD", nodes, 2), kind)
     if kind != "EXPLICIT":
-        known = ("EXPLICIT", *_OF_COORDINATES)
-        raise keywords.unknown("EDGE_WEIGHT_TYPE", f"EDGE_WEIGHT_TYPE {kind} is not read", known)
-    form = keywords.given("EDGE_WEIGHT_FORMAT")[1]
+        known = ("EXPLICIT", *_COORDINATE_TYPES)
+        raise keywords.unknown_value(
+            "EDGE_WEIGHT_TYPE", f"EDGE_WEIGHT_TYPE {kind} is not read", known
+        )
+    form = keywords.value_of("EDGE_WEIGHT_FORMAT")[1]
     numbers = keywords.section("EDGE_WEIGHT")
     if form == "FULL_MATRIX":
-        if numbers.left == nodes * nodes + 1:
-            numbers.skip(nodes)  # files with sequential ordering problems state it again
-        found = _whole(numbers, nodes * nodes).reshape(nodes, nodes)
+        if numbers.remaining == nodes * nodes + 1:
+            numbers.skip(nodes)  # files of sequential ordering problems repeat the number of nodes
+        distances = _take_distances(numbers, nodes * nodes).reshape(nodes, nodes)
     elif form in _TRIANGLES:
         indices, offset = _TRIANGLES[form]
         rows, columns = indices(nodes, offset)
-        found = np.zeros((nodes, nodes), dtype=np.int64)
-        found[rows, columns] = _whole(numbers, len(rows))
-        found = np.maximum(found, found.T)
+        distances = np.zeros((nodes, nodes), dtype=np.int64)
+        distances[rows, columns] = _take_distances(numbers, len(rows))
+        distances = np.maximum(distances, distances.T)
     else:
-        said = f"EDGE_WEIGHT_FORMAT {form} is not read"
-        raise keywords.unknown("EDGE_WEIGHT_FORMAT", said, ("FULL_MATRIX", *_TRIANGLES))
-    numbers.finish("EDGE_WEIGHT_SECTION")
-    return found
+        problem = f"EDGE_WEIGHT_FORMAT {form} is not read"
+        raise keywords.unknown_value("EDGE_WEIGHT_FORMAT", problem, ("FULL_MATRIX", *_TRIANGLES))
+    numbers.expect_end("EDGE_WEIGHT_SECTION")
+    return distances
 
 
-def _whole(numbers: _Numbers, count: int) -> NDArray[np.int64]:
+def _take_distances(numbers: _Numbers, count: int) -> NDArray[np.int64]:
     values = numbers.take(count, "EDGE_WEIGHT_SECTION")
     wrong = (values != np.rint(values)) | (values < FORBIDDEN)
-    numbers.refuse(wrong, "is no distance", "distances are whole numbers from 0")
+    numbers.raise_if(wrong, "is no distance", "distances are whole numbers from 0")
     return values.astype(np.int64)
 
 
-def _by_node(keywords: _Keywords, section: str, nodes: int, columns: int) -> NDArray[np.float64]:
-    """Return what the rows `number value ...` of a section say of each node, shape (nodes,
-    columns). Raises ArgoError if a node is missing, there twice, or unknown."""
+def _take_node_values(
+    keywords: _Keywords, section: str, nodes: int, columns: int
+) -> NDArray[np.float64]:
+    """Return each node's values in a section of rows `number value ...`, shape (nodes, columns).
+
+    Raises:
+        ArgoError: A node is missing, given twice, or unknown.
+    """
     numbers = keywords.section(section)
-    found: dict[float, NDArray[np.float64]] = {}
+    values: dict[float, NDArray[np.float64]] = {}
     for _ in range(nodes):
         row = numbers.take(columns + 1, f"{section}_SECTION")
         wrong = np.zeros(columns + 1, dtype=bool)
-        wrong[0] = row[0] not in range(1, nodes + 1) or row[0] in found
-        said = f"is no node or one that is there twice in {section}_SECTION"
-        numbers.refuse(wrong, said, f"number the nodes from 1 to {nodes}")
-        found[row[0]] = row[1:]
-    numbers.finish(f"{section}_SECTION")
-    return np.array([found[node] for node in sorted(found)])
+        wrong[0] = row[0] not in range(1, nodes + 1) or row[0] in values
+        problem = f"is no node, or is given twice, in {section}_SECTION"
+        numbers.raise_if(wrong, problem, f"number the nodes from 1 to {nodes}")
+        values[row[0]] = row[1:]
+    numbers.expect_end(f"{section}_SECTION")
+    return np.array([values[node] for node in sorted(values)])
 
 
-def _between(coordinates: NDArray[np.float64], kind: str) -> NDArray[np.int64]:
+def _coordinate_distances(coordinates: NDArray[np.float64], kind: str) -> NDArray[np.int64]:
     if kind == "GEO":
-        return _on_earth(coordinates)
+        return _geographical_distances(coordinates)
     square = ((coordinates[:, None, :] - coordinates[None, :, :]) ** 2).sum(axis=2)
     lengths = {
         "EUC_2D": lambda: np.floor(np.sqrt(square) + 0.5),
@@ -440,8 +464,8 @@ def _between(coordinates: NDArray[np.float64], kind: str) -> NDArray[np.int64]:
     return lengths[kind]().astype(np.int64)
 
 
-def _on_earth(coordinates: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return the kilometres between latitudes and longitudes, written as degrees.minutes."""
+def _geographical_distances(coordinates: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return the distances (km) between latitudes and longitudes written as degrees.minutes."""
     degrees = np.trunc(coordinates)
     latitude, longitude = (_PI * (degrees + 5.0 * (coordinates - degrees) / 3.0) / 180.0).T
     q1 = np.cos(longitude[:, None] - longitude)
@@ -451,20 +475,20 @@ def _on_earth(coordinates: NDArray[np.float64]) -> NDArray[np.int64]:
     return np.asarray(_EARTH_KM * np.arccos(np.clip(cosine, -1.0, 1.0)) + 1.0, dtype=np.int64)
 
 
-def _time_windows(file: _File) -> NamedProblem:
-    """Return the problem in a file of one of the layouts with time windows.
+def _parse_time_windows(file: _File) -> NamedProblem:
+    """Return the problem in a file of either layout with time windows.
 
-    The windows say when a visit may begin; the objective is the travel without waiting. Times with
-    decimals are made whole, and the problem's unit smaller.
+    A visit may begin within its window; the objective is the travel time without waiting. Times
+    with decimals are scaled to whole numbers of a smaller unit.
     """
     bare = _File(file.path, tuple(line.partition("#")[0] for line in file.lines))
     header = next((k for k, line in enumerate(bare.lines) if line.startswith("CUST NO.")), None)
-    times, windows = _matrix(bare) if header is None else _customers(bare, header)
-    scale = _scale(bare, np.concatenate([times.ravel(), windows.ravel()]))
+    times, windows = _read_matrix(bare) if header is None else _read_customers(bare, header)
+    scale = _find_scale(bare, np.concatenate([times.ravel(), windows.ravel()]))
     travel = np.rint(times * scale).astype(np.int64)
     np.fill_diagonal(travel, 0)
     opens, closes = np.rint(windows * scale).astype(np.int64).T.tolist()
-    begin = opens[0]  # the clock of a route problem starts when the robot sets off
+    begin = opens[0]  # time 0 of a route problem is its departure
     nodes = tuple(range(2, len(times) + 1))
     visits = tuple(
         Visit(f"node {k}", earliest=max(0, opens[k - 1] - begin), latest=closes[k - 1] - begin)
@@ -484,39 +508,39 @@ def _time_windows(file: _File) -> NamedProblem:
 _NO_WINDOW = "is part of a time window that is negative or ends before it begins"
 
 
-def _matrix(file: _File) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _read_matrix(file: _File) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the travel times, shape (nodes, nodes), and the windows, shape (nodes, 2)."""
     numbers = _Numbers(file, range(len(file.lines)))
     count = numbers.take(1, "the number of nodes")[0]
     first = next(k for k, line in enumerate(file.lines) if line.strip())
-    size = file.nodes(first, count, 1)
+    size = file.check_node_count(first, count, 1)
     times = numbers.take(size * size, "the travel times")
-    numbers.refuse(times < 0, "is a negative time", _CORRECT)
+    numbers.raise_if(times < 0, "is a negative time", _CORRECT)
     windows = numbers.take(2 * size, "the time windows").reshape(size, 2)
     closed = windows[:, 0] > windows[:, 1]
     wrong = np.stack([closed | (windows[:, 0] < 0), closed], axis=1)
-    numbers.refuse(wrong.ravel(), _NO_WINDOW, _CORRECT)
-    numbers.finish("the time windows")
+    numbers.raise_if(wrong.ravel(), _NO_WINDOW, _CORRECT)
+    numbers.expect_end("the time windows")
     return times.reshape(size, size), windows
 
 
-def _customers(file: _File, header: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the same of the rows that follow a header."""
+def _read_customers(file: _File, header: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return travel times and windows, in the same shapes, from the rows after a header line."""
     numbers = _Numbers(file, range(header + 1, len(file.lines)))
     rows = []
-    while numbers.left:
+    while numbers.remaining:
         row = numbers.take(_COLUMNS, "a node")
         if row[0] == _AFTER_LAST:
-            numbers.finish("the node 999, which is after the last,")
+            numbers.expect_end("the node 999, which ends the list,")
             break
         opens, closes, service = row[4:]
         bad = not 0 <= opens <= closes
-        numbers.refuse(np.array([bad, bad, False]), _NO_WINDOW, _CORRECT)
-        numbers.refuse(
-            np.array([service != 0]), "is a service, which these files have none of", _CORRECT
+        numbers.raise_if(np.array([bad, bad, False]), _NO_WINDOW, _CORRECT)
+        numbers.raise_if(
+            np.array([service != 0]), "is a service time, which must be 0 in these files", _CORRECT
         )
         rows.append(row)
-    size = file.nodes(header, len(rows), 1)
+    size = file.check_node_count(header, len(rows), 1)
     nodes = np.array(rows)
     times = np.floor(np.hypot(*(nodes[:, None, 1:3] - nodes[:, 1:3]).T))
     for k in range(size):
@@ -525,11 +549,11 @@ def _customers(file: _File, header: int) -> tuple[NDArray[np.float64], NDArray[n
     return times, nodes[:, 4:6]
 
 
-def _scale(file: _File, values: NDArray[np.float64]) -> int:
-    """Return the least power of ten by which all values become whole."""
+def _find_scale(file: _File, values: NDArray[np.float64]) -> int:
+    """Return the smallest power of ten that scales all values to whole numbers."""
     for decimals in range(_MAX_DECIMALS + 1):
         scaled = values * 10**decimals
         if (np.abs(scaled - np.rint(scaled)) < 1e-6 * np.maximum(1.0, scaled / 1e6)).all():
             return int(10**decimals)
-    said = f"its times have more than {_MAX_DECIMALS} decimals"
-    raise file.wrong(None, said, "round them to fewer")
+    problem = f"its times have more than {_MAX_DECIMALS} decimals"
+    raise file.error(None, problem, "round them to fewer")

@@ -1,13 +1,16 @@
-"""What is known of published route problems.
+"""Known values and bounds of published route problems.
 
 Values of TSPLIB are those of its pages "ATSP" and "SOP" (G. Reinelt, Heidelberg,
-comopt.ifi.uni-heidelberg.de/software/TSPLIB95); where two figures are given, they are the bounds
-that it lists for an open problem. Those of OPLib are in the `.sol` files beside its problems, found
-by a heuristic (G. Kobeaga, M. Merino, J. A. Lozano, "An efficient evolutionary algorithm for the
-orienteering problem", 2018), and need not be the best; two were improved and proven with CP-SAT
-since. Those of tours with time windows are in a file `best_known.txt` with lines `file cost
-violations` (M. López-Ibáñez and C. Blum, lopez-ibanez.eu/tsptw-instances), and what no tour falls
-below in a file `bounds.txt` with lines `file bound`; what comes after `#` is a comment.
+comopt.ifi.uni-heidelberg.de/software/TSPLIB95). If there are two figures, they are the upper and
+the lower bound that it lists for an open problem.
+
+Values of OPLib are in the `.sol` files beside its problems. A heuristic found them (G. Kobeaga, M.
+Merino, J. A. Lozano, "An efficient evolutionary algorithm for the orienteering problem", 2018), so
+they need not be the best. Two were improved and proven with CP-SAT since.
+
+Values of tours with time windows are in a file `best_known.txt` with lines `file cost violations`
+(M. López-Ibáñez and C. Blum, lopez-ibanez.eu/tsptw-instances), and their lower bounds in a file
+`bounds.txt` with lines `file bound`. Text after `#` is a comment.
 """
 
 from collections.abc import Iterator
@@ -18,22 +21,21 @@ from benchmarks.instances import Kind, read_known_route
 
 
 @dataclass(frozen=True)
-class Known:
-    """What is known of a problem: a value that a route has, and one that none is better than."""
+class KnownValue:
+    """Best known value of a problem, and a bound that no route is better than, if there is one."""
 
     value: float
     bound: float | None = None
     rounded: float = 0.0
-    """by how much the value may differ from the exact one, as it was published with fewer decimals
-    than the problem has"""
+    """largest difference from the exact value, which was published with fewer decimals"""
 
     @property
     def proven(self) -> bool:
         return self.value == self.bound
 
 
-def _optimal(values: dict[str, int]) -> dict[str, Known]:
-    return {name: Known(value, value) for name, value in values.items()}
+def _optimal(values: dict[str, int]) -> dict[str, KnownValue]:
+    return {name: KnownValue(value, value) for name, value in values.items()}
 
 
 TSPLIB = {
@@ -48,40 +50,40 @@ TSPLIB = {
     **_optimal({"p43.2": 28480, "p43.3": 28835, "p43.4": 83005, "prob.42": 243, "rbg048a": 351}),
     **_optimal({"rbg050c": 467, "rbg109a": 1038, "rbg150a": 1750, "rbg174a": 2033}),
     **_optimal({"ry48p.1": 15805, "ry48p.4": 31446}),
-    "ft70.2": Known(40419, 40101),
-    "kro124p.1": Known(39420, 38762),
-    "kro124p.2": Known(41336, 39841),
-    "kro124p.3": Known(49499, 43904),
-    "kro124p.4": Known(76103, 73021),
-    "prob.100": Known(1163, 1045),
-    "ry48p.2": Known(16666, 16074),
-    "ry48p.3": Known(19894, 19490),
+    "ft70.2": KnownValue(40419, 40101),
+    "kro124p.1": KnownValue(39420, 38762),
+    "kro124p.2": KnownValue(41336, 39841),
+    "kro124p.3": KnownValue(49499, 43904),
+    "kro124p.4": KnownValue(76103, 73021),
+    "prob.100": KnownValue(1163, 1045),
+    "ry48p.2": KnownValue(16666, 16074),
+    "ry48p.3": KnownValue(19894, 19490),
 }
 OPLIB = _optimal({"eil51-gen2-50": 1674, "st70-gen2-50": 2286})
 
 
-def known_of(path: Path, kind: Kind) -> Known | None:
-    """What is known of the problem in a file; see the top of this module."""
+def find_known_value(path: Path, kind: Kind) -> KnownValue | None:
+    """Return the known value of the problem in a file; None: there is none. See the module."""
     name = path.stem
     if kind == Kind.OP:
         solution = path.with_suffix(".sol")
-        published = Known(read_known_route(solution).score) if solution.exists() else None
+        published = KnownValue(read_known_route(solution).score) if solution.exists() else None
         return OPLIB.get(name, published)
     if kind == Kind.TSPTW:
-        costs = [words[1] for words in _listed(path, "best_known.txt") if len(words) == 3]
-        bounds = [float(words[1]) for words in _listed(path, "bounds.txt")]
+        costs = [words[1] for words in _table_rows(path, "best_known.txt") if len(words) == 3]
+        bounds = [float(words[1]) for words in _table_rows(path, "bounds.txt")]
         if not costs:
             return None
         rounded = 0.5 * 10.0 ** -len(costs[0].partition(".")[2])
-        return Known(float(costs[0]), bounds[0] if bounds else None, rounded)
+        return KnownValue(float(costs[0]), bounds[0] if bounds else None, rounded)
     return TSPLIB.get(name)
 
 
-def _listed(path: Path, name: str) -> Iterator[list[str]]:
-    """The words of the lines about a problem in a file beside it."""
-    listed = path.with_name(name)
-    if listed.exists():
-        for line in listed.read_text(encoding="utf-8").splitlines():
+def _table_rows(path: Path, name: str) -> Iterator[list[str]]:
+    """Yield the words of each line about a problem in a file beside it."""
+    table = path.with_name(name)
+    if table.exists():
+        for line in table.read_text(encoding="utf-8").splitlines():
             words = line.partition("#")[0].split()
             if len(words) > 1 and words[0] == path.name:
                 yield words

@@ -1,14 +1,14 @@
-"""Options that several of the commands here have."""
+"""Command-line options shared by benchmarks and campaigns."""
 
 import argparse
 
 
-def seed_number(text: str) -> int:
-    """A seed, as `type` of an argument: a whole number of 0 or more."""
+def parse_seed(text: str) -> int:
+    """Parse a seed, a whole number of 0 or more; the `type` of an argument of argparse."""
     try:
         number = int(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"it has to be a whole number, not {text}") from None
+        raise argparse.ArgumentTypeError(f"it must be a whole number, not {text}") from None
     if number < 0:
-        raise argparse.ArgumentTypeError(f"it has to be 0 or more, not {number}")
+        raise argparse.ArgumentTypeError(f"it must be 0 or more, not {number}")
     return number

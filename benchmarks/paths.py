@@ -1,7 +1,7 @@
-"""How long paths and travel times take: `python -m benchmarks.paths`.
+"""Times of path queries and of travel-time matrices: `python -m benchmarks.paths`.
 
-Times are CPU seconds of this process, so that other processes disturb them less; caches and
-hyperthreads are still shared, so run it on a quiet machine.
+Times are CPU seconds of this process, which other processes disturb less than wall time. Caches and
+hyperthreads are shared all the same, so run it on a quiet machine.
 """
 
 import argparse
@@ -25,20 +25,20 @@ LARGE = str(Family(floors=12, size=(30, 20), checkpoints=500, seed=TEST_SEEDS))
 Query = tuple[Pose, Pose | int]
 
 
-def timed(work: Callable[[], object]) -> float:
-    """CPU seconds that the work takes."""
+def cpu_seconds(work: Callable[[], object]) -> float:
+    """Return the CPU seconds of the work."""
     started = time.process_time()
     work()
     return time.process_time() - started
 
 
-def memory() -> str:
-    """The most memory that this process has had so far."""
+def memory_text() -> str:
+    """Return the peak memory of this process so far, as text."""
     return f"{resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MiB at most so far"
 
 
-def plan(navigator: Navigator, query: Query) -> object:
-    """The path that a query asks for."""
+def answer_query(navigator: Navigator, query: Query) -> object:
+    """Answer a query: the path to a pose, or to where a checkpoint is in view."""
     start, goal = query
     if isinstance(goal, Pose):
         return navigator.plan(start, goal)
@@ -46,104 +46,107 @@ def plan(navigator: Navigator, query: Query) -> object:
 
 
 def measure_queries(navigator: Navigator, name: str, queries: Iterable[Query]) -> None:
-    """Prints how long the queries take when asked for the first and for the second time."""
+    """Print how long the queries take the first and the second time."""
     first, again = [], []
     for query in queries:
-        first.append(timed(partial(plan, navigator, query)))
-        again.append(timed(partial(plan, navigator, query)))
-    print(f"  {name:<42} {summary(first)}; again {summary(again)}")
+        first.append(cpu_seconds(partial(answer_query, navigator, query)))
+        again.append(cpu_seconds(partial(answer_query, navigator, query)))
+    print(f"  {name:<42} {percentiles_text(first)}; again {percentiles_text(again)}")
 
 
-def summary(seconds: list[float]) -> str:
-    """Median, 95th percentile and worst, in ms."""
+def percentiles_text(seconds: list[float]) -> str:
+    """Return median, 95th percentile and maximum in ms, as text."""
     return "/".join(f"{1e3 * t:.1f}" for t in np.percentile(seconds, [50, 95, 100])) + " ms"
 
 
-def poses(navigator: Navigator, states: np.ndarray) -> list[Pose]:
-    """The poses of states of the lattice."""
+def poses_of_states(navigator: Navigator, states: np.ndarray) -> list[Pose]:
+    """Return the poses of states of the lattice."""
     return [
         Pose(x=x, y=y, z=z, yaw=yaw) for x, y, z, yaw in navigator.lattice.poses(states).tolist()
     ]
 
 
 def measure_paths(name: str, count: int) -> Navigator:
-    """Print what single paths on a site take."""
+    """Print the times of single paths on a site, and return its navigator."""
     site, robot = open_site(name).site, load_robot()
     navigator = Navigator(site, robot)
-    took = timed(lambda: navigator.lattice)
+    elapsed = cpu_seconds(lambda: navigator.lattice)
     states, moves = navigator.lattice.size, navigator.lattice.costs.nnz
-    print(f"{name}: lattice of {states} states and {moves} moves built in {took:.1f} s", end="")
-    print(
-        f", ways between its portals and landmarks in {timed(navigator.prepare):.1f} s; {memory()}"
-    )
+    print(f"{name}: lattice of {states} states and {moves} moves built in {elapsed:.1f} s", end="")
+    elapsed = cpu_seconds(navigator.prepare)
+    print(f", paths between portals and landmarks in {elapsed:.1f} s; {memory_text()}")
     random = np.random.default_rng(1)
     z = navigator.lattice.poses()[:, 2]
     floors = [np.flatnonzero(np.abs(z - floor.z) < 0.1) for floor in site.spec.floors]
-    anywhere = poses(navigator, random.integers(navigator.lattice.size, size=2 * count))
+    anywhere = poses_of_states(navigator, random.integers(navigator.lattice.size, size=2 * count))
     ids = [c.id for c in site.checkpoints]
     views = [navigator.viewing_pose(id) for id in ids]
     legs = [(start, id) for start in (*site.docks.values(), *views) for id in random.choice(ids, 6)]
-    spread = poses(
+    spread = poses_of_states(
         navigator,
         np.array([random.choice(floors[k]) for k in random.integers(len(floors), size=2 * count)]),
     )
-    on_the_ground = poses(navigator, random.choice(floors[0], size=2 * count))
-    print("Single paths, median/95th percentile/worst, cold and again:")
+    on_the_ground = poses_of_states(navigator, random.choice(floors[0], size=2 * count))
+    print("Single paths, median/95th percentile/worst, first and again:")
     measure_queries(navigator, "from docks and checkpoints to checkpoints", legs)
     measure_queries(navigator, "random poses, floors drawn evenly", pairs(spread))
     measure_queries(navigator, "random states (most lie on open ground)", pairs(anywhere))
     measure_queries(navigator, "random poses, both on the ground floor", pairs(on_the_ground))
-    compare(navigator, random, min(12, count))
+    compare_travel_times(navigator, random, min(12, count))
     for _ in range(2):
-        took = timed(lambda: navigator.turning_poses(1))
-        print(f"  places to turn on the ground floor: {1e3 * took:.1f} ms")
+        elapsed = cpu_seconds(lambda: navigator.turning_poses(1))
+        print(f"  positions to turn at on the ground floor: {1e3 * elapsed:.1f} ms")
     dock, goal = site.docks[1], ids[min(7, len(ids) - 1)]
-    brick = brick_on(navigator.plan_to_view(dock, goal))
-    took = timed(lambda: navigator.with_blockages([brick]).plan_to_view(dock, goal))
-    print(f"  avoiding a blockage, and the first path round it: {1e3 * took:.0f} ms")
+    brick = put_brick_on(navigator.plan_to_view(dock, goal))
+    elapsed = cpu_seconds(lambda: navigator.with_blockages([brick]).plan_to_view(dock, goal))
+    print(f"  avoiding a blockage, and the first path round it: {1e3 * elapsed:.0f} ms")
     return navigator
 
 
-def pairs(places: list[Pose]) -> list[Query]:
-    """Every second pose as a start, the one after it as its goal."""
-    return list(zip(places[::2], places[1::2], strict=True))
+def pairs(poses: list[Pose]) -> list[Query]:
+    """Pair each pose at an even index, as a start, with the following one, as its goal."""
+    return list(zip(poses[::2], poses[1::2], strict=True))
 
 
-def compare(navigator: Navigator, random: np.random.Generator, count: int) -> None:
-    """Print how far travel times between `count` poses are from those of one search over the whole
-    lattice, and from the durations of the paths."""
+def compare_travel_times(navigator: Navigator, random: np.random.Generator, count: int) -> None:
+    """Print ratios of travel times between `count` random states to two other figures.
+
+    The other figures are the durations of smoothed paths, and the costs of one search over the
+    whole lattice.
+    """
     states = random.integers(navigator.lattice.size, size=count)
-    places = poses(navigator, states)
-    found = navigator.travel_times(places)
-    paths = [[navigator.plan(a, b).duration(navigator.robot) for b in places] for a in places]
-    apart = ~np.eye(len(places), dtype=bool)
-    ratio = (found / np.maximum(paths, 1e-9))[apart]
+    poses = poses_of_states(navigator, states)
+    times = navigator.travel_times(poses)
+    durations = [[navigator.plan(a, b).duration(navigator.robot) for b in poses] for a in poses]
+    different = ~np.eye(len(poses), dtype=bool)
+    ratio = (times / np.maximum(durations, 1e-9))[different]
     print(
         f"  travel times over the durations of smoothed paths: median {np.median(ratio):.3f}, "
         f"{ratio.min():.3f} to {ratio.max():.3f}"
     )
     costs = dijkstra(navigator.lattice.costs, indices=states)[:, states]
-    print(f"  least and most of costs over times: {_range(costs[apart] / found[apart])} (1 to 1.2)")
+    ratios = _range_text(costs[different] / times[different])
+    print(f"  costs of the lattice over travel times: {ratios} (expected: 1 to 1.2)")
 
 
-def _range(values: np.ndarray) -> str:
+def _range_text(values: np.ndarray) -> str:
     return f"{values.min():.3f} to {values.max():.3f}"
 
 
-def brick_on(path: Path) -> Blockage:
+def put_brick_on(path: Path) -> Blockage:
     """Return a rectangle of 0.8 m by 0.4 m in the middle of the longest drive of a path."""
     middle = max(path.motions, key=lambda motion: motion.length).pose_at(0.5)
     x, y = middle.x, middle.y
     return Blockage((x - 0.4, y - 0.2, x + 0.4, y + 0.2), middle.z, "a brick")
 
 
-def matrices(known: Navigator, name: str) -> None:
-    """Print what travel times between all checkpoints take, on a known and on a large site."""
-    fresh = Navigator(known.site, known.robot)
+def measure_matrices(navigator: Navigator, name: str) -> None:
+    """Print the times of travel-time matrices on the site of a navigator and on a large one."""
+    fresh = Navigator(navigator.site, navigator.robot)
     fresh.prepare()
     ids = [c.id for c in fresh.site.checkpoints]
-    first = timed(lambda: fresh.travel_times(ids))
-    again = timed(lambda: fresh.travel_times(ids))
+    first = cpu_seconds(lambda: fresh.travel_times(ids))
+    again = cpu_seconds(lambda: fresh.travel_times(ids))
     print(
         f"Travel times of {len(ids)} checkpoints on {fresh.site.name}: {first:.2f} s, "
         f"again {again:.2f} s"
@@ -151,22 +154,23 @@ def matrices(known: Navigator, name: str) -> None:
     print(f"{name}:")
     started = time.process_time()
     large = generate(parse_family(name))
-    print(f"  drawn and checked in {time.process_time() - started:.1f} s; {memory()}")
+    print(f"  generated and checked in {time.process_time() - started:.1f} s; {memory_text()}")
     ids = [c.id for c in large.site.checkpoints]
     print(f"  {large.lattice.size} states, {large.lattice.costs.nnz} moves")
-    print(f"  ways between its portals and landmarks in {timed(large.prepare):.1f} s; {memory()}")
-    took = timed(lambda: large.travel_times(ids))
-    print(f"  travel times of {len(ids)} checkpoints: {took:.1f} s; {memory()}")
+    elapsed = cpu_seconds(large.prepare)
+    print(f"  paths between portals and landmarks in {elapsed:.1f} s; {memory_text()}")
+    elapsed = cpu_seconds(lambda: large.travel_times(ids))
+    print(f"  travel times of {len(ids)} checkpoints: {elapsed:.1f} s; {memory_text()}")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Print all of it."""
+    """Print all times."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--pairs", type=int, default=100, help="of poses of each kind")
-    parser.add_argument("--site", default="umad", help="on which single paths are planned")
-    parser.add_argument("--large", default=LARGE, help="a generated site with many")
-    given = parser.parse_args(arguments)
-    matrices(measure_paths(given.site, given.pairs), given.large)
+    parser.add_argument("--pairs", type=int, default=100, help="pairs of poses of each kind")
+    parser.add_argument("--site", default="umad", help="site of the single paths")
+    parser.add_argument("--large", default=LARGE, help="large generated site for the matrices")
+    options = parser.parse_args(arguments)
+    measure_matrices(measure_paths(options.site, options.pairs), options.large)
 
 
 if __name__ == "__main__":

@@ -1,9 +1,9 @@
-"""Route problems stated for PyVRP, which searches and gives no bounds (extra `route`).
+"""Search for routes with PyVRP (extra `route`), which gives no bounds.
 
 PyVRP (N. Wouda, L. Lan, W. Kool, INFORMS Journal on Computing 2024) is a local search for vehicle
-routing. It takes one of our problems as one vehicle that sets off at time 0, with whole numbers
-throughout, on one core. It has windows, prizes and a limit to the duration, and neither precedence
-other than of pairs, nor rounds, nor a battery.
+routing. It gets a route problem as that of one vehicle that departs at time 0, in whole numbers,
+and runs on one core. It supports windows, prizes and a maximum duration; it does not support
+precedence other than of pairs, rounds, or a battery.
 """
 
 import warnings
@@ -17,11 +17,11 @@ from argo_compiler.route import Objective, RouteProblem, Tour
 
 _LATEST = 1 << 40
 _FAR = 1 << 30
-"""A way that there is none of: PyVRP reckons penalties with distances, and NEVER would overflow."""
+"""distance of a missing connection; NEVER would overflow in PyVRP's penalties"""
 
 
-def why_not(problem: RouteProblem) -> str | None:
-    """Why PyVRP can't state the problem; None if it can."""
+def unsupported_feature(problem: RouteProblem) -> str | None:
+    """Return a feature of the problem that PyVRP does not support; None: it supports all."""
     if problem.precedences:
         return "precedence"
     if problem.rounds:
@@ -29,39 +29,40 @@ def why_not(problem: RouteProblem) -> str | None:
     if problem.battery is not None:
         return "a battery"
     if any(not visit.mandatory and visit.prize == 0 for visit in problem.visits):
-        return "visits without a prize that may be left out"
+        return "optional visits without a prize"
     return None
 
 
-def search(problem: RouteProblem, time_limit: float, seed: int) -> Tour | None:
-    """The best route that PyVRP finds in that time (s); None: it has found none.
+def search_with_pyvrp(problem: RouteProblem, time_limit: float, seed: int) -> Tour | None:
+    """Return the best route that PyVRP finds within the time limit (s); None: no feasible one.
 
-    Raises ArgoError if PyVRP is not installed or can't state the problem.
+    Raises:
+        ArgoError: PyVRP is not installed, or does not support the problem.
     """
     if find_spec("pyvrp") is None:
         raise ArgoError("PyVRP is not installed; run: pip install 'argo-mission[route]'")
-    if reason := why_not(problem):
-        raise ArgoError(f"PyVRP does not know {reason}; leave it out")
+    if feature := unsupported_feature(problem):
+        raise ArgoError(f"PyVRP does not support {feature}; leave it out")
     import pyvrp
     import pyvrp.exceptions
     from pyvrp.stop import MaxRuntime
 
     n = problem.size
     windows = any(visit.earliest or visit.latest is not None for visit in problem.visits)
-    times = _times(problem)
-    # Where nothing waits, the duration is a distance, in which PyVRP searches better.
+    times = _times_with_service(problem)
+    # Without waiting, the duration is a distance, for which PyVRP searches better.
     limit = "shift_duration" if windows else "max_distance"
     by_duration = windows and problem.objective == Objective.DURATION
-    # A prize that is worth more than any route costs comes before the cost, as it does with us;
-    # without the cost, PyVRP wins less.
-    worth = _worth(problem, times)
+    # A prize that is worth more than any route costs has priority over the cost, as in Argo. If the
+    # cost is left out altogether, PyVRP finds less prize.
+    prize_value = _prize_value(problem, times)
     clients = [
         pyvrp.Client(
             location=k,
             tw_early=visit.earliest,
             tw_late=_LATEST if visit.latest is None else visit.latest,
             required=visit.mandatory,
-            prize=visit.prize * worth,
+            prize=visit.prize * prize_value,
         )
         for k, visit in enumerate(problem.visits)
     ]
@@ -82,7 +83,7 @@ def search(problem: RouteProblem, time_limit: float, seed: int) -> Tour | None:
         duration_matrices=[times if windows else np.zeros_like(times)],
     )
     with warnings.catch_warnings():
-        # That no route was found is told by what is returned.
+        # The warning says that no feasible route was found, which the return value states too.
         warnings.simplefilter("ignore", pyvrp.exceptions.PenaltyBoundWarning)
         best = pyvrp.solve(data, MaxRuntime(time_limit), seed, collect_stats=False).best
     if not best.is_feasible():
@@ -90,22 +91,25 @@ def search(problem: RouteProblem, time_limit: float, seed: int) -> Tour | None:
     return Tour(tuple(a.idx for route in best.routes() for a in route if a.is_client()))
 
 
-def _times(problem: RouteProblem) -> NDArray[np.int64]:
-    """Travel times, with the service at the place that is left, and the start and the end apart."""
+def _times_with_service(problem: RouteProblem) -> NDArray[np.int64]:
+    """Return travel times plus the service at the location that is left, shape (n + 2, n + 2).
+
+    The last two rows and columns are those of the start and of the end.
+    """
     n = problem.size
     times = np.full((n + 2, n + 2), _FAR, dtype=np.int64)
-    from_place = problem.travel[: n + 1] + np.array(
+    with_service = problem.travel[: n + 1] + np.array(
         [[visit.service] for visit in problem.visits] + [[0]]
     )
-    times[: n + 1, :n] = from_place[:, :n]
-    times[: n + 1, n + 1] = from_place[:, n]
+    times[: n + 1, :n] = with_service[:, :n]
+    times[: n + 1, n + 1] = with_service[:, n]
     times = np.minimum(times, _FAR)
     np.fill_diagonal(times, 0)
     return times
 
 
-def _worth(problem: RouteProblem, times: NDArray[np.int64]) -> int:
-    """What one unit of prize is worth in units of cost."""
+def _prize_value(problem: RouteProblem, times: NDArray[np.int64]) -> int:
+    """Return the value of one unit of prize in units of cost."""
     if not problem.selective:
         return 1
     if problem.max_duration is not None:

@@ -1,8 +1,8 @@
-"""What is gained by sure routes instead of short ones: `python -m benchmarks.routes_robust`.
+"""Gain of robust routes over short ones: `python -m benchmarks.routes_robust`.
 
-First on random problems of six visits, where all orders can be tried, then on all checkpoints of
-UMAD: with readings that may be left out for some maximum durations, and with none left out for some
-shares of what the shortest route takes. Times spread as in `CAUTIOUS`.
+First on random problems of six visits, for which all orders can be tried; then on all checkpoints
+of UMAD, with optional readings for some maximum durations, and with mandatory ones for some
+multiples of the shortest route's duration. Times vary as in `CAUTIOUS`.
 """
 
 import argparse
@@ -22,19 +22,21 @@ from argo_env.seeding import generator
 
 VISITS = 6
 READING = 10.0
-"""s that a reading takes"""
+"""duration of a reading in s"""
 UNIT = 0.1
-JUDGED = 10_000
+DRAWS = 10_000
 
 
 def small_problems(count: int) -> Iterator[RouteProblem]:
-    """Random ones, every second with some time windows, that leave 12 % more time than the shortest
-    route takes."""
+    """Yield random problems with a maximum duration 12 % above that of the shortest route.
+
+    Every second one has some time windows.
+    """
     for seed in range(count):
         rng = generator(seed, "robust routes")
-        at = rng.uniform(0, 300, (VISITS + 1, 2))
-        up = np.maximum(at[None, :, 1] - at[:, None, 1], 0.0)
-        travel = np.rint(np.abs(at[:, None] - at).sum(axis=2) + 0.7 * up).astype(np.int64)
+        points = rng.uniform(0, 300, (VISITS + 1, 2))
+        up = np.maximum(points[None, :, 1] - points[:, None, 1], 0.0)
+        travel = np.rint(np.abs(points[:, None] - points).sum(axis=2) + 0.7 * up).astype(np.int64)
         visits = [Visit(f"{k}", 20) for k in range(VISITS)]
         problem = RouteProblem(tuple(visits), travel)
         usual = suggest_route(problem, 5.0)
@@ -48,28 +50,28 @@ def small_problems(count: int) -> Iterator[RouteProblem]:
 
 
 def compare_with_all_orders(count: int, time_limit: float) -> None:
-    """Prints how much surer the routes are than the usual ones, and how much less sure than the
-    surest order."""
-    gained, missed = [], []
+    """Print the gain in probability over the usual routes, and the loss to the best order."""
+    gains, losses = [], []
     for seed, problem in enumerate(small_problems(count)):
-        found = suggest_robust_route(problem, CAUTIOUS, time_limit, seed, confidence=1.0)
-        draws = Draws(CAUTIOUS, JUDGED, generator(seed, "all orders"))
-        assert found.nominal.route is not None
-        usual, sure = (
+        suggestion = suggest_robust_route(problem, CAUTIOUS, time_limit, seed, confidence=1.0)
+        draws = Draws(CAUTIOUS, DRAWS, generator(seed, "all orders"))
+        assert suggestion.nominal.route is not None
+        usual, robust = (
             completion(problem, route, draws).probability
-            for route in (found.nominal.route, found.route)
+            for route in (suggestion.nominal.route, suggestion.route)
         )
-        every = [completion(problem, Tour(o), draws) for o in permutations(range(VISITS))]
-        gained.append(sure - usual)
-        missed.append(max(one.probability for one in every) - sure)
-    print(f"{count} problems of {VISITS} visits that all have to be made, in percentage points:")
-    for what, values in (("surer than the usual route", gained), ("below the surest", missed)):
-        mean, most = 100 * float(np.mean(values)), 100 * max(values)
-        print(f"  {what}: {mean:.2f} on average, {most:.2f} at most")
+        all_orders = [completion(problem, Tour(o), draws) for o in permutations(range(VISITS))]
+        gains.append(robust - usual)
+        losses.append(max(order.probability for order in all_orders) - robust)
+    print(f"{count} problems of {VISITS} mandatory visits, in percentage points:")
+    rows = (("more certain than the usual route", gains), ("less than the best order", losses))
+    for text, values in rows:
+        mean, maximum = 100 * float(np.mean(values)), 100 * max(values)
+        print(f"  {text}: {mean:.2f} on average, {maximum:.2f} at most")
 
 
-def umad() -> RouteProblem:
-    """All checkpoints of UMAD in any order, from dock 1 back to it."""
+def umad_problem() -> RouteProblem:
+    """Return the problem of all checkpoints of UMAD in any order, from dock 1 and back to it."""
     navigator = open_site("umad").navigator
     ids = [checkpoint.id for checkpoint in navigator.site.checkpoints]
     times = navigator.travel_times([*ids, navigator.site.docks[1]])
@@ -77,36 +79,47 @@ def umad() -> RouteProblem:
     return RouteProblem(visits, np.rint(times / UNIT).astype(np.int64), unit=UNIT)
 
 
-def _said(found: RobustSuggestion) -> str:
-    usual = len(found.nominal.order)
+def _result_text(suggestion: RobustSuggestion) -> str:
+    usual, robust = suggestion.nominal_completion, suggestion.completion
     return (
-        f"usual {usual} readings, completed by {100 * found.nominal_completion.probability:.1f} %; "
-        f"sure {len(found.route.order)}, by {100 * found.completion.probability:.1f} % "
-        f"({found.tried} routes compared)"
+        f"usual {len(suggestion.nominal.order)} readings, completed by "
+        f"{100 * usual.probability:.1f} %; robust {len(suggestion.route.order)}, by "
+        f"{100 * robust.probability:.1f} % ({suggestion.tried} routes compared)"
     )
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Print all of it."""
+    """Print the results of both parts."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--problems", type=int, default=20, help="random ones")
-    parser.add_argument("--minutes", nargs="*", type=float, default=(10, 15, 20), help="on UMAD")
-    parser.add_argument("--shares", nargs="*", type=float, default=(1.02, 1.05, 1.1, 1.2))
-    parser.add_argument("--time-limit", type=float, default=30.0, help="s of each search")
-    given = parser.parse_args(arguments)
-    compare_with_all_orders(given.problems, given.time_limit)
-    problem = umad()
+    parser.add_argument("--problems", type=int, default=20, help="number of random problems")
+    parser.add_argument(
+        "--minutes", nargs="*", type=float, default=(10, 15, 20), help="maximum durations on UMAD"
+    )
+    parser.add_argument(
+        "--shares",
+        nargs="*",
+        type=float,
+        default=(1.02, 1.05, 1.1, 1.2),
+        help="multiples of the shortest duration",
+    )
+    parser.add_argument("--time-limit", type=float, default=30.0, help="seconds of each search")
+    options = parser.parse_args(arguments)
+    compare_with_all_orders(options.problems, options.time_limit)
+    problem = umad_problem()
     optional = tuple(replace(visit, mandatory=False, prize=1) for visit in problem.visits)
     print(f"UMAD, {problem.size} checkpoints, {READING:g} s each:")
-    for minutes in given.minutes:
+    for minutes in options.minutes:
         limited = replace(problem, visits=optional, max_duration=round(minutes * 60 / UNIT))
-        found = suggest_robust_route(limited, CAUTIOUS, given.time_limit)
-        print(f"  {minutes:g} min: {_said(found)}", flush=True)
-    shortest = suggest_route(problem, given.time_limit).cost
-    for share in given.shares:
+        suggestion = suggest_robust_route(limited, CAUTIOUS, options.time_limit)
+        print(f"  {minutes:g} min: {_result_text(suggestion)}", flush=True)
+    shortest = suggest_route(problem, options.time_limit).cost
+    for share in options.shares:
         limited = replace(problem, max_duration=int(share * shortest))
-        found = suggest_robust_route(limited, CAUTIOUS, given.time_limit, confidence=1.0)
-        print(f"  {share:g} times the shortest, nothing left out: {_said(found)}", flush=True)
+        suggestion = suggest_robust_route(limited, CAUTIOUS, options.time_limit, confidence=1.0)
+        print(
+            f"  {share:g} times the shortest, nothing left out: {_result_text(suggestion)}",
+            flush=True,
+        )
 
 
 if __name__ == "__main__":

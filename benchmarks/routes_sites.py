@@ -1,7 +1,8 @@
-"""How fast the best route is proven on sites: `python -m benchmarks.routes_sites`.
+"""Time to prove the best route on sites: `python -m benchmarks.routes_sites`.
 
-Random missions with any mix of constraints on UMAD and generated sites; any order of 80; routes in
-a budget with 40; and 1,000 checkpoints beside PyVRP. One worker, unless said otherwise.
+The problems are random missions with any mix of constraints on UMAD and generated sites, 80
+checkpoints in any order, 40 optional checkpoints with a maximum duration, and 1,000 checkpoints
+compared with PyVRP. One worker searches.
 """
 
 import argparse
@@ -26,7 +27,7 @@ from argo_compiler.route import (
     evaluate,
     suggest_route,
 )
-from benchmarks.options import seed_number
+from benchmarks.options import parse_seed
 
 UNIT = 0.1  # s
 SITES = ("umad", "generated:floors=3,seed=7", "generated:floors=5,seed=1")
@@ -34,15 +35,15 @@ SITES = ("umad", "generated:floors=3,seed=7", "generated:floors=5,seed=1")
 
 @dataclass(frozen=True)
 class SiteMatrix:
-    """Travel times of a site in units: its checkpoints first, then its docks."""
+    """Travel times of a site in units of UNIT: first its checkpoints, then its docks."""
 
     name: str
     times: NDArray[np.int64]
     checkpoints: int
 
 
-def site_matrix(name: str) -> SiteMatrix:
-    """The matrix of a site."""
+def make_site_matrix(name: str) -> SiteMatrix:
+    """Compute the travel times of a site."""
     from argo_env.planning import open_site
 
     navigator = open_site(name).navigator
@@ -53,25 +54,25 @@ def site_matrix(name: str) -> SiteMatrix:
     return SiteMatrix(name, times, len(site.checkpoints))
 
 
-def mission(rng: np.random.Generator, site: SiteMatrix, most: int = 20) -> RouteProblem:
-    """A mission with some of the site's checkpoints and any mix of constraints."""
+def random_mission(rng: np.random.Generator, site: SiteMatrix, most: int = 20) -> RouteProblem:
+    """Draw a mission of 2 to `most` checkpoints of the site with any mix of constraints."""
     n = int(rng.integers(2, min(most, site.checkpoints) + 1))
     chosen = rng.permutation(site.checkpoints)[:n]
     docks = np.arange(site.checkpoints, len(site.times))
     start, end = rng.choice(docks, 2)
-    charged = rng.random() < 0.25
-    chargers = docks if charged else docks[:0]
+    has_battery = rng.random() < 0.25
+    chargers = docks if has_battery else docks[:0]
     rows = np.concatenate([chosen, [start], chargers])
     columns = np.concatenate([chosen, [end], chargers])
     travel = site.times[np.ix_(rows, columns)]
     hop = int(np.median(travel[travel < NEVER])) // 2 + 100
     selective, windowed = rng.random() < 0.35, rng.random() < 0.3
-    rounds = _rounds(rng, n, hop) if rng.random() < 0.3 else ()
-    inside = {member for one in rounds for member in one.members}
+    rounds = _random_rounds(rng, n, hop) if rng.random() < 0.3 else ()
+    in_rounds = {member for each in rounds for member in each.members}
     visits = []
     for k in range(n):
         earliest, latest = 0, None
-        if windowed and k not in inside and rng.random() < 0.3:
+        if windowed and k not in in_rounds and rng.random() < 0.3:
             earliest = int(rng.integers(0, hop * n))
             latest = earliest + int(rng.integers(hop * n // 4, hop * n))
         optional = selective and rng.random() < 0.8
@@ -81,14 +82,14 @@ def mission(rng: np.random.Generator, site: SiteMatrix, most: int = 20) -> Route
             Visit(name, service, not optional, int(rng.integers(1, 101)), earliest, latest)
         )
     battery = None
-    if charged:
+    if has_battery:
         energy = np.where(travel >= NEVER, 0, travel // 3 + 10)
         battery = EnergyBudget(energy, int(rng.uniform(0.3, 1.2) * hop * n / 3) + 2 * hop, hop, 100)
     limit = int(rng.uniform(0.3, 1.0) * hop * n) + 6 * hop if selective else None
     return RouteProblem(
         tuple(visits),
         travel,
-        _precedences(rng, n) if rng.random() < 0.5 else (),
+        _random_precedences(rng, n) if rng.random() < 0.5 else (),
         rounds,
         limit,
         battery,
@@ -98,40 +99,40 @@ def mission(rng: np.random.Generator, site: SiteMatrix, most: int = 20) -> Route
     )
 
 
-def _precedences(rng: np.random.Generator, n: int) -> tuple[Precedence, ...]:
-    hidden = rng.permutation(n)
-    found = []
+def _random_precedences(rng: np.random.Generator, n: int) -> tuple[Precedence, ...]:
+    order = rng.permutation(n)  # which satisfies all precedences
+    precedences = []
     for _ in range(int(rng.integers(1, n + 1))):
         size = int(rng.integers(2, min(5, n) + 1))
-        sequence = hidden[np.sort(rng.permutation(n)[:size])]
+        sequence = order[np.sort(rng.permutation(n)[:size])]
         words = " before ".join(str(k) for k in sequence)
-        found.append(Precedence(tuple(sequence.tolist()), words, bool(rng.random() < 0.3)))
-    return tuple(found)
+        precedences.append(Precedence(tuple(sequence.tolist()), words, bool(rng.random() < 0.3)))
+    return tuple(precedences)
 
 
-def _rounds(rng: np.random.Generator, n: int, hop: int) -> tuple[Round, ...]:
-    left, found = rng.permutation(n).tolist(), []
-    while len(left) > 1 and rng.random() < 0.7:
-        size = int(rng.integers(2, min(6, len(left)) + 1))
-        members, left = left[:size], left[size:]
-        timed = rng.random() < 0.3
-        found.append(
+def _random_rounds(rng: np.random.Generator, n: int, hop: int) -> tuple[Round, ...]:
+    remaining, rounds = rng.permutation(n).tolist(), []
+    while len(remaining) > 1 and rng.random() < 0.7:
+        size = int(rng.integers(2, min(6, len(remaining)) + 1))
+        members, remaining = remaining[:size], remaining[size:]
+        time_search = rng.random() < 0.3
+        rounds.append(
             Round(
-                f"round {len(found)}",
+                f"round {len(rounds)}",
                 tuple(members),
-                0 if timed else int(rng.integers(1, 4)),
-                hop * int(rng.integers(2, 12)) if timed else 0,
+                0 if time_search else int(rng.integers(1, 4)),
+                hop * int(rng.integers(2, 12)) if time_search else 0,
                 bool(rng.random() < 0.5),
             )
         )
-    return tuple(found)
+    return tuple(rounds)
 
 
-def mixture(problem: RouteProblem) -> str:
-    """What constraints a problem has, a letter each."""
+def constraint_letters(problem: RouteProblem) -> str:
+    """Return the constraints of a problem, one letter each, `-` for those it does not have."""
     return "".join(
-        letter if there else "-"
-        for letter, there in [
+        letter if present else "-"
+        for letter, present in [
             ("o", problem.selective),
             ("p", bool(problem.precedences)),
             ("w", any(v.latest is not None for v in problem.visits)),
@@ -141,9 +142,14 @@ def mixture(problem: RouteProblem) -> str:
     )
 
 
-def any_order(rng: np.random.Generator, n: int, *, budget: int | None = None) -> RouteProblem:
-    """Checkpoints anywhere on six floors with aisles, stairs at one end, which take longer up than
-    down; with a budget (units) each is optional and has a prize."""
+def random_checkpoints(
+    rng: np.random.Generator, n: int, *, max_duration: int | None = None
+) -> RouteProblem:
+    """Draw checkpoints anywhere on six floors with aisles, and stairs at one end.
+
+    Stairs take longer up than down. With a maximum duration, in units of UNIT, each checkpoint is
+    optional and has a prize.
+    """
     x, y = rng.uniform(0, 30, n + 2), rng.uniform(0, 20, n + 2)
     floor = rng.integers(1, 7, n + 2)
     floor[n:] = 1
@@ -156,73 +162,80 @@ def any_order(rng: np.random.Generator, n: int, *, budget: int | None = None) ->
     rows = np.concatenate([np.arange(n), [n]])
     columns = np.concatenate([np.arange(n), [n + 1]])
     visits = tuple(
-        Visit(f"checkpoint {k + 1}", int(rng.integers(50, 150)), budget is None, int(prize))
+        Visit(f"checkpoint {k + 1}", int(rng.integers(50, 150)), max_duration is None, int(prize))
         for k, prize in enumerate(rng.integers(1, 101, n))
     )
-    objective = Objective.DURATION if budget is None else Objective.PRIZE
+    objective = Objective.DURATION if max_duration is None else Objective.PRIZE
     return RouteProblem(
-        visits, whole[np.ix_(rows, columns)], max_duration=budget, objective=objective, unit=UNIT
+        visits,
+        whole[np.ix_(rows, columns)],
+        max_duration=max_duration,
+        objective=objective,
+        unit=UNIT,
     )
 
 
 @dataclass(frozen=True)
 class Row:
-    """What one problem took."""
+    """Time and result of one problem."""
 
     seconds: float
-    mixture: str
+    constraints: str
     size: int
     suggestion: RouteSuggestion
 
 
-def timed(problem: RouteProblem, time_limit: float) -> Row:
-    """The suggestion for a problem, without the search for an infeasible subset."""
+def time_search(problem: RouteProblem, time_limit: float) -> Row:
+    """Time the search for a route, without the search for an infeasible subset of rules."""
     begun = time.perf_counter()
-    made = suggest_route(problem, time_limit, explain=False)
-    return Row(time.perf_counter() - begun, mixture(problem), problem.size, made)
+    suggestion = suggest_route(problem, time_limit, explain=False)
+    seconds = time.perf_counter() - begun
+    return Row(seconds, constraint_letters(problem), problem.size, suggestion)
 
 
-def summary(rows: Sequence[Row]) -> str:
-    """How many were proven, and how fast."""
+def summary_text(rows: Sequence[Row]) -> str:
+    """Return the number of proofs, and percentiles of the time, as text."""
     seconds = [row.seconds for row in rows]
     proven = sum(row.suggestion.proven for row in rows)
     without = sum(row.suggestion.proven and row.suggestion.route is None for row in rows)
-    half, most, worst = np.percentile(seconds, [50, 99, 100])
+    middle, percentile, worst = np.percentile(seconds, [50, 99, 100])
     return (
         f"{proven} of {len(rows)} proven ({without} have no route); "
-        f"median {half:.3f} s, 99 % {most:.2f} s, worst {worst:.2f} s"
+        f"median {middle:.3f} s, 99 % {percentile:.2f} s, worst {worst:.2f} s"
     )
 
 
-def missions(names: Sequence[str], count: int, seed: int, time_limit: float) -> None:
-    """Prints how fast random missions on sites are proven."""
-    sites = [site_matrix(name) for name in names]
+def measure_missions(names: Sequence[str], count: int, seed: int, time_limit: float) -> None:
+    """Print how fast random missions on sites are proven."""
+    sites = [make_site_matrix(name) for name in names]
     rows = []
     for number in range(count):
         rng = np.random.default_rng([seed, number])
-        rows.append(timed(mission(rng, sites[number % len(sites)]), time_limit))
-    print(f"missions of 2 to 20 checkpoints, any mix of constraints: {summary(rows)}")
+        rows.append(time_search(random_mission(rng, sites[number % len(sites)]), time_limit))
+    print(f"missions of 2 to 20 checkpoints, any mix of constraints: {summary_text(rows)}")
     for name in ("optional", "precedence", "windows", "rounds", "battery"):
-        if some := [row for row in rows if name[0] in row.mixture]:
-            print(f"  with {name:<10} {summary(some)}")
+        if chosen := [row for row in rows if name[0] in row.constraints]:
+            print(f"  with {name:<10} {summary_text(chosen)}")
     methods = Counter(row.suggestion.method for row in rows)
     print("  " + ", ".join(f"{method} {n}" for method, n in methods.most_common()))
 
 
-def large(seed: int, count: int) -> None:
-    """Prints how fast 80 checkpoints in any order, and 40 with a budget, are proven."""
+def measure_large_problems(seed: int, count: int) -> None:
+    """Print how fast 80 checkpoints, and 40 optional ones within 20 minutes, are proven."""
     rng = np.random.default_rng(seed)
-    rows = [timed(any_order(rng, 80), 60.0) for _ in range(count)]
-    print(f"80 checkpoints in any order: {summary(rows)}")
-    rows = [timed(any_order(rng, 40, budget=12_000), 120.0) for _ in range(count)]
-    print(f"40 checkpoints, 20 minutes: {summary(rows)}")
+    rows = [time_search(random_checkpoints(rng, 80), 60.0) for _ in range(count)]
+    print(f"80 checkpoints in any order: {summary_text(rows)}")
+    rows = [
+        time_search(random_checkpoints(rng, 40, max_duration=12_000), 120.0) for _ in range(count)
+    ]
+    print(f"40 checkpoints, 20 minutes: {summary_text(rows)}")
 
 
-def beside_pyvrp(seed: int, time_limit: float) -> None:
-    """Prints what 1,000 checkpoints in any order come to, and what PyVRP makes of them."""
+def compare_with_pyvrp(seed: int, time_limit: float) -> None:
+    """Print the durations of Argo's and PyVRP's routes for 1,000 checkpoints in any order."""
     from benchmarks import peer_pyvrp
 
-    problem = any_order(np.random.default_rng(seed), 1000)
+    problem = random_checkpoints(np.random.default_rng(seed), 1000)
     quick = suggest_route(problem, 2.0, seed)
     first = quick.history[0]
     ours = suggest_route(problem, time_limit, seed)
@@ -234,30 +247,38 @@ def beside_pyvrp(seed: int, time_limit: float) -> None:
     if find_spec("pyvrp") is None:
         print("  PyVRP is not installed: it is left out")
         return
-    route = peer_pyvrp.search(problem, time_limit, seed)
+    route = peer_pyvrp.search_with_pyvrp(problem, time_limit, seed)
     if route is None:
-        print("  PyVRP found none")
+        print("  PyVRP found no route")
         return
     theirs = evaluate(problem, route).duration
-    print(f"  PyVRP {theirs * UNIT:.0f} s in the same time: ours is {ours.cost / theirs:.3f} of it")
+    print(
+        f"  PyVRP {theirs * UNIT:.0f} s in the same time: Argo's has {ours.cost / theirs:.3f} of it"
+    )
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run what was asked for, or all."""
+    """Run the parts that the command line asks for, or all."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--missions", type=int, default=1000, help="random missions on sites")
-    parser.add_argument("--sites", nargs="+", default=SITES, help="of these missions")
-    parser.add_argument("--large", type=int, default=11, help="problems of 80 and of 40")
-    parser.add_argument("--peer", type=float, default=30.0, help="s beside PyVRP; 0: not")
-    parser.add_argument("--time-limit", type=float, default=20.0, help="s for a mission")
-    parser.add_argument("--seed", type=seed_number, default=1)
-    given = parser.parse_args(arguments)
-    if given.missions:
-        missions(given.sites, given.missions, given.seed, given.time_limit)
-    if given.large:
-        large(given.seed, given.large)
-    if given.peer:
-        beside_pyvrp(given.seed, given.peer)
+    parser.add_argument(
+        "--missions", type=int, default=1000, help="number of random missions on sites; 0: none"
+    )
+    parser.add_argument("--sites", nargs="+", default=SITES, help="sites of these missions")
+    parser.add_argument(
+        "--large", type=int, default=11, help="number of problems of 80 and of 40 checkpoints"
+    )
+    parser.add_argument(
+        "--peer", type=float, default=30.0, help="seconds of the comparison with PyVRP; 0: none"
+    )
+    parser.add_argument("--time-limit", type=float, default=20.0, help="seconds for each mission")
+    parser.add_argument("--seed", type=parse_seed, default=1)
+    options = parser.parse_args(arguments)
+    if options.missions:
+        measure_missions(options.sites, options.missions, options.seed, options.time_limit)
+    if options.large:
+        measure_large_problems(options.seed, options.large)
+    if options.peer:
+        compare_with_pyvrp(options.seed, options.peer)
 
 
 if __name__ == "__main__":

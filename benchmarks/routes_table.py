@@ -1,49 +1,49 @@
-"""What was found for published route problems, as a Markdown table."""
+"""Results for published route problems as a Markdown table."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
 from benchmarks.instances import Kind
-from benchmarks.known_values import Known
+from benchmarks.known_values import KnownValue
 
 SMALL = 100
-"""the number of nodes up to which proofs are counted apart"""
+"""number of nodes up to which proofs are counted separately"""
 
 
 @dataclass(frozen=True)
-class PeerFinding:
-    """What another solver found for a problem."""
+class PeerResult:
+    """Result of another solver for a problem."""
 
     name: str
     value: float | None
-    """as the file counts; None: nothing"""
-    none_because: str | None = None
-    """why it was not asked, or why what it found does not count"""
+    """value in the file's terms; None: no valid route"""
+    reason: str | None = None
+    """reason why the solver was not run, or why its route is not valid"""
 
 
 @dataclass(frozen=True)
 class Row:
-    """What was found for one problem. Values as the file counts."""
+    """Results for one problem. Values are in the file's terms."""
 
     name: str
     kind: Kind
     nodes: int
-    known: Known | None
+    known: KnownValue | None
     value: float | None
     bound: float
     proven: bool
     seconds: float
     method: str
-    peers: tuple[PeerFinding, ...]
+    peers: tuple[PeerResult, ...]
     wrong: str | None
-    """what contradicts the evaluation or what is known: a defect of the solvers"""
+    """contradiction of the evaluation or of a known value, a defect of the solvers; None: none"""
 
-    def off(self, value: float | None) -> float | None:
-        """By what share a value is worse than the best known one, which may be ours."""
+    def relative_loss(self, value: float | None) -> float | None:
+        """Return by what share a value is worse than the best one of all, Argo's included."""
         known = None if self.known is None else self.known.value
-        found = (self.value, known, *(peer.value for peer in self.peers))
-        values = [each for each in found if each is not None]
+        candidates = (self.value, known, *(peer.value for peer in self.peers))
+        values = [candidate for candidate in candidates if candidate is not None]
         if value is None or not values:
             return None
         best = max(values) if self.kind == Kind.OP else min(values)
@@ -52,63 +52,68 @@ class Row:
         return abs(value - best) / best if best else float("inf")
 
 
-def summary(rows: Iterable[Row]) -> Iterator[str]:
-    """What holds of the problems of each kind."""
+def summarize(rows: Iterable[Row]) -> Iterator[str]:
+    """Yield one sentence of totals for the problems of each kind."""
     for kind, group in groupby(sorted(rows, key=lambda row: row.kind), key=lambda row: row.kind):
-        some = list(group)
-        small = [row for row in some if row.nodes <= SMALL]
-        best = sum(row.off(row.value) == 0.0 for row in some)
-        said = (
-            f"{kind}: {len(some)} problems, {sum(row.proven for row in some)} proven "
+        rows_of_kind = list(group)
+        small = [row for row in rows_of_kind if row.nodes <= SMALL]
+        best = sum(row.relative_loss(row.value) == 0.0 for row in rows_of_kind)
+        text = (
+            f"{kind}: {len(rows_of_kind)} problems, "
+            f"{sum(row.proven for row in rows_of_kind)} proven "
             f"({sum(row.proven for row in small)} of {len(small)} with up to {SMALL} nodes), best "
-            f"known value or better {best} times, {sum(row.seconds for row in some):.1f} s in all"
+            f"known value or better {best} times, "
+            f"{sum(row.seconds for row in rows_of_kind):.1f} s in all"
         )
-        for name in _peers(some):
-            found = [(row, peer) for row in some for peer in row.peers if peer.name == name]
-            asked = [(row, peer) for row, peer in found if peer.none_because is None]
-            reached = sum(row.off(peer.value) == 0.0 for row, peer in asked)
-            said += f"; {name} " + (
-                f"best known value {reached} times of {len(asked)}"
-                if asked
-                else f"not asked: {found[0][1].none_because}"
+        for name in _peer_names(rows_of_kind):
+            results = [
+                (row, peer) for row in rows_of_kind for peer in row.peers if peer.name == name
+            ]
+            valid = [(row, peer) for row, peer in results if peer.reason is None]
+            reached = sum(row.relative_loss(peer.value) == 0.0 for row, peer in valid)
+            text += f"; {name} " + (
+                f"best known value {reached} times of {len(valid)}"
+                if valid
+                else f"left out: {results[0][1].reason}"
             )
-        yield said
+        yield text
 
 
-def head(peers: Sequence[str]) -> Iterator[str]:
-    """Return the first two lines of the Markdown table with these peers."""
-    heads = ["", "nodes", "known", "ours", "off", "bound", "proven", "time", "by", *peers]
-    yield f"| {' | '.join(heads)} |"
-    yield "|" + "---|" * len(heads)
+def header_lines(peers: Sequence[str]) -> Iterator[str]:
+    """Yield the first two lines of the Markdown table with these peers."""
+    titles = ["", "nodes", "known", "ours", "off", "bound", "proven", "time", "by", *peers]
+    yield f"| {' | '.join(titles)} |"
+    yield "|" + "---|" * len(titles)
 
 
-def line(row: Row) -> str:
-    """Return the line of a problem."""
+def row_line(row: Row) -> str:
+    """Return the line of the table for a problem."""
     cells = [
-        f"{row.kind} {row.name}", str(row.nodes), _known(row.known), _number(row.value),
-        _share(row.off(row.value)), _number(row.bound), "yes" if row.proven else "no",
+        f"{row.kind} {row.name}", str(row.nodes), _known_text(row.known), _number_text(row.value),
+        _share_text(row.relative_loss(row.value)), _number_text(row.bound),
+        "yes" if row.proven else "no",
         f"{row.seconds:.1f} s", row.method + (f" WRONG: {row.wrong}" if row.wrong else ""),
     ]  # fmt: skip
-    return f"| {' | '.join([*cells, *(_of_peer(row, peer) for peer in row.peers)])} |"
+    return f"| {' | '.join([*cells, *(_peer_text(row, peer) for peer in row.peers)])} |"
 
 
-def _peers(rows: Iterable[Row]) -> list[str]:
+def _peer_names(rows: Iterable[Row]) -> list[str]:
     return list(dict.fromkeys(peer.name for row in rows for peer in row.peers))
 
 
-def _of_peer(row: Row, peer: PeerFinding) -> str:
+def _peer_text(row: Row, peer: PeerResult) -> str:
     if peer.value is None:
-        return "" if peer.none_because else "none"
-    return f"{_number(peer.value)}, {_share(row.off(peer.value))}"
+        return "" if peer.reason else "none"
+    return f"{_number_text(peer.value)}, {_share_text(row.relative_loss(peer.value))}"
 
 
-def _known(known: Known | None) -> str:
-    return "-" if known is None else _number(known.value) + ("" if known.proven else "?")
+def _known_text(known: KnownValue | None) -> str:
+    return "-" if known is None else _number_text(known.value) + ("" if known.proven else "?")
 
 
-def _number(value: float | None) -> str:
+def _number_text(value: float | None) -> str:
     return "-" if value is None else f"{round(value, 2):.10g}"
 
 
-def _share(share: float | None) -> str:
+def _share_text(share: float | None) -> str:
     return "-" if share is None else f"{100 * share:.2f} %" if share else "0"

@@ -1,25 +1,25 @@
-"""Compare all results with those of another checkout, byte for byte.
+"""Comparison of all results with those of another checkout, byte for byte.
 
     git worktree add ../before COMMIT
     python -m benchmarks.same_results ../before                      # all groups
-    python -m benchmarks.same_results ../before plans kinematic      # or only some of them,
-    python -m benchmarks.same_results ../before --only protocol_2    # or of these names
-    python -m benchmarks.same_results --write digests.txt            # the digests of this checkout,
-    python -m benchmarks.same_results digests.txt                    # to compare with later
+    python -m benchmarks.same_results ../before plans kinematic      # some groups
+    python -m benchmarks.same_results ../before --only protocol_2    # results with this name
+    python -m benchmarks.same_results --write digests.txt            # store this checkout's digests
+    python -m benchmarks.same_results digests.txt                    # compare with stored digests
     python -m benchmarks.same_results ../before --without-prose      # after a change of words
 
 `plans`, `routes` and `journals` run the commands of `argo` as a user would: they read, check,
-explain, compile and export scripts and missions, search for routes, and keep and continue runs.
-All files that a command writes, its exit status and what it prints count; times that were measured
-on the wall clock do not. `route`, `kinematic` and `tracked` run the shipped missions and each
-shipped file of faults with the drive of that name, and compare the records; `drive` takes random
-actions in Drive-v0, and compares all that it returns, and its states.
+explain, compile and export scripts and missions, search for routes, and record and resume runs.
+They compare all files that a command writes, its exit status and its output, without wall-clock
+times. `route`, `kinematic` and `tracked` run the shipped missions and each shipped file of faults
+with the drive of that name, and compare the records. `drive` takes random actions in Drive-v0, and
+compares all returned values and the states.
 
-Each checkout computes in a process of its own, which prints a digest of each result. The command
-names each result that differs, and then fails.
+Each checkout runs in a process of its own, which prints a digest of each result. The command prints
+each result that differs; its exit status is then 1.
 
-With `--without-prose`, texts of several words do not count in JSON, and of all other texts only
-the numbers count. So keys, values, ids and structure are compared.
+With `--without-prose`, JSON files are compared without texts of several words, and of all other
+text files only the numbers are compared. So keys, values, ids and structure still count.
 """
 
 import argparse
@@ -45,8 +45,8 @@ SEEDS = {"route": 4, "kinematic": 4, "tracked": 1}
 EXPORTS = ("scxml", "btcpp", "flexbe", "ros", "isar", "mermaid", "dot")
 
 
-def records(drive: str) -> Iterator[tuple[str, bytes]]:
-    """The name of each run with a drive, and its record."""
+def run_records(drive: str) -> Iterator[tuple[str, bytes]]:
+    """Yield the name of each run with a drive, and its record as JSON."""
     from argo_env.planning import open_site
     from argo_env.run.session import simulate
     from argo_env.run.spec import RunSpec
@@ -73,12 +73,12 @@ def records(drive: str) -> Iterator[tuple[str, bytes]]:
         faults = read_faults(path)
         cases.append((f"ground, {path.stem}", on_ground, faults, "ideal"))
         cases.append((f"upstairs, {path.stem}", upstairs, faults, "ideal"))
-    for name, asked, faults, sensor in cases:
+    for name, case_mission, faults, sensor in cases:
         if drive == "route" and (sensor != "ideal" or any(f.needs_world for f in faults)):
             continue
         for seed in range(SEEDS[drive]):
             spec = RunSpec(
-                mission=asked,
+                mission=case_mission,
                 drive=drive,
                 sensor=sensor,
                 seed=seed,
@@ -86,15 +86,15 @@ def records(drive: str) -> Iterator[tuple[str, bytes]]:
                 events=(resume,),
             )
             record = simulate(spec, site)
-            said = f"{len(record.contacts)} contacts, {len(record.anomalies)} anomalies"
+            counts = f"{len(record.contacts)} contacts, {len(record.anomalies)} anomalies"
             yield (
-                f"{drive}: {name}, {sensor}, seed {seed}: {said}",
+                f"{drive}: {name}, {sensor}, seed {seed}: {counts}",
                 record.model_dump_json().encode(),
             )
 
 
-def episodes() -> Iterator[tuple[str, bytes]]:
-    """The name of each episode of Drive-v0, and all that it returned."""
+def drive_episodes() -> Iterator[tuple[str, bytes]]:
+    """Yield the name of each episode of Drive-v0, and all values that it returned, as text."""
     import gymnasium as gym
     import numpy as np
 
@@ -106,23 +106,23 @@ def episodes() -> Iterator[tuple[str, bytes]]:
         observation, info = env.reset(
             seed=seed, options={"faults": faults} if seed % 4 == 3 else {}
         )
-        told: list[object] = [observation, info]
+        values: list[object] = [observation, info]
         rng = np.random.default_rng(seed)
-        lean = rng.uniform(-1.0, 1.0, 3)
+        bias = rng.uniform(-1.0, 1.0, 3)
         for _ in range(250):
-            action = np.clip(lean + rng.uniform(-0.5, 0.5, 3), -1.0, 1.0).astype(np.float32)
+            action = np.clip(bias + rng.uniform(-0.5, 0.5, 3), -1.0, 1.0).astype(np.float32)
             *returned, terminated, truncated, info = env.step(action)
-            told += [*returned, terminated, truncated, info, env.pose, env.site.body.velocity]
+            values += [*returned, terminated, truncated, info, env.pose, env.site.body.velocity]
             if terminated or truncated:
                 break
-        told.append(env.get_state())
-        told.append(env.set_state(env.get_state()))
+        values.append(env.get_state())
+        values.append(env.set_state(env.get_state()))
         with np.printoptions(floatmode="unique", threshold=sys.maxsize):
-            yield f"drive: seed {seed}, {len(told)} values", repr(told).encode()
+            yield f"drive: seed {seed}, {len(values)} values", repr(values).encode()
 
 
 Case = tuple[str, Sequence[Sequence[str]]]
-"""A name, and the commands that are run one after another in a folder of their own."""
+"""Name of a case, and its commands, which are run one after another in a new folder."""
 
 
 def plan_cases() -> Iterator[Case]:
@@ -150,7 +150,7 @@ def plan_cases() -> Iterator[Case]:
 
 
 def route_cases() -> Iterator[Case]:
-    """Yield the cases that search for routes which are proven well within the time limit."""
+    """Yield the cases that search for routes, which are proven well within the time limit."""
     base = ("route", "missions/any_order.txt", "--time-limit", "60", "-o", "new.json")
     for name, options in {
         "any order": (),
@@ -168,7 +168,7 @@ def route_cases() -> Iterator[Case]:
 
 
 def journal_cases() -> Iterator[Case]:
-    """Yield the cases that keep runs in journals and reports, and resume runs that were cut off."""
+    """Yield the cases that record runs in journals and reports, and resume interrupted runs."""
     first = ("missions/mission_1.txt", "--start-area", "1", "--end-area", "2")
     ground, upstairs = "faults/ground.txt", "faults/upstairs.txt"
     for name, options in {
@@ -191,8 +191,10 @@ def journal_cases() -> Iterator[Case]:
 
 
 def command_results(group: str, only: str, with_prose: bool) -> Iterator[tuple[str, bytes]]:
-    """Yield the name of each case of commands that has `only` in it, and all that it printed and
-    wrote."""
+    """Yield each case of a group whose name contains `only`, and all its output as bytes.
+
+    The output consists of exit statuses, what is printed, and files.
+    """
     all_cases = {"plans": plan_cases, "routes": route_cases, "journals": journal_cases}[group]()
     cases = [case for case in all_cases if only in f"{group}: {case[0]}"]
     if not cases:
@@ -204,24 +206,26 @@ def command_results(group: str, only: str, with_prose: bool) -> Iterator[tuple[s
         shutil.copytree(ROOT / "tests/argo_compiler/script/people", folder / "inputs" / "people")
         _load_commands()
         for case, commands in cases:
-            place = folder / "case"
-            shutil.copytree(folder / "inputs", place)
-            known = set(place.rglob("*"))
-            statuses = [_carry_out(command, place) for command in commands]
+            case_folder = folder / "case"
+            shutil.copytree(folder / "inputs", case_folder)
+            inputs = set(case_folder.rglob("*"))
+            statuses = [_run_command(command, case_folder) for command in commands]
             content = repr(statuses).encode()
-            for path in sorted(set(place.rglob("*")) - known):
+            for path in sorted(set(case_folder.rglob("*")) - inputs):
                 if path.is_file():
-                    written = _timeless(path, folder)
+                    written = _without_times(path, folder)
                     if not with_prose:
                         written = _without_prose(path.suffix, written)
-                    content += f"\n{path.relative_to(place)}\n".encode() + written
-            shutil.rmtree(place)
+                    content += f"\n{path.relative_to(case_folder)}\n".encode() + written
+            shutil.rmtree(case_folder)
             yield f"{group}: {case}, exit statuses {statuses}", content
 
 
 def _load_commands() -> None:
-    """Import the commands, so that the processes forked for them need little time to load. On a
-    busy machine any stage may take so long that it is shown: none is."""
+    """Import the commands, so that the processes that are forked for them start fast.
+
+    Also switches off the display of stages, which would depend on the load of the machine.
+    """
     from argo_planner.cli import ArgoCommands
     from argo_planner.terminal import stage_display
 
@@ -231,11 +235,13 @@ def _load_commands() -> None:
         importlib.import_module(command.module)
 
 
-def _carry_out(command: Sequence[str], folder: Path) -> int:
-    """Run a command of `argo` in a forked process, with what it prints in the file `printed`.
+def _run_command(command: Sequence[str], folder: Path) -> int:
+    """Run a command of `argo` in a forked process, with its output in the file `printed`.
 
-    `CUT FILE` cuts a file of lines off after the first half. Returns the exit status; that of CUT
-    is 2 if there is no such file, as after a run that was refused.
+    `CUT FILE` keeps the first half of the lines of a file.
+
+    Returns:
+        The exit status; that of CUT is 2 if there is no such file, as after a refused run.
     """
     if command[0] == "CUT":
         file = folder / command[1]
@@ -270,7 +276,7 @@ def _carry_out(command: Sequence[str], folder: Path) -> int:
         os._exit(status)
 
 
-def _timeless(path: Path, folder: Path) -> bytes:
+def _without_times(path: Path, folder: Path) -> bytes:
     """Return the content of a file without names of temporary folders and wall-clock times."""
     content = path.read_bytes().replace(str(folder).encode(), b"FOLDER")
     if path.suffix == ".journal":
@@ -281,11 +287,11 @@ def _timeless(path: Path, folder: Path) -> bytes:
 
 
 _PROSE = re.compile(rb'"(?:[^"\\]|\\.)* (?:[^"\\]|\\.)*"(?!:)')
-"""a JSON text with a blank in it that is not a key"""
+"""pattern of a JSON string that contains a blank and is not a key"""
 
 
 def _without_prose(suffix: str, content: bytes) -> bytes:
-    """Return what is left of the content of a file without prose, as `--without-prose` says."""
+    """Return the content of a file without prose, as `--without-prose` describes."""
     if suffix in (".json", ".journal"):
         content = re.sub(rb"(?m)^[0-9a-f]{8} ", b"CHECKSUM ", content)
         return _PROSE.sub(b'"PROSE"', content)
@@ -294,15 +300,15 @@ def _without_prose(suffix: str, content: bytes) -> bytes:
     return b" ".join(re.findall(rb"\d+(?:\.\d+)?", content))
 
 
-def digests(only: str, groups: Sequence[str], with_prose: bool) -> None:
-    """Print a line for each result that has `only` in its name: its digest, and its name."""
+def print_digests(only: str, groups: Sequence[str], with_prose: bool) -> None:
+    """Print the digest and the name of each result whose name contains `only`."""
     for group in groups:
         results = (
             command_results(group, only, with_prose)
             if group in COMMANDS
-            else episodes()
+            else drive_episodes()
             if group == "drive"
-            else records(group)
+            else run_records(group)
         )
         for name, content in results:
             if only not in name:
@@ -314,10 +320,10 @@ def digests(only: str, groups: Sequence[str], with_prose: bool) -> None:
                 (Path(folder) / re.sub(r"\W+", "_", name)).write_bytes(content)
 
 
-def computed(
+def compute_digests(
     root: Path, only: str, groups: Sequence[str], cache: str, with_prose: bool
 ) -> list[str]:
-    """Return the lines of the digests with the code of a checkout, and show them as they come."""
+    """Compute the digests with the code of a checkout; print and return their lines."""
     environment = os.environ | {"PYTHONPATH": str(root), "ARGO_CACHE_DIR": cache}
     prose = "prose" if with_prose else ""
     command = (sys.executable, __file__, "--digests", only, prose, *groups)
@@ -335,14 +341,14 @@ def computed(
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Name the results that differ."""
+    """Print the results that differ; exits with 1 if there are any."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("before", type=Path, help="checkout, or file of digests, to compare with")
     parser.add_argument("groups", nargs="*", metavar="group", help=", ".join(GROUPS))
     parser.add_argument(
-        "--only", default="", metavar="TEXT", help="only the results with this text in their names"
+        "--only", default="", metavar="TEXT", help="only results whose names contain TEXT"
     )
     parser.add_argument(
         "--write", action="store_true", help="write this checkout's digests to the file instead"
@@ -354,33 +360,33 @@ def main(arguments: Sequence[str] | None = None) -> None:
     with_prose = not options.without_prose
     groups = options.groups or list(GROUPS)
     if unknown := set(groups) - set(GROUPS):
-        parser.error(f"there is no {sorted(unknown)[0]}; there are: {', '.join(GROUPS)}")
+        parser.error(f"there is no group {sorted(unknown)[0]}; choose from: {', '.join(GROUPS)}")
     before: Path = options.before.resolve()
     if not options.write and not before.exists():
         parser.error(f"{before} is neither a checkout nor a file of digests")
     with tempfile.TemporaryDirectory() as old_cache, tempfile.TemporaryDirectory() as new_cache:
         if options.write:
             before.write_text(
-                "\n".join(computed(ROOT, options.only, groups, new_cache, with_prose)) + "\n"
+                "\n".join(compute_digests(ROOT, options.only, groups, new_cache, with_prose)) + "\n"
             )
             return
         if before.is_dir():
-            old = computed(before, options.only, groups, old_cache, with_prose)
+            old = compute_digests(before, options.only, groups, old_cache, with_prose)
         else:
-            kept = before.read_text().splitlines()
+            stored = before.read_text().splitlines()
             old = [
                 line
-                for line in kept
+                for line in stored
                 if line[17:].split(":", 1)[0] in groups and options.only in line[17:]
             ]
-        new = computed(ROOT, options.only, groups, new_cache, with_prose)
+        new = compute_digests(ROOT, options.only, groups, new_cache, with_prose)
     different = [f"before {a}\n today {b}" for a, b in zip_longest(old, new) if a != b]
-    print("\n".join(different) or "all are the same")
+    print("\n".join(different) or "all results are the same")
     raise SystemExit(bool(different))
 
 
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--digests"]:
-        digests(sys.argv[2], sys.argv[4:], bool(sys.argv[3]))
+        print_digests(sys.argv[2], sys.argv[4:], bool(sys.argv[3]))
     else:
         main()

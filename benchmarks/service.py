@@ -1,14 +1,14 @@
-"""How fast the planning service answers, with a service in a process of its own.
+"""Speed of the planning service, with a service in a process of its own.
 
-    python -m benchmarks.service            # edits, and how soon others see them
+    python -m benchmarks.service            # poses, edits, and when subscribers receive edits
     python -m benchmarks.service --tasks 2000 --edits 200
-    python -m benchmarks.service --poses   # and what it costs to tell where the robot is
+    python -m benchmarks.service --poses    # only the poses of a running robot
 
-Prints, for missions of several sizes, how long a durable edit takes (ms, from the request to the
-answer, when it is on disk), and when the last of 50 subscribers has it; once more while one
-subscriber hears nothing. The times are medians and 95 % of the edits took no longer. Of poses it
-prints how many a second each of 50 followers of a run gets, the gaps between them, and the share of
-a core that the service takes for that.
+Prints for missions of several sizes how long a durable edit takes (ms, from the request to the
+answer, when the edit is on disk), and when the last of 50 subscribers has received it; then the
+same with one more client that reads nothing. The times are the median and the 95th percentile. For
+poses it prints how many a second each of 50 followers of a run receives, the gaps between them, and
+the share of a core that the service needs for them.
 """
 
 import argparse
@@ -38,8 +38,8 @@ SIZES = (200, 2_000)
 
 
 @contextmanager
-def service(folder: Path) -> Iterator[tuple[str, int]]:
-    """A service of its own; its address and its process."""
+def start_service(folder: Path) -> Iterator[tuple[str, int]]:
+    """Start a service, yield its address and process id, and end it."""
     command = [sys.executable, "-m", "argo_planner", "serve", str(folder), "--port", "0"]
     environment = os.environ | {"ARGO_TOKEN": TOKEN}
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment) as process:
@@ -57,8 +57,8 @@ def service(folder: Path) -> Iterator[tuple[str, int]]:
             rest.join()
 
 
-def mission(size: int) -> dict[str, object]:
-    """Measurements, one after the other, with a group of ten each."""
+def make_mission(size: int) -> dict[str, object]:
+    """Return a mission of measurements in sequence, with a group of ten in every twenty."""
     tasks = [
         {
             "name": f"t{k}",
@@ -75,20 +75,23 @@ def mission(size: int) -> dict[str, object]:
     return {"version": 3, "tasks": tasks, "groups": groups}
 
 
-def follow(address: str, id: str, revisions: int, count: int, times: Connection) -> None:
-    """In a process of its own: that many subscribers hear of so many revisions. Sends, for each
-    revision, when (s) the last of them had it."""
+def receive_revisions(address: str, id: str, revisions: int, count: int, times: Connection) -> None:
+    """Subscribe `count` times to a mission until each has received so many revisions.
+
+    Runs in a process of its own. Sends None when all are subscribed, and at the end the time (ns)
+    at which the last of them received each revision.
+    """
 
     async def one(last: Counter[int], ready: asyncio.Semaphore) -> None:
         url = f"ws://{address}/api/missions/{id}/live"
         async with connect(url, additional_headers=HEADERS, max_size=None, proxy=None) as socket:
             await socket.recv()
             ready.release()
-            heard = 0
-            while heard < revisions:
+            received = 0
+            while received < revisions:
                 text = await socket.recv()
                 if text.startswith('{"kind":"revision"'):
-                    heard += 1
+                    received += 1
                     number = json.loads(text)["revision"]["number"]
                     last[number] = max(last[number], time.perf_counter_ns())
 
@@ -105,13 +108,15 @@ def follow(address: str, id: str, revisions: int, count: int, times: Connection)
     times.send(asyncio.run(all_of_them()))
 
 
-def follow_poses(address: str, count: int, seconds: float, gaps: Connection) -> None:
-    """In a process of its own: that many followers of the robot for a time (s). Sends all gaps (s)
-    between the poses that one follower gets."""
+def receive_poses(address: str, count: int, seconds: float, gaps: Connection) -> None:
+    """Follow the robot's poses `count` times for a number of seconds.
+
+    Runs in a process of its own. Sends all gaps (s) between poses that the same follower received.
+    """
 
     async def one() -> list[float]:
         url = f"ws://{address}/api/robot/live?since=1000000000"
-        found: list[float] = []
+        own_gaps: list[float] = []
         async with connect(url, additional_headers=HEADERS, max_size=None, proxy=None) as socket:
             last, ends = None, time.perf_counter() + seconds
             while (now := time.perf_counter()) < ends:
@@ -119,9 +124,9 @@ def follow_poses(address: str, count: int, seconds: float, gaps: Connection) -> 
                 if text.startswith('{"kind":"pose"'):
                     now = time.perf_counter()
                     if last is not None:
-                        found.append(now - last)
+                        own_gaps.append(now - last)
                     last = now
-        return found
+        return own_gaps
 
     async def all_of_them() -> list[float]:
         return [
@@ -132,24 +137,26 @@ def follow_poses(address: str, count: int, seconds: float, gaps: Connection) -> 
 
 
 def measure_poses(address: str, process: int, followers: int, seconds: float) -> None:
-    """Prints what it costs to tell many where the robot is."""
+    """Print the load of the service by the poses of a run, without and with followers."""
     with httpx.Client(base_url=f"http://{address}", headers=HEADERS, timeout=60) as client:
-        made = client.post("/api/missions", json={"name": "poses", "mission": mission(200)})
-        id = made.raise_for_status().json()["id"]
-        # At three times real time each step of 0.1 s is told, so that there are 30 a second.
+        response = client.post(
+            "/api/missions", json={"name": "poses", "mission": make_mission(200)}
+        )
+        id = response.raise_for_status().json()["id"]
+        # At three times real time each step of 0.1 s is sent, 30 poses a second.
         order = {"drive": "route", "speed": 3.0}
-        begun = client.post(f"/api/missions/{id}/runs", json=order, headers={"if-match": "*"})
-        run = begun.raise_for_status().json()["id"]
+        response = client.post(f"/api/missions/{id}/runs", json=order, headers={"if-match": "*"})
+        run = response.raise_for_status().json()["id"]
         while client.get(f"/api/runs/{run}").json()["status"] != "running":
             time.sleep(0.1)
         for count in (0, followers):
             here, there = Pipe()
-            listening = Process(target=follow_poses, args=(address, count, seconds, there))
+            listening = Process(target=receive_poses, args=(address, count, seconds, there))
             listening.start()
             time.sleep(1.0)
-            before, at = busy(process), time.perf_counter()
+            before, at = processor_seconds(process), time.perf_counter()
             time.sleep(seconds - 2.0)
-            share = (busy(process) - before) / (time.perf_counter() - at)
+            share = (processor_seconds(process) - before) / (time.perf_counter() - at)
             gaps = here.recv()
             listening.join()
             text = f"  {count} followers of a run: {share:.1%} of a core"
@@ -163,50 +170,61 @@ def measure_poses(address: str, process: int, followers: int, seconds: float) ->
         client.post(f"/api/runs/{run}/requests", json={"kind": "stop", "id": "stop"})
 
 
-def busy(process: int) -> float:
-    """s that a process has worked so far, without those that it has begun."""
+def processor_seconds(process: int) -> float:
+    """Return the processor time (s) of a process so far, without that of its children."""
     fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def show(name: str, seconds: Sequence[float]) -> None:
-    """Prints a median, and what 95 of a hundred did not exceed."""
+def print_times(name: str, seconds: Sequence[float]) -> None:
+    """Print the median and the 95th percentile."""
     cuts = quantiles(seconds, n=20)
     print(f"  {name:52s} {median(seconds) * 1e3:7.1f} {cuts[-1] * 1e3:7.1f} ms", flush=True)
 
 
-def measure(address: str, size: int, edits: int, subscribers: int) -> None:
-    """Prints how long edits of a mission of that size take."""
+def measure_edits(address: str, size: int, edits: int, subscribers: int) -> None:
+    """Print how long edits of a mission of that size take, for each set of subscribers."""
     with httpx.Client(base_url=f"http://{address}", headers=HEADERS, timeout=60) as client:
-        made = client.post("/api/missions", json={"name": f"{size}", "mission": mission(size)})
-        id = made.raise_for_status().json()["id"]
+        response = client.post(
+            "/api/missions", json={"name": f"{size}", "mission": make_mission(size)}
+        )
+        id = response.raise_for_status().json()["id"]
         revision = 1
-        for heard, stalled in ((0, False), (subscribers, False), (subscribers, True)):
+        for count, stalled in ((0, False), (subscribers, False), (subscribers, True)):
             with ExitStack() as stack:
                 if stalled:
-                    stack.enter_context(stalled_client(address, id))
+                    stack.enter_context(subscribe_without_reading(address, id))
                 here, there = Pipe()
-                followers = Process(target=follow, args=(address, id, edits, heard, there))
+                followers = Process(
+                    target=receive_revisions, args=(address, id, edits, count, there)
+                )
                 followers.start()
                 here.recv()
-                took, sent = [], {}
+                seconds, sent = [], {}
                 for k in range(edits):
                     begun = time.perf_counter_ns()
-                    edit(client, id, revision, f"t{size // 2 + k % 50}", 0.1 + revision / 1e5)
-                    took.append((time.perf_counter_ns() - begun) / 1e9)
+                    change_velocity(
+                        client, id, revision, f"t{size // 2 + k % 50}", 0.1 + revision / 1e5
+                    )
+                    seconds.append((time.perf_counter_ns() - begun) / 1e9)
                     revision += 1
                     sent[revision] = begun
                     time.sleep(0.05)
-                last = here.recv()
+                received = here.recv()
                 followers.join()
-            what = f"{size} tasks, {heard} subscribers" + (", one hears nothing" * stalled)
-            show(f"{what}: edit", took)
-            if heard:
-                show(f"{what}: seen by all", [(last[n] - at) / 1e9 for n, at in sent.items()])
+            title = f"{size} tasks, {count} subscribers" + (", one reads nothing" * stalled)
+            print_times(f"{title}: edit", seconds)
+            if count:
+                print_times(
+                    f"{title}: received by all",
+                    [(received[n] - at) / 1e9 for n, at in sent.items()],
+                )
 
 
-def edit(client: httpx.Client, id: str, revision: int, task: str, velocity: float) -> None:
-    """Changes a task's speed (m/s)."""
+def change_velocity(
+    client: httpx.Client, id: str, revision: int, task: str, velocity: float
+) -> None:
+    """Change a task's speed (m/s)."""
     change = {"kind": "change_task", "name": task, "velocity": velocity}
     body = {"kind": "edit", "id": f"e{revision}", "edits": [change]}
     headers = {"if-match": f'"{revision}"'}
@@ -214,8 +232,8 @@ def edit(client: httpx.Client, id: str, revision: int, task: str, velocity: floa
 
 
 @contextmanager
-def stalled_client(address: str, id: str) -> Iterator[None]:
-    """A client that opens a mission, and then reads nothing."""
+def subscribe_without_reading(address: str, id: str) -> Iterator[None]:
+    """Subscribe to a mission, and read nothing until the context ends."""
     host, _, port = address.partition(":")
     with socket.create_connection((host, int(port))) as connection:
         connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
@@ -229,19 +247,21 @@ def stalled_client(address: str, id: str) -> Iterator[None]:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Print all of it."""
+    """Print all figures."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--tasks", type=int, nargs="*", default=SIZES)
-    parser.add_argument("--edits", type=int, default=200)
-    parser.add_argument("--subscribers", type=int, default=50)
-    parser.add_argument("--poses", action="store_true", help="of poses only")
-    parser.add_argument("--seconds", type=float, default=20.0, help="for which poses are heard")
+    parser.add_argument("--tasks", type=int, nargs="*", default=SIZES, help="sizes of missions")
+    parser.add_argument("--edits", type=int, default=200, help="edits of each mission")
+    parser.add_argument("--subscribers", type=int, default=50, help="clients that receive edits")
+    parser.add_argument("--poses", action="store_true", help="measure poses only")
+    parser.add_argument(
+        "--seconds", type=float, default=20.0, help="seconds in which poses are received"
+    )
     options = parser.parse_args(arguments)
     print(f"  {'':52s}  median    95 %")
-    with tempfile.TemporaryDirectory() as folder, service(Path(folder)) as (address, process):
+    with tempfile.TemporaryDirectory() as folder, start_service(Path(folder)) as (address, process):
         measure_poses(address, process, options.subscribers, options.seconds)
         for size in () if options.poses else options.tasks:
-            measure(address, size, options.edits, options.subscribers)
+            measure_edits(address, size, options.edits, options.subscribers)
 
 
 if __name__ == "__main__":

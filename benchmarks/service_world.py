@@ -1,11 +1,11 @@
-"""How large the world is that the planning service gives to a page, and how long it takes to make.
+"""Size and time of the world data that the planning service sends to a page.
 
     python -m benchmarks.service_world
     python -m benchmarks.service_world --site generated:floors=5,seed=1
 
-Prints, for each site, the size (kB, and as sent compressed) and the time (s) of the description,
-the meshes of all floors in each detail, the maps of all floors and headings, and previews; the
-first time, and again. Nothing is taken from the cache on disk the first time.
+Prints for each site the size (kB, also compressed) and the time (s) of the description, the meshes
+of all floors in each detail, the maps of all floors and headings, and previews. Each is made twice;
+the first time, nothing is in the cache on disk.
 """
 
 import argparse
@@ -33,36 +33,36 @@ TASKS = 40
 def main(arguments: Sequence[str] | None = None) -> None:
     """Print a table for each site."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--site", action="append", help="a site (umad and a large one)")
+    parser.add_argument("--site", action="append", help="a site; default: umad and a large one")
     sites = parser.parse_args(arguments).site or ["umad", LARGE]
     with tempfile.TemporaryDirectory() as folder:
         os.environ["ARGO_CACHE_DIR"] = folder
         for reference in sites:
-            measure(reference)
+            measure_site(reference)
 
 
-def measure(reference: str) -> None:
-    """Prints the table of a site."""
+def measure_site(reference: str) -> None:
+    """Print the table of a site."""
     started = time.perf_counter()
     site = open_site(reference).prepare()
     print(f"{reference}: opened in {time.perf_counter() - started:.1f} s")
     floors = [floor.number for floor in site.site.spec.floors]
-    crates = obstacles(site, floors)
-    mission = a_mission(site)
-    show("description", lambda: [describe(site).model_dump_json().encode()])
+    crates = make_crates(site, floors)
+    mission = make_mission(site)
+    print_line("description", lambda: [describe(site).model_dump_json().encode()])
     for detail in Detail:
-        show(f"meshes, {detail}", lambda d=detail: [floor_mesh(site, f, d) for f in floors])
-    show("mesh of the robot", lambda: [robot_mesh(site)])
-    show("maps", lambda: maps(site, floors))
-    show("three obstacles", lambda: [with_obstacles(site, crates).name.encode()])
-    show("maps with them", lambda: maps(site, floors, crates))
-    show("description with them", lambda: [describe(site, crates).model_dump_json().encode()])
-    show(f"preview of {TASKS} tasks", lambda: [preview(site, mission)])
-    show("preview with obstacles", lambda: [preview(site, mission, crates)])
+        print_line(f"meshes, {detail}", lambda d=detail: [floor_mesh(site, f, d) for f in floors])
+    print_line("mesh of the robot", lambda: [robot_mesh(site)])
+    print_line("maps", lambda: make_maps(site, floors))
+    print_line("three obstacles", lambda: [with_obstacles(site, crates).name.encode()])
+    print_line("maps with them", lambda: make_maps(site, floors, crates))
+    print_line("description with them", lambda: [describe(site, crates).model_dump_json().encode()])
+    print_line(f"preview of {TASKS} tasks", lambda: [make_preview(site, mission)])
+    print_line("preview with obstacles", lambda: [make_preview(site, mission, crates)])
 
 
-def show(what: str, make: Callable[[], Iterable[bytes]]) -> None:
-    """A line: how large the parts are, and how long they take the first time and again."""
+def print_line(name: str, make: Callable[[], Iterable[bytes]]) -> None:
+    """Make the parts twice, and print a line with their sizes and both times."""
     times = []
     for _ in range(2):
         started = time.perf_counter()
@@ -70,15 +70,15 @@ def show(what: str, make: Callable[[], Iterable[bytes]]) -> None:
         times.append(time.perf_counter() - started)
     sizes, packed = map(len, parts), (len(zlib.compress(part)) for part in parts)
     print(
-        f"  {what:24} {len(parts):3} parts {sum(sizes) / 1e3:9.1f} kB {sum(packed) / 1e3:8.1f} kB"
+        f"  {name:24} {len(parts):3} parts {sum(sizes) / 1e3:9.1f} kB {sum(packed) / 1e3:8.1f} kB"
         f" compressed {times[0]:7.3f} s, again {times[1]:7.3f} s"
     )
 
 
-def maps(
+def make_maps(
     site: OpenedSite, floors: Sequence[int], crates: Sequence[Obstacle] = ()
 ) -> Iterable[bytes]:
-    """Those of all floors and headings."""
+    """Yield the maps of all floors and headings."""
     return (
         standing_map(site, floor, heading, crates).to_bytes()
         for floor in floors
@@ -86,24 +86,24 @@ def maps(
     )
 
 
-def preview(site: OpenedSite, mission: Mission, crates: Sequence[Obstacle] = ()) -> bytes:
-    """The preview of a mission as it is sent."""
+def make_preview(site: OpenedSite, mission: Mission, crates: Sequence[Obstacle] = ()) -> bytes:
+    """Return the preview of a mission as it is sent."""
     return preview_mission(site, mission, crates).model_dump_json().encode()
 
 
-def obstacles(site: OpenedSite, floors: Sequence[int]) -> tuple[Obstacle, ...]:
-    """A crate on each of the three lowest floors."""
-    made = []
+def make_crates(site: OpenedSite, floors: Sequence[int]) -> tuple[Obstacle, ...]:
+    """Return a crate on each of the first three floors."""
+    crates = []
     for floor in floors[:3]:
-        places = site.navigator.turning_poses(floor)
-        x, y, z, _ = places[len(places) // 2].tolist()
+        positions = site.navigator.turning_poses(floor)
+        x, y, z, _ = positions[len(positions) // 2].tolist()
         pose = Pose(x=x, y=y, z=z, yaw=0.5)
-        made.append(Obstacle(id=str(floor), pose=pose, size=(0.6, 0.4, 0.5)))
-    return tuple(made)
+        crates.append(Obstacle(id=str(floor), pose=pose, size=(0.6, 0.4, 0.5)))
+    return tuple(crates)
 
 
-def a_mission(site: OpenedSite) -> Mission:
-    """Measurements at checkpoints from all over the site, one after the other."""
+def make_mission(site: OpenedSite) -> Mission:
+    """Return a mission of measurements at checkpoints from all over the site, in sequence."""
     checkpoints = site.site.checkpoints
     chosen = [checkpoints[k * len(checkpoints) // TASKS] for k in range(TASKS)]
     return Mission(

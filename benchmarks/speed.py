@@ -1,16 +1,16 @@
-"""How fast Argo is: a dozen ratios to something else on the same machine in the same run.
+"""Speed of Argo as a dozen ratios, each to a reference on the same machine in the same run.
 
-    make speed                              # beside the values kept in benchmarks/speed.json
-    python -m benchmarks.speed --write      # keeps those of this run
+    make speed                              # compare with the values in benchmarks/speed.json
+    python -m benchmarks.speed --write      # store the values of this run
     python -m benchmarks.speed --only edit executor
-    python -m benchmarks.speed --smallest   # one turn of what is short, as its test does
+    python -m benchmarks.speed --smallest   # one repeat of all short figures, as its test does
 
-What is timed and what it is held against are timed in turn, so that what slows the machine down
-slows both; a figure is the median of the turns. Commands are held against `import numpy` (wall
-time), the executor against py_trees where it is installed, and all else against a fixed piece of
-work in Python and NumPy (processor time). Edits are made by a service of its own, and wait for the
-disk: they are held against three times that work and as many durable writes (wall time).
-What has become slower by more than 15 % is named, and then the status is 1.
+Each subject and its reference are timed alternately, so that other load on the machine slows both;
+a figure is the median of the repeats. The reference of commands is `import numpy` (wall time), that
+of the executor py_trees, if it is installed, and that of all others a fixed piece of work in Python
+and NumPy (processor time). Edits are made by a service in a process of its own and wait for the
+disk: their reference is three times the fixed work and as many durable writes as edits (wall time).
+Figures that have become slower by more than 15 % are named, and the exit status is then 1.
 """
 
 import argparse
@@ -34,54 +34,59 @@ import numpy as np
 from benchmarks import against, hfsm, startup
 from benchmarks.against import Work
 
-KEPT = Path(__file__).with_name("speed.json")
-MOST_LOST = 0.15
-"""share of its speed that something may lose before it is named"""
+STORED_VALUES = Path(__file__).with_name("speed.json")
+TOLERATED_LOSS = 0.15
+"""share of its speed that a figure may lose before it is named"""
 TASKS, EDITED_TASKS, EDITS = 1_000, 200, 10
 Clock = Callable[[], float]
 
 
 @dataclass(frozen=True)
 class Figure:
-    """A ratio that is kept; `measure` takes how many turns count."""
+    """Ratio that is measured and stored."""
 
     name: str
     unit: str
     measure: Callable[[int], float | None]
-    """None: what it is held against is not installed"""
-    turns: int = 5
+    """function from the number of repeats to the ratio; None: the reference is not installed"""
+    repeats: int = 5
     more_is_faster: bool = False
+    """whether the ratio compares speeds; otherwise it compares times"""
     short: bool = True
+    """whether it is measured with `--smallest`"""
 
-    def speed(self, now: float, kept: float) -> float:
-        """Return how many times as fast it is now as it was."""
-        return now / kept if self.more_is_faster else kept / now
+    def relative_speed(self, now: float, stored: float) -> float:
+        """Return the present speed over that of the stored value."""
+        return now / stored if self.more_is_faster else stored / now
 
 
 def fixed_work() -> float:
-    """Do what never changes, some hundredths of a second: calls, dictionaries and small arrays."""
-    found: dict[int, float] = {}
+    """Do a fixed work of some hundredths of a second: calls, dictionaries and small arrays."""
+    sums: dict[int, float] = {}
     for number in range(40_000):
-        found[number % 997] = found.get(number % 991, 0.0) * 0.5 + number
+        sums[number % 997] = sums.get(number % 991, 0.0) * 0.5 + number
     grid = np.linspace(0.0, 1.0, 4_096).reshape(64, 64)
     for _ in range(200):
         grid = np.sqrt(grid @ grid.T / 64.0 + 0.5)
-    return sum(found.values()) + float(grid.sum())
+    return sum(sums.values()) + float(grid.sum())
 
 
-def beside_fixed_work(
+def compare_with_fixed_work(
     prepare: Callable[[], Work],
-    turns: int,
+    repeats: int,
     *,
     calls: int = 1,
     fixed: Work = fixed_work,
     clock: Clock = time.process_time,
 ) -> float:
-    """Return how many times as long as the fixed work a work takes. A turn does it `calls` times;
-    of several turns the first does not count."""
+    """Return the time of a work over that of the fixed work, the median of the repeats.
+
+    A repeat does the work `calls` times and the fixed work three times. If there are several
+    repeats, one more comes first, which is not counted.
+    """
     work = prepare()
     ratios = []
-    for _ in range(turns + (turns > 1)):
+    for _ in range(repeats + (repeats > 1)):
         gc.collect()
         before = clock()
         for _ in range(3):
@@ -90,27 +95,27 @@ def beside_fixed_work(
         for _ in range(calls):
             work()
         ratios.append((clock() - between) / calls / ((between - before) / 3))
-    return median(ratios[turns > 1 :])
+    return median(ratios[repeats > 1 :])
 
 
-def executor(turns: int) -> float | None:
-    """Return how many times as many events as py_trees the executor takes."""
+def measure_executor(repeats: int) -> float | None:
+    """Return the executor's events per second over those of py_trees; None: not installed."""
     if importlib.util.find_spec("py_trees") is None:
         return None
-    machines = {name: hfsm.PEERS[name] for name in ("Argo", "py_trees")}
-    rates = hfsm.measure(hfsm.EVENTS, turns, machines)
+    machines = {name: hfsm.MACHINES[name] for name in ("Argo", "py_trees")}
+    rates = hfsm.measure_rates(hfsm.EVENTS, repeats, machines)
     return rates["Argo"] / rates["py_trees"]
 
 
-def command(name: str, turns: int) -> float:
-    """Return how many times as long as `import numpy` a command takes."""
+def measure_command(name: str, repeats: int) -> float:
+    """Return the time of a command over that of `import numpy`."""
     with tempfile.TemporaryDirectory() as folder:
         chosen = {name: startup.commands(Path(folder))[name]}
-        return startup.measure(chosen, turns)[name][0]
+        return startup.measure_commands(chosen, repeats)[name][0]
 
 
-def importing() -> Work:
-    """Scripts of a thousand tasks become missions; each is read for the first time."""
+def prepare_import() -> Work:
+    """Return the import of a script of a thousand tasks, each time without a cache of its lines."""
     from argo_compiler.script import import_script
     from argo_compiler.script.syntax.repeats import repeats
     from benchmarks.compile import make_catalog, make_script
@@ -125,8 +130,8 @@ def importing() -> Work:
     return work
 
 
-def checking() -> Work:
-    """A mission of a thousand tasks is checked, and its paths are analysed."""
+def prepare_check() -> Work:
+    """Return the check and the analysis of a mission of a thousand tasks."""
     from argo_compiler.analysis import analyse
     from argo_compiler.checks import check
     from argo_compiler.script import import_script
@@ -137,20 +142,20 @@ def checking() -> Work:
     return lambda: (check(mission, catalog), analyse(mission, catalog))
 
 
-def route_steps() -> Work:
-    """A hundred steps of 64 episodes of Route-v0."""
-    from benchmarks.env import argo_batch
+def prepare_route_steps() -> Work:
+    """Return a hundred steps of a batch of 64 episodes of Route-v0."""
+    from benchmarks.env import step_argo_batch
 
-    steps = argo_batch(64)
+    steps = step_argo_batch(64)
     return lambda: [next(steps) for _ in range(100)]
 
 
-def proving() -> Work:
-    """The best routes of eight problems of a dozen visits are found and proven."""
+def prepare_proofs() -> Work:
+    """Return the search for routes of eight problems of up to 12 visits, with a proof for each."""
     from argo_compiler.route.suggestion import suggest_route
-    from benchmarks.route_parts import generated
+    from benchmarks.route_parts import random_problems
 
-    problems = list(generated(("plain", "windows", "optional", "order"), 2, 12, 0))
+    problems = list(random_problems(("plain", "windows", "optional", "order"), 2, 12, 0))
 
     def work() -> None:
         for problem in problems:
@@ -160,110 +165,116 @@ def proving() -> Work:
 
 
 @contextmanager
-def editing() -> Iterator[Work]:
-    """Yield what makes ten durable edits of a mission of 200 tasks, by a service of its own."""
+def open_editing() -> Iterator[Work]:
+    """Yield ten durable edits of a mission of 200 tasks, made by a service in its own process."""
     import httpx
 
-    from benchmarks.service import HEADERS, edit, mission, service
+    from benchmarks.service import HEADERS, change_velocity, make_mission, start_service
 
     with (
         tempfile.TemporaryDirectory() as folder,
-        service(Path(folder)) as (address, _),
+        start_service(Path(folder)) as (address, _),
         httpx.Client(base_url=f"http://{address}", headers=HEADERS, timeout=60) as client,
     ):
-        body = {"name": "edited", "mission": mission(EDITED_TASKS)}
+        body = {"name": "edited", "mission": make_mission(EDITED_TASKS)}
         id = client.post("/api/missions", json=body).raise_for_status().json()["id"]
         revisions = count(1)
 
         def work() -> None:
             for _ in range(EDITS):
                 revision = next(revisions)
-                edit(client, id, revision, f"t{revision % 50}", 0.1 + revision / 1e5)
+                change_velocity(client, id, revision, f"t{revision % 50}", 0.1 + revision / 1e5)
 
         yield work
 
 
-def edits(turns: int) -> float:
-    """Return how many times as long as three times the fixed work, and as many durable writes, ten
-    edits take."""
-    with editing() as work, tempfile.TemporaryFile() as file:
+def measure_edits(repeats: int) -> float:
+    """Return the time of ten edits over that of three fixed works and ten durable writes."""
+    with open_editing() as work, tempfile.TemporaryFile() as file:
 
         def fixed() -> None:
-            for _ in range(3):  # about as much as the service has to do
+            for _ in range(3):  # about as much as the service does for ten edits
                 fixed_work()
             for _ in range(EDITS):
                 file.write(bytes(300))
                 file.flush()
                 os.fsync(file.fileno())
 
-        return beside_fixed_work(lambda: work, turns, fixed=fixed, clock=time.perf_counter)
+        return compare_with_fixed_work(lambda: work, repeats, fixed=fixed, clock=time.perf_counter)
 
 
-def _argo(name: str) -> Figure:
-    return Figure(name, "x `import numpy`", partial(command, name), turns=9)
+def _command_figure(name: str) -> Figure:
+    return Figure(name, "x `import numpy`", partial(measure_command, name), repeats=9)
 
 
-def _work(
-    name: str, prepare: Callable[[], Work], turns: int = 5, calls: int = 1, short: bool = True
+def _work_figure(
+    name: str, prepare: Callable[[], Work], repeats: int = 5, calls: int = 1, short: bool = True
 ) -> Figure:
-    measure = partial(beside_fixed_work, prepare, calls=calls)
-    return Figure(name, "x the fixed work", measure, turns, short=short)
+    measure = partial(compare_with_fixed_work, prepare, calls=calls)
+    return Figure(name, "x the fixed work", measure, repeats, short=short)
 
 
 FIGURES = (
-    Figure("executor", "x py_trees", executor, turns=9, more_is_faster=True),
-    _argo("argo --help"),
-    _argo("argo check, a script"),
-    _argo("argo check, a mission"),
-    _argo("argo import"),
-    _work("import of 1,000 tasks", importing, 3),
-    _work("check of 1,000 tasks", checking, 3),
-    _work("100 steps of Route-v0", route_steps),
-    _work("50 steps of Drive-v0", against.drive_random),
-    _work("run, route", partial(against.mission_run, "route", again=True), calls=5),
-    _work("run, kinematic", partial(against.mission_run, "kinematic", again=True)),
-    _work("run, tracked", partial(against.mission_run, "tracked"), 2, short=False),
-    _work("8 routes proven", proving),
-    Figure("10 edits", "x 3 times that, and 10 writes", edits),
+    Figure("executor", "x py_trees", measure_executor, repeats=9, more_is_faster=True),
+    _command_figure("argo --help"),
+    _command_figure("argo check, a script"),
+    _command_figure("argo check, a mission"),
+    _command_figure("argo import"),
+    _work_figure("import of 1,000 tasks", prepare_import, 3),
+    _work_figure("check of 1,000 tasks", prepare_check, 3),
+    _work_figure("100 steps of Route-v0", prepare_route_steps),
+    _work_figure("50 steps of Drive-v0", against.prepare_random_drive),
+    _work_figure("run, route", partial(against.prepare_mission_run, "route", again=True), calls=5),
+    _work_figure("run, kinematic", partial(against.prepare_mission_run, "kinematic", again=True)),
+    _work_figure("run, tracked", partial(against.prepare_mission_run, "tracked"), 2, short=False),
+    _work_figure("8 routes proven", prepare_proofs),
+    Figure("10 edits", "x 3 times the fixed work and 10 writes", measure_edits),
 )
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Print all of it; the status is 1 where something has become slower."""
+    """Print all figures; return 1 if one of them has become too slow, otherwise 0."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--only", nargs="+", metavar="WORD", help="figures with one of these words")
-    parser.add_argument("--smallest", action="store_true", help="one turn of each")
-    parser.add_argument("--write", action="store_true", help="keep the values of this run")
-    parser.add_argument("--kept", type=Path, default=KEPT, help="where they are kept")
+    parser.add_argument(
+        "--only",
+        nargs="+",
+        metavar="WORD",
+        help="only figures whose name contains one of these words",
+    )
+    parser.add_argument("--smallest", action="store_true", help="one repeat of each short figure")
+    parser.add_argument("--write", action="store_true", help="store the values of this run")
+    parser.add_argument(
+        "--kept", type=Path, default=STORED_VALUES, help="file with the stored values"
+    )
     options = parser.parse_args(arguments)
-    kept = json.loads(options.kept.read_text(encoding="utf-8")) if options.kept.exists() else {}
-    fallen = []
-    print(f"{'':24}{'now':>9}{'kept':>9}   speed")
+    stored = json.loads(options.kept.read_text(encoding="utf-8")) if options.kept.exists() else {}
+    slower = []
+    print(f"{'':24}{'now':>9}{'stored':>9}   speed")
     for figure in FIGURES:
         if options.only and not any(word in figure.name for word in options.only):
             continue
         if options.smallest and not figure.short:
             continue
-        now = figure.measure(1 if options.smallest else figure.turns)
+        now = figure.measure(1 if options.smallest else figure.repeats)
         if now is None:
             print(f"{figure.name:24}{'-':>9}   not installed: {figure.unit.removeprefix('x ')}")
             continue
         line = f"{figure.name:24}{now:9.2f}"
-        if (before := kept.get(figure.name)) is not None:
-            speed = figure.speed(now, before)
+        if (before := stored.get(figure.name)) is not None:
+            speed = figure.relative_speed(now, before)
             line += f"{before:9.2f}{speed:8.2f}"
-            fallen += [f"{figure.name} ({speed:.2f})"] if speed < 1.0 - MOST_LOST else []
+            slower += [f"{figure.name} ({speed:.2f})"] if speed < 1.0 - TOLERATED_LOSS else []
         print(f"{line}   {figure.unit}", flush=True)
         if options.write:
-            kept[figure.name] = round(now, 3)
+            stored[figure.name] = round(now, 3)
     if options.write:
-        options.kept.write_text(json.dumps(kept, indent=2) + "\n", encoding="utf-8")
+        options.kept.write_text(json.dumps(stored, indent=2) + "\n", encoding="utf-8")
         return 0
-    if fallen:
-        print(f"slower by more than {MOST_LOST:.0%}: {', '.join(fallen)}")
-    return 1 if fallen else 0
+    if slower:
+        print(f"slower by more than {TOLERATED_LOSS:.0%}: {', '.join(slower)}")
+    return 1 if slower else 0
 
 
 if __name__ == "__main__":

@@ -1,10 +1,10 @@
-"""How fast the tracked drive is simulated on UMAD, on the flat and on stairs.
+"""Speed of the simulation of the tracked drive on UMAD, on the flat and on stairs.
 
     python -m benchmarks.tracked
     python -m benchmarks.tracked --laps slab --repeats 1
 
-Prints simulated seconds per second of one core, with the whole site loaded; the best of some
-repeats each, since whatever else the machine does only makes it slower.
+Prints simulated seconds per second of one core, with the whole site loaded: the best of some
+repeats of each lap, since other load on the machine only makes it slower.
 """
 
 import argparse
@@ -22,20 +22,20 @@ from argo_env.planning import open_site
 from argo_env.robot.pose import BodyPose
 from argo_env.world.world import World
 
-THESIS_SPEED = 0.43  # simulated over wall time, both summed over the thesis' appendix A.2
+THESIS_SPEED = 0.43  # sum of simulated time over sum of wall time in the thesis' appendix A.2
 LANDINGS = {"west tower": ((1.9, 2.8), (1.9, 7.95)), "east tower": ((12.3, 5.55), (12.3, 5.55))}
-"""where a climb of one storey begins and ends, x and y in m"""
+"""start and end of a climb of one storey, x and y in m"""
 
 
 @lru_cache(maxsize=1)
-def opened_world() -> tuple[Navigator, World]:
-    """Return the navigator of UMAD and a world of it, opened once."""
+def open_world() -> tuple[Navigator, World]:
+    """Return the navigator of UMAD and a world with the robot, opened once per process."""
     opened = open_site("umad")
     return opened.navigator, World(opened.site, opened.robot)
 
 
-def path_of(navigator: Navigator, tower: str, storey: int, up: bool) -> Path:
-    """Return the way by that tower between the floor `storey` and the one above it."""
+def plan_flight(navigator: Navigator, tower: str, storey: int, up: bool) -> Path:
+    """Return the path in a stair tower between the floor `storey` and the one above it."""
     floors = {f.number: f.z for f in navigator.site.spec.floors}
     (ax, ay), (bx, by) = LANDINGS[tower]
     low = Pose(x=ax, y=ay, z=floors[storey], yaw=0.0)
@@ -43,18 +43,18 @@ def path_of(navigator: Navigator, tower: str, storey: int, up: bool) -> Path:
     return navigator.plan(low, high) if up else navigator.plan(high, low)
 
 
-def _on_slab(navigator: Navigator) -> Path:
+def _plan_on_slab(navigator: Navigator) -> Path:
     return navigator.plan(*(Pose(x=x, y=1.6, z=0.0, yaw=0.0) for x in (2.0, 12.0)))
 
 
-LAPS = {"slab": _on_slab} | {
-    f"{tower} {'up' if up else 'down'}": partial(path_of, tower=tower, storey=1, up=up)
+LAPS = {"slab": _plan_on_slab} | {
+    f"{tower} {'up' if up else 'down'}": partial(plan_flight, tower=tower, storey=1, up=up)
     for tower, up in product(LANDINGS, (True, False))
 }
 
 
-def _lap(drive: TrackedDrive, path: Path) -> tuple[float, float]:
-    """Drive a path; return the simulated seconds and those of the processor."""
+def _drive_lap(drive: TrackedDrive, path: Path) -> tuple[float, float]:
+    """Drive a path, and return the simulated seconds and the processor seconds."""
     start = path.start
     drive.place(BodyPose(start.x, start.y, start.z, start.yaw))
     drive.follow(path, None)
@@ -65,17 +65,17 @@ def _lap(drive: TrackedDrive, path: Path) -> tuple[float, float]:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Print the speed of each lap, and of all together."""
+    """Print the speed of each lap, and that of all laps together."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--laps", nargs="+", choices=LAPS, default=list(LAPS))
     parser.add_argument("--repeats", type=int, default=3, help="of each lap")
     given = parser.parse_args(arguments)
-    navigator, world = opened_world()
+    navigator, world = open_world()
     drive = TrackedDrive(world, navigator.robot)
     simulated_all, spent_all = 0.0, 0.0
     for name in given.laps:
         path = LAPS[name](navigator)
-        laps = [_lap(drive, path) for _ in range(given.repeats)]
+        laps = [_drive_lap(drive, path) for _ in range(given.repeats)]
         simulated, spent = min(laps, key=lambda lap: lap[1])
         simulated_all, spent_all = simulated_all + simulated, spent_all + spent
         worst = max(lap[1] for lap in laps)

@@ -1,4 +1,4 @@
-"""The comparison of the drives: its random missions, and its figures on runs that are made up."""
+"""Tests of the comparison of the drives: its random missions, and its figures for invented runs."""
 
 import numpy as np
 import pytest
@@ -13,8 +13,8 @@ from argo_env.planning import open_site
 from argo_env.planning.catalog import make_catalog
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import Calibration, MotionPace
-from benchmarks.drives import Run, compare, drive_along, random_mission, run
-from benchmarks.fitting import errors, fit
+from benchmarks.drives import Run, error_table, random_mission, run, time_path
+from benchmarks.fitting import fit_calibration, prediction_errors
 
 
 @pytest.fixture(scope="module")
@@ -22,7 +22,7 @@ def navigator():
     return open_site("umad").navigator
 
 
-def test_missions_are_sound_and_drawn_from_their_seed(navigator):
+def test_missions_pass_the_checks_and_depend_on_their_seed(navigator):
     catalog = make_catalog(navigator)
     missions = [random_mission(navigator, seed) for seed in range(30)]
     assert missions == [random_mission(navigator, seed) for seed in range(30)]
@@ -41,19 +41,19 @@ def test_missions_are_sound_and_drawn_from_their_seed(navigator):
     assert len(docks) == 4
 
 
-def test_a_run_of_one(navigator):
-    found = run(navigator, 3, "route")
-    assert found.verdict is None
-    assert found.simulated > 100
+def test_one_mission_is_run(navigator):
+    result = run(navigator, 3, "route")
+    assert result.verdict is None
+    assert result.simulated > 100
 
 
-def test_the_errors_are_against_the_tracked_drive():
+def test_errors_are_relative_to_the_tracked_drive():
     runs = [Run(0, "tracked", None, 100.0, 4.0), Run(1, "tracked", None, 200.0, 4.0)]
     runs += [Run(2, "tracked", "it fell over", 50.0, 4.0)]
     for seed in range(3):
         runs.append(Run(seed, "route", None, 99.0 if seed == 0 else 206.0, 0.01))
         runs.append(Run(seed, "kinematic", None, 100.0 if seed == 0 else 200.0, 1.0))
-    lines = list(compare(runs))
+    lines = list(error_table(runs))
     assert lines[0].startswith("2 of 3 missions")
     assert any("it fell over" in line for line in lines)
     table = {line.split()[0]: line.split() for line in lines[-3:]}
@@ -62,8 +62,8 @@ def test_the_errors_are_against_the_tracked_drive():
     assert table["tracked"][-2] == "38"
 
 
-class Telling(RouteDrive):
-    """The route drive, with word of which motion is under way."""
+class DriveWithCurrentMotion(RouteDrive):
+    """Route drive that has the current motion of its path as an attribute."""
 
     def follow(self, path, velocity):
         super().follow(path, velocity)
@@ -74,8 +74,8 @@ class Telling(RouteDrive):
         return self._timetable and self._table.motion_at(self._steps * self.time_step)[0]
 
 
-class Stuck(Telling):
-    """Gets stuck after a while."""
+class StuckDrive(DriveWithCurrentMotion):
+    """Drive that fails after 100 steps."""
 
     failure = "it is stuck"
 
@@ -84,7 +84,7 @@ class Stuck(Telling):
         return DriveStatus.FAILED if self._steps > 100 else DriveStatus.MOVING
 
 
-def standing(drive, pose):
+def put_at(drive, pose):
     drive.place(BodyPose(pose.x, pose.y, pose.z, pose.yaw))
     return drive
 
@@ -98,7 +98,7 @@ PACES = Calibration(
 )
 
 
-def test_times_of_motions_add_up_and_give_the_paces_again(navigator):
+def test_times_of_motions_add_up_and_reproduce_the_paces(navigator):
     robot = navigator.robot.model_copy(update={"calibration": PACES})
     docks, timed = navigator.site.docks, []
     for a, b in ((1, 2), (2, 1)):
@@ -106,21 +106,23 @@ def test_times_of_motions_add_up_and_give_the_paces_again(navigator):
             x, y, z, _ = navigator.turning_poses(floor)[5 * a].tolist()
             above = Pose(x=x, y=y, z=z, yaw=1.0)
             for path in (navigator.plan(docks[a], above), navigator.plan(above, docks[b])):
-                found = drive_along(standing(Telling(robot, 0.02), path.start), path)
-                assert [d.motions for d in found] == [(m,) for m in path.motions]
-                seconds = sum(d.seconds for d in found)
+                motions = time_path(put_at(DriveWithCurrentMotion(robot, 0.02), path.start), path)
+                assert [d.motions for d in motions] == [(m,) for m in path.motions]
+                seconds = sum(d.seconds for d in motions)
                 assert seconds == pytest.approx(path.duration(robot), abs=0.02 + 1e-6)
-                timed += found
-    fitted = navigator.robot.model_copy(update={"calibration": fit(timed, navigator.robot)})
-    # Flights are alike, so that share and loss may be mistaken for each other there; times not.
-    assert errors(timed, fitted) == pytest.approx(np.zeros(len(timed)), abs=0.03)
+                timed += motions
+    fitted = navigator.robot.model_copy(
+        update={"calibration": fit_calibration(timed, navigator.robot)}
+    )
+    # All flights have the same length, so that share and lost time can't be told apart there.
+    assert prediction_errors(timed, fitted) == pytest.approx(np.zeros(len(timed)), abs=0.03)
     for kind in ("ahead", "turn"):
-        found, true = getattr(fitted.calibration, kind), getattr(PACES, kind)
-        assert found.share == pytest.approx(true.share, abs=0.01)
-        assert found.lost == pytest.approx(true.lost, abs=0.05)
+        fitted_pace, true = getattr(fitted.calibration, kind), getattr(PACES, kind)
+        assert fitted_pace.share == pytest.approx(true.share, abs=0.01)
+        assert fitted_pace.lost == pytest.approx(true.lost, abs=0.05)
 
 
-def test_a_way_that_fails_has_no_times(navigator):
+def test_a_path_that_fails_has_no_times(navigator):
     path = navigator.plan(*(navigator.site.docks[n] for n in (1, 2)))
     with pytest.raises(RuntimeError, match="stuck"):
-        drive_along(standing(Stuck(navigator.robot), path.start), path)
+        time_path(put_at(StuckDrive(navigator.robot), path.start), path)

@@ -1,4 +1,4 @@
-"""The calibration: known paces are found again from the times of drives."""
+"""Tests of the fit of the calibration: known paces are recovered from the times of drives."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from argo_env.files import resources
 from argo_env.navigation import Path
 from argo_env.navigation.path import Motion, wrap
 from argo_env.robot.spec import Calibration, MotionKind, MotionPace, load_robot
-from benchmarks.fitting import TimedDrive, errors, fit
+from benchmarks.fitting import TimedDrive, fit_calibration, prediction_errors
 from tests.conftest import examples
 
 ROBOT = load_robot().model_copy(update={"calibration": Calibration()})
@@ -42,49 +42,49 @@ def drives(calibration, rng, count, kinds=tuple(MotionKind), each=1, velocity=No
         yield TimedDrive(motions, seconds + noise * float(rng.normal()), velocity)
 
 
-def close(found, true, share=1e-3, lost=1e-3):
+def assert_close(fitted, true, share=1e-3, lost=1e-3):
     for kind in MotionKind:
-        assert found.pace_for(kind).share == pytest.approx(true.pace_for(kind).share, abs=share)
-        assert found.pace_for(kind).lost == pytest.approx(true.pace_for(kind).lost, abs=lost)
+        assert fitted.pace_for(kind).share == pytest.approx(true.pace_for(kind).share, abs=share)
+        assert fitted.pace_for(kind).lost == pytest.approx(true.pace_for(kind).lost, abs=lost)
 
 
 @given(calibrations, st.integers(0, 99), st.sampled_from([1, 7]), st.sampled_from([None, 0.3]))
 @settings(max_examples=examples(30), deadline=None)
-def test_finds_known_paces_from_single_motions_and_whole_ways(true, seed, each, velocity):
+def test_finds_known_paces_from_single_motions_and_whole_paths(true, seed, each, velocity):
     timed = drives(true, np.random.default_rng(seed), 200, each=each, velocity=velocity)
-    close(fit(timed, ROBOT), true)
+    assert_close(fit_calibration(timed, ROBOT), true)
 
 
 @given(calibrations, st.integers(0, 99))
 @settings(max_examples=examples(10), deadline=None)
-def test_finds_them_through_noise(true, seed):
+def test_finds_known_paces_in_spite_of_noise(true, seed):
     timed = drives(true, np.random.default_rng(seed), 3000, noise=0.3)
-    close(fit(timed, ROBOT), true, share=0.06, lost=0.15)
+    assert_close(fit_calibration(timed, ROBOT), true, share=0.06, lost=0.15)
 
 
-def test_what_is_never_driven_goes_as_told():
+def test_a_kind_that_is_never_driven_keeps_the_commanded_speed():
     true = Calibration(ahead=MotionPace(share=0.8, lost=1.0))
     kinds = (MotionKind.AHEAD,)
-    found = fit(drives(true, np.random.default_rng(1), 20, kinds=kinds), ROBOT)
-    close(found, true)
-    assert found.up == MotionPace()
+    fitted = fit_calibration(drives(true, np.random.default_rng(1), 20, kinds=kinds), ROBOT)
+    assert_close(fitted, true)
+    assert fitted.up == MotionPace()
 
 
-def test_errors_are_what_is_left_over():
+def test_errors_are_measured_minus_predicted_times():
     rng = np.random.default_rng(5)
     timed = list(drives(Calibration(), rng, 10))
     late = [TimedDrive(d.motions, d.seconds + 2.0) for d in timed]
-    assert errors(timed, ROBOT) == pytest.approx(np.zeros(10), abs=1e-9)
-    assert errors(late, ROBOT) == pytest.approx(np.full(10, 2.0))
+    assert prediction_errors(timed, ROBOT) == pytest.approx(np.zeros(10), abs=1e-9)
+    assert prediction_errors(late, ROBOT) == pytest.approx(np.full(10, 2.0))
 
 
-def test_nothing_driven_is_nothing_to_fit():
+def test_a_fit_without_drives_is_refused():
     with pytest.raises(ValueError, match="no drives"):
-        fit([TimedDrive((), 0.1)], ROBOT)
+        fit_calibration([TimedDrive((), 0.1)], ROBOT)
 
 
 def test_a_drive_and_its_fit_agree():
-    """From the steps of a drive alone: its time step is all that is lost of it."""
+    """Times are counted in time steps of the drive, so they are off by one step at most."""
     true = Calibration(ahead=MotionPace(share=0.9, lost=1.0), turn=MotionPace(share=0.8, lost=0.5))
     robot, rng, timed = ROBOT.model_copy(update={"calibration": true}), np.random.default_rng(3), []
     for _ in range(100):
@@ -95,7 +95,7 @@ def test_a_drive_and_its_fit_agree():
         while drive.step() is DriveStatus.MOVING:
             steps += 1
         timed.append(TimedDrive((motion,), steps * 0.01))
-    close(fit(timed, ROBOT), true, share=0.01, lost=0.02)
+    assert_close(fit_calibration(timed, ROBOT), true, share=0.01, lost=0.02)
 
 
 def test_a_robot_comes_with_its_calibration(tmp_path, monkeypatch):

@@ -1,4 +1,4 @@
-"""Route problems as files: what is written is read again, and what is wrong is named."""
+"""Tests of the reader of published route problems, and of its messages."""
 
 import itertools
 import math
@@ -30,7 +30,7 @@ def read(folder, text, name="some.txt"):
 
 
 def wrapped(numbers, width):
-    """Rows that break at will, as in TSPLIB."""
+    """Return the numbers in lines of a width that need not be that of a row, as in TSPLIB."""
     rows = [numbers[k : k + width] for k in range(0, len(numbers), width)]
     return "\n".join("   ".join(map(str, row)) for row in rows)
 
@@ -55,9 +55,11 @@ def test_tours_cost_what_the_matrix_says(tmp_path_factory, rows, width, random):
     assert (named.name, named.kind) == ("seven", Kind.ATSP)
     nodes = list(range(1, len(rows)))
     random.shuffle(nodes)
-    found = evaluate(named.problem, named.route([1, *(node + 1 for node in nodes)]))
-    assert found.feasible
-    assert named.value(found.prize, found.duration) == length(rows, [0, *nodes, 0])
+    evaluation = evaluate(named.problem, named.make_route([1, *(node + 1 for node in nodes)]))
+    assert evaluation.feasible
+    assert named.published_value(evaluation.prize, evaluation.duration) == length(
+        rows, [0, *nodes, 0]
+    )
 
 
 @settings(deadline=None, max_examples=examples(25))
@@ -102,14 +104,14 @@ def test_orders_of_a_sequential_ordering_problem(tmp_path_factory, rows, again, 
     named = read(tmp_path_factory.mktemp("x"), text)
     for middle in itertools.permutations(range(1, n - 1)):
         order = (0, *middle, n - 1)
-        found = evaluate(named.problem, named.route([node + 1 for node in order]))
+        evaluation = evaluate(named.problem, named.make_route([node + 1 for node in order]))
         allowed = not any((b, a) in before for a, b in itertools.combinations(order, 2))
-        assert found.feasible == allowed
+        assert evaluation.feasible == allowed
         if allowed:
-            assert found.duration == length(free, order)
+            assert evaluation.duration == length(free, order)
 
 
-def test_precedence_in_words_and_ways_that_are_none(tmp_path):
+def test_precedences_have_words_and_forbidden_pairs_no_travel_time(tmp_path):
     rows = [[0, 1, 2, 9], [-1, 0, 3, 4], [-1, -1, 0, 5], [-1, -1, -1, 0]]
     problem = read(tmp_path, explicit("SOP", rows)).problem
     assert [precedence.words for precedence in problem.precedences] == ["node 2 before node 3"]
@@ -149,13 +151,13 @@ def test_scores_within_a_limit(tmp_path_factory, kind, points, limit, data):
     text = orienteering(kind, points, scores, depot, limit)
     named = read(tmp_path_factory.mktemp("x"), text)
     assert named.problem.objective == Objective.PRIZE
-    found = evaluate(named.problem, named.route(nodes))
-    assert named.value(found.prize, 0) == sum(scores[node - 1] for node in nodes)
-    assert found.duration == sum(
+    evaluation = evaluate(named.problem, named.make_route(nodes))
+    assert named.published_value(evaluation.prize, 0) == sum(scores[node - 1] for node in nodes)
+    assert evaluation.duration == sum(
         ROUNDED[kind](sum((a - b) ** 2 for a, b in zip(points[i - 1], points[j - 1], strict=True)))
         for i, j in itertools.pairwise([*nodes, depot])
     )
-    assert found.feasible == (found.duration <= limit)
+    assert evaluation.feasible == (evaluation.duration <= limit)
 
 
 def test_distances_on_earth_are_whole_kilometres(tmp_path):
@@ -193,14 +195,16 @@ def test_tours_with_time_windows(tmp_path_factory, rows, decimals, data):
     )
     named = read(tmp_path_factory.mktemp("x"), text, "z.tw")
     nodes = data.draw(st.permutations(range(1, n)))
-    found = evaluate(named.problem, named.route([node + 1 for node in nodes]))
+    evaluation = evaluate(named.problem, named.make_route([node + 1 for node in nodes]))
     time, late = windows[0][0], False
     for a, b in itertools.pairwise([0, *nodes, 0]):
         time = max(time + rows[a][b], windows[b][0])
         late |= time > windows[b][1]
-    assert found.feasible == (not late)
+    assert evaluation.feasible == (not late)
     travel = length(rows, [0, *nodes, 0])
-    assert named.value(0, found.cost(named.problem.objective)) == pytest.approx(travel / scale)
+    assert named.published_value(0, evaluation.cost(named.problem.objective)) == pytest.approx(
+        travel / scale
+    )
 
 
 def customers(nodes):
@@ -215,12 +219,12 @@ def test_tours_between_coordinates_take_truncated_times_made_shorter(tmp_path):
     nodes = [((0, 0), (0, 99)), ((3, 3), (2, 30)), ((6, 6), (0, 40)), ((0, 7), (8, 9))]
     named = read(tmp_path, customers(nodes))
     assert (named.kind, named.nodes) == (Kind.TSPTW, (2, 3, 4))
-    # From node 1 to node 2 it is 4.24, to node 3 8.49, which is no longer than by way of node 2.
-    found = evaluate(named.problem, named.route([3, 2, 4]))
-    assert found.cost(Objective.TRAVEL) == 8 + 4 + 5 + 7
-    assert not found.feasible
-    assert evaluate(named.problem, named.route([4, 3, 2])).feasible
-    # 7 and 7.07 without their decimals, and 14.14 is no longer than both.
+    # Node 1 to node 2: 4.24 becomes 4. Node 1 to node 3: 8.49 becomes 8, as long as over node 2.
+    evaluation = evaluate(named.problem, named.make_route([3, 2, 4]))
+    assert evaluation.cost(Objective.TRAVEL) == 8 + 4 + 5 + 7
+    assert not evaluation.feasible
+    assert evaluate(named.problem, named.make_route([4, 3, 2])).feasible
+    # 7.07 and 7.81 become 7; 14.87 becomes 14, the sum of both.
     bent = read(tmp_path, customers([((0, 0), (0, 99)), ((5, 5), (0, 99)), ((10, 11), (0, 99))]))
     assert bent.problem.travel.tolist() == [[0, 7, 7], [7, 0, 14], [7, 14, 0]]
 
@@ -232,10 +236,10 @@ CUSTOMERS = customers([((0, 0), (0, 9)), ((1, 1), (0, 5))])
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
-        ("", "is empty"),
-        ("\n \n", "is empty"),
+        ("", "the file is empty"),
+        ("\n \n", "the file is empty"),
         ("# nothing but a comment\n", "the number of nodes"),
         ("\0" * 9, "binary"),
         ("Lorem ipsum, dolor\n", ":1: `Lorem ipsum, dolor` is no keyword"),
@@ -253,11 +257,14 @@ CUSTOMERS = customers([((0, 0), (0, 9)), ((1, 1), (0, 5))])
         (explicit("ATSP", [[0, 1.5], [1, 0]]), ":9: 1.5 is no distance"),
         (explicit("ATSP", [[0, -2], [1, 0]]), ":9: -2 is no distance"),
         (explicit("ATSP", [[0, -1], [1, 0]]), "meant to be SOP"),
-        (explicit("SOP", SQUARE).replace("0   1   1", "0   -1   1"), "comes before the first"),
+        (
+            explicit("SOP", SQUARE).replace("0   1   1", "0   -1   1"),
+            "before the first or after the last",
+        ),
         (explicit("ATSP", SQUARE, "LOWER_COL"), "EDGE_WEIGHT_FORMAT LOWER_COL is not read"),
-        (explicit("ATSP", SQUARE, more="TYPE: ATSP\n"), ":8: TYPE stands here again"),
+        (explicit("ATSP", SQUARE, more="TYPE: ATSP\n"), ":8: TYPE is given a second time"),
         (COORDINATES.replace("EUC_2D", "XRAY1"), "EDGE_WEIGHT_TYPE XRAY1 is not read"),
-        (COORDINATES.replace("2 1 1", "1 1 1"), ":9: 1 is no node or one that is there twice"),
+        (COORDINATES.replace("2 1 1", "1 1 1"), ":9: 1 is no node, or is given twice,"),
         (COORDINATES.replace("2 5", "2 -5"), "the score of node 2 is -5"),
         (COORDINATES.replace("COST_LIMIT : 10", "COST_LIMIT : -1"), "-1 is negative"),
         (COORDINATES.replace("COST_LIMIT : 10\n", ""), "it has no COST_LIMIT"),
@@ -270,28 +277,28 @@ CUSTOMERS = customers([((0, 0), (0, 9)), ((1, 1), (0, 5))])
         (WINDOWS.replace("2\n", "2.5\n", 1), ":1: 2.5 nodes"),
         (WINDOWS.replace("2\n", "9999\n", 1), "at most"),
         (CUSTOMERS.replace("0 5 0", "6 5 0"), ":5: 6 is part of a time window"),
-        (CUSTOMERS.replace("0 5 0", "0 5 3"), ":5: 3 is a service"),
+        (CUSTOMERS.replace("0 5 0", "0 5 3"), ":5: 3 is a service time"),
         (CUSTOMERS.replace("999 0", ""), ":6: of 7 numbers for a node there are 5"),
         (CUSTOMERS + "7\n", ":7: there are 1 numbers more"),
         (CUSTOMERS.partition("1\t")[0], ":3: 0 nodes"),
     ],
 )
-def test_wrong_files_are_refused_with_their_place(tmp_path, text, said):
-    with pytest.raises(ArgoError) as found:
+def test_wrong_files_are_refused_with_the_line(tmp_path, text, message):
+    with pytest.raises(ArgoError) as error:
         read(tmp_path, text)
-    assert str(tmp_path / "some.txt") in str(found.value)
-    assert said in str(found.value)
+    assert str(tmp_path / "some.txt") in str(error.value)
+    assert message in str(error.value)
 
 
-def test_files_that_are_none(tmp_path):
+def test_paths_without_a_text_file_are_refused(tmp_path):
     (tmp_path / "x.bin").write_bytes(b"\x00\x01\x02")
-    for path, said in [
+    for path, message in [
         (tmp_path, "is a directory"),
         (tmp_path / "none", "no such file"),
         (tmp_path / "x.bin", "is a binary file"),
         (Path("\0"), "can't be read"),
     ]:
-        with pytest.raises(ArgoError, match=said):
+        with pytest.raises(ArgoError, match=message):
             read_route_problem(path)
 
 
@@ -322,15 +329,18 @@ def originals():
     return Path(ORIGINALS)
 
 
-def test_published_routes_score_and_cost_what_is_published(originals):
+def test_published_routes_have_their_published_score_and_cost(originals):
     paths = sorted(originals.rglob("*.sol"))
     assert paths
     for path in paths:
         known = read_known_route(path)
         named = read_route_problem(path.with_suffix(".oplib"))
-        found = evaluate(named.problem, named.route(known.nodes))
-        assert found.feasible
-        assert (named.value(found.prize, 0), found.duration) == (known.score, known.cost)
+        evaluation = evaluate(named.problem, named.make_route(known.nodes))
+        assert evaluation.feasible
+        assert (named.published_value(evaluation.prize, 0), evaluation.duration) == (
+            known.score,
+            known.cost,
+        )
 
 
 def test_all_published_problems_are_read(originals):
@@ -348,7 +358,9 @@ def test_all_published_problems_are_read(originals):
 )  # fmt: skip
 def test_small_published_problems_are_solved_to_their_known_values(originals, file, value):
     named = read_route_problem(originals / file)
-    found = suggest_route(named.problem, 30.0)  # they take less than 1 s on a quiet machine
-    assert found.proven
-    assert named.value(found.prize, found.cost) == named.value(found.prize_bound, found.bound)
-    assert named.value(found.prize, found.cost) == value
+    suggestion = suggest_route(named.problem, 30.0)  # they take less than 1 s on a quiet machine
+    assert suggestion.proven
+    assert named.published_value(suggestion.prize, suggestion.cost) == named.published_value(
+        suggestion.prize_bound, suggestion.bound
+    )
+    assert named.published_value(suggestion.prize, suggestion.cost) == value

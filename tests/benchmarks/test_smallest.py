@@ -1,6 +1,6 @@
-"""Each benchmark in its smallest size: it runs to its end, and prints its table.
+"""Tests of each benchmark in its smallest size: it runs to its end, and prints its table.
 
-That of published route problems is in `test_routes.py`.
+The test of published route problems is in `test_routes.py`.
 """
 
 import os
@@ -19,7 +19,7 @@ COMMANDS = {
     "compile --sizes 20 --repeats 1 --states 10": r"20 total .*\n.* MB of text",
     "env route --window 0.005": r"Route-v0 \(vector\) +[\d,]+ steps/s",
     "env drive inspect --window 0.005": r"Drive-v0 +[\d,]+ steps/s(.|\n)* s simulated in a step",
-    "evaluate --power --comparisons 20": r"a plan beside itself: a difference in 0 of 20 ",
+    "evaluate --power --comparisons 20": r"a plan and itself: a difference in 0 of 20 ",
     "hfsm --events 50 --repeats 1": r"Argo +[\d,]+ +",
     "hfsm --states": r"Argo: 4 states",
     "route_parts --problems plain --count 1 --size 4 --time-limit 0.1 --only PyVRP --alone": (
@@ -40,17 +40,17 @@ COMMANDS = {
     "evaluate --runs 2 --kinematic 0 --backend processes": r"processes +route +2 runs: ",
     f"paths --pairs 2 --site {SMALL} --large {SMALL}": r"travel times of 2 checkpoints: [\d.]+ s",
     "service --tasks 10 --edits 3 --subscribers 2 --seconds 3": (
-        r"2 followers of a run: (.|\n)*one hears nothing: seen by all +[\d.]+ "
+        r"2 followers of a run: (.|\n)*one reads nothing: received by all +[\d.]+ "
     ),
     f"service_world --site {SMALL}": r"preview with obstacles +1 parts",
 }
-"""what is printed by each, which is the name of a module and its arguments"""
+"""pattern of the output of each command, the name of a module and its arguments"""
 
 
 @pytest.mark.parametrize("command", COMMANDS, ids=lambda command: command.replace(SMALL, "SMALL"))
 def test_runs_to_its_end(command, capfd, monkeypatch):
     monkeypatch.chdir(ROOT)
-    monkeypatch.setenv("ARGO_CACHE_DIR", os.environ["ARGO_CACHE_DIR"])  # one of them changes it
+    monkeypatch.setenv("ARGO_CACHE_DIR", os.environ["ARGO_CACHE_DIR"])  # one benchmark changes it
     name, *arguments = command.split()
     import_module(f"benchmarks.{name}").main(arguments)
     assert re.search(COMMANDS[command], capfd.readouterr().out)

@@ -1,4 +1,4 @@
-"""The ratios of `make speed`, in the smallest size; how fast anything is is not looked at."""
+"""Tests of `make speed` in its smallest size; they assert no time."""
 
 import json
 from pathlib import Path
@@ -9,10 +9,12 @@ from benchmarks import speed
 
 
 @pytest.mark.long
-def test_figures_are_measured_and_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    kept = tmp_path / "speed.json"
-    assert speed.main(["--smallest", "--write", "--kept", str(kept)]) == 0
-    values = json.loads(kept.read_text())
+def test_figures_are_measured_and_stored(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    stored = tmp_path / "speed.json"
+    assert speed.main(["--smallest", "--write", "--kept", str(stored)]) == 0
+    values = json.loads(stored.read_text())
     shown = capsys.readouterr().out
     for figure in speed.FIGURES:
         assert (figure.name in shown) == figure.short
@@ -20,7 +22,7 @@ def test_figures_are_measured_and_kept(tmp_path: Path, capsys: pytest.CaptureFix
         assert (values.get(figure.name, 0.0) > 0.0) == measured
 
 
-def test_what_has_become_slower_is_named(
+def test_figures_that_became_slower_are_named(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     figures = (
@@ -31,14 +33,16 @@ def test_what_has_become_slower_is_named(
         speed.Figure("absent", "x another", lambda _: None),
     )
     monkeypatch.setattr(speed, "FIGURES", figures)
-    kept = tmp_path / "speed.json"
-    kept.write_text(json.dumps({"rate": 10.0, "time": 2.0, "nearly": 1.0}))
-    assert speed.main(["--kept", str(kept)]) == 1
+    stored = tmp_path / "speed.json"
+    stored.write_text(json.dumps({"rate": 10.0, "time": 2.0, "nearly": 1.0}))
+    assert speed.main(["--kept", str(stored)]) == 1
     shown = capsys.readouterr().out
     assert "slower by more than 15%: rate (0.80), time (0.67)\n" in shown
     assert "not installed: another" in shown
-    assert speed.main(["--kept", str(kept), "--only", "nearly", "new"]) == 0
+    assert speed.main(["--kept", str(stored), "--only", "nearly", "new"]) == 0
 
 
-def test_kept_values_are_those_of_the_figures() -> None:
-    assert json.loads(speed.KEPT.read_text()).keys() == {figure.name for figure in speed.FIGURES}
+def test_each_figure_has_a_stored_value() -> None:
+    assert json.loads(speed.STORED_VALUES.read_text()).keys() == {
+        figure.name for figure in speed.FIGURES
+    }

@@ -39,7 +39,7 @@ from argo_env.run.session import simulate
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec, logged_events
 from argo_env.seeding import generator
-from benchmarks.options import seed_number
+from benchmarks.options import parse_seed
 from tests.campaigns.fault_causes import given_up_without_cause, without_cause
 from tests.campaigns.faults import random_mission
 
@@ -230,7 +230,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Runs what the command line asks for, and prints what had no cause."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--runs", type=int, default=1000)
-    parser.add_argument("--first", type=seed_number, default=0, help="number of the first run")
+    parser.add_argument("--first", type=parse_seed, default=0, help="number of the first run")
     parser.add_argument("--drive", choices=DRIVES, default=KinematicDrive.name)
     parser.add_argument("--processes", type=int, default=1)
     given = parser.parse_args(arguments)

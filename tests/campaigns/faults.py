@@ -25,7 +25,7 @@ from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_env.seeding import generator
 from argo_env.site import Site
-from benchmarks.options import seed_number
+from benchmarks.options import parse_seed
 from tests.mission_writing import drive as waypoint
 from tests.yard import from_place, measure
 
@@ -117,7 +117,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--clean", type=int, metavar="N", help="random missions without a fault")
     parser.add_argument("--bricks", type=int, metavar="N", help="missions with one in the way")
     parser.add_argument("--site", default="umad")
-    parser.add_argument("--seed", type=seed_number, default=0, help="of the first mission")
+    parser.add_argument("--seed", type=parse_seed, default=0, help="of the first mission")
     parser.add_argument("--drive", choices=DRIVES, default="kinematic")
     given = parser.parse_args(arguments)
     if not given.clean and not given.bricks:

@@ -35,7 +35,7 @@ from argo_env.sensing.vision.views import plan_views, solids_near
 from argo_env.site.shapes import Box, Cylinder, Solid
 from argo_env.world.placement import AS_PLANNED, draw_placement
 from argo_env.world.world import World
-from benchmarks.options import seed_number
+from benchmarks.options import parse_seed
 
 SURE = 0.9
 """a reading with at least this confidence is a sure one"""
@@ -252,7 +252,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Run the trials and print what came out."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument(
-        "--seed", type=seed_number, default=2018, help="default: the seed of the report"
+        "--seed", type=parse_seed, default=2018, help="default: the seed of the report"
     )
     parser.add_argument("--trials", type=int, default=600)
     parser.add_argument("--jobs", type=int, default=2)

@@ -21,7 +21,7 @@ from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_planner.use_cases.importing import Upload, import_mission
 from argo_planner.use_cases.routing import suggest_order
-from benchmarks.options import seed_number
+from benchmarks.options import parse_seed
 
 SIZES = (4, 8, 20)
 
@@ -50,7 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     )
     parser.add_argument("--sizes", type=int, nargs="+", default=SIZES, help="checkpoints")
     parser.add_argument("--sheets", type=int, default=2, help="of each size")
-    parser.add_argument("--seed", type=seed_number, default=0, help="of the first sheet")
+    parser.add_argument("--seed", type=parse_seed, default=0, help="of the first sheet")
     parser.add_argument("--drive", choices=DRIVES, default="kinematic")
     options = parser.parse_args(arguments)
     site = open_site("umad")

@@ -22,7 +22,7 @@ from argo_env.drives.tracked.drive import TrackedDrive
 from argo_env.robot.pose import BodyPose
 from argo_env.seeding import generator
 from argo_env.site import load_site
-from benchmarks.tracked import LANDINGS, opened_world, path_of
+from benchmarks.tracked import LANDINGS, open_world, plan_flight
 
 OFFSET = 0.05  # m, to each side, of the start
 TURNED = math.radians(5.0)
@@ -65,8 +65,8 @@ class ClimbOutcome:
 
 def run(climb: Climb) -> ClimbOutcome:
     """Drive one climb."""
-    navigator, world = opened_world()
-    path = path_of(navigator, climb.tower, climb.storey, climb.up)
+    navigator, world = open_world()
+    path = plan_flight(navigator, climb.tower, climb.storey, climb.up)
     dice = generator(climb.seed, "tracked", climb.tower, climb.storey, int(climb.up))
     traction = Traction().scaled(1.0 + GRIP * dice.uniform(-1.0, 1.0))
     mass = 1.0 + MASS * dice.uniform(-1.0, 1.0)

@@ -16,7 +16,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from argo_compiler.route import RouteProblem, RouteSuggestion, suggest_route
-from benchmarks.routes_limits import KINDS, places
+from benchmarks.routes_limits import KINDS, random_problem
 
 CASES = {
     "any order, 70 visits": ("plain", 70),
@@ -31,7 +31,7 @@ CASES = {
 def problem_of(kind: str, count: int) -> RouteProblem:
     """A random problem of that kind (see `benchmarks.routes_limits`)."""
     rng = np.random.default_rng(count)
-    return KINDS[kind](places(count, rng), rng)
+    return KINDS[kind](random_problem(count, rng), rng)
 
 
 def draw(name: str, made: RouteSuggestion, turns: Axes, curve: Axes) -> None:

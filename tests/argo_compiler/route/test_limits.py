@@ -10,7 +10,7 @@ from argo_compiler.route import Precedence, RouteProblem, evaluate, suggest_rout
 from argo_compiler.route.network import network
 from argo_compiler.route.pruning import least_path_times
 from argo_compiler.route.stop import FirstFeasible
-from benchmarks.routes_limits import KINDS, places
+from benchmarks.routes_limits import KINDS, random_problem
 
 
 class Clock:
@@ -26,7 +26,7 @@ class Clock:
 
 def of_kind(kind: str, size: int) -> RouteProblem:
     rng = np.random.default_rng(size)
-    return KINDS[kind](places(size, rng), rng)
+    return KINDS[kind](random_problem(size, rng), rng)
 
 
 def clashing(size: int) -> RouteProblem:
@@ -92,7 +92,7 @@ def test_rounds_meet_precedences_without_time_to_compare_orders() -> None:
 def test_least_path_times_are_lower_bounds(size: int) -> None:
     rng = np.random.default_rng(size)
     travel = rng.integers(1, 1000, (size + 1, size + 1))  # without the triangle inequality
-    problem = replace(places(size, rng), travel=travel)
+    problem = replace(random_problem(size, rng), travel=travel)
     service = np.array([visit.service for visit in problem.visits])
     arcs = travel[:size, :size] + service[:, None]
     shortest = shortest_path(arcs) - service[:, None]

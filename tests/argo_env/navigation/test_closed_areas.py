@@ -13,7 +13,7 @@ from argo_compiler.base.model import Pose
 from argo_env.navigation import Blockage, Path
 from argo_env.navigation.path import wrap
 from argo_env.navigation.retreat import path_back, path_through, recent_poses
-from benchmarks.paths import poses
+from benchmarks.paths import poses_of_states
 from tests.conftest import examples
 
 FLIGHT = Blockage((3.0, 1.0, 3.5, 2.1), 1.0, "the stairs are blocked")
@@ -46,7 +46,7 @@ def test_no_path_touches_a_closed_area(hall, robot, x, y, width, depth, seed):
     avoiding = hall.with_blockages([Blockage(rect, 0.0, "a brick")])
     random = np.random.default_rng(seed)
     ground = np.flatnonzero(hall.lattice.surface.z[hall.lattice.cell] < 0.05)
-    chosen = poses(hall, random.choice(ground, 3))
+    chosen = poses_of_states(hall, random.choice(ground, 3))
     # A robot that is on a closed area may leave it.
     for start in (p for p in chosen if not over(p, robot.footprint, rect)):
         for goal in chosen:
@@ -130,7 +130,7 @@ def test_exactly_the_states_over_a_blockage_are_closed(hall, robot):
     for (k, heading), was in np.ndenumerate(states):
         if was < 0 or not -0.1 < lattice.surface.z[near[k]] < 0.1:
             continue
-        (pose,) = poses(hall, np.array([was]))
+        (pose,) = poses_of_states(hall, np.array([was]))
         if over(pose, robot.footprint, rect):
             assert gone[k, heading], pose
         if gone[k, heading]:

@@ -11,7 +11,7 @@ from argo_compiler.base.model import Pose
 from argo_env.navigation import Blockage
 from argo_env.navigation.path_search import PathSearch
 from argo_env.navigation.regions import find_cut_heights, make_partition
-from benchmarks.paths import poses
+from benchmarks.paths import poses_of_states
 from tests.conftest import examples
 
 
@@ -179,7 +179,7 @@ def test_travel_times_from_all_states_are_those_from_each_state(hall, seed):
     everywhere = hall.travel_times_to([hall.site.docks[1], *ids])
     assert everywhere.shape == (len(ids) + 1, hall.lattice.size)
     for state in some_states(hall.lattice, seed, 8):
-        (here,) = poses(hall, np.array([state]))
+        (here,) = poses_of_states(hall, np.array([state]))
         assert hall.state_at(here) == state
         row = hall.travel_times_from(here, [hall.site.docks[1], *ids])
         assert everywhere[:, state] == pytest.approx(row, rel=0.02, abs=1e-4)

@@ -19,7 +19,7 @@ from argo_compiler.hfsm import Executor, lower
 from argo_compiler.il import Mission
 from argo_compiler.script import format_script, import_script, read_script
 from tests.argo_compiler.script.conftest import CATALOG
-from tests.campaigns.hostile import MEMORY_BYTES, Json, condition, measure, mission, way
+from tests.campaigns.hostile import MEMORY_BYTES, Json, condition, measure, mission, transition
 from tests.conftest import examples
 
 pytestmark = pytest.mark.long
@@ -81,7 +81,7 @@ def nested(depth: int) -> Json:
 
 
 def chain(count: int) -> list[Json]:
-    return [measure(f"T{i}", way(f"T{i + 1}")) for i in range(count)]
+    return [measure(f"T{i}", transition(f"T{i + 1}")) for i in range(count)]
 
 
 SCRIPTS = {
@@ -105,7 +105,7 @@ FILES = {
         [*chain(examples(100_000) - 1), measure(f"T{examples(100_000) - 1}")]
     ),
     "ten thousand transitions from one task": lambda: mission(
-        [measure("A", *(way("A", condition(1, i)) for i in range(10_000)))]
+        [measure("A", *(transition("A", condition(1, i)) for i in range(10_000)))]
     ),
 }
 

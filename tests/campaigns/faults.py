@@ -1,14 +1,15 @@
-"""What the robot finds by itself, and what it takes for something where there is nothing.
+"""Campaign: findings of the robot without any fault, and with a brick on its path.
 
     python -m tests.campaigns.faults --clean 100
     python -m tests.campaigns.faults --bricks 50
 
-`--clean` runs random missions without any fault: a start in one of the docks, one to three
-checkpoints anywhere on the site, and an end in one of the docks, all drawn from the mission's seed,
-which also draws the noise of all sensors. Whatever is found there is a false alarm.
+`--clean` runs random missions without any fault, from a dock through one to three checkpoints
+anywhere on the site to a dock. All of it is drawn from the mission's seed, from which the noise of
+all sensors is drawn too. Each finding is a false alarm.
 
-`--bricks` runs random missions to one checkpoint and back with a brick somewhere on the planned way
-on a level floor, turned in any way, and counts what was found, touched and reached all the same.
+`--bricks` runs random missions to one checkpoint and back, with a brick of any orientation
+somewhere on the planned path on a level floor. It counts the missions in which the brick was
+detected, in which the robot touched something, and which succeeded all the same.
 """
 
 import argparse
@@ -31,35 +32,35 @@ from tests.yard import from_place, measure
 
 
 def random_mission(navigator: Navigator, seed: int) -> Mission:
-    """A mission through checkpoints from dock to dock."""
+    """Draw a mission from a dock through one to three checkpoints to a dock."""
     site, rng = navigator.site, generator(seed, "clean mission")
     start, end = (int(rng.choice(sorted(site.docks))) for _ in range(2))
     ids = [c.id for c in site.checkpoints]
     chosen = rng.choice(ids, size=min(len(ids), int(rng.integers(1, 4))), replace=False)
-    mission = _round(site, start, end, chosen.tolist())
+    mission = _mission_through(site, start, end, chosen.tolist())
     return mission.model_copy(update={"start_area": start, "end_area": end})
 
 
-def _round(site: Site, start: int, end: int, checkpoints: Sequence[int]) -> Mission:
-    """A mission from dock to dock, without what a header says of them."""
+def _mission_through(site: Site, start: int, end: int, checkpoints: Sequence[int]) -> Mission:
+    """Return a mission from dock to dock, whose header does not state them."""
     home = waypoint("DOCK", pose=site.docks[end])
     return from_place(site.docks[start], *map(measure, checkpoints), home, site=site.name)
 
 
-def clean(navigator: Navigator, count: int, first_seed: int, drive: str) -> None:
-    """Runs missions without faults and prints what was found all the same."""
+def run_without_faults(navigator: Navigator, count: int, first_seed: int, drive: str) -> None:
+    """Run missions without faults, and print all findings."""
     alarms: Counter[str] = Counter()
     failed, simulated, wall = 0, 0.0, 0.0
     for done, seed in enumerate(range(first_seed, first_seed + count)):
         if done and done % 10 == 0:
             print(f"{done} missions, {simulated:.0f} s, {sum(alarms.values())} alarms", flush=True)
         mission = random_mission(navigator, seed)
-        began = time.perf_counter()
+        begun = time.perf_counter()
         record = simulate(
             RunSpec(mission=mission, site=navigator.site.name, seed=seed, drive=drive),
             OpenedSite.of_navigator(navigator),
         )
-        wall += time.perf_counter() - began
+        wall += time.perf_counter() - begun
         simulated += record.result.duration
         for anomaly in record.anomalies:
             alarms[anomaly.kind] += 1
@@ -68,37 +69,37 @@ def clean(navigator: Navigator, count: int, first_seed: int, drive: str) -> None
             failed += 1
             print(f"seed {seed}: {record.result.verdict}", flush=True)
     print(
-        f"{count} missions without a fault with the drive {drive}, {simulated / 3600:.1f} h of "
+        f"{count} missions without a fault, with the drive {drive}, {simulated / 3600:.1f} h of "
         f"simulated time, {simulated / wall:.0f} times real time: {sum(alarms.values())} false "
         f"alarms, {failed} missions without success"
     )
 
 
-def bricks(navigator: Navigator, count: int, first_seed: int, drive: str) -> None:
-    """Runs missions with a brick in the way and prints what came of it."""
-    runs = found = touched = reached = 0
+def run_with_bricks(navigator: Navigator, count: int, first_seed: int, drive: str) -> None:
+    """Run missions with a brick on the path, and print the results."""
+    runs = detected = touched = succeeded = 0
     for seed in range(first_seed, first_seed + count):
         rng = generator(seed, "brick mission")
         site, area = navigator.site, min(navigator.site.docks)
         checkpoint = int(rng.choice([c.id for c in site.checkpoints]))
-        way = navigator.plan_to_view(navigator.snap(site.docks[area]), checkpoint)
+        path = navigator.plan_to_view(navigator.snap(site.docks[area]), checkpoint)
         floors = {f.z: f for f in site.spec.floors}
-        places = [
+        poses = [
             (floors[motion.start.z].number, motion.pose_at(float(rng.random())))
-            for motion in way.motions
+            for motion in path.motions
             if not motion.turn and motion.start.z == motion.end.z and motion.start.z in floors
         ]
-        if not places:
-            continue  # all on the ground beside the slab
+        if not poses:
+            continue  # all motions are on the ground beside the slab
         runs += 1
-        floor, pose = places[int(rng.integers(len(places)))]
+        floor, pose = poses[int(rng.integers(len(poses)))]
         brick = Brick(floor=floor, place=(pose.x, pose.y), yaw=float(rng.uniform(-90, 90)))
-        mission = _round(site, area, area, [checkpoint])
+        mission = _mission_through(site, area, area, [checkpoint])
         spec = RunSpec(mission=mission, site=site.name, seed=seed, drive=drive, faults=(brick,))
         record = simulate(spec, OpenedSite.of_navigator(navigator))
-        found += any(a.kind is EventKind.POSITIVE_OBSTACLE for a in record.anomalies)
+        detected += any(a.kind is EventKind.POSITIVE_OBSTACLE for a in record.anomalies)
         touched += bool(record.contacts)
-        reached += record.result.success
+        succeeded += record.result.success
         print(
             f"seed {seed}: checkpoint {checkpoint}, brick on floor {floor} at "
             f"({pose.x:.2f}, {pose.y:.2f}): {len(record.anomalies)} findings, "
@@ -106,27 +107,29 @@ def bricks(navigator: Navigator, count: int, first_seed: int, drive: str) -> Non
             flush=True,
         )
     print(
-        f"{runs} missions with a brick in the way with the drive {drive}: found in {found}, "
-        f"touched in {touched}, the mission done all the same in {reached}"
+        f"{runs} missions with a brick on the path, with the drive {drive}: detected in "
+        f"{detected}, contacts in {touched}, successful all the same {succeeded}"
     )
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Do what the command line asks for."""
+    """Run the campaigns that the command line asks for."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--clean", type=int, metavar="N", help="random missions without a fault")
-    parser.add_argument("--bricks", type=int, metavar="N", help="missions with one in the way")
+    parser.add_argument(
+        "--bricks", type=int, metavar="N", help="random missions with a brick on the path"
+    )
     parser.add_argument("--site", default="umad")
-    parser.add_argument("--seed", type=parse_seed, default=0, help="of the first mission")
+    parser.add_argument("--seed", type=parse_seed, default=0, help="seed of the first mission")
     parser.add_argument("--drive", choices=DRIVES, default="kinematic")
-    given = parser.parse_args(arguments)
-    if not given.clean and not given.bricks:
-        parser.error("say --clean N or --bricks N")
-    navigator = open_site(given.site).prepare().navigator
-    if given.clean:
-        clean(navigator, given.clean, given.seed, given.drive)
-    if given.bricks:
-        bricks(navigator, given.bricks, given.seed, given.drive)
+    options = parser.parse_args(arguments)
+    if not options.clean and not options.bricks:
+        parser.error("give --clean N, --bricks N or both")
+    navigator = open_site(options.site).prepare().navigator
+    if options.clean:
+        run_without_faults(navigator, options.clean, options.seed, options.drive)
+    if options.bricks:
+        run_with_bricks(navigator, options.bricks, options.seed, options.drive)
 
 
 if __name__ == "__main__":

@@ -1,11 +1,11 @@
-"""What the worst inputs of a megabyte cost: `argo check` of each kind, in a process of its own.
+"""Campaign: time and memory of `argo check` for the worst inputs of a megabyte.
 
     python -m tests.campaigns.hostile
     python -m tests.campaigns.hostile --only "nested groups" "a time of 1e300 s"
 
-Reads, checks, lowers and analyses what it can, with the travel times of a site. Memory is limited
-to 2 GB; the processor's time and the greatest memory are measured by the system. Ends with status 1
-if an input takes more than 10 s or is answered by a traceback.
+Each input is read, checked, lowered and analysed as far as possible, with the travel times of a
+site, in a process of its own with at most 2 GB of memory. The system measures processor time and
+peak memory. The exit status is 1 if an input takes more than 10 s or causes a traceback.
 """
 
 import argparse
@@ -22,9 +22,9 @@ from pathlib import Path
 from typing import Any
 
 SIZE = 1_000_000
-"""characters of each input"""
+"""size of each input in characters"""
 TASK_SIZE = 290_000
-"""and of one task; of larger ones a file is refused at once"""
+"""size of one task in characters; files with larger tasks are refused at once"""
 MEMORY_BYTES = 2_000_000_000
 LIMIT_S = 10.0
 GIVE_UP_S = 120
@@ -37,26 +37,31 @@ def condition(object_id: object = 1, bound: float = 5) -> Json:
     return {"type": kind, "object_id": str(object_id), "param1": bound}
 
 
-def way(target: str, *conditions: Json) -> Json:
+def transition(target: str, *conditions: Json) -> Json:
     return {"target": target, "conditions": list(conditions)}
 
 
-def measure(name: str, *ways: Json, object_id: object = 1, **more: Json) -> Json:
+def measure(name: str, *transitions: Json, object_id: object = 1, **more: Json) -> Json:
     task = {"name": name, "action": "MEASURE", "object_id": str(object_id)}
-    return task | {"transitions": list(ways)} | more
+    return task | {"transitions": list(transitions)} | more
 
 
-def _drive(name: str, *ways: Json, x: float = -1.0, **more: Json) -> Json:
+def _drive(name: str, *transitions: Json, x: float = -1.0, **more: Json) -> Json:
     pose = {"x": x, "y": 4.0, "z": 0.0}
-    return {"name": name, "action": "WAYPOINT", "pose": pose, "transitions": list(ways)} | more
+    return {
+        "name": name,
+        "action": "WAYPOINT",
+        "pose": pose,
+        "transitions": list(transitions),
+    } | more
 
 
-def _wait(name: str, *ways: Json, **rule: Json) -> Json:
-    return {"name": name, "action": "WAIT", "wait": rule, "transitions": list(ways)}
+def _wait(name: str, *transitions: Json, **rule: Json) -> Json:
+    return {"name": name, "action": "WAIT", "wait": rule, "transitions": list(transitions)}
 
 
-def filled(make: Callable[[int], Json], size: int = SIZE) -> Json:
-    """As many items as a list of that size has."""
+def fill_list(make: Callable[[int], Json], size: int = SIZE) -> Json:
+    """Return the items with the numbers 0, 1, … that fit into a JSON list of that size."""
     items, taken = [], 0
     for k in count():
         item = make(k)
@@ -71,16 +76,16 @@ def mission(tasks: Json, groups: Json = (), **more: Json) -> Json:
     return {"version": 3, "tasks": list(tasks), "groups": list(groups)} | more
 
 
-def nested(depth: int, **rule: Json) -> Json:
-    """Groups in groups with one task each; names grow with the depth."""
+def nest_groups(depth: int, **rule: Json) -> Json:
+    """Return a mission of nested groups with one more task each; names grow with the depth."""
     names = ["/".join(["g"] * (i + 1)) for i in range(depth)]
-    tasks = [_drive(f"T{i}", way(f"T{i + 1}")) for i in range(depth)] + [_drive(f"T{depth}")]
+    tasks = [_drive(f"T{i}", transition(f"T{i + 1}")) for i in range(depth)] + [_drive(f"T{depth}")]
     groups = [{"name": n, "start": f"T{i}", "end": f"T{depth}"} | rule for i, n in enumerate(names)]
     return mission(tasks, groups)
 
 
-def _siblings(rule: Json, make: Callable[[int], Json]) -> Json:
-    tasks = filled(lambda k: [make(2 * k), make(2 * k + 1), rule, " " * 80])
+def _consecutive_groups(rule: Json, make: Callable[[int], Json]) -> Json:
+    tasks = fill_list(lambda k: [make(2 * k), make(2 * k + 1), rule, " " * 80])
     pairs = [task for pair in tasks for task in pair[:2]]
     groups = [
         {"name": f"g{k}", "start": f"T{2 * k}", "end": f"T{2 * k + 1}"} | rule
@@ -89,65 +94,77 @@ def _siblings(rule: Json, make: Callable[[int], Json]) -> Json:
     return mission([*pairs, _drive(f"T{len(pairs)}")], groups)
 
 
-def chained(make: Callable[[int, str], Json]) -> Json:
-    """A chain of tasks, each of which leads to the next one."""
-    tasks = filled(lambda k: make(k, f"T{k + 1}"))
+def chain_tasks(make: Callable[[int, str], Json]) -> Json:
+    """Return a mission of tasks in sequence, as many as fit into SIZE."""
+    tasks = fill_list(lambda k: make(k, f"T{k + 1}"))
     return mission([*tasks[:-1], _drive(f"T{len(tasks) - 1}")])
 
 
-def jumps(k: int) -> list[Json]:
-    """Conditional ways to tasks all over the mission."""
-    return [way(f"T{(k * 7919 + 31 * j) % 1500}", condition(j + 1, k % 11)) for j in range(5)]
+def make_jumps(k: int) -> list[Json]:
+    """Return conditional transitions to tasks all over the mission."""
+    return [
+        transition(f"T{(k * 7919 + 31 * j) % 1500}", condition(j + 1, k % 11)) for j in range(5)
+    ]
 
 
-def _unlimited(number: str) -> str:
+def _with_repeat_count(number: str) -> str:
     one = json.dumps(mission([_drive("T0")], [{"name": "g", "start": "T0", "end": "T0"}]))
     return one.replace('"end": "T0"', f'"end": "T0", "max_repeat_count": {number}')
 
 
-def _timed(number: str) -> str:
+def _with_duration(number: str) -> str:
     one = json.dumps(mission([_drive("T0", x=0.0)]))
     return one.replace('"version"', f'"max_duration": {number}, "version"')
 
 
 MISSIONS: dict[str, Callable[[], Json]] = {
-    "a chain of short tasks": lambda: chained(lambda k, n: measure(f"T{k}", way(n))),
-    "drives to and fro": lambda: chained(lambda k, n: _drive(f"T{k}", way(n), x=-1 - k % 7)),
-    "drives to places all different": lambda: chained(
-        lambda k, n: _drive(f"T{k}", way(n), x=-1 - k / 1e4)
+    "a chain of short tasks": lambda: chain_tasks(lambda k, n: measure(f"T{k}", transition(n))),
+    "drives to and fro": lambda: chain_tasks(
+        lambda k, n: _drive(f"T{k}", transition(n), x=-1 - k % 7)
     ),
-    "tasks that lead anywhere": lambda: mission(filled(lambda k: measure(f"T{k}", *jumps(k)))),
-    "each task decides by a checkpoint of its own": lambda: chained(
-        lambda k, n: _drive(f"T{k}", way(f"T{k // 2}", condition(k)), way(n))
+    "drives to poses that all differ": lambda: chain_tasks(
+        lambda k, n: _drive(f"T{k}", transition(n), x=-1 - k / 1e4)
     ),
-    "each task measures what another compares": lambda: chained(
-        lambda k, n: measure(f"T{k}", way("T0", condition(k * 7 % 3000)), way(n), object_id=k)
+    "tasks that lead anywhere": lambda: mission(
+        fill_list(lambda k: measure(f"T{k}", *make_jumps(k)))
     ),
-    "bounds all different": lambda: chained(
-        lambda k, n: measure(f"T{k}", way("T0", condition(1, k)), way(n))
+    "each task has a condition on its own checkpoint": lambda: chain_tasks(
+        lambda k, n: _drive(f"T{k}", transition(f"T{k // 2}", condition(k)), transition(n))
     ),
-    "bounds of another checkpoint, all different": lambda: chained(
-        lambda k, n: _drive(f"T{k}", way("T0", condition(1 + k % 9, k)), way(n))
+    "each task measures the checkpoint of another condition": lambda: chain_tasks(
+        lambda k, n: measure(
+            f"T{k}", transition("T0", condition(k * 7 % 3000)), transition(n), object_id=k
+        )
     ),
-    "one task with very many ways": lambda: mission(
-        [measure("A", *filled(lambda k: way("A", condition(1, k)), TASK_SIZE))]
+    "bounds that all differ": lambda: chain_tasks(
+        lambda k, n: measure(f"T{k}", transition("T0", condition(1, k)), transition(n))
     ),
-    "one task with very many ways by other checkpoints": lambda: mission(
-        [_drive("A", *filled(lambda k: way("A", condition(k, 1)), TASK_SIZE))]
+    "bounds of another checkpoint that all differ": lambda: chain_tasks(
+        lambda k, n: _drive(f"T{k}", transition("T0", condition(1 + k % 9, k)), transition(n))
     ),
-    "one way with very many conditions": lambda: mission(
-        [measure("A", way("A", *filled(lambda k: condition(1, k), TASK_SIZE)))]
+    "one task with very many transitions": lambda: mission(
+        [measure("A", *fill_list(lambda k: transition("A", condition(1, k)), TASK_SIZE))]
     ),
-    "one way with very many conditions on checkpoints": lambda: mission(
-        [_drive("A", way("A", *filled(lambda k: condition(k, 1), TASK_SIZE)))]
+    "one task with very many transitions by other checkpoints": lambda: mission(
+        [_drive("A", *fill_list(lambda k: transition("A", condition(k, 1)), TASK_SIZE))]
     ),
-    "unconditional ways": lambda: mission([_drive("A", *filled(lambda _: way("A"), TASK_SIZE))]),
+    "one transition with very many conditions": lambda: mission(
+        [measure("A", transition("A", *fill_list(lambda k: condition(1, k), TASK_SIZE)))]
+    ),
+    "one transition with very many conditions on checkpoints": lambda: mission(
+        [_drive("A", transition("A", *fill_list(lambda k: condition(k, 1), TASK_SIZE)))]
+    ),
+    "unconditional transitions": lambda: mission(
+        [_drive("A", *fill_list(lambda _: transition("A"), TASK_SIZE))]
+    ),
     "a wait for very many conditions": lambda: mission(
-        [_wait("A", conditions=filled(lambda k: condition(k, 1), TASK_SIZE))]
+        [_wait("A", conditions=fill_list(lambda k: condition(k, 1), TASK_SIZE))]
     ),
-    "waits of no time": lambda: chained(lambda k, n: _wait(f"T{k}", way(n), duration=0)),
-    "waits of no time in a circle": lambda: mission(
-        [*filled(lambda k: _wait(f"T{k}", way(f"T{k + 1}"), duration=0))[:-1]]
+    "waits of zero duration": lambda: chain_tasks(
+        lambda k, n: _wait(f"T{k}", transition(n), duration=0)
+    ),
+    "waits of zero duration that end at a missing task": lambda: mission(
+        [*fill_list(lambda k: _wait(f"T{k}", transition(f"T{k + 1}"), duration=0))[:-1]]
     ),
     "a group until very many conditions hold": lambda: mission(
         [measure("A")],
@@ -156,64 +173,79 @@ MISSIONS: dict[str, Callable[[], Json]] = {
                 "name": "g",
                 "start": "A",
                 "end": "A",
-                "until": filled(lambda k: condition(1, k), TASK_SIZE),
+                "until": fill_list(lambda k: condition(1, k), TASK_SIZE),
             }
         ],
     ),
-    "nested groups": lambda: nested(900, max_repeat_count=2),
-    "nested groups with a hard stop": lambda: nested(900, max_repeat_duration=100),
-    "nested groups with a soft stop": lambda: nested(
+    "nested groups": lambda: nest_groups(900, max_repeat_count=2),
+    "nested groups with a hard stop": lambda: nest_groups(900, max_repeat_duration=100),
+    "nested groups with a soft stop": lambda: nest_groups(
         900, max_repeat_duration=100, stop="soft", every=7
     ),
-    "groups beside each other": lambda: _siblings(
-        {"max_repeat_count": 5}, lambda k: _drive(f"T{k}", way(f"T{k + 1}"))
+    "groups beside each other": lambda: _consecutive_groups(
+        {"max_repeat_count": 5}, lambda k: _drive(f"T{k}", transition(f"T{k + 1}"))
     ),
-    "groups with a hard stop, entered and left anywhere": lambda: _siblings(
+    "groups with a hard stop, entered and left anywhere": lambda: _consecutive_groups(
         {"max_repeat_duration": 50},
-        lambda k: measure(f"T{k}", way(f"T{k * 31 % 1900}", condition(1, k % 9)), way(f"T{k + 1}")),
+        lambda k: measure(
+            f"T{k}", transition(f"T{k * 31 % 1900}", condition(1, k % 9)), transition(f"T{k + 1}")
+        ),
     ),
     "groups of one name": lambda: mission(
         [_drive("A")],
-        filled(lambda _: {"name": "g", "start": "A", "end": "A", "max_repeat_count": 2}),
+        fill_list(lambda _: {"name": "g", "start": "A", "end": "A", "max_repeat_count": 2}),
     ),
     "groups of the same range": lambda: mission(
         [_drive("A")],
-        filled(lambda k: {"name": f"g{k}", "start": "A", "end": "A", "max_repeat_count": 2}),
+        fill_list(lambda k: {"name": f"g{k}", "start": "A", "end": "A", "max_repeat_count": 2}),
     ),
-    "tasks of one name": lambda: mission(filled(lambda _: _drive("A", way("A")))),
-    "misspelt targets": lambda: mission(filled(lambda k: _drive(f"Task {k}", way(f"Tusk {k}")))),
-    "two thousand ways to a name of 400 letters": lambda: mission(
-        [_drive("A" * 400), *filled(lambda k: _drive(f"T{k}", way("A" * 400)))[:2000]]
+    "tasks of one name": lambda: mission(fill_list(lambda _: _drive("A", transition("A")))),
+    "misspelt targets": lambda: mission(
+        fill_list(lambda k: _drive(f"Task {k}", transition(f"Tusk {k}")))
+    ),
+    "two thousand transitions to a name of 400 letters": lambda: mission(
+        [_drive("A" * 400), *fill_list(lambda k: _drive(f"T{k}", transition("A" * 400)))[:2000]]
     ),
     "reactions to one event": lambda: mission(
-        [_drive("A")], reactions=filled(lambda _: {"event": "gas_leak", "response": "pause"})
+        [_drive("A")], reactions=fill_list(lambda _: {"event": "gas_leak", "response": "pause"})
     ),
-    "windows": lambda: chained(
+    "windows": lambda: chain_tasks(
         lambda k, n: _drive(
-            f"T{k}", way(n), window={"earliest": k, "latest": k + 1, "missed_target": "T0"}
+            f"T{k}", transition(n), window={"earliest": k, "latest": k + 1, "missed_target": "T0"}
         )
     ),
-    "branches after failures": lambda: chained(
+    "branches after failures": lambda: chain_tasks(
         lambda k, n: measure(
-            f"T{k}", way(n), on_failure="branch", failure_target=f"T{k // 2}", object_id=k % 50
+            f"T{k}",
+            transition(n),
+            on_failure="branch",
+            failure_target=f"T{k // 2}",
+            object_id=k % 50,
         )
     ),
-    "what was left out": lambda: mission([_drive("A")], left_out=filled(lambda k: f"B{k}")),
+    "tasks that were left out": lambda: mission(
+        [_drive("A")], left_out=fill_list(lambda k: f"B{k}")
+    ),
     "joints": lambda: mission(
-        [_drive("A", joint_states={"names": filled(lambda k: f"j{k}", TASK_SIZE), "positions": []})]
+        [
+            _drive(
+                "A",
+                joint_states={"names": fill_list(lambda k: f"j{k}", TASK_SIZE), "positions": []},
+            )
+        ]
     ),
     "unknown fields": lambda: mission([_drive("A")]) | {f"field {k}": k for k in range(50_000)},
-    "tasks of a wrong form": lambda: mission(filled(lambda k: {"nme": k})),
+    "tasks of a wrong form": lambda: mission(fill_list(lambda k: {"nme": k})),
     "a name of a megabyte": lambda: mission([_drive("A" * SIZE)]),
-    "a number of rounds of 400 digits": lambda: _unlimited("1" + "0" * 400),
-    "a number of rounds of 4,000 digits": lambda: _unlimited("1" + "0" * 4000),
-    "a number of a megabyte": lambda: _unlimited("1" + "0" * SIZE),
-    "a time of 1e300 s": lambda: _timed("1e300"),
-    "a time of 1e400 s": lambda: _timed("1e400"),
-    "a time of 1e-300 s": lambda: _timed("1e-300"),
+    "a number of rounds of 400 digits": lambda: _with_repeat_count("1" + "0" * 400),
+    "a number of rounds of 4,000 digits": lambda: _with_repeat_count("1" + "0" * 4000),
+    "a number of a megabyte": lambda: _with_repeat_count("1" + "0" * SIZE),
+    "a time of 1e300 s": lambda: _with_duration("1e300"),
+    "a time of 1e400 s": lambda: _with_duration("1e400"),
+    "a time of 1e-300 s": lambda: _with_duration("1e-300"),
     "coordinates of 1e300 m": lambda: mission([_drive("A", x=1e300), _drive("B", x=-1e308)]),
     "a speed of 1e-300 m/s": lambda: mission([_drive("A", velocity=1e-300)]),
-    "bounds of 1e308": lambda: mission([measure("A", way("A", condition(1, 1e308)))]),
+    "bounds of 1e308": lambda: mission([measure("A", transition("A", condition(1, 1e308)))]),
     "lists in lists": lambda: "[" * SIZE,
     "objects in objects": lambda: '{"a":' * (SIZE // 5),
     "one object's keys, all the same": lambda: "{" + '"a": 1, ' * (SIZE // 8) + '"a": 1}',
@@ -222,8 +254,8 @@ MISSIONS: dict[str, Callable[[], Json]] = {
 
 SCRIPTS: dict[str, Callable[[], str]] = {
     "steps": lambda: _lines("Check checkpoint #1."),
-    "steps that decide": lambda: _lines("Check checkpoint #1; if it is above 5, go to step 1."),
-    "steps that are repeated": lambda: _lines("Check checkpoint #1.", "Repeat step 1 2 times."),
+    "steps with conditions": lambda: _lines("Check checkpoint #1; if it is above 5, go to step 1."),
+    "repeated steps": lambda: _lines("Check checkpoint #1.", "Repeat step 1 2 times."),
     "waits": lambda: _lines("Wait 5 minutes."),
     "misspelt steps": lambda: _lines("Chekc teh chekpoint #1"),
     "different misspelt words": lambda: (
@@ -232,7 +264,7 @@ SCRIPTS: dict[str, Callable[[], str]] = {
     ),
     "empty lines": lambda: "Mission Protocol #1\n" + "\n" * SIZE,
     "one line of unknown words": lambda: "Mission Protocol #1\n1. Check " + "xyzzy " * (SIZE // 6),
-    "one line of commands": lambda: (
+    "one line of orders": lambda: (
         "Mission Protocol #1\n1. " + " and ".join(["check checkpoint #1"] * (SIZE // 24))
     ),
     "one line of conditions": lambda: (
@@ -268,66 +300,66 @@ SCRIPTS: dict[str, Callable[[], str]] = {
 }
 
 
-def _lines(said: str, last: str = "") -> str:
-    one = f"10000. {said}\n"
-    steps = "".join(f"{k + 1}. {said}\n" for k in range(SIZE // len(one)))
+def _lines(sentence: str, last: str = "") -> str:
+    longest = f"10000. {sentence}\n"
+    steps = "".join(f"{k + 1}. {sentence}\n" for k in range(SIZE // len(longest)))
     return f"Mission Protocol #1\n{steps}{last}\n"
 
 
 def inputs() -> Iterator[tuple[str, str, str]]:
-    """Name, ending of the file and text of each kind."""
+    """Yield name, file extension and text of each input."""
     for name, make in MISSIONS.items():
-        made = make()
-        yield name, ".json", made if isinstance(made, str) else json.dumps(made)
+        content = make()
+        yield name, ".json", content if isinstance(content, str) else json.dumps(content)
     for name, script in SCRIPTS.items():
         yield name, ".txt", script()
 
 
-def _limit() -> None:
+def _limit_resources() -> None:
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
     resource.setrlimit(resource.RLIMIT_CPU, (GIVE_UP_S, GIVE_UP_S))
 
 
-def answer(path: Path, site: str) -> tuple[str, float, float]:
-    """How an input is answered, the processor's time (s), and the greatest memory (MB)."""
+def check_input(path: Path, site: str) -> tuple[str, float, float]:
+    """Run `argo check`; return its answer, processor time (s) and peak memory (MB)."""
     command = [sys.executable, "-m", "argo_planner", "check", str(path), "--site", site, "--quiet"]
-    with tempfile.TemporaryFile() as said:
-        child = subprocess.Popen(command, stdout=said, stderr=said, preexec_fn=_limit)
+    with tempfile.TemporaryFile() as output:
+        child = subprocess.Popen(command, stdout=output, stderr=output, preexec_fn=_limit_resources)
         _, status, used = os.wait4(child.pid, 0)
         child.returncode = os.waitstatus_to_exitcode(status)
-        said.seek(0)
-        text = said.read().decode(errors="replace")
-    how = {0: "accepted", 2: "refused"}.get(child.returncode, f"status {child.returncode}")
+        output.seek(0)
+        text = output.read().decode(errors="replace")
+    answer = {0: "accepted", 2: "refused"}.get(child.returncode, f"status {child.returncode}")
     if "Traceback" in text or "MemoryError" in text:
-        how = "TRACEBACK " + text.strip().splitlines()[-1][:100]
-    return how, used.ru_utime + used.ru_stime, used.ru_maxrss / 1000
+        answer = "TRACEBACK " + text.strip().splitlines()[-1][:100]
+    return answer, used.ru_utime + used.ru_stime, used.ru_maxrss / 1000
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Print the table."""
+    """Check the inputs and print the table; return 1 if one of them fails, otherwise 0."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--only", nargs="+", default=(), help="names of inputs")
-    parser.add_argument("--site", default="umad")
-    given = parser.parse_args(arguments)
+    parser.add_argument("--only", nargs="+", default=(), help="names of the inputs to check")
+    parser.add_argument("--site", default="umad", help="site of the travel times")
+    options = parser.parse_args(arguments)
     worst = (0.0, 0.0)
-    bad = 0
-    began = time.monotonic()
+    failures = 0
+    begun = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
         for number, (name, ending, text) in enumerate(inputs()):
-            if given.only and name not in given.only:
+            if options.only and name not in options.only:
                 continue
             path = Path(folder) / f"{number}{ending}"
             path.write_text(text)
-            how, seconds, memory = answer(path, given.site)
+            answer, seconds, memory = check_input(path, options.site)
             path.unlink()
-            over = seconds > LIMIT_S or how not in ("accepted", "refused")
-            bad += over
+            failed = seconds > LIMIT_S or answer not in ("accepted", "refused")
+            failures += failed
             worst = max(worst[0], seconds), max(worst[1], memory)
-            mark = "  <--" if over else ""
+            mark = "  <--" if failed else ""
             size = len(text) / 1e6
-            print(f"{name:<55} {size:5.2f} MB {seconds:7.2f} s {memory:6.0f} MB  {how}{mark}")
-    print(f"worst: {worst[0]:.2f} s, {worst[1]:.0f} MB; {time.monotonic() - began:.0f} s in all")
-    return 1 if bad else 0
+            print(f"{name:<55} {size:5.2f} MB {seconds:7.2f} s {memory:6.0f} MB  {answer}{mark}")
+    print(f"worst: {worst[0]:.2f} s, {worst[1]:.0f} MB; {time.monotonic() - begun:.0f} s in all")
+    return 1 if failures else 0
 
 
 if __name__ == "__main__":

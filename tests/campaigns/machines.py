@@ -1,7 +1,9 @@
-"""Random machines and the reference: `python -m tests.campaigns.machines --count 40000`.
+"""Campaign: random machines behave like the reference interpreter.
 
-Each machine has a number, from which it is drawn again: `--first 17 --count 1`. The last line tells
-what has happened, and how often.
+    python -m tests.campaigns.machines --count 40000
+    python -m tests.campaigns.machines --first 17 --count 1
+
+Each machine is drawn from its number. The last line lists what happened, and how often.
 """
 
 import argparse
@@ -19,8 +21,8 @@ from tests.argo_compiler.hfsm.reference import Reference
 from tests.argo_compiler.hfsm.world import Ticks, compare
 
 
-def counts(what, method):
-    """Return the method of the reference, counting how often it says that something happens."""
+def count_when_true(what, method):
+    """Wrap a method of the reference so that it counts how often its result is true."""
 
     def counting(self):
         return self.counted(what, method(self))
@@ -28,8 +30,8 @@ def counts(what, method):
     return counting
 
 
-class Counted(Reference):
-    """A reference that counts what happens to it."""
+class CountingReference(Reference):
+    """Reference interpreter that counts what happens."""
 
     def __init__(self, mission):
         super().__init__(mission)
@@ -39,12 +41,12 @@ class Counted(Reference):
         self.happened[what] += bool(happens)
         return happens
 
-    hold_limit_over = counts("a hold's limit", Reference.hold_limit_over)
-    window_over = counts("a hard window is missed", Reference.window_over)
-    round_begins = counts("a round that waited begins", Reference.round_begins)
-    group_over = counts("a group's time is up", Reference.group_over)
-    done_by_hand = counts("done by hand", Reference.done_by_hand)
-    time_over = counts("TIME_UP", Reference.time_over)
+    hold_limit_over = count_when_true("a hold's limit", Reference.hold_limit_over)
+    window_over = count_when_true("a hard window is missed", Reference.window_over)
+    round_begins = count_when_true("a round that waited begins", Reference.round_begins)
+    group_over = count_when_true("a group's time is up", Reference.group_over)
+    done_by_hand = count_when_true("done by hand", Reference.done_by_hand)
+    time_over = count_when_true("TIME_UP", Reference.time_over)
 
     def start(self, now):
         commands = super().start(now)
@@ -81,9 +83,11 @@ class Counted(Reference):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=1000, help="machines that `check` accepts")
-    parser.add_argument("--first", type=int, default=0, help="number of the first one")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--count", type=int, default=1000, help="number of machines without errors")
+    parser.add_argument("--first", type=int, default=0, help="number of the first machine")
     options = parser.parse_args()
     hypothesis.strategies = sys.modules["hypothesis.strategies"] = plain_strategies
     from tests.argo_compiler.hfsm.random_missions import busy_cases, cases
@@ -98,7 +102,7 @@ def main():
         else:
             seen["run"] += 1
             try:
-                reference = compare(case, list(Ticks)[number % 3], Counted)
+                reference = compare(case, list(Ticks)[number % 3], CountingReference)
                 seen.update(reference.happened)
             except Exception:
                 seen["differ"] += 1

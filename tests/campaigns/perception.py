@@ -1,11 +1,11 @@
-"""How well the camera reads checkpoints: `python -m tests.campaigns.perception`.
+"""Campaign: readings of checkpoints by the camera: `python -m tests.campaigns.perception`.
 
-Each trial puts a checkpoint of UMAD elsewhere than planned (within a sphere of 10 cm, turned and
-rolled by up to ±90°), lets it show any value of its scale in light of 0.3 to 1, in a third of the
-trials puts a pipe or a board between it and the robot, and reads it from where the robot would
-stop. Whether a checkpoint is readable is decided by geometry alone, before it is read: from some
-view that the arm reaches, in range and at most 60° off the face's normal, at least 70 % of the face
-and 70 % of the indicator are in sight.
+Each trial displaces a checkpoint of UMAD (within a sphere of 10 cm, turned and rolled by up to
+±90°), sets a random value of its scale and a light of 0.3 to 1, and reads it from the pose at which
+the robot would stop. In a third of the trials a pipe or a board is in between. A checkpoint is
+*readable* if, from some view that the arm reaches, in range and at most 60° off the face's normal,
+at least 70 % of the face and 70 % of the indicator are in sight. This is computed from geometry
+alone, before the reading.
 """
 
 import argparse
@@ -37,11 +37,11 @@ from argo_env.world.placement import AS_PLANNED, draw_placement
 from argo_env.world.world import World
 from benchmarks.options import parse_seed
 
-SURE = 0.9
-"""a reading with at least this confidence is a sure one"""
+CERTAIN = 0.9
+"""least confidence of a certain reading"""
 _OBLIQUE = math.radians(60)
-_IN_SIGHT = 0.7  # of the face and of the indicator
-_ALLOWED = {  # share of the scale that a reading may be off
+_MIN_IN_SIGHT = 0.7  # share of the face and of the indicator
+_TOLERANCES = {  # largest error of a right reading, as a share of the scale
     CheckpointKind.PRESSURE_GAUGE: 0.02,
     CheckpointKind.LIQUID_LEVEL_GAUGE: 0.02,
     CheckpointKind.VALVE: 5 / 90,
@@ -50,7 +50,7 @@ _ALLOWED = {  # share of the scale that a reading may be off
 
 @dataclass(frozen=True)
 class Trial:
-    """One checkpoint, put somewhere and read."""
+    """Result of one trial: a displaced checkpoint and its reading."""
 
     number: int
     kind: str
@@ -61,39 +61,39 @@ class Trial:
     """deg"""
     light: float
     occluded: bool
-    """whether something was put in the way"""
+    """whether an obstacle was put in between"""
     readable: bool
     error: float | None
-    """of the scale; None if nothing was read"""
+    """error as a share of the scale; None: nothing was read"""
     right: bool
     confidence: float
     reason: str | None
-    """why nothing was read"""
+    """reason why nothing was read"""
     seconds: float
     """wall time of the reading"""
 
 
-class Setting:
-    """The site with a robot before its checkpoints. Holds a world."""
+class Scene:
+    """Site with a robot in front of its checkpoints. Owns a world."""
 
     def __init__(self) -> None:
         self.navigator = open_site("umad").navigator
         self.site = self.navigator.site
         self.world = World(self.site, self.navigator.robot)
         starts = list(self.site.docks.values())
-        self.stands = {
+        self.stop_poses = {
             c.id: [self.navigator.plan_to_view(start, c.id).end for start in starts]
             for c in self.site.checkpoints
         }
 
     def run(self, seed: int, number: int) -> Trial:
-        """The trial of that number."""
+        """Run the trial of that number."""
         rng = generator(seed, "perception", number)
         kind = list(CheckpointKind)[int(rng.integers(len(CheckpointKind)))]
         checkpoint = rng.choice([c.id for c in self.site.checkpoints if c.kind is kind])
         planned = self.site.checkpoint(int(checkpoint))
         instrument = INSTRUMENTS[kind]
-        stand = self.stands[planned.id][int(rng.integers(2))]
+        stand = self.stop_poses[planned.id][int(rng.integers(2))]
         pose = BodyPose(stand.x, stand.y, stand.z, stand.yaw)
         placement = draw_placement(rng, upright=not instrument.rolled)
         share = float(rng.uniform())
@@ -112,15 +112,15 @@ class Setting:
             actual_face = world.actual_checkpoint(planned.id)
             face = FacePose(*actual_face.position, actual_face.yaw, placement.roll)
             readable = self._readable(face, instrument, pose, share)
-            began = time.perf_counter()
+            begun = time.perf_counter()
             error, confidence, reason = None, 0.0, None
             try:
-                found = CameraSensor(world, seed=seed + number).measure(planned.id, pose)
-                error = (found.value - scale.low) / (scale.high - scale.low) - share
-                confidence = found.confidence
+                measurement = CameraSensor(world, seed=seed + number).measure(planned.id, pose)
+                error = (measurement.value - scale.low) / (scale.high - scale.low) - share
+                confidence = measurement.confidence
             except MeasurementError as failure:
                 reason = str(failure).split(": ", 1)[1]
-            seconds = time.perf_counter() - began
+            seconds = time.perf_counter() - begun
         finally:
             world.displace(planned.id, AS_PLANNED)
             if screen is not None:
@@ -129,13 +129,13 @@ class Setting:
             number, kind.value, planned.id,
             math.degrees(placement.turn), math.degrees(placement.roll), world.light,
             screen is not None, readable, error,
-            error is not None and abs(error) <= _ALLOWED[kind], confidence, reason, seconds,
+            error is not None and abs(error) <= _TOLERANCES[kind], confidence, reason, seconds,
         )  # fmt: skip
 
     def _readable(
         self, face: FacePose, instrument: Instrument, pose: BodyPose, share: float
     ) -> bool:
-        """Whether the face and its indicator are in sight from somewhere, by geometry alone."""
+        """Return True if face and indicator are in sight from some view, by geometry alone."""
         solids = solids_near(self.site, face.center, 1.5)
         size = 0.8 * instrument.shape.half_width
         indicator = instrument.indicator
@@ -148,7 +148,7 @@ class Setting:
             if view.obliqueness > _OBLIQUE:
                 continue
             eye = view.camera.position
-            if min(self._in_sight(eye, plate), self._in_sight(eye, hand)) >= _IN_SIGHT:
+            if min(self._in_sight(eye, plate), self._in_sight(eye, hand)) >= _MIN_IN_SIGHT:
                 return True
         return False
 
@@ -158,7 +158,7 @@ class Setting:
 
 
 def face_points(instrument: Instrument) -> NDArray[np.float64]:
-    """Points spread over a face, in the instrument's frame, shape (n, 3)."""
+    """Return points spread over a face, in the instrument's frame, shape (n, 3)."""
     shape = instrument.shape
     y, z = np.meshgrid(np.linspace(-0.95, 0.95, 12), np.linspace(-0.95, 0.95, 12))
     inside = np.hypot(y, z) < 0.95 if shape.round else np.ones(y.shape, dtype=bool)
@@ -168,13 +168,13 @@ def face_points(instrument: Instrument) -> NDArray[np.float64]:
 
 
 def draw_screen(rng: np.random.Generator, pose: BodyPose, target: NDArray[np.float64]) -> Solid:
-    """A pipe or a board somewhere between the robot's raised camera and a point."""
+    """Draw a pipe or a board between the robot's raised camera and a point."""
     camera = np.array([pose.x, pose.y, pose.z + 1.15])
-    sight = target - camera
-    side = np.array([-sight[1], sight[0], 0.0]) / np.hypot(sight[0], sight[1])
-    place = camera + rng.uniform(0.4, 0.8) * sight + rng.uniform(-0.12, 0.12) * side
-    x, y, z = (place + np.array([0.0, 0.0, rng.uniform(-0.12, 0.12)])).tolist()
-    turn = (0.0, float(rng.uniform(-math.pi, math.pi)), math.atan2(sight[1], sight[0]) + 1.57)
+    line = target - camera
+    side = np.array([-line[1], line[0], 0.0]) / np.hypot(line[0], line[1])
+    position = camera + rng.uniform(0.4, 0.8) * line + rng.uniform(-0.12, 0.12) * side
+    x, y, z = (position + np.array([0.0, 0.0, rng.uniform(-0.12, 0.12)])).tolist()
+    turn = (0.0, float(rng.uniform(-math.pi, math.pi)), math.atan2(line[1], line[0]) + 1.57)
     if rng.uniform() < 0.5:
         return Cylinder((x, y, z), float(rng.uniform(0.01, 0.03)), 0.8, turn)
     return Box(
@@ -183,80 +183,81 @@ def draw_screen(rng: np.random.Generator, pose: BodyPose, target: NDArray[np.flo
 
 
 @cache
-def setting() -> Setting:
-    """The setting of this process."""
+def open_scene() -> Scene:
+    """Return the scene of this process, made at the first call."""
     import cv2
 
     cv2.setNumThreads(1)  # the processes share the cores
-    return Setting()
+    return Scene()
 
 
 def run_trial(seed: int, number: int) -> Trial:
-    """The trial of that number, in this process's setting."""
-    return setting().run(seed, number)
+    """Run the trial of that number in the scene of this process."""
+    return open_scene().run(seed, number)
 
 
 def run_trials(seed: int, count: int, jobs: int) -> Iterator[Trial]:
-    """All trials, in order, as they come out."""
+    """Yield the results of all trials in order."""
     # Not forked: OpenCV's threads may hold locks that a forked process would wait for.
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
         yield from pool.map(partial(run_trial, seed), range(count))
 
 
-def report(trials: Sequence[Trial]) -> Iterator[str]:
-    """What came out, line by line."""
+def report_lines(trials: Sequence[Trial]) -> Iterator[str]:
+    """Yield the lines of the report."""
 
     def rate(part: int, whole: int) -> str:
         return f"{part} of {whole} ({100 * part / whole:.1f} %)" if whole else "none"
 
     groups = [("all", list(trials))]
     groups += [(k.value, [t for t in trials if t.kind == k.value]) for k in CheckpointKind]
-    groups += [("something in the way", [t for t in trials if t.occluded])]
+    groups += [("with an obstacle", [t for t in trials if t.occluded])]
     for name, group in groups:
         readable = [t for t in group if t.readable]
         right = [t for t in readable if t.right]
-        yield f"{name}: readable {rate(len(readable), len(group))}, of these read right " + rate(
-            len(right), len(readable)
+        yield (
+            f"{name}: readable {rate(len(readable), len(group))}, of these read correctly "
+            + rate(len(right), len(readable))
         )
     read = [t for t in trials if t.error is not None]
-    sure = [t for t in read if t.confidence >= SURE]
-    wrong = [t for t in sure if not t.right]
+    certain = [t for t in read if t.confidence >= CERTAIN]
+    wrong = [t for t in certain if not t.right]
     rest = [t for t in trials if not t.readable]
-    yield f"sure readings (confidence from {SURE}): {len(sure)}, of these wrong " + rate(
-        len(wrong), len(sure)
+    yield f"certain readings (confidence from {CERTAIN}): {len(certain)}, of these wrong " + rate(
+        len(wrong), len(certain)
     )
     yield f"wrong readings: {rate(sum(not t.right for t in read), len(read))} of all readings"
     refused = sum(t.error is None for t in rest)
-    good = sum(t.right for t in rest)
+    correct = sum(t.right for t in rest)
     yield (
-        f"not readable: {len(rest)}: reported as such {refused}, yet read right {good}, wrong "
-        + str(len(rest) - refused - good)
+        f"not readable: {len(rest)}: refused {refused}, read correctly all the same {correct}, "
+        + f"wrong {len(rest) - refused - correct}"
     )
     for low, high in ((0.5, 0.7), (0.7, 0.9), (0.9, 0.98), (0.98, 1.01)):
         band = [t for t in read if low <= t.confidence < high]
         share = rate(sum(t.right for t in band), len(band))
-        yield f"confidence {low} to {min(high, 1.0)}: right {share}"
+        yield f"confidence {low} to {min(high, 1.0)}: correct {share}"
     for kind in CheckpointKind:
         errors = [abs(t.error) for t in read if t.kind == kind.value and t.error is not None]
         if errors:
             yield f"median error, {kind.value}: {100 * float(np.median(errors)):.2f} % of the scale"
     reasons = sorted({t.reason for t in trials if t.reason})
     for reason in reasons:
-        yield f"reported as: {reason}: {sum(t.reason == reason for t in trials)}"
+        yield f"refused as: {reason}: {sum(t.reason == reason for t in trials)}"
     seconds = [t.seconds for t in trials]
     slow = np.quantile(seconds, 0.95)
     yield f"time for a reading: median {np.median(seconds):.2f} s, 95 % {slow:.2f} s"
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the trials and print what came out."""
+    """Run the trials and print the report."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument(
-        "--seed", type=parse_seed, default=2018, help="default: the seed of the report"
+        "--seed", type=parse_seed, default=2018, help="seed; default: that of docs/perception.md"
     )
-    parser.add_argument("--trials", type=int, default=600)
-    parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--out", type=Path, help="a file for all trials, a line of JSON each")
+    parser.add_argument("--trials", type=int, default=600, help="number of trials")
+    parser.add_argument("--jobs", type=int, default=2, help="number of processes")
+    parser.add_argument("--out", type=Path, help="file for the trials, one line of JSON each")
     options = parser.parse_args(arguments)
     trials = []
     with options.out.open("w", encoding="utf-8") if options.out else nullcontext() as file:
@@ -266,7 +267,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
                 file.write(json.dumps(asdict(trial)) + "\n")
                 file.flush()
     print(f"{len(trials)} trials, seed {options.seed}")
-    for line in report(trials):
+    for line in report_lines(trials):
         print(line)
 
 

@@ -1,12 +1,12 @@
-"""Mission sheets "in any order" on UMAD: what is predicted, and what the simulator drives.
+"""Campaign: predicted and simulated durations of scripts "in any order" on UMAD.
 
     python -m tests.campaigns.route_missions
     python -m tests.campaigns.route_missions --sheets 3 --drive tracked
 
-A sheet lists 4, 8 or 20 checkpoints, drawn and in an order drawn from its seed, and starts and ends
-docked in starting area 1. Its best order is asked for as `argo route` does, and driven. The times
-are those of the mission: as it is written, as predicted for the order that was suggested, and as
-driven in it.
+A script lists 4, 8 or 20 checkpoints in random order, drawn from its seed, and starts and ends
+docked in starting area 1. Its best order is computed as by `argo route`, and driven. The
+table has the mission's durations: in the written order, as predicted for the suggested order, and
+as driven in that order.
 """
 
 import argparse
@@ -26,8 +26,8 @@ from benchmarks.options import parse_seed
 SIZES = (4, 8, 20)
 
 
-def sheet(catalog: Catalog, size: int, seed: int) -> str:
-    """The text of a sheet."""
+def make_script(catalog: Catalog, size: int, seed: int) -> str:
+    """Return the text of a random script."""
     rng = np.random.default_rng((seed, size))
     chosen = rng.permutation(len(catalog.checkpoints))[:size]
     lines = [
@@ -44,36 +44,38 @@ def sheet(catalog: Catalog, size: int, seed: int) -> str:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the sheets and print a table."""
+    """Run the scripts and print a table."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--sizes", type=int, nargs="+", default=SIZES, help="checkpoints")
-    parser.add_argument("--sheets", type=int, default=2, help="of each size")
-    parser.add_argument("--seed", type=parse_seed, default=0, help="of the first sheet")
+    parser.add_argument(
+        "--sizes", type=int, nargs="+", default=SIZES, help="numbers of checkpoints"
+    )
+    parser.add_argument("--sheets", type=int, default=2, help="scripts of each size")
+    parser.add_argument("--seed", type=parse_seed, default=0, help="seed of the first script")
     parser.add_argument("--drive", choices=DRIVES, default="kinematic")
     options = parser.parse_args(arguments)
     site = open_site("umad")
-    print("| checkpoints | sheet | as written | predicted | driven | off | proven |")
+    print("| checkpoints | seed | as written | predicted | driven | off | proven |")
     print("|---|---|---|---|---|---|---|")
     worst = 0.0
     for size in options.sizes:
         for seed in range(options.seed, options.seed + options.sheets):
-            upload = Upload("sheet.txt", sheet(site.catalog, size, seed).encode())
-            found = suggest_order(import_mission(upload, site), site, seed=seed)
-            predicted = found.reordering.duration
+            upload = Upload("sheet.txt", make_script(site.catalog, size, seed).encode())
+            suggestion = suggest_order(import_mission(upload, site), site, seed=seed)
+            predicted = suggestion.reordering.duration
             record = simulate(
-                RunSpec(mission=found.mission, drive=options.drive, seed=seed),
+                RunSpec(mission=suggestion.mission, drive=options.drive, seed=seed),
             )
             if not record.result.success:
-                raise SystemExit(f"sheet {seed} of {size}: {record.result.verdict}")
+                raise SystemExit(f"script {seed} of {size}: {record.result.verdict}")
             driven = record.result.duration
-            off = (predicted - driven) / driven
-            worst = max(worst, abs(off))
+            error = (predicted - driven) / driven
+            worst = max(worst, abs(error))
             print(
-                f"| {size} | {seed} | {found.reordering.written_duration:.1f} s "
-                f"| {predicted:.1f} s | {driven:.1f} s | {off:+.2%} "
-                f"| {'yes' if found.reordering.proven else 'no'} |",
+                f"| {size} | {seed} | {suggestion.reordering.written_duration:.1f} s "
+                f"| {predicted:.1f} s | {driven:.1f} s | {error:+.2%} "
+                f"| {'yes' if suggestion.reordering.proven else 'no'} |",
                 flush=True,
             )
     print(f"\npredicted and driven differ by {worst:.2%} at most")

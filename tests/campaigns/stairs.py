@@ -1,9 +1,9 @@
-"""Every flight of UMAD's stair towers, up and down, with the tracked drive.
+"""Campaign: the tracked drive on every flight of UMAD's stair towers, up and down.
 
     python -m tests.campaigns.stairs --seeds 20 --processes 2
 
-Each climb has its start, grip and mass drawn from a seed. Prints how the climbs went, and names
-each that failed, got stuck or touched something; the exit status is then 1.
+The start, grip and mass of each climb are drawn from a seed. Prints a table of the climbs, and each
+climb that failed, got stuck or touched something; the exit status is then 1.
 """
 
 import argparse
@@ -24,18 +24,18 @@ from argo_env.seeding import generator
 from argo_env.site import load_site
 from benchmarks.tracked import LANDINGS, open_world, plan_flight
 
-OFFSET = 0.05  # m, to each side, of the start
-TURNED = math.radians(5.0)
-GRIP = 0.15  # share
-MASS = 0.05  # share
-LONGEST = 300.0  # s of simulated time for one climb
+START_ERROR = 0.05  # m, largest displacement of the start to each side
+TURN_ERROR = math.radians(5.0)
+GRIP_ERROR = 0.15  # share
+MASS_ERROR = 0.05  # share
+TIME_LIMIT = 300.0  # s of simulated time for one climb
 FLIGHTS = {"west tower": 1, "east tower": 2}
-"""in a storey"""
+"""number of flights of each tower in a storey"""
 
 
 @dataclass(frozen=True)
 class Climb:
-    """One way from floor to floor by one tower, up or down, with the dice of one seed."""
+    """Path from floor to floor in one tower, up or down, with the random values of one seed."""
 
     tower: str
     storey: int
@@ -45,7 +45,7 @@ class Climb:
 
 @dataclass(frozen=True)
 class ClimbOutcome:
-    """How a climb went."""
+    """Result of a climb."""
 
     climb: Climb
     arrived: bool
@@ -55,11 +55,11 @@ class ClimbOutcome:
     seconds: float
     planned: float
     error: float
-    """m from the end of the path"""
+    """distance from the end of the path in m"""
     turned: float
-    """rad from its heading"""
+    """difference from the heading at the end of the path in rad"""
     slip: float
-    """share of the way of the belts by which it is longer than the path"""
+    """share of the belts' travel by which it exceeds the length of the path"""
     contacts: tuple[str, ...]
 
 
@@ -67,18 +67,18 @@ def run(climb: Climb) -> ClimbOutcome:
     """Drive one climb."""
     navigator, world = open_world()
     path = plan_flight(navigator, climb.tower, climb.storey, climb.up)
-    dice = generator(climb.seed, "tracked", climb.tower, climb.storey, int(climb.up))
-    traction = Traction().scaled(1.0 + GRIP * dice.uniform(-1.0, 1.0))
-    mass = 1.0 + MASS * dice.uniform(-1.0, 1.0)
-    x, y = dice.uniform(-OFFSET, OFFSET, 2)
+    rng = generator(climb.seed, "tracked", climb.tower, climb.storey, int(climb.up))
+    traction = Traction().scaled(1.0 + GRIP_ERROR * rng.uniform(-1.0, 1.0))
+    mass = 1.0 + MASS_ERROR * rng.uniform(-1.0, 1.0)
+    x, y = rng.uniform(-START_ERROR, START_ERROR, 2)
     start = path.start
     drive = TrackedDrive(world, navigator.robot, traction, mass)
     drive.place(
-        BodyPose(start.x + x, start.y + y, start.z, start.yaw + TURNED * dice.uniform(-1.0, 1.0))
+        BodyPose(start.x + x, start.y + y, start.z, start.yaw + TURN_ERROR * rng.uniform(-1.0, 1.0))
     )
     drive.follow(path, None)
     status, steps, belts, contacts = DriveStatus.MOVING, 0, 0.0, set()
-    while status is DriveStatus.MOVING and steps * drive.time_step < LONGEST:
+    while status is DriveStatus.MOVING and steps * drive.time_step < TIME_LIMIT:
         status = drive.step()
         steps += 1
         belts += abs(sum(drive.body.belt_speeds)) / 2 * drive.time_step
@@ -88,7 +88,7 @@ def run(climb: Climb) -> ClimbOutcome:
     outcome = ClimbOutcome(
         climb,
         status is DriveStatus.ARRIVED,
-        drive.failure or (None if status is DriveStatus.ARRIVED else "it took too long"),
+        drive.failure or (None if status is DriveStatus.ARRIVED else "it exceeded the time limit"),
         kinds.count(Trouble.STUCK),
         kinds.count(Trouble.SLIPPING),
         steps * drive.time_step,
@@ -102,9 +102,11 @@ def run(climb: Climb) -> ClimbOutcome:
     return outcome
 
 
-def show(outcomes: Sequence[ClimbOutcome]) -> None:
-    """Print how the climbs went, and which did not go well."""
-    print(f"{'way':22} flights  ok  stuck  slips  time/plan  end cm (max)  end deg  slip  contacts")
+def print_outcomes(outcomes: Sequence[ClimbOutcome]) -> None:
+    """Print the table of the climbs, and those that failed, got stuck or touched something."""
+    print(
+        f"{'path':22} flights  ok  stuck  slips  time/plan  end cm (max)  end deg  slip  contacts"
+    )
     for tower, up in product(LANDINGS, (True, False)):
         rows = [o for o in outcomes if o.climb.tower == tower and o.climb.up == up]
         if not rows:
@@ -120,7 +122,7 @@ def show(outcomes: Sequence[ClimbOutcome]) -> None:
         )
     for outcome in outcomes:
         if outcome.failure or outcome.stuck:
-            print(outcome.climb, outcome.failure or "was stuck, and got free")
+            print(outcome.climb, outcome.failure or "was stuck, and freed itself")
     for contact in sorted({c for o in outcomes for c in o.contacts}):
         print(f"contact: {contact} ({sum(contact in o.contacts for o in outcomes)} times)")
 
@@ -129,27 +131,29 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Drive every flight up and down with every seed."""
     storeys = range(1, len(load_site("umad").spec.floors))
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--seeds", type=int, default=20)
+    parser.add_argument("--seeds", type=int, default=20, help="number of seeds")
     parser.add_argument("--towers", nargs="+", choices=("west", "east"), default=("west", "east"))
     parser.add_argument("--storeys", nargs="+", type=int, choices=storeys, default=list(storeys))
-    parser.add_argument("--processes", type=int, default=2)
-    given = parser.parse_args(arguments)
+    parser.add_argument("--processes", type=int, default=2, help="number of processes")
+    options = parser.parse_args(arguments)
     climbs = [
         Climb(tower, storey, up, seed)
         for seed, tower, storey, up in product(
-            range(given.seeds),
-            [f"{name} tower" for name in given.towers],
-            given.storeys,
+            range(options.seeds),
+            [f"{name} tower" for name in options.towers],
+            options.storeys,
             (True, False),
         )
     ]
     outcomes = []
-    with ProcessPoolExecutor(given.processes, mp_context=get_context("spawn")) as pool:
-        for outcome in pool.map(run, climbs, chunksize=min(4, len(climbs) // given.processes or 1)):
+    with ProcessPoolExecutor(options.processes, mp_context=get_context("spawn")) as pool:
+        for outcome in pool.map(
+            run, climbs, chunksize=min(4, len(climbs) // options.processes or 1)
+        ):
             outcomes.append(outcome)
             if len(outcomes) % 20 == 0:
                 print(f"{len(outcomes)} of {len(climbs)} climbs", flush=True)
-    show(outcomes)
+    print_outcomes(outcomes)
     return int(any(o.failure or o.stuck or o.contacts for o in outcomes))
 
 

@@ -1,4 +1,4 @@
-"""Runs with two faults each: what they find has a cause, and what has none would be noticed."""
+"""Tests of runs with two faults: findings have a cause, and one without a cause is noticed."""
 
 import pytest
 
@@ -6,32 +6,36 @@ from argo_compiler.il import EventKind
 from argo_env.faults.kinds import KINDS, FaultFile
 from argo_env.planning import open_site
 from argo_env.run.record import Anomaly
-from tests.campaigns.fault_causes import given_up_without_cause, without_cause
-from tests.campaigns.fault_pairs import draw, examine, pairs, undisturbed
+from tests.campaigns.fault_causes import aborts_without_cause, findings_without_cause
+from tests.campaigns.fault_pairs import draw_case, kind_pairs, run_case, run_without_faults
 
 SHORT = (("darmstadt", 2), ("darmstadt", 31))
 
 
 @pytest.mark.parametrize(("drive", "runs"), [("route", 24), ("kinematic", 4)])
-def test_what_is_found_has_a_cause(drive, runs):
-    verdicts = [examine(number, drive, SHORT) for number in range(runs)]
-    assert [said for v in verdicts for said in (*v.uncaused, *v.given_up)] == []
-    assert sum(v.findings for v in verdicts) >= runs / 3
-    assert any(v.case.resumed is not None for v in verdicts)
+def test_findings_have_a_cause(drive, runs):
+    outcomes = [run_case(number, drive, SHORT) for number in range(runs)]
+    assert [text for o in outcomes for text in (*o.uncaused, *o.given_up)] == []
+    assert sum(o.findings for o in outcomes) >= runs / 3
+    assert any(o.case.resumed is not None for o in outcomes)
 
 
 @pytest.mark.parametrize(("drive", "count"), [("route", 8), ("kinematic", 15)])
-def test_every_pair_comes_once_in_a_round(drive, count):
-    assert len(set(pairs(drive))) == len(pairs(drive)) == count**2
-    assert {k for pair in pairs("kinematic") for k in pair} == set(KINDS)
+def test_each_pair_occurs_once_in_the_order(drive, count):
+    assert len(set(kind_pairs(drive))) == len(kind_pairs(drive)) == count**2
+    assert {k for pair in kind_pairs("kinematic") for k in pair} == set(KINDS)
 
 
-def test_a_case_is_drawn_from_its_number():
-    assert draw(7, "route", SHORT) == draw(7, "route", SHORT) != draw(71, "route", SHORT)
-    assert "--first 7 --runs 1 --drive route" in str(draw(7, "route", SHORT))
+def test_a_case_depends_on_its_number_only():
+    assert (
+        draw_case(7, "route", SHORT)
+        == draw_case(7, "route", SHORT)
+        != draw_case(71, "route", SHORT)
+    )
+    assert "--first 7 --runs 1 --drive route" in str(draw_case(7, "route", SHORT))
 
 
-FOUND = {
+FINDINGS = {
     "gas_leak": Anomaly(t=50, kind=EventKind.GAS_LEAK, detail="gas", source="gas"),
     "dysfunction": Anomaly(t=50, kind=EventKind.DYSFUNCTION, detail="0 %", source="drive"),
     "emergency_stop": Anomaly(
@@ -56,13 +60,13 @@ FOUND = {
 )
 def test_a_cause_fits_in_kind_and_time(found, fault, caused):
     faults = FaultFile.model_validate({"faults": [fault]}).faults
-    record = undisturbed("darmstadt", 2)[1]
-    record = record.model_copy(update={"anomalies": (FOUND[found],), "faults": faults})
-    assert (without_cause(record, open_site("darmstadt").site) == ()) is caused
+    record = run_without_faults("darmstadt", 2)[1]
+    record = record.model_copy(update={"anomalies": (FINDINGS[found],), "faults": faults})
+    assert (findings_without_cause(record, open_site("darmstadt").site) == ()) is caused
 
 
-def test_a_mission_that_is_given_up_needs_a_cause_too():
-    record = undisturbed("darmstadt", 2)[1]
-    assert given_up_without_cause(record) == ()
+def test_the_failure_of_a_mission_needs_a_cause_too():
+    record = run_without_faults("darmstadt", 2)[1]
+    assert aborts_without_cause(record) == ()
     result = record.result.model_copy(update={"success": False, "verdict": "it was given up"})
-    assert given_up_without_cause(record.model_copy(update={"result": result}))
+    assert aborts_without_cause(record.model_copy(update={"result": result}))

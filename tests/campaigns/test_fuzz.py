@@ -1,7 +1,8 @@
-"""Mutated scripts and mission files, and sentences made from the grammar, through the whole
-compiler: each ends in a mission or in diagnostics, and keeps the laws of the script front end.
+"""Tests of the whole compiler with mutated scripts and mission files, and generated sentences.
 
-The system bounds the memory and the time of each input. CONTRIBUTING says how to try more.
+Each input results in a mission or in diagnostics, and satisfies the laws of the script front end.
+The system limits the memory and the time of each input. CONTRIBUTING.md has the commands for more
+inputs.
 """
 
 import random
@@ -23,41 +24,41 @@ from argo_compiler.script import import_script
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.campaigns.fuzz.laws import try_sentence
 from tests.campaigns.fuzz.mutating import Composer, Mutator, Restructurer
-from tests.campaigns.fuzz.sentences import sayer
+from tests.campaigns.fuzz.sentences import english_generator
 from tests.campaigns.fuzz.trying import try_mission, try_script
 from tests.conftest import examples
 
 ROOT = Path(__file__).parents[2]
 MEMORY_BYTES = 4_000_000_000
 SECONDS = 60
-"""of a single input; far above what any takes"""
+"""limit for a single input, far above what any takes"""
 NUMBERS = st.integers(0, 2**32)
-"""of inputs: each is drawn from its number"""
+"""number of an input, from which it is drawn"""
 
 
 def scripts() -> list[bytes]:
-    """The scripts that the project ships, and the examples in its reference of the language."""
-    found = [path.read_bytes() for path in (ROOT / "scenarios").glob("*/missions/*.txt")]
+    """Return the shipped scripts, and the examples of docs/script.md."""
+    shipped = [path.read_bytes() for path in (ROOT / "scenarios").glob("*/missions/*.txt")]
     reference = (ROOT / "docs" / "script.md").read_text(encoding="utf-8")
     blocks = re.findall(r"^```\w*\n(.*?)^```", reference, re.DOTALL | re.MULTILINE)
-    return found + [block.encode() for block in blocks]
+    return shipped + [block.encode() for block in blocks]
 
 
 def missions(texts: Sequence[bytes]) -> list[bytes]:
-    """The missions of those scripts that have one, as JSON."""
-    found = []
+    """Return the missions of those scripts that result in one, as JSON."""
+    files = []
     for text in texts:
         try:
             mission = import_script(text.decode(), CATALOG, start_area=1, end_area=2).mission
         except ArgoError:
             continue
-        found.append(mission.model_dump_json(exclude_defaults=True).encode())
-    return found
+        files.append(mission.model_dump_json(exclude_defaults=True).encode())
+    return files
 
 
 @cache
-def makers() -> tuple[Restructurer, Mutator, Mutator, Composer]:
-    """Return the makers of files, scripts, files and scripts, which take turns."""
+def make_generators() -> tuple[Restructurer, Mutator, Mutator, Composer]:
+    """Return the generators, alternately of mission files and of scripts."""
     texts = scripts()
     files = missions(texts)
     return Restructurer(files), Mutator(texts), Mutator(files), Composer(texts)
@@ -75,10 +76,10 @@ def bounded_memory() -> Iterator[None]:
 
 @contextmanager
 def bounded_time() -> Iterator[None]:
-    def hung(*_: object) -> None:
-        raise TimeoutError(f"no end after {SECONDS} s")
+    def raise_timeout(*_: object) -> None:
+        raise TimeoutError(f"not finished after {SECONDS} s")
 
-    before = signal.signal(signal.SIGALRM, hung)
+    before = signal.signal(signal.SIGALRM, raise_timeout)
     signal.alarm(SECONDS)
     try:
         yield
@@ -88,15 +89,15 @@ def bounded_time() -> Iterator[None]:
 
 
 @pytest.mark.long
-def test_mutated_scripts_and_files_end_in_missions_or_diagnostics(tmp_path: Path) -> None:
+def test_mutated_scripts_and_files_result_in_missions_or_diagnostics(tmp_path: Path) -> None:
     outcomes: Counter[str] = Counter()
 
     @settings(max_examples=examples(2000))
     @given(NUMBERS)
     def attempt(number: int) -> None:
-        maker = makers()[number % 4]
-        maker.rng = rng = random.Random(number)
-        data = maker.make()
+        generator = make_generators()[number % 4]
+        generator.rng = rng = random.Random(number)
+        data = generator.make()
         note(repr(data))
         with bounded_time():
             if number % 2:
@@ -109,17 +110,17 @@ def test_mutated_scripts_and_files_end_in_missions_or_diagnostics(tmp_path: Path
         assert outcomes[kind] > examples(20)
 
 
-def test_sentences_made_from_the_grammar_keep_the_laws() -> None:
+def test_generated_sentences_satisfy_the_laws() -> None:
     outcomes: Counter[str] = Counter()
-    speaker = sayer(random.Random())
+    generator = english_generator(random.Random())
 
     @settings(max_examples=examples(200))
     @given(NUMBERS)
     def attempt(number: int) -> None:
-        speaker.rng = rng = random.Random(number)
-        words = speaker.sentence()
+        generator.rng = rng = random.Random(number)
+        words = generator.sentence()
         with bounded_time():
-            outcome, breaches = try_sentence(words, speaker, rng)
+            outcome, breaches = try_sentence(words, generator, rng)
         assert not breaches
         outcomes[outcome] += 1
 

@@ -11,7 +11,7 @@ from argo_compiler.script import import_script, parse
 from argo_compiler.script.syntax.repeats import repeats
 from argo_compiler.script.syntax.tree.script import Script
 from tests.argo_compiler.script.conftest import CATALOG
-from tests.campaigns.fuzz.sentences import sayer, text_of
+from tests.campaigns.fuzz.sentences import english_generator, text_of
 
 PLACES = [place.name for place in CATALOG.places]
 LINES = [
@@ -97,7 +97,7 @@ def test_a_line_says_the_same_of_other_figures(line: str) -> None:
 
 def test_made_sentences_say_the_same_of_other_figures() -> None:
     draw = random.Random(7)
-    makes = sayer(draw)
+    makes = english_generator(draw)
     lines = (f"{text_of(makes.sentence())}." for _ in range(400))
     for line in lines:
         if any(sign.isdigit() for sign in line) and "\n" not in line:

@@ -11,8 +11,8 @@ from argo_env.planning.opening import open_site
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunConditions, RunSpec, ValueProfile
 from argo_planner.use_cases.importing import Upload, import_mission
-from tests.campaigns.fault_causes import causes_of
-from tests.campaigns.fault_pairs import draw
+from tests.campaigns.fault_causes import find_causes
+from tests.campaigns.fault_pairs import draw_case
 from tests.conftest import seeds
 
 FAULTS = resources.scenarios() / "umad" / "faults"
@@ -87,11 +87,11 @@ def test_detections_and_false_alarms_agree_with_an_independent_implementation():
     """In random runs with two faults, they agree with the causes that `fault_causes` computes."""
     findings = 0
     for number in seeds(100):
-        spec = draw(number, "route").spec
+        spec = draw_case(number, "route").spec
         opened = open_site(spec.site)
         record = simulate(spec, opened)
         causes = [
-            causes_of(finding, record.faults, opened.site)
+            find_causes(finding, record.faults, opened.site)
             for finding in record.findings
             if not finding.is_reported
         ]

@@ -1,1 +1,1 @@
-"""Inputs made at random, and what becomes of them."""
+"""Random inputs of the compiler, and the laws that their results must satisfy."""

@@ -1,9 +1,9 @@
-"""Laws of the script front end, tried on sentences that are made from the grammar.
+"""Laws of the script front end, checked on sentences that are generated from the grammar.
 
-- No input ends otherwise than in a mission or in diagnostics.
-- Nothing is parsed and not used: a number, a unit, an event, a state or a relation that is
-  exchanged for another one makes another mission, or another message.
-- What is read back is the same mission.
+- Each input results in a mission or in diagnostics.
+- Each parsed word has an effect: another number, unit, event, state or relation in its place
+  results in another mission or another message.
+- A mission that is written as a script and read again is the same mission.
 """
 
 import random
@@ -14,7 +14,7 @@ from argo_compiler.diagnostics import DiagnosticError, has_errors
 from argo_compiler.il import Mission
 from argo_compiler.script import format_script, import_script
 from tests.argo_compiler.script.conftest import CATALOG
-from tests.campaigns.fuzz.sentences import Said, Sayer, text_of
+from tests.campaigns.fuzz.sentences import SentenceGenerator, Word, text_of
 from tests.mission_writing import unplaced
 
 FRAME = """\
@@ -26,8 +26,8 @@ Mission Protocol #1
 5. Go home.
 """
 LONGEST = 30
-"""words; most sentences with more have a mistake somewhere"""
-EXCHANGED = {
+"""words; most longer sentences have an error somewhere"""
+REPLACEMENTS = {
     "NUMBER": ("2", "3", "4", "6", "8"),
     "IDENT": ("R25", "R12", "R7"),
     "DURATION": ("10 minutes", "90 s", "35 min"),
@@ -41,60 +41,68 @@ PHRASES = ("EVENT", "STATE", "FLOOR_NAME", "KIND")
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a sentence: a mission, or none, and what was said."""
+    """Result of a sentence: a mission or None, and the messages."""
 
     mission: object
-    """without the places in its source; None if there is none"""
-    said: tuple[str, ...]
+    """mission without its spans in the source; None: there is none"""
+    messages: tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class Breach:
-    """A law that a sentence breaks."""
+    """Law that a sentence breaks."""
 
     law: str
     sentence: str
 
 
-def outcome_of(words: list[Said]) -> tuple[Outcome, Mission | None]:
-    """What becomes of a sentence within a protocol; anything else than a mission and diagnostics
-    is raised."""
+def import_sentence(words: list[Word]) -> tuple[Outcome, Mission | None]:
+    """Return the result of a sentence in a script, and its mission, if there is one.
+
+    All exceptions but diagnostics are raised.
+    """
     text = FRAME.format(text_of(words))
     try:
         resolved = import_script(text, CATALOG)
     except DiagnosticError as error:
         return Outcome(None, (str(error),)), None
-    said = tuple(f"{d.code} {d.message}" for d in resolved.diagnostics)
-    return Outcome(unplaced(resolved.mission), said), resolved.mission
+    messages = tuple(f"{d.code} {d.message}" for d in resolved.diagnostics)
+    return Outcome(unplaced(resolved.mission), messages), resolved.mission
 
 
-def try_sentence(words: list[Said], sayer: Sayer, rng: random.Random) -> tuple[str, list[Breach]]:
-    """What became of a sentence, `mission` or `refused`, and the laws that it breaks."""
-    outcome, mission = outcome_of(words)
+def try_sentence(
+    words: list[Word], generator: SentenceGenerator, rng: random.Random
+) -> tuple[str, list[Breach]]:
+    """Return `mission` or `refused` for a sentence, and the laws that it breaks."""
+    outcome, mission = import_sentence(words)
     if mission is None:
         return "refused", []
     breaches: list[Breach] = []
     if len(words) <= LONGEST:
-        breaches += unused(words, outcome, sayer, rng)
+        breaches += words_without_effect(words, outcome, generator, rng)
     if not has_errors(check(mission, CATALOG)):
         again = import_script(format_script(mission, CATALOG), CATALOG).mission
         if unplaced(again) != outcome.mission:
-            breaches.append(Breach("what is read back is another mission", text_of(words)))
+            breaches.append(Breach("the mission that is read back is another one", text_of(words)))
     return "mission", breaches
 
 
-def unused(words: list[Said], outcome: Outcome, sayer: Sayer, rng: random.Random) -> list[Breach]:
-    """The words that make no difference."""
-    found: list[Breach] = []
+def words_without_effect(
+    words: list[Word], outcome: Outcome, generator: SentenceGenerator, rng: random.Random
+) -> list[Breach]:
+    """Return a breach for each word without effect."""
+    breaches: list[Breach] = []
     for i, word in enumerate(words):
-        others = [other for other in EXCHANGED.get(word.type, ()) if other != word.text]
-        others = others or (sayer.others(word) if word.type in PHRASES else [])
+        others = [other for other in REPLACEMENTS.get(word.type, ()) if other != word.text]
+        others = others or (
+            generator.phrases_with_other_meaning(word) if word.type in PHRASES else []
+        )
         if not others:
             continue
-        tried = rng.sample(others, min(3, len(others)))
+        replacements = rng.sample(others, min(3, len(others)))
         if all(
-            outcome_of([*words[:i], Said(word.type, other), *words[i + 1 :]])[0] == outcome
-            for other in tried
+            import_sentence([*words[:i], Word(word.type, other), *words[i + 1 :]])[0] == outcome
+            for other in replacements
         ):
-            found.append(Breach(f"`{word.text}` is not used", text_of(words)))
-    return found
+            breaches.append(Breach(f"`{word.text}` has no effect", text_of(words)))
+    return breaches

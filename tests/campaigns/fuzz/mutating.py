@@ -1,4 +1,4 @@
-"""Makes new inputs from those there are: pieces are cut, doubled, moved, swapped and replaced."""
+"""Generators of inputs from a corpus."""
 
 import copy
 import json
@@ -9,7 +9,7 @@ from functools import cached_property
 
 
 class Mutator:
-    """Makes new inputs from a corpus: pieces are cut, doubled, moved, swapped and replaced."""
+    """Generator of inputs from a corpus, whose pieces it cuts, doubles, inserts and replaces."""
 
     def __init__(self, corpus: Sequence[bytes]) -> None:
         self.rng = random.Random()
@@ -17,9 +17,9 @@ class Mutator:
         self.words = sorted({word for text in corpus for word in re.findall(rb"\w+|\W", text)})
 
     def make(self) -> bytes:
-        return self.changed(self.rng.choice(self.corpus), (1, 1, 1, 1, 2, 3, 5, 10, 40))
+        return self.mutate(self.rng.choice(self.corpus), (1, 1, 1, 1, 2, 3, 5, 10, 40))
 
-    def changed(self, text: bytes, times: Sequence[int]) -> bytes:
+    def mutate(self, text: bytes, times: Sequence[int]) -> bytes:
         pieces = re.findall(rb"\w+|\W", text)
         for _ in range(self.rng.choice(times)):
             pieces = self.rng.choice(self.STEPS)(self, pieces)
@@ -76,13 +76,13 @@ class Mutator:
 
 
 class Composer(Mutator):
-    """Makes protocols of a few lines each, taken from anywhere in a corpus, changed a little."""
+    """Generator of scripts of a few lines from anywhere in a corpus, with few changes."""
 
-    BEGINNING = b"Mission Protocol #1\n1. Set a starting point in starting area 1\n2. Check #1\n"
+    HEADER = b"Mission Protocol #1\n1. Set a starting point in starting area 1\n2. Check #1\n"
 
     def make(self) -> bytes:
         lines = self.rng.choices(self.lines, k=self.rng.choice((1, 2, 3, 6)))
-        return self.changed(self.BEGINNING + b"\n".join(lines), (0, 0, 0, 1, 1, 2, 5))
+        return self.mutate(self.HEADER + b"\n".join(lines), (0, 0, 0, 1, 1, 2, 5))
 
     @cached_property
     def lines(self) -> list[bytes]:
@@ -90,9 +90,9 @@ class Composer(Mutator):
 
 
 class Restructurer:
-    """Makes new mission files that are JSON still: values are swapped, doubled, dropped."""
+    """Generator of mission files that stay valid JSON; it swaps, doubles and removes values."""
 
-    ODD = (None, True, 0, -1, 1, 0.5, 1e300, 10**30, "", "A", "A/B", "1", [], {}, "MEASURE")
+    ODD_VALUES = (None, True, 0, -1, 1, 0.5, 1e300, 10**30, "", "A", "A/B", "1", [], {}, "MEASURE")
 
     def __init__(self, corpus: Sequence[bytes]) -> None:
         self.rng = random.Random()
@@ -102,11 +102,11 @@ class Restructurer:
         mission = copy.deepcopy(self.rng.choice(self.missions))
         for _ in range(self.rng.choice((1, 1, 1, 2, 3, 8, 30))):
             if mission:
-                self._change(*self._place(mission))
+                self._change(*self._draw_value(mission))
         return json.dumps(mission).encode()
 
-    def _place(self, data: object) -> tuple[dict[str, object] | list[object], str | int]:
-        """A value somewhere in the data: what holds it, and under which key."""
+    def _draw_value(self, data: object) -> tuple[dict[str, object] | list[object], str | int]:
+        """Draw a value somewhere in the data, and return its container and its key."""
         while True:
             key = self.rng.choice(list(data) if isinstance(data, dict) else range(len(data)))
             part = data[key]
@@ -121,9 +121,9 @@ class Restructurer:
         elif choice < 0.5 and isinstance(key, int):
             holder.insert(self.rng.randrange(len(holder) + 1), copy.deepcopy(holder[key]))
         elif choice < 0.6:
-            holder[key] = self.rng.choice(self.ODD)
+            holder[key] = self.rng.choice(self.ODD_VALUES)
         elif choice < 0.8 and isinstance(holder[key], int | float):
             holder[key] = self.rng.choice((holder[key] + 1, holder[key] * 2, -holder[key]))
         else:
-            other, at = self._place(self.rng.choice(self.missions))
+            other, at = self._draw_value(self.rng.choice(self.missions))
             holder[key] = copy.deepcopy(other[at])

@@ -1,5 +1,4 @@
-"""Makes sentences from the grammar: a derivation at random, each of its words said by a phrase of a
-language at random."""
+"""Generator of sentences: random derivations of the grammar, with a random phrase for each word."""
 
 import random
 from collections import defaultdict
@@ -14,8 +13,8 @@ from argo_compiler.script.syntax.words.language import Language
 from argo_compiler.script.syntax.words.lexicon import Lexicon
 from tests.argo_compiler.script.conftest import CATALOG
 
-_DEEPEST = 8
-"""rules in one another before the shortest way out is taken"""
+_DEPTH_LIMIT = 8
+"""depth of nested rules from which only the rules with the shortest derivation are used"""
 _SIGNS = {
     "NEXT": (", then ", " and ", ", ", "; "),
     "COLON": (": ",),
@@ -28,7 +27,7 @@ _SIGNS = {
     "MINUS": ("minus ", "-"),
 }
 _JOINTS = {"and": (" and ", ", and ", ", "), "or": (" or ", ", or ")}
-_FIGURES = {
+_VALUES = {
     "NUMBER": ("1", "2", "3", "4", "5", "8", "10", "12", "20", "seven", "2.5"),
     "IDENT": ("R25", "R12", "R7", "R40"),
     "STRING": ('"A"', '"MEASURE 1"', '"front of the site"'),
@@ -43,15 +42,15 @@ _FIGURES = {
 
 
 @dataclass(frozen=True)
-class Said:
-    """A word of a made sentence: its terminal, and how it is said."""
+class Word:
+    """Word of a generated sentence: its terminal and its text."""
 
     type: str
     text: str
 
 
-class Sayer:
-    """Makes sentences."""
+class SentenceGenerator:
+    """Generator of sentences in one language."""
 
     def __init__(self, lexicon: Lexicon, rng: random.Random) -> None:
         self.rng = rng
@@ -59,74 +58,74 @@ class Sayer:
         self.rules: dict[str, list[Rule]] = defaultdict(list)
         for rule in sentence_grammar().parser.rules:
             self.rules[rule.origin.name].append(rule)
-        depths = _depths(self.rules)
+        depths = _least_depths(self.rules)
         self.shortest: dict[str, list[Rule]] = {}
-        """by name, the rules with the shortest way out"""
+        """rules with the shortest derivation, by name"""
         for name, rules in self.rules.items():
-            least = min(depths[id(rule)] for rule in rules)
-            self.shortest[name] = [rule for rule in rules if depths[id(rule)] == least]
+            minimum = min(depths[id(rule)] for rule in rules)
+            self.shortest[name] = [rule for rule in rules if depths[id(rule)] == minimum]
         self.phrases: dict[str, list[str]] = defaultdict(list)
-        self.meanings: dict[Said, object] = {}
-        """of phrases: what each is, in one number or several"""
+        self.meanings: dict[Word, object] = {}
+        """meaning of each phrase, the same in singular and plural"""
         for (type_, value), phrases in lexicon.phrases.items():
             self.phrases[type_] += phrases
             meaning = value[0] if isinstance(value, tuple) else value
-            self.meanings.update((Said(type_, phrase), meaning) for phrase in phrases)
+            self.meanings.update((Word(type_, phrase), meaning) for phrase in phrases)
 
-    def sentence(self, start: str = "sentence") -> list[Said]:
-        """The words of a sentence, mostly a short one: a long one has a mistake somewhere."""
+    def sentence(self, start: str = "sentence") -> list[Word]:
+        """Generate a sentence, usually a short one, as most long ones have an error somewhere."""
         longest = self.rng.choice((8, 12, 20, 40))
         types = None
         while types is None:
-            types = self._derived(start, longest)
-        return [Said(type_, self.word(type_)) for type_ in types]
+            types = self._derive(start, longest)
+        return [Word(type_, self.word(type_)) for type_ in types]
 
-    def others(self, word: Said) -> list[str]:
-        """The phrases of the same terminal that mean something else."""
+    def phrases_with_other_meaning(self, word: Word) -> list[str]:
+        """Return the phrases of the same terminal with another meaning."""
         same = (*_ANY_KIND, self.meanings.get(word))
-        return [p for p in self.phrases[word.type] if self.meanings[Said(word.type, p)] not in same]
+        return [p for p in self.phrases[word.type] if self.meanings[Word(word.type, p)] not in same]
 
     def word(self, type_: str) -> str:
-        """A phrase for a terminal."""
+        """Draw a phrase for a terminal."""
         if type_.startswith(("AND_", "OR_")):
             joint = "or" if type_.startswith("OR_") else "and"
             return self.rng.choice(
                 (f" {joint} ", f", {joint} ", ", ") if joint == "and" else (" or ",)
             )
-        known = _SIGNS.get(type_) or _FIGURES.get(type_)
+        known = _SIGNS.get(type_) or _VALUES.get(type_)
         if known is not None:
             return self.rng.choice(known)
-        listed = self.phrases.get(type_) or self.phrases.get(_SENSES.get(type_, ""))
+        listed = self.phrases.get(type_) or self.phrases.get(_SOURCE_TERMINALS.get(type_, ""))
         return self.rng.choice(listed) if listed else type_.lower()
 
-    def _derived(self, start: str, longest: int) -> list[str] | None:
-        """The terminals of a sentence; None if there are more than that."""
-        found: list[str] = []
+    def _derive(self, start: str, longest: int) -> list[str] | None:
+        """Derive the terminals of a sentence; None: there are more than `longest`."""
+        terminals: list[str] = []
         stack: list[tuple[Symbol, int]] = [(NonTerminal(start), 0)]
         random = self.rng.random
         while stack:
             symbol, depth = stack.pop()
             if symbol.is_term:
-                found.append(symbol.name)
-                if len(found) > longest:
+                terminals.append(symbol.name)
+                if len(terminals) > longest:
                     return None
                 continue
-            rules = (self.shortest if depth >= _DEEPEST else self.rules)[symbol.name]
+            rules = (self.shortest if depth >= _DEPTH_LIMIT else self.rules)[symbol.name]
             rule = rules[int(random() * len(rules))]
             stack += [(part, depth + 1) for part in reversed(rule.expansion)]
-        return found
+        return terminals
 
 
 _ANY_KIND = (Kind.CHECKPOINT, Kind.GAUGE)
-"""these are said of checkpoints of several kinds"""
-_SENSES = {"IF_ONLY": "IF"}
-"""terminals that the lexer makes of others by what stands beside them"""
+"""kinds whose phrases stand for checkpoints of several kinds"""
+_SOURCE_TERMINALS = {"IF_ONLY": "IF"}
+"""terminals that the lexer makes from others, depending on the words beside them"""
 
 
-def _depths(rules: dict[str, list[Rule]]) -> dict[int, int]:
-    """How deep a derivation by each rule is at least."""
+def _least_depths(rules: dict[str, list[Rule]]) -> dict[int, int]:
+    """Return the least depth of a derivation by each rule, by the rule's id."""
     depths: dict[str, int] = {}
-    found: dict[int, int] = {}
+    by_rule: dict[int, int] = {}
     changed = True
     while changed:
         changed = False
@@ -136,13 +135,13 @@ def _depths(rules: dict[str, list[Rule]]) -> dict[int, int]:
                 if any(part is None for part in parts):
                     continue
                 depth = 1 + max((part for part in parts if part is not None), default=0)
-                if depth < found.get(id(rule), depth + 1):
-                    found[id(rule)] = depth
+                if depth < by_rule.get(id(rule), depth + 1):
+                    by_rule[id(rule)] = depth
                     changed = True
                 if depth < depths.get(name, depth + 1):
                     depths[name] = depth
                     changed = True
-    return found
+    return by_rule
 
 
 @cache
@@ -150,8 +149,8 @@ def _lexicon() -> Lexicon:
     return Language.of("check", tuple(place.name for place in CATALOG.places)).lexicon
 
 
-def text_of(words: list[Said]) -> str:
-    """The sentence as it is written."""
+def text_of(words: list[Word]) -> str:
+    """Return the text of a sentence."""
     text = ""
     for word in words:
         joins = word.text[:1] in " ,;:)]" or text[-1:] in "([ "
@@ -159,6 +158,6 @@ def text_of(words: list[Said]) -> str:
     return " ".join(text.replace(" ,", ",").replace(" :", ":").split())
 
 
-def sayer(rng: random.Random) -> Sayer:
-    """One that speaks English."""
-    return Sayer(_lexicon(), rng)
+def english_generator(rng: random.Random) -> SentenceGenerator:
+    """Return a generator of English sentences."""
+    return SentenceGenerator(_lexicon(), rng)

@@ -1,4 +1,4 @@
-"""What becomes of an input: it is read, checked, analysed, its machine is given some events."""
+"""Processing of an input: reading, check, analysis, and events for its machine."""
 
 import random
 from collections.abc import Sequence
@@ -30,12 +30,12 @@ from tests.argo_compiler.script.conftest import CATALOG
 from tests.mission_writing import unplaced
 
 STEPS = 30
-"""events that the machine of a mission is given"""
+"""number of events that the machine of a mission handles"""
 ACTION_ENDS = (ActionSucceeded, ActionFailed, ActionStopped)
 
 
 def try_script(data: bytes, rng: random.Random) -> str:
-    """What became of a script: `mission` or `refused`."""
+    """Return `mission` or `refused` for a script."""
     try:
         text = decode_script(data, "fuzz")
         area = rng.choice((None, 1, 2))
@@ -50,7 +50,7 @@ def try_script(data: bytes, rng: random.Random) -> str:
 
 
 def try_mission(data: bytes, rng: random.Random, folder: Path) -> str:
-    """What became of a mission file: `mission` or `refused`."""
+    """Return `mission` or `refused` for a mission file."""
     path = folder / "fuzz.json"
     path.write_bytes(data)
     try:
@@ -61,7 +61,7 @@ def try_mission(data: bytes, rng: random.Random, folder: Path) -> str:
 
 
 def run(mission: Mission, rng: random.Random) -> str:
-    """Analyses the mission and gives its machine some events, across a snapshot."""
+    """Analyse the mission, and let its machine handle some events, half of them after a restore."""
     check(mission, CATALOG)
     try:
         hfsm = lower(mission)
@@ -70,27 +70,27 @@ def run(mission: Mission, rng: random.Random) -> str:
     analyse(mission, CATALOG)
     executor = Executor(hfsm)
     now = 0.0
-    cancelled = _cancels(executor.start(now))
+    cancelled = _contains_cancel(executor.start(now))
     for step in range(STEPS):
         if executor.finished:
             break
         if step == STEPS // 2:
             progress = Progress.model_validate_json(executor.progress().model_dump_json())
             executor = Executor.restore(hfsm, progress, now)
-            cancelled = _cancels(executor.start(now))
+            cancelled = _contains_cancel(executor.start(now))
             continue
         now += rng.choice((0.0, 0.5, 30.0))
-        event = _event(executor.running, cancelled, rng)
-        still = cancelled and not isinstance(event, ACTION_ENDS)
-        cancelled = _cancels(executor.handle(event, now)) or still
+        event = _draw_event(executor.running, cancelled, rng)
+        still_cancelled = cancelled and not isinstance(event, ACTION_ENDS)
+        cancelled = _contains_cancel(executor.handle(event, now)) or still_cancelled
     return "mission"
 
 
-def _cancels(commands: Sequence[Command]) -> bool:
+def _contains_cancel(commands: Sequence[Command]) -> bool:
     return any(isinstance(command, CancelAction) for command in commands)
 
 
-def _event(running: Task | None, cancelled: bool, rng: random.Random) -> Event:
+def _draw_event(running: Task | None, cancelled: bool, rng: random.Random) -> Event:
     choice = rng.random()
     if choice < 0.05:
         return Pause()

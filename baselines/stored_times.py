@@ -36,7 +36,7 @@ def store_site_times(scenario: str) -> None:
     np.savez_compressed(
         folder / _file_name(scenario),
         times=site.times.round(3),
-        places=site.places,
+        places=site.positions,
         floors=site.floors,
         measuring_time=site.measuring_time,
     )

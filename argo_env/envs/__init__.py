@@ -1,4 +1,4 @@
-"""Gymnasium environments; Gymnasium knows them as soon as `argo_env` is imported."""
+"""Gymnasium environments, which are registered when `argo_env` is imported."""
 
 from argo_env.envs.registration import ENVIRONMENTS
 

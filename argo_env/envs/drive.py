@@ -1,4 +1,4 @@
-"""`argo/Drive-v0`: drive the tracked robot to a goal, over stairs where it has to."""
+"""`argo/Drive-v0`: drive the tracked robot to a goal, over stairs if necessary."""
 
 import math
 from collections.abc import Mapping
@@ -12,25 +12,25 @@ from numpy.typing import NDArray
 from argo_compiler.base.errors import Invalid
 from argo_env.drives.tracked.body import FLIPPER_LIMITS, TIME_STEP
 from argo_env.envs import lidar
-from argo_env.envs.batch import SpreadVectorEnv
-from argo_env.envs.drive_site import NEAREST, DriveOptions, DriveSite, DriveSites
+from argo_env.envs.batch import ProcessVectorEnv
+from argo_env.envs.drive_site import MIN_TRAVEL_TIME, DriveOptions, DriveSite, DriveSites
 from argo_env.envs.episode import (
-    Copying,
-    Parts,
+    Copyable,
     Rendering,
+    StateTypes,
     check_begun,
     check_render_mode,
     check_state,
     check_under_way,
-    no_state,
+    invalid_state_error,
 )
 from argo_env.envs.observations import Observation, dict_space
-from argo_env.envs.options import LONGEST, check_positive, check_scenario, read_options
+from argo_env.envs.options import MAX_DURATION, check_positive, check_scenario, read_options
 from argo_env.navigation.path import wrap
 from argo_env.pictures.drive import draw_drive
 from argo_env.robot.pose import BodyPose
 
-Place = tuple[float, float, float]
+Position = tuple[float, float, float]
 Start = tuple[float, float, float, float]
 Action = tuple[float, float, float]
 
@@ -38,89 +38,93 @@ SPEED = 0.5  # m/s, with action 1
 TURN_RATE = 0.6  # rad/s
 SUBSTEPS = 24  # of the physics for each action
 PERIOD = SUBSTEPS * TIME_STEP  # s: 0.1
-REACHED = 0.3  # m from the goal
-TIPPED = math.radians(60.0)
+GOAL_RADIUS = 0.3  # m from the goal, within which it is reached
+MAX_TILT = math.radians(60.0)
 PROGRESS, GOAL, TIPPING, CONTACT, TIME = 0.1, 10.0, -10.0, -0.05, -0.01
-"""rewards: see the description of the environment"""
-_FAR = (20.0, 20.0, 10.0)  # m that are 1 in the observation of the goal
-_LONG = 300.0  # s, likewise
-_STATE: Parts = {
+"""terms of the reward: see the docstring of `DriveEnv`"""
+_GOAL_SCALE = (20.0, 20.0, 10.0)  # m, by which the observation divides the goal's x, y and z
+_TIME_SCALE = 300.0  # s, by which it divides the travel time to the goal
+_STATE: StateTypes = {
     "scenario": str, "options": dict, "start": (tuple, list), "goal": (tuple, list),
     "actions": (tuple, list), "generator": dict,
 }  # fmt: skip
 
 
-class DriveEnv(Copying, Rendering, gym.Env[Observation, NDArray[np.float32]]):
-    """## Description
-    A tracked robot of 60 kg or so has to get to a goal somewhere on a site with several floors. Its
+class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
+    """Environment in which a tracked robot drives to a goal, over stairs if necessary.
+
+    ## Description
+    A tracked robot of about 60 kg must reach a goal somewhere on a site with several floors. Its
     dynamics are those of the drive `tracked`: rigid bodies at 240 Hz, belts by contact-surface
-    motion, real steps. The stairs are climbed backwards and descended forwards, with the flippers
+    motion, real steps. Stairs are climbed backwards and descended forwards, with the flippers
     raised at the first step and flat on the flight.
 
     ## Observation Space
-    A `Dict` of `float32` boxes. The robot's frame has x ahead and y to the left, and is level.
+    A `Dict` of `float32` boxes. The robot's frame is level, with x ahead and y to the left.
 
     | key | shape | range | meaning |
     |---|---|---|---|
-    | `lidar` | (32,) | 0 to 1 | distance to the first thing around, of 5 m, counter-clockwise from straight ahead, in a level plane 0.45 m above the ground |
-    | `ground` | (22,) | -1 to 1 | height of the ground (m) from 1.25 m behind to 1.25 m ahead, below the right and the left track in turn |
-    | `body` | (7,) | -1 to 1 | pitch and roll (of 90°), speed (of 1 m/s), turn rate (of 1.2 rad/s), flipper angle (of 50°), belt speeds left and right (of 1 m/s) |
-    | `goal` | (4,) | -1 to 1 | goal in the robot's frame (x and y of 20 m, z of 10 m), and time to go at planning speeds (of 300 s) |
-    | `way` | (5,) | -1 to 1 | next point of the planned way in the robot's frame (of 1 m), and sine and cosine of the turn to the heading that the plan has there |
+    | `lidar` | (32,) | 0 to 1 | distance to the nearest obstacle in each direction, divided by 5 m: counter-clockwise from straight ahead, in a level plane 0.45 m above the ground |
+    | `ground` | (22,) | -1 to 1 | height of the ground (m) relative to the robot's point on the ground, from 1.25 m behind it to 1.25 m ahead, alternately below the right and the left track |
+    | `body` | (7,) | -1 to 1 | pitch and roll (divided by 90°), speed (by 1 m/s), turn rate (by 1.2 rad/s), flipper angle (by 50°), speeds of the left and the right belt (by 1 m/s) |
+    | `goal` | (4,) | -1 to 1 | goal in the robot's frame (x and y divided by 20 m, z by 10 m), and travel time to it at planning speeds (by 300 s) |
+    | `way` | (5,) | -1 to 1 | next point of the planned path in the robot's frame (divided by 1 m), and sine and cosine of the turn to the heading that the path has there |
 
-    The way is that of Argo's navigator; without `way` in the observation (`waypoint=False`) the
-    agent has to find it.
+    Argo's navigator plans the path. With `waypoint=False` the observation does not have `way`, and
+    the agent must find a path itself.
 
     ## Action Space
-    `Box(-1, 1, (3,))`, held for 0.1 s:
+    `Box(-1, 1, (3,))`, held for 0.1 s. Numbers outside are clipped.
 
     | | meaning | at -1 | at 1 |
     |---|---|---|---|
     | 0 | speed ahead | -0.5 m/s | 0.5 m/s |
     | 1 | turn rate, counter-clockwise | -0.6 rad/s | 0.6 rad/s |
-    | 2 | angle of the flippers, tips up | -30° | 50° |
+    | 2 | angle of the flippers, positive with the tips up | -30° | 50° |
 
     ## Rewards
-    Terms, in `info["terms"]`; the reward is their sum:
+    The reward is the sum of these terms, which are in `info["terms"]`:
 
     | term | value |
     |---|---|
-    | `progress` | 0.1 for each second less to go, as the navigator counts them |
-    | `goal` | 10 when it is reached |
+    | `progress` | 0.1 for each second by which the navigator's travel time to the goal has decreased |
+    | `goal` | 10 when the goal is reached and the robot has not tipped over |
     | `tipped` | -10 when the robot has tipped over or fallen |
-    | `contact` | -0.05 for each step in which it presses against what is not to be touched |
+    | `contact` | -0.05 for each step in which the robot presses against anything that it must not touch |
     | `time` | -0.01 for each step |
 
     ## Starting State
-    At rest on the level, flippers flat, turned at random, at a place with room to turn; the way to
-    the goal takes between 5 s and `max_way` at planning speeds.
+    The robot is at rest on level ground with flat flippers and a random heading, at a position where
+    it has room to turn. The travel time to the goal at planning speeds is between 5 s and `max_way`,
+    or the shortest one above 5 s if no start has such a time.
 
     ## Episode End
-    Terminated when the robot is within 0.3 m of its goal (`info["success"]`), or is tilted by more
-    than 60° or has fallen. Truncated after `time_limit`.
+    Terminated when the robot is within 0.3 m of its goal (`info["success"]`), horizontally and
+    vertically, or is tilted by more than 60°, or has fallen. Truncated after `time_limit`.
 
     ## Randomisation
-    Start, heading and goal (one of six places on each floor). With several scenarios, the site. Seeds
-    from 1,000,000 on are for tests by convention: train with lower ones.
+    The start position, the heading and the goal (one of six positions on each floor); with several
+    scenarios also the site. By convention, seeds from 1,000,000 on are for tests: train with lower
+    ones.
 
     ## Arguments
-    - `scenario` ("umad"): name or file of a site, or `generated:floors=3,seed=7`, or several.
-    - `max_way` (120): s at planning speeds that the goal is away at most, 5 or more; more than
+    - `scenario` ("umad"): name or file of a site, or `generated:floors=3,seed=7`, or several of them.
+    - `max_way` (120): longest travel time (s) to the goal at planning speeds, 5 or more; more than
       about 60 leads to other floors.
-    - `time_limit` (300): s.
+    - `time_limit` (300): simulated time (s) after which an episode is truncated.
     - `waypoint` (True): whether the observation has `way`.
 
-    `reset(options=...)`, which hold until others are given (`{}`: none):
+    Options of `reset(options=...)` apply until others are given (`{}` removes them):
     - `scenario`, `max_way`: as above.
-    - `floor`: number, or list of numbers: start and goal are on these floors.
-    - `faults`: a list as in a file of faults; `brick`, `missing_plate`, `blocked_stairs` and
-      `drive_dysfunction`. What is left out of them is drawn by their own `seed` (0 if they have
-      none), so that the site stays as it is from episode to episode.
+    - `floor`: number, or list of numbers, of the floors for start and goal.
+    - `faults`: list as in a file of faults, of the kinds `brick`, `missing_plate`, `blocked_stairs`
+      and `drive_dysfunction`. What a fault leaves open is drawn with its own `seed` (0 if it has
+      none), so that the site stays the same from episode to episode.
 
-    A reset restores the physics to a saved state; the site is built anew only for other scenarios
-    or faults. `get_state()` gives what `set_state(state)` goes on from, the generator included. It does
-    the actions since the reset again, since PyBullet's own states do not go on bit by bit where the
-    robot touches the ground.
+    A reset restores the physics to a saved state; the site is built again only for other scenarios
+    or faults. `get_state()` returns a state from which `set_state(state)` continues, with the same
+    random generator. `set_state` repeats the actions since the reset, as PyBullet's own states do
+    not continue bit for bit while the robot touches the ground.
 
     ## Version History
     - v0: first version
@@ -140,15 +144,19 @@ class DriveEnv(Copying, Rendering, gym.Env[Observation, NDArray[np.float32]]):
         waypoint: bool = True,
         render_mode: str | None = None,
     ) -> None:
-        """Raises ArgoError if there is no such scenario or render mode."""
+        """Create the environment; the docstring of the class describes the arguments.
+
+        Raises ArgoError if an argument is invalid, or if there is no such scenario or render mode.
+        """
         check_render_mode(render_mode, self.metadata["render_modes"])
         names = tuple(scenario) if isinstance(scenario, tuple | list) else (scenario,)
         for name in names:
             check_scenario(self._title, name)
-        check_positive(self._title, LONGEST, time_limit=time_limit, max_way=max_way)
-        if max_way < NEAREST:
+        check_positive(self._title, MAX_DURATION, time_limit=time_limit, max_way=max_way)
+        if max_way < MIN_TRAVEL_TIME:
             raise Invalid(
-                f"{self._title}: `max_way` is {max_way:g}, and has to be at least {NEAREST:g} (s)"
+                f"{self._title}: `max_way` is {max_way:g}, and has to be at least "
+                f"{MIN_TRAVEL_TIME:g} (s)"
             )
         self.render_mode = render_mode
         self._max_way = max_way
@@ -165,7 +173,7 @@ class DriveEnv(Copying, Rendering, gym.Env[Observation, NDArray[np.float32]]):
         self.observation_space = dict_space(parts)
         self.action_space = spaces.Box(-1.0, 1.0, (3,), np.float32)
         self._sites = DriveSites(names)
-        self._site = self._sites.make(self._sites.names[0])
+        self._site = self._sites.get_site(self._sites.scenario_names[0])
         self._over: bool | None = None
 
     # -- the environment
@@ -175,24 +183,24 @@ class DriveEnv(Copying, Rendering, gym.Env[Observation, NDArray[np.float32]]):
     ) -> tuple[Observation, dict[str, Any]]:
         super().reset(seed=seed)
         if options is not None:
-            self._sites.choose(read_options(DriveOptions, options, self._title))
-        # Until the new episode has begun there is none.
+            self._sites.apply_options(read_options(DriveOptions, options, self._title))
+        # There is no episode until the new one has begun.
         self._over = None
         rng, chosen = self.np_random, self._sites.options
-        names = self._sites.names
+        names = self._sites.scenario_names
         name = names[int(rng.integers(len(names)))]
-        guide = self._sites.make(name).guide
+        guide = self._sites.get_site(name).guide
         floors = chosen.floors or guide.floors
         goals = guide.goals(floors)
         x, y, z = goals[int(rng.integers(len(goals)))].tolist()
         goal = (x, y, z)
-        most = chosen.max_way or self._max_way
-        starts = guide.starts(goal, floors, NEAREST, most)
+        longest = chosen.max_way or self._max_way
+        starts = guide.starts(goal, floors, MIN_TRAVEL_TIME, longest)
         x, y, z = starts[int(rng.integers(len(starts)))].tolist()
-        self._begin(name, (x, y, z, float(rng.uniform(-math.pi, math.pi))), goal)
+        self._start_episode(name, (x, y, z, float(rng.uniform(-math.pi, math.pi))), goal)
         observation = self._observe()
         self._over = False
-        self._show()
+        self._update_window()
         return observation, {"goal": self._goal, "scenario": self._site.site.name}
 
     def step(
@@ -200,13 +208,13 @@ class DriveEnv(Copying, Rendering, gym.Env[Observation, NDArray[np.float32]]):
     ) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         check_under_way(self._over, self._title)
         body = self._site.body
-        self._drive(self._read_action(action))
-        before = self._togo
+        self._apply_action(self._parse_action(action))
+        before = self._time_to_goal
         observation = self._observe()
         success, tipped = self._success, self._tipped
         touches = body.touches()
         terms = {
-            "progress": PROGRESS * (before - self._togo),
+            "progress": PROGRESS * (before - self._time_to_goal),
             "goal": GOAL if success and not tipped else 0.0,
             "tipped": TIPPING if tipped else 0.0,
             "contact": CONTACT if touches else 0.0,
@@ -221,7 +229,7 @@ class DriveEnv(Copying, Rendering, gym.Env[Observation, NDArray[np.float32]]):
         }
         truncated = len(self._actions) >= self._limit and not terminated
         self._over = terminated or truncated
-        self._show()
+        self._update_window()
         return observation, sum(terms.values()), terminated, truncated, info
 
     def close(self) -> None:
@@ -231,25 +239,25 @@ class DriveEnv(Copying, Rendering, gym.Env[Observation, NDArray[np.float32]]):
 
     @property
     def pose(self) -> BodyPose:
-        """Where the robot is in truth."""
+        """True pose of the robot."""
         check_begun(self._over, self._title)
         return self._pose
 
     @property
-    def goal(self) -> Place:
-        """x, y, z (m) of this episode's goal."""
+    def goal(self) -> Position:
+        """Position (x, y, z in m) of this episode's goal."""
         check_begun(self._over, self._title)
         return self._goal
 
     @property
     def site(self) -> DriveSite:
-        """The site of this episode, with its navigator and the robot's body."""
+        """Site of this episode, with its navigator and the robot's body."""
         return self._site
 
     # -- states
 
     def get_state(self) -> dict[str, Any]:
-        """All that the future depends on, as plain data that can be pickled."""
+        """Return all that the future depends on, as plain data that can be pickled."""
         check_begun(self._over, self._title)
         return {
             "scenario": self._name,
@@ -261,32 +269,34 @@ class DriveEnv(Copying, Rendering, gym.Env[Observation, NDArray[np.float32]]):
         }
 
     def set_state(self, state: Mapping[str, Any]) -> Observation:
-        """Goes on from what `get_state` gave; returns the observation of that moment. Raises
-        ArgoError if it is no state of this environment."""
+        """Continue from a state that `get_state` returned, and return its observation.
+
+        Raises ArgoError if it is not a state of this environment.
+        """
         check_state(state, _STATE, self._title)
         if len(state["start"]) != 4 or len(state["goal"]) != 3:
-            raise no_state(self._title)
-        actions = [self._read_action(action) for action in state["actions"]]
-        self._sites.choose(read_options(DriveOptions, state["options"], self._title))
+            raise invalid_state_error(self._title)
+        actions = [self._parse_action(action) for action in state["actions"]]
+        self._sites.apply_options(read_options(DriveOptions, state["options"], self._title))
         self._over = None
-        self._begin(state["scenario"], state["start"], state["goal"])
+        self._start_episode(state["scenario"], state["start"], state["goal"])
         for action in actions:
-            self._drive(action)
+            self._apply_action(action)
         self._site.body.touches()
         self.np_random.bit_generator.state = state["generator"]
         observation = self._observe()
         self._over = self._success or self._tipped or len(self._actions) >= self._limit
         return observation
 
-    def _copied_state(self) -> tuple[DriveOptions, dict[str, Any] | None]:
+    def _state_for_copy(self) -> tuple[DriveOptions, dict[str, Any] | None]:
         return self._sites.options, None if self._over is None else self.get_state()
 
-    def _go_on_from(self, state: tuple[DriveOptions, dict[str, Any] | None]) -> None:
+    def _restore_copy(self, state: tuple[DriveOptions, dict[str, Any] | None]) -> None:
         options, episode = state
         if episode is not None:
             self.set_state(episode)
         elif options != self._sites.options:
-            self._sites.choose(options)
+            self._sites.apply_options(options)
 
     # -- inside
 
@@ -294,41 +304,43 @@ class DriveEnv(Copying, Rendering, gym.Env[Observation, NDArray[np.float32]]):
     def _time(self) -> float:
         return len(self._actions) * PERIOD
 
-    def _begin(self, name: str, start: Start, goal: Place) -> None:
-        """Puts the robot at its start (x, y, z, yaw) on the site of that name."""
+    def _start_episode(self, name: str, start: Start, goal: Position) -> None:
+        """Place the robot at its start (x, y, z, yaw) on the site of this scenario."""
         self._name, self._start, self._goal = name, start, goal
-        self._site = self._sites.make(name)
+        self._site = self._sites.get_site(name)
         self._site.body.reset(BodyPose(*start))
         self._site.body.touches()
-        self._site.forget_view()
+        self._site.reset_camera()
         self._actions: list[Action] = []
 
-    def _read_action(self, action: Any) -> Action:
-        """The action, numbers beyond -1 and 1 taken as these; ArgoError if it is none."""
+    def _parse_action(self, action: Any) -> Action:
+        """Return the action, clipped to -1 and 1; raise ArgoError if it is not an action."""
         try:
             values = np.asarray(action, dtype=np.float64)
         except (TypeError, ValueError):
             values = np.empty(0)
         if values.shape != (3,) or not np.isfinite(values).all():
-            raise Invalid(f"{self._title}: no action {action!r}; it is three numbers, -1 to 1")
+            raise Invalid(
+                f"{self._title}: the action is {action!r}, and has to be three numbers from -1 to 1"
+            )
         ahead, turn, flipper = np.clip(values, -1.0, 1.0).tolist()
         return ahead, turn, flipper
 
     @property
     def _success(self) -> bool:
-        """Whether the robot was at its goal when it was last observed."""
+        """True if the robot was at its goal at the last observation."""
         pose, (x, y, z) = self._pose, self._goal
-        return math.hypot(pose.x - x, pose.y - y) <= REACHED and abs(pose.z - z) <= REACHED
+        return math.hypot(pose.x - x, pose.y - y) <= GOAL_RADIUS and abs(pose.z - z) <= GOAL_RADIUS
 
     @property
     def _tipped(self) -> bool:
-        """Whether it has tipped over or fallen."""
+        """True if the robot had tipped over or fallen at the last observation."""
         pose, site = self._pose, self._site
         upright = math.cos(pose.pitch) * math.cos(site.body.roll)
-        return upright < math.cos(TIPPED) or pose.z < site.site.spec.ground_z - 1.0
+        return upright < math.cos(MAX_TILT) or pose.z < site.site.spec.ground_z - 1.0
 
-    def _drive(self, action: Action) -> None:
-        """Carries an action out for 0.1 s."""
+    def _apply_action(self, action: Action) -> None:
+        """Apply an action for 0.1 s."""
         ahead, turn, flipper = action
         body, share = self._site.body, self._site.speed_share(self._time)
         low, high = FLIPPER_LIMITS
@@ -341,48 +353,54 @@ class DriveEnv(Copying, Rendering, gym.Env[Observation, NDArray[np.float32]]):
     def _observe(self) -> Observation:
         site, body = self._site, self._site.body
         self._pose = pose = body.pose
-        waypoint = site.guide.look(self._goal, pose)
-        self._togo = waypoint.seconds
+        waypoint = site.guide.find_waypoint(self._goal, pose)
+        self._time_to_goal = waypoint.seconds
         speed, turn = body.velocity
         left, right = body.belt_speeds
-        goal = self._in_frame(*self._goal)
+        goal = self._to_robot_frame(*self._goal)
         observation = {
-            "lidar": lidar.ring(site.world, pose) / lidar.RANGE,
-            "ground": lidar.ground(site.world, pose) / lidar.DEPTH,
+            "lidar": lidar.ray_distances(site.world, pose) / lidar.RANGE,
+            "ground": lidar.ground_heights(site.world, pose) / lidar.DEPTH,
             "body": (
                 pose.pitch / (math.pi / 2), body.roll / (math.pi / 2), speed, turn / 1.2,
                 body.flipper / FLIPPER_LIMITS[1], left, right,
             ),
-            "goal": (*(v / far for v, far in zip(goal, _FAR, strict=True)), self._togo / _LONG),
+            "goal": (
+                *(v / scale for v, scale in zip(goal, _GOAL_SCALE, strict=True)),
+                self._time_to_goal / _TIME_SCALE,
+            ),
         }  # fmt: skip
         if self._waypoint:
             turn = wrap(waypoint.yaw - pose.yaw)
-            place = self._in_frame(waypoint.x, waypoint.y, waypoint.z)
-            observation["way"] = (*place, math.sin(turn), math.cos(turn))
+            point = self._to_robot_frame(waypoint.x, waypoint.y, waypoint.z)
+            observation["way"] = (*point, math.sin(turn), math.cos(turn))
         return {
             name: np.clip(np.array(values), -1.0, 1.0).astype(np.float32)
             for name, values in observation.items()
         }
 
-    def _in_frame(self, x: float, y: float, z: float) -> tuple[float, float, float]:
-        """A place in the robot's level frame."""
+    def _to_robot_frame(self, x: float, y: float, z: float) -> tuple[float, float, float]:
+        """Return a position in the robot's level frame."""
         pose = self._pose
         dx, dy = x - pose.x, y - pose.y
         cos, sin = math.cos(pose.yaw), math.sin(pose.yaw)
         return cos * dx + sin * dy, cos * dy - sin * dx, z - pose.z
 
-    def _picture(self) -> NDArray[np.uint8]:
-        """The robot from behind, the goal and how far it is."""
+    def _draw_picture(self) -> NDArray[np.uint8]:
+        """Return a picture of the robot from behind, with the goal and the travel time to it."""
         check_begun(self._over, self._title)
         pose, goal, site = self._pose, self._goal, self._site
-        view, camera = site.look(pose, math.degrees(site.body.flipper))
+        view, camera = site.render_view(pose, math.degrees(site.body.flipper))
         floors = site.site.floor_at(pose.z), site.site.floor_at(goal[2])
-        return draw_drive(view, camera, goal, self._time, floors, self._togo)
+        return draw_drive(view, camera, goal, self._time, floors, self._time_to_goal)
 
 
-class DriveVectorEnv(SpreadVectorEnv):
-    """Many robots at once, as `gymnasium.make_vec("argo/Drive-v0", num_envs=8)` makes them: each on
-    a site of its own. Arguments and options are those of `DriveEnv`, and `processes`."""
+class DriveVectorEnv(ProcessVectorEnv):
+    """Vector environment of many robots, each on a site of its own.
 
-    single = DriveEnv
+    `gymnasium.make_vec("argo/Drive-v0", num_envs=8)` makes one. Arguments and options are those of
+    `DriveEnv`, and `processes`.
+    """
+
+    env_class = DriveEnv
     _title = "argo/Drive-v0"

@@ -1,5 +1,4 @@
-"""The sites that Drive-v0 is asked to drive on, kept ready: the world of each, the robot's body in
-it, and the ways there."""
+"""Sites of Drive-v0, each with a world, the robot's body and a guide; they are cached."""
 
 from pydantic import Field, StrictInt
 
@@ -8,7 +7,7 @@ from argo_compiler.base.model import Model
 from argo_env.closing import Closing
 from argo_env.drives.tracked.body import TrackedBody
 from argo_env.envs.guide import Guide
-from argo_env.envs.options import LONGEST, check_floors
+from argo_env.envs.options import MAX_DURATION, check_floors
 from argo_env.faults.fault import Fault
 from argo_env.faults.kinds import KINDS, AnyFault, resolve_faults, site_with_faults
 from argo_env.faults.robot import DriveDysfunction
@@ -20,48 +19,52 @@ from argo_env.planning import open_site
 from argo_env.robot.pose import BodyPose
 from argo_env.world.world import World
 
-ON_THE_WAY = tuple(
+SITE_FAULTS = tuple(
     k for k, fault in KINDS.items() if fault.changed_elements is not Fault.changed_elements
 )
 """kinds of faults that change the site"""
-DYSFUNCTION = "drive_dysfunction"
+DRIVE_FAULT = "drive_dysfunction"
 _PICTURE = (640, 360)  # px
 
 
 class DriveSite(Closing):
-    """Holds two PyBullet connections, and a third one once it has drawn; close it."""
+    """Site with a world, the robot's body in it, and a guide to goals. Close it.
+
+    It holds two PyBullet connections, and a third one after it has drawn a picture.
+    """
 
     def __init__(self, scenario: str, faults: tuple[AnyFault, ...] = ()) -> None:
-        """Places the faults by their own seeds, 0 where they have none.
+        """Build the site with its faults.
 
-        Raises ArgoError if there is no such site, or faults that the environment does not know.
+        What a fault leaves open is drawn with its own seed, 0 if it has none. Raises ArgoError if
+        there is no such site, or if the environment does not support a fault.
         """
         for fault in faults:
-            if fault.kind not in (*ON_THE_WAY, DYSFUNCTION):
+            if fault.kind not in (*SITE_FAULTS, DRIVE_FAULT):
                 raise NotFound(
-                    f"argo/Drive-v0 does not know the fault `{fault.kind}`; "
-                    f"it knows: {', '.join((*ON_THE_WAY, DYSFUNCTION))}"
+                    f"argo/Drive-v0 does not support the fault `{fault.kind}`; "
+                    f"it supports: {', '.join((*SITE_FAULTS, DRIVE_FAULT))}"
                 )
         navigator = open_site(scenario).prepare().navigator
         site = navigator.site
         resolved = resolve_faults(faults, site, 0)
-        real = site_with_faults(site, resolved)
-        if real.elements != site.elements:
-            # The way shown and the progress made are those of the site as it is.
-            navigator = Navigator(real, navigator.robot)
+        actual = site_with_faults(site, resolved)
+        if actual.elements != site.elements:
+            # Waypoints and progress are those of the site with its faults.
+            navigator = Navigator(actual, navigator.robot)
         self.site = site
         self.robot = navigator.robot
         self.navigator = navigator
         self.guide = Guide(navigator)
         self.dysfunctions = tuple(f for f in resolved if isinstance(f, DriveDysfunction))
-        self._real = real
-        self.world = World(site, self.robot, elements=real.elements, drawn=False)
+        self._actual_site = actual
+        self.world = World(site, self.robot, elements=actual.elements, drawn=False)
         self.body = TrackedBody(self.world, self.robot)
         self._scene: Scene | None = None
         self._camera: ChaseCamera | None = None
 
     def close(self) -> None:
-        """Ends the connections."""
+        """Close the connections."""
         self.body.close()
         self.world.close()
         if self._scene:
@@ -69,7 +72,7 @@ class DriveSite(Closing):
             self._scene = None
 
     def speed_share(self, now: float) -> float:
-        """The share of its speed that the drive makes at time `now` (s)."""
+        """Return the share of its speed that the drive reaches at time `now` (s), 0 to 1."""
         shares = [
             f.speed or 0.0
             for f in self.dysfunctions
@@ -77,10 +80,13 @@ class DriveSite(Closing):
         ]
         return min(shares, default=1.0)
 
-    def look(self, pose: BodyPose, flipper: float) -> tuple[CameraView, Camera]:
-        """The robot from behind, 640 × 360 px, and the camera; `flipper` in degrees."""
+    def render_view(self, pose: BodyPose, flipper: float) -> tuple[CameraView, Camera]:
+        """Return the view from behind the robot, 640 × 360 px, and its camera.
+
+        `flipper` is the angle of the flippers in degrees.
+        """
         if self._scene is None:
-            self._scene = Scene(self._real, self.robot)
+            self._scene = Scene(self._actual_site, self.robot)
             self._camera = None
         if self._camera is None:
             self._camera = ChaseCamera(self._scene, _PICTURE, 0.1)
@@ -90,24 +96,24 @@ class DriveSite(Closing):
         camera = self._camera.follow(pose)
         return self._scene.look(camera), camera
 
-    def forget_view(self) -> None:
-        """The next picture is taken from where the robot is seen best, whatever came before."""
+    def reset_camera(self) -> None:
+        """Choose the best viewpoint for the next picture, without regard to earlier ones."""
         self._camera = None
 
 
-NEAREST = 5.0
-"""s that a start is away from its goal at least"""
-_KEPT = 4  # sites that are kept ready
+MIN_TRAVEL_TIME = 5.0
+"""shortest travel time (s) from a start to its goal"""
+_CACHED_SITES = 4  # sites at most
 _NO_SITE = "argo/Drive-v0 needs a `scenario`: the name of a site, or of several"
 
 
 class DriveOptions(Model):
-    """What `reset(options=...)` of Drive-v0 may say."""
+    """Options for `reset(options=...)` of Drive-v0."""
 
     scenario: str | tuple[str, ...] | None = None
     floor: StrictInt | tuple[StrictInt, ...] = ()
     faults: tuple[AnyFault, ...] = ()
-    max_way: float | None = Field(default=None, ge=NEAREST, le=LONGEST, strict=True)
+    max_way: float | None = Field(default=None, ge=MIN_TRAVEL_TIME, le=MAX_DURATION, strict=True)
 
     @property
     def floors(self) -> tuple[int, ...]:
@@ -115,64 +121,66 @@ class DriveOptions(Model):
 
 
 class DriveSites:
-    """Makes the sites that the options ask for, and `scenarios` where they name none; close it."""
+    """Cache of the sites that the options name, or `scenarios` if they name none. Close it."""
 
     def __init__(self, scenarios: tuple[str, ...]) -> None:
         if not scenarios:
             raise Invalid(_NO_SITE)
         self.options = DriveOptions()
         self._scenarios = scenarios
-        self._ready: dict[str, DriveSite] = {}
+        self._cached: dict[str, DriveSite] = {}
 
     @property
-    def names(self) -> tuple[str, ...]:
-        """Of the sites that an episode may be on."""
-        return self._names(self.options)
+    def scenario_names(self) -> tuple[str, ...]:
+        """Names of the sites that an episode may be on."""
+        return self._requested_names(self.options)
 
-    def _names(self, options: DriveOptions) -> tuple[str, ...]:
+    def _requested_names(self, options: DriveOptions) -> tuple[str, ...]:
         given = options.scenario
         return self._scenarios if given is None else (given,) if isinstance(given, str) else given
 
-    def choose(self, options: DriveOptions) -> None:
-        """Takes the options on; ArgoError if a site does not have what they ask for, and then all
-        is as it was."""
-        names = self._names(options)
+    def apply_options(self, options: DriveOptions) -> None:
+        """Apply the options to the following episodes.
+
+        Raises ArgoError if a site does not have what they ask for; then nothing changes.
+        """
+        names = self._requested_names(options)
         if not names:
             raise Invalid(_NO_SITE)
-        same = options.faults == self.options.faults
-        made: dict[str, DriveSite] = {}
+        same_faults = options.faults == self.options.faults
+        added: dict[str, DriveSite] = {}
         try:
             for name in names:
-                site = self._ready.get(name) if same else None
+                site = self._cached.get(name) if same_faults else None
                 if site is None:
-                    site = made.pop(name, None) or DriveSite(name, options.faults)
-                    _keep(made, name, site)
+                    site = added.pop(name, None) or DriveSite(name, options.faults)
+                    _add_to_cache(added, name, site)
                 check_floors(name, site.guide.floors, options.floors)
         except ArgoError:
-            for site in made.values():
+            for site in added.values():
                 site.close()
             raise
-        if not same:
+        if not same_faults:
             self.close()
         self.options = options
-        for name, site in made.items():
-            _keep(self._ready, name, site)
+        for name, site in added.items():
+            _add_to_cache(self._cached, name, site)
 
-    def make(self, name: str) -> DriveSite:
-        """The site of that name, ready; the ones used longest ago make room for it."""
-        site = self._ready.pop(name, None) or DriveSite(name, self.options.faults)
-        _keep(self._ready, name, site)
+    def get_site(self, name: str) -> DriveSite:
+        """Return the site with this name; a full cache drops its least recently used site."""
+        site = self._cached.pop(name, None) or DriveSite(name, self.options.faults)
+        _add_to_cache(self._cached, name, site)
         return site
 
     def close(self) -> None:
-        """Closes the sites; they are made again when they are asked for."""
-        for site in self._ready.values():
+        """Close the sites; they are built again when they are needed."""
+        for site in self._cached.values():
             site.close()
-        self._ready.clear()
+        self._cached.clear()
 
 
-def _keep(sites: dict[str, DriveSite], name: str, site: DriveSite) -> None:
-    """Adds the site; the ones added longest ago make room for it."""
+def _add_to_cache(sites: dict[str, DriveSite], name: str, site: DriveSite) -> None:
+    """Add the site; if the cache is full, close and remove the one that was added first."""
     sites[name] = site
-    while len(sites) > _KEPT:
+    while len(sites) > _CACHED_SITES:
         sites.pop(next(iter(sites))).close()

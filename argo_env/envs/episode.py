@@ -1,4 +1,4 @@
-"""Parts that every environment has: checks of its steps and states, copies, and pictures."""
+"""Parts that all environments share: checks of steps and states, copies, and pictures."""
 
 import os
 import sys
@@ -14,14 +14,17 @@ from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid, NotFound, Unavailable
 
-Parts = Mapping[str, type | tuple[type, ...]]
-"""the types of what a state has, by name"""
+StateTypes = Mapping[str, type | tuple[type, ...]]
+"""types of the parts of a state, by name"""
 
-_WHOLE = (int, np.integer)
+_INTEGERS = (int, np.integer)
 
 
-def seeds_of(seed: int | Sequence[int | None] | None, count: int) -> list[int | None]:
-    """The seed of each of so many environments: an int seeds them with seed, seed + 1 and so on."""
+def expand_seeds(seed: int | Sequence[int | None] | None, count: int) -> list[int | None]:
+    """Return a seed for each of `count` environments; an int gives seed, seed + 1 and so on.
+
+    Raises ValueError if the number of seeds is not `count`.
+    """
     if seed is None:
         return [None] * count
     if isinstance(seed, int | np.integer):
@@ -32,48 +35,52 @@ def seeds_of(seed: int | Sequence[int | None] | None, count: int) -> list[int | 
 
 
 def check_begun(over: bool | None, env: str) -> None:
-    """Raises ResetNeeded if there is no episode yet; `over` is None then."""
+    """Raise ResetNeeded if no episode has begun (`over` is None)."""
     if over is None:
         raise gym.error.ResetNeeded(f"{env}: no episode has begun: call reset")
 
 
 def check_under_way(over: bool | None, env: str) -> None:
-    """Raises ResetNeeded if there is no episode yet (`over` is None), or it is over."""
+    """Raise ResetNeeded if no episode has begun (`over` is None) or if it is over."""
     check_begun(over, env)
     if over:
         raise gym.error.ResetNeeded(f"{env}: the episode is over: call reset")
 
 
-def read_choice(action: Any, count: int, env: str) -> int:
-    """An action of `Discrete(count)` as an int; ArgoError if it is none."""
+def parse_discrete_action(action: Any, count: int, env: str) -> int:
+    """Return an action of `Discrete(count)` as an int; raise ArgoError if it is not one."""
     if isinstance(action, np.ndarray) and action.shape == ():
         action = action[()]
-    if isinstance(action, _WHOLE) and 0 <= (number := int(action)) < count:
+    if isinstance(action, _INTEGERS) and 0 <= (number := int(action)) < count:
         return number
-    raise Invalid(f"{env}: no action {action!r}; an action is a whole number, 0 to {count - 1}")
+    raise Invalid(
+        f"{env}: the action is {action!r}, and has to be a whole number from 0 to {count - 1}"
+    )
 
 
-def check_state(state: Any, parts: Parts, env: str) -> None:
-    """Raises ArgoError unless the state has these parts, of these types, and no others.
+def check_state(state: Any, parts: StateTypes, env: str) -> None:
+    """Raise ArgoError unless the state has exactly these parts, with these types.
 
-    The part `generator`, and `begun` likewise, is what NumPy's PCG64 calls its state.
+    The parts `generator` and `begun` must be states of NumPy's PCG64.
     """
     fits = (
         isinstance(state, Mapping)
         and state.keys() == parts.keys()
         and all(isinstance(state[name], kind) for name, kind in parts.items())
-        and all(_of_generator(state[name]) for name in ("generator", "begun") if name in parts)
+        and all(
+            _is_generator_state(state[name]) for name in ("generator", "begun") if name in parts
+        )
     )
     if not fits:
-        raise no_state(env)
+        raise invalid_state_error(env)
 
 
-def no_state(env: str) -> Invalid:
-    """The error for what is no state of the environment."""
-    return Invalid(f"this is no state of {env}: take what `get_state()` of such a one gave")
+def invalid_state_error(env: str) -> Invalid:
+    """Return the error for an object that is not a state of the environment."""
+    return Invalid(f"this is not a state of {env}: pass a state that its `get_state()` returned")
 
 
-def _of_generator(state: Mapping[str, Any]) -> bool:
+def _is_generator_state(state: Mapping[str, Any]) -> bool:
     try:
         np.random.PCG64(0).state = cast("Any", state)
     except (KeyError, TypeError, ValueError, OverflowError):
@@ -81,64 +88,64 @@ def _of_generator(state: Mapping[str, Any]) -> bool:
     return True
 
 
-_CARRIED = (
+_GYMNASIUM_FIELDS = (
     "spec", "action_space", "observation_space", "single_action_space",
     "single_observation_space", "_np_random", "_np_random_seed", "closed",
 )  # fmt: skip
-"""what Gymnasium keeps in an environment, the generators of samples included"""
+"""attributes that Gymnasium sets, with the generators by which spaces are sampled"""
 
 
-class Copying:
-    """An environment whose copies, shallow or deep, and pickles stand on their own.
+class Copyable:
+    """Base of environments whose copies, shallow or deep, and pickles are independent.
 
-    A copy is made of the arguments that the environment was made of, and goes on from its state:
-    equal actions give equal steps in both, and neither knows of the other. Attributes that were set
-    from outside are not taken along, nor is a window: the copy opens one of its own. Before
-    an episode has begun and after `close()` there is no state, and the copy has to be reset too.
+    A copy is made with the arguments of the original and continues from its state: equal actions
+    give equal steps in both, and neither affects the other. Attributes that were set from outside
+    are not copied, and neither is a window: the copy opens its own. Before an episode has begun and
+    after `close()` there is no state, and the copy must be reset too.
     """
 
     _arguments: tuple[tuple[Any, ...], dict[str, Any]]
 
     def __new__(cls, *args: Any, **kwargs: Any) -> Self:
         self = super().__new__(cls)
-        # A dictionary or list may be changed by whoever gave it.
+        # The caller may change a dictionary or list afterwards.
         self._arguments = (
-            tuple(_own(value) for value in args),
-            {name: _own(value) for name, value in kwargs.items()},
+            tuple(_copy_if_mutable(value) for value in args),
+            {name: _copy_if_mutable(value) for name, value in kwargs.items()},
         )
         return self
 
     def __reduce__(self) -> tuple[Any, ...]:
         args, kwargs = self._arguments
-        carried = {name: vars(self)[name] for name in _CARRIED if name in vars(self)}
-        return _made_again, (type(self), args, kwargs, self._copied_state(), carried)
+        fields = {name: vars(self)[name] for name in _GYMNASIUM_FIELDS if name in vars(self)}
+        return _rebuild, (type(self), args, kwargs, self._state_for_copy(), fields)
 
     def __copy__(self) -> Self:
         return deepcopy(self)
 
     @abstractmethod
-    def _copied_state(self) -> Any:
-        """What `_go_on_from` goes on from, at any time: also without an episode."""
+    def _state_for_copy(self) -> Any:
+        """Return the state for `_restore_copy`; it exists at any time, also without an episode."""
 
     @abstractmethod
-    def _go_on_from(self, state: Any) -> None:
-        """Takes on what `_copied_state` of another one gave."""
+    def _restore_copy(self, state: Any) -> None:
+        """Restore a state that `_state_for_copy` of another environment returned."""
 
 
-def _own(value: Any) -> Any:
+def _copy_if_mutable(value: Any) -> Any:
     return deepcopy(value) if isinstance(value, Mapping | list | tuple) else value
 
 
-def _made_again(
-    kind: type[Copying],
+def _rebuild(
+    kind: type[Copyable],
     args: tuple[Any, ...],
     kwargs: dict[str, Any],
     state: Any,
-    carried: Mapping[str, Any],
-) -> Copying:
+    fields: Mapping[str, Any],
+) -> Copyable:
     env = kind(*args, **kwargs)
-    env._go_on_from(state)
-    vars(env).update(carried)
+    env._restore_copy(state)
+    vars(env).update(fields)
     return env
 
 
@@ -146,17 +153,20 @@ _DPI = 100
 
 
 def check_render_mode(mode: str | None, known: Sequence[str]) -> None:
-    """Raises ArgoError if there is no such render mode."""
+    """Raise ArgoError if the render mode is neither None nor among the known ones."""
     if mode is not None and mode not in known:
-        raise NotFound(f"no render mode `{mode}`; there are: {', '.join(known)}")
+        raise NotFound(f"there is no render mode `{mode}`; choose one of: {', '.join(known)}")
 
 
 class FigureWindow:
-    """A matplotlib window that shows one picture after the other. Close it."""
+    """Matplotlib window that shows one picture after the other. Close it."""
 
     def __init__(self, title: str) -> None:
-        """Raises ArgoError where there is no display. With the environment variable MPLBACKEND set
-        to `agg` the window is drawn in memory, as on a machine that only runs tests."""
+        """Prepare a window, which the first picture opens.
+
+        Raises ArgoError if there is no display. If the environment variable MPLBACKEND is `agg`,
+        the window is drawn in memory, as on a machine that only runs tests.
+        """
         headless = sys.platform.startswith("linux") and not (
             os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
         )
@@ -172,10 +182,10 @@ class FigureWindow:
         self._figure: Any = None
 
     def show(self, picture: NDArray[np.uint8]) -> None:
-        """Shows a picture, shape (height, width, 3), and lets the window react."""
+        """Show a picture, shape (height, width, 3), and process the window's events."""
         if self._figure is None:
             height, width, _ = picture.shape
-            # Named afterwards: a figure that is made by a name may be another one's window.
+            # It is named afterwards: a figure made by its name may be another environment's window.
             self._figure = self._pyplot.figure(figsize=(width / _DPI, height / _DPI), dpi=_DPI)
             self._figure.canvas.manager.set_window_title(self._title)
             axes = self._figure.add_axes((0, 0, 1, 1))
@@ -187,7 +197,7 @@ class FigureWindow:
         self._figure.canvas.flush_events()
 
     def close(self) -> None:
-        """Closes the window."""
+        """Close the window."""
         if self._figure is not None:
             self._pyplot.close(self._figure)
             self._figure = None
@@ -198,18 +208,21 @@ class FigureWindow:
 
 
 class Rendering:
-    """What environments have in common that draw a picture of themselves."""
+    """Base of environments that draw a picture of themselves."""
 
     render_mode: str | None
     _title: str
-    """of the window"""
+    """id of the environment, which messages name; also the title of the window"""
     _window: FigureWindow | None = None
 
     def render(self) -> NDArray[np.uint8] | None:
-        """A picture, shape (height, width, 3); with `human` it is in a window."""
+        """Return a picture, shape (height, width, 3), or show it in a window with `human`.
+
+        Returns None with `human` and without a render mode.
+        """
         if self.render_mode is None:
             return None
-        picture = self._picture()
+        picture = self._draw_picture()
         if self.render_mode == "rgb_array":
             return picture
         self._window = self._window or FigureWindow(self._title)
@@ -217,27 +230,30 @@ class Rendering:
         return None
 
     def close(self) -> None:
-        """Closes the window."""
+        """Close the window."""
         if self._window:
             self._window.close()
             self._window = None
 
-    def _picture(self) -> NDArray[np.uint8]:
+    def _draw_picture(self) -> NDArray[np.uint8]:
         raise NotImplementedError
 
     @contextmanager
-    def _repeating(self) -> Iterator[None]:
-        """While the steps of a state are made again nothing is shown; it is none if it goes on
-        after the end of its episode."""
+    def _replaying(self) -> Iterator[None]:
+        """Show nothing while the actions of a state are repeated.
+
+        Raises ArgoError if the actions continue after the end of the episode, as this is no valid
+        state.
+        """
         mode, self.render_mode = self.render_mode, None
         try:
             yield
         except gym.error.ResetNeeded:
-            raise no_state(self._title) from None
+            raise invalid_state_error(self._title) from None
         finally:
             self.render_mode = mode
 
-    def _show(self) -> None:
-        """Brings the window up to date, if there is one."""
+    def _update_window(self) -> None:
+        """Update the window, if there is one."""
         if self.render_mode == "human":
             self.render()

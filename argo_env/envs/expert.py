@@ -1,4 +1,4 @@
-"""An expert for Drive-v0: it follows the navigator's path as the drive `tracked` does."""
+"""Expert for Drive-v0, which follows the navigator's path as the drive `tracked` does."""
 
 import math
 from typing import Any
@@ -16,23 +16,25 @@ from argo_env.envs.drive import PERIOD, SPEED, TURN_RATE, DriveEnv
 from argo_env.navigation.path import Motion, wrap
 from argo_env.robot.pose import BodyPose
 
-_ASTRAY = 0.3  # m beside its line, from where it plans anew
-_TURNED = math.radians(0.5)  # from a turn's end, where it waits for the robot to rest: with one
-# command in 0.1 s, the least rate of the follower would swing it to and fro for ever
+_MAX_DEVIATION = 0.3  # m from the path, beyond which the expert plans a new one
+# Within this angle (rad) of a turn's end, the expert waits until the robot is at rest: with one
+# command in 0.1 s, the lowest turn rate of the follower would make it swing to and fro for ever.
+_TURN_TOLERANCE = math.radians(0.5)
 
 
 class Expert:
-    """Drives one episode. Holds the path, how far it is done, and the angle of the flippers.
+    """Expert that drives one episode, for imitation or as a reference.
 
-    It knows the robot's true pose, the plan of the site and the path, and acts only by actions. Its
-    actions are meant for imitation, or as a yardstick. Another policy may drive in between: where
-    the robot is off the path, on the level, the expert plans anew.
+    It holds the path, the progress along it, and the angle of the flippers. It knows the robot's
+    true pose, the plan of the site and the path, but acts by actions alone. Another policy may
+    drive in between: if the robot is off the path on level ground, the expert plans a new path.
     """
 
     def __init__(self, env: gym.Env[Any, Any]) -> None:
-        """For the episode that `env` is in, a Drive-v0 in wrappers or not: make it after the reset.
+        """Plan a path for the present episode of `env`: create a new expert after each reset.
 
-        Raises Unreachable if there is no way to the goal, as with what faults have blocked.
+        `env` is Drive-v0, wrapped or not; for any other environment ArgoError is raised. Raises
+        Unreachable if there is no path to the goal, for example if faults block it.
         """
         drive = env.unwrapped
         if not isinstance(drive, DriveEnv):
@@ -43,16 +45,16 @@ class Expert:
         self._plan()
 
     def act(self) -> NDArray[np.float32]:
-        """The action for the moment that the episode is in, shape (3,). Call it once a step."""
+        """Return the action for the present step, shape (3,); call this once per step."""
         site, pose = self._env.site, self._env.pose
         motion = self._follower.motion
-        if motion is None or self._astray(motion, pose):
+        if motion is None or self._is_off_path(motion, pose):
             self._plan()
         step = self._follower.step(pose, site.body.velocity)
-        flight = self._flight_of(step.motion)
+        flight = self._find_flight(step.motion)
         careful = self._flippers.step(flight, step.motion, pose, PERIOD)
         speed = max(-CAREFUL_SPEED, min(CAREFUL_SPEED, step.speed)) if careful else step.speed
-        rate = 0.0 if self._turned(step.motion, pose) else step.turn_rate
+        rate = 0.0 if self._is_turn_complete(step.motion, pose) else step.turn_rate
         low, high = FLIPPER_LIMITS
         flipper = 2 * (self._flippers.angle - low) / (high - low) - 1
         action = np.array([speed / SPEED, rate / TURN_RATE, flipper], dtype=np.float32)
@@ -61,27 +63,27 @@ class Expert:
     def _plan(self) -> None:
         site, pose = self._env.site, self._env.pose
         x, y, z = self._env.goal
-        here = Pose(x=pose.x, y=pose.y, z=pose.z, yaw=pose.yaw)
-        # However the robot is turned there will do: as it comes along the straight way.
+        start = Pose(x=pose.x, y=pose.y, z=pose.z, yaw=pose.yaw)
+        # The heading at the goal is free: take that of the straight line to it.
         yaw = math.atan2(y - pose.y, x - pose.x)
-        path = site.navigator.plan(here, Pose(x=x, y=y, z=z, yaw=yaw))
+        path = site.navigator.plan(start, Pose(x=x, y=y, z=z, yaw=yaw))
         self._follower = Follower(path, site.robot, None, site.body.pivot)
 
-    def _turned(self, motion: Motion | None, pose: BodyPose) -> bool:
-        """Whether the turn that is under way, if one is, only has to come to rest."""
+    def _is_turn_complete(self, motion: Motion | None, pose: BodyPose) -> bool:
+        """Return True if the motion is a turn at whose end the robot only has to come to rest."""
         if motion is None or not motion.turn:
             return False
-        return abs(wrap(motion.end.yaw - pose.yaw)) < _TURNED
+        return abs(wrap(motion.end.yaw - pose.yaw)) < _TURN_TOLERANCE
 
-    def _astray(self, motion: Motion, pose: BodyPose) -> bool:
+    def _is_off_path(self, motion: Motion, pose: BodyPose) -> bool:
         if motion.on_stairs:
             return False
         if motion.turn:
-            return math.hypot(pose.x - motion.start.x, pose.y - motion.start.y) > _ASTRAY
-        return abs(self._follower.deviation(motion, pose)[0]) > _ASTRAY
+            return math.hypot(pose.x - motion.start.x, pose.y - motion.start.y) > _MAX_DEVIATION
+        return abs(self._follower.deviation(motion, pose)[0]) > _MAX_DEVIATION
 
-    def _flight_of(self, motion: Motion | None) -> Flight | None:
-        """The flight that a motion goes over; looked at once."""
+    def _find_flight(self, motion: Motion | None) -> Flight | None:
+        """Return the flight of stairs of a motion, None on the level; cache the last one."""
         if motion is None or not motion.on_stairs:
             return None
         if self._flight is None or self._flight[0] is not motion:

@@ -1,4 +1,4 @@
-"""The way to a goal from wherever the robot is: seconds to go, and where to next."""
+"""Guide to a goal from any pose: the travel time, and the next point of the path."""
 
 import math
 from dataclasses import dataclass
@@ -16,28 +16,28 @@ from argo_env.robot.pose import BodyPose
 from argo_env.seeding import generator
 
 GOALS = 6  # on each floor
-AHEAD = 0.8  # m, how far ahead the waypoint is at most
-_KEPT = 64  # ways; one takes 12 bytes for each state of the lattice
+LOOKAHEAD = 0.8  # m from the robot to the waypoint at most
+_CACHED_GOALS = 64  # goals whose paths are cached; one takes 12 bytes for each state of the lattice
 
 
 @dataclass(frozen=True)
 class Waypoint:
-    """Where to go next."""
+    """Next point of the path to a goal."""
 
     x: float
     y: float
     z: float
     yaw: float
-    """rad, the heading that the robot should have there"""
+    """heading (rad) that the robot should have there"""
     seconds: float
-    """to the goal from where the robot is, at the planning speeds"""
+    """travel time from the robot to the goal at planning speeds"""
 
 
 class Guide:
-    """Knows the ways of one site. Holds its goals, and the ways to those that were asked for."""
+    """Guide for one site, which holds its possible goals and caches the paths to those in use."""
 
     def __init__(self, navigator: Navigator) -> None:
-        """Raises ArgoError if there is no place on the site to start from."""
+        """Collect the positions to start from; raise Unreachable if the site has none."""
         lattice = navigator.lattice
         self._lattice = lattice
         self._turn_rate = navigator.robot.turn_rate_radians
@@ -49,73 +49,92 @@ class Guide:
         self._tree = cKDTree(positions)
         self._headings = 2 * math.pi * np.arange(lattice.state_of.shape[1])
         self._headings /= lattice.state_of.shape[1]
-        found = {f.number: navigator.turning_poses(f.number) for f in navigator.site.spec.floors}
-        self._places = {
-            number: part[self._near(part) >= 0] for number, part in found.items() if len(part)
+        turning_poses = {
+            f.number: navigator.turning_poses(f.number) for f in navigator.site.spec.floors
         }
-        if not self._places:
+        self._positions = {
+            number: poses[self._nearest_cells(poses) >= 0]
+            for number, poses in turning_poses.items()
+            if len(poses)
+        }
+        if not self._positions:
             name = navigator.site.name
             raise Unreachable(
-                f"site {name} has no place where the robot has room to turn all round"
+                f"site {name} has no position where the robot has room to turn on the spot"
             )
-        self._to = lru_cache(maxsize=_KEPT)(self._search)
+        self._paths_to = lru_cache(maxsize=_CACHED_GOALS)(self._search)
 
     @property
     def floors(self) -> tuple[int, ...]:
-        """The floors where the robot can start and arrive."""
-        return tuple(self._places)
+        """Floors on which the robot can start and arrive."""
+        return tuple(self._positions)
 
     def goals(self, floors: tuple[int, ...]) -> NDArray[np.float64]:
-        """Places (x, y, z) that may be goals on these floors, always the same ones; (n, 3)."""
+        """Return the possible goals (x, y, z) on these floors, shape (n, 3).
+
+        They are the same each time.
+        """
         parts = []
         for floor in floors:
-            places = self._places[floor]
-            chosen = generator(0, "goals", floor).permutation(len(places))[:GOALS]
-            parts.append(places[np.sort(chosen), :3])
+            positions = self._positions[floor]
+            chosen = generator(0, "goals", floor).permutation(len(positions))[:GOALS]
+            parts.append(positions[np.sort(chosen), :3])
         return np.concatenate(parts)
 
     def starts(
-        self, goal: tuple[float, float, float], floors: tuple[int, ...], nearest: float, most: float
+        self,
+        goal: tuple[float, float, float],
+        floors: tuple[int, ...],
+        shortest: float,
+        longest: float,
     ) -> NDArray[np.float64]:
-        """Places (x, y, z) on these floors with between `nearest` and `most` s to the goal, if
-        there are any; else those with the least above that. Shape (n, 3)."""
-        places = np.concatenate([self._places[floor] for floor in floors])[:, :3]
-        seconds, _ = self._to(goal)
-        cells = self._cells[self._tree.query(places)[1]]
-        states = self._lattice.state_of[cells]
-        togo = np.where(states >= 0, seconds[states], np.inf).min(axis=1)
-        fit = (togo >= nearest) & (togo <= most)
-        if not fit.any():
-            above = np.where(togo >= nearest, togo, np.inf)
-            fit = above == above.min()
-        return np.asarray(places[fit])
+        """Return start positions (x, y, z) on these floors, shape (n, 3).
 
-    def look(self, goal: tuple[float, float, float], pose: BodyPose) -> Waypoint:
-        """Where to go next from a pose. Where no state of the lattice is near, as beside the
-        walkway, the nearest one counts."""
+        Their travel times to the goal are between `shortest` and `longest` (s). If there are none,
+        those with the lowest time of at least `shortest` are returned.
+        """
+        positions = np.concatenate([self._positions[floor] for floor in floors])[:, :3]
+        seconds, _ = self._paths_to(goal)
+        cells = self._cells[self._tree.query(positions)[1]]
+        states = self._lattice.state_of[cells]
+        time_to_goal = np.where(states >= 0, seconds[states], np.inf).min(axis=1)
+        suitable = (time_to_goal >= shortest) & (time_to_goal <= longest)
+        if not suitable.any():
+            above = np.where(time_to_goal >= shortest, time_to_goal, np.inf)
+            suitable = above == above.min()
+        return np.asarray(positions[suitable])
+
+    def find_waypoint(self, goal: tuple[float, float, float], pose: BodyPose) -> Waypoint:
+        """Return the next point of the path from a pose to the goal.
+
+        If no state of the lattice is near the pose, as beside the walkway, the nearest one is used.
+        """
         lattice = self._lattice
-        seconds, following = self._to(goal)
-        away, nearest = self._tree.query((pose.x, pose.y, pose.z))
+        seconds, following = self._paths_to(goal)
+        distance, nearest = self._tree.query((pose.x, pose.y, pose.z))
         states = lattice.state_of[self._cells[nearest]]
         turns = np.abs((pose.yaw - self._headings + math.pi) % (2 * math.pi) - math.pi)
         costs = np.where(states >= 0, seconds[states], np.inf) + turns / self._turn_rate
         best = int(np.argmin(costs))
-        togo = float(costs[best]) + float(away) / self._speed
-        x, y, z, yaw = self._ahead(int(states[best]), following, pose)
-        return Waypoint(x, y, z, yaw, togo)
+        time_to_goal = float(costs[best]) + float(distance) / self._speed
+        x, y, z, yaw = self._next_point(int(states[best]), following, pose)
+        return Waypoint(x, y, z, yaw, time_to_goal)
 
-    def _ahead(
+    def _next_point(
         self, state: int, following: NDArray[np.int32], pose: BodyPose
     ) -> tuple[float, float, float, float]:
-        """The place on the way where it turns next, at most AHEAD from the robot."""
+        """Return the pose where the path turns next, about LOOKAHEAD from the robot at most."""
         poses, cell, heading = self._poses, self._lattice.cell, self._lattice.heading
-        # Turns on the spot come first: then the way goes on as the last of them leaves it.
-        while (then := following.item(state)) >= 0 and cell[then] == cell[state]:
-            state = then
+        # Turns on the spot come first; the path continues with the heading after the last of them.
+        while (successor := following.item(state)) >= 0 and cell[successor] == cell[state]:
+            state = successor
         straight = heading[state]
-        while (then := following.item(state)) >= 0 and heading[then] == straight:
-            state = then
-            if math.hypot(poses.item(state, 0) - pose.x, poses.item(state, 1) - pose.y) >= AHEAD:
+        while (successor := following.item(state)) >= 0 and heading[successor] == straight:
+            state = successor
+            if (
+                math.hypot(poses.item(state, 0) - pose.x, poses.item(state, 1) - pose.y)
+                >= LOOKAHEAD
+            ):
                 break
         x, y, z, yaw = poses[state].tolist()
         return x, y, z, wrap(yaw)
@@ -123,7 +142,7 @@ class Guide:
     def _search(
         self, goal: tuple[float, float, float]
     ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-        """Seconds to the goal from every state, and the state after each on the way there."""
+        """Return the travel time (s) from each state to the goal, and the state that follows it."""
         cell = self._cells[self._tree.query(goal)[1]]
         states = self._lattice.state_of[cell]
         seconds, after, _ = dijkstra(
@@ -134,7 +153,7 @@ class Guide:
         )
         return seconds, after
 
-    def _near(self, places: NDArray[np.float64]) -> NDArray[np.int64]:
-        """The nearest cell of each place, -1 where there is none within 10 cm."""
-        away, nearest = self._tree.query(places[:, :3])
-        return np.where(away <= 0.1, nearest, -1)
+    def _nearest_cells(self, positions: NDArray[np.float64]) -> NDArray[np.int64]:
+        """Return the cell nearest to each position, -1 if none is within 10 cm."""
+        distance, nearest = self._tree.query(positions[:, :3])
+        return np.where(distance <= 0.1, nearest, -1)

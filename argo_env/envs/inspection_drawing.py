@@ -1,4 +1,4 @@
-"""Inspections as pictures."""
+"""Pictures of inspections."""
 
 from collections.abc import Sequence
 
@@ -27,11 +27,19 @@ def draw_inspection(
     end: int,
     headline: str,
 ) -> NDArray[np.uint8]:
-    """The run so far: the state of each checkpoint, in the order of their numbers; the place that
-    was `chosen` last, and the place in the order of the docks of the one where it has to `end`."""
+    """Draw the run so far, shape (720, 1280, 3).
+
+    Args:
+        scenario: Name or file of the site.
+        run: The inspection.
+        states: State of each checkpoint, in the order of their numbers.
+        chosen: Slot that was chosen last; None if none was.
+        end: Index of the end dock, in the order of the docks' numbers.
+        headline: Text above the plan.
+    """
     site = run.navigator.site
-    way = [Moment(t, p.x, p.y, site.floor_at(p.z)) for t, p in run.trail]
-    asked = {c.floor for c, s in zip(site.checkpoints, states, strict=True) if s != "outside"}
+    path = [Moment(t, p.x, p.y, site.floor_at(p.z)) for t, p in run.trail]
+    requested = {c.floor for c, s in zip(site.checkpoints, states, strict=True) if s != "outside"}
     markers = [
         Marker(c.position[0], c.position[1], c.floor, str(c.id), state, chosen=k == chosen)
         for k, (c, state) in enumerate(zip(site.checkpoints, states, strict=True))
@@ -41,12 +49,12 @@ def draw_inspection(
         pose = site.docks[number]
         name = f"dock {number}, end" if k == end else f"dock {number}"
         stations.append(StationMark(pose.x, pose.y, site.floor_at(pose.z), name))
-    used = asked | {s.floor for s in stations} | {spot.floor for spot in way}
-    sheet = site_sheet(scenario, min(used), max(used), tuple(sorted(asked)))
+    used = requested | {s.floor for s in stations} | {spot.floor for spot in path}
+    sheet = site_sheet(scenario, min(used), max(used), tuple(sorted(requested)))
     shown = [marker for marker in markers if marker.floor in sheet.panels]
     noticed = ", ".join(dict.fromkeys(kind.value.replace("_", " ") for kind in run.noticed))
     headline += f"    noticed: {noticed or 'nothing'}"
     footprint, heading = run.navigator.robot.footprint, run.pose.yaw
     return draw_plan(
-        sheet, PlanDrawing(headline, shown, stations, way, heading, footprint, _LEGEND)
+        sheet, PlanDrawing(headline, shown, stations, path, heading, footprint, _LEGEND)
     )

@@ -1,5 +1,7 @@
-"""An inspection under way, a simulation whose tasks are given one by one; and estimates of the
-travel times from any place to all docks and checkpoints of a site."""
+"""Inspection under way: a simulation that gets its tasks one by one, and estimated travel times.
+
+The travel times are those from any pose to all docks and checkpoints of a site.
+"""
 
 import math
 import weakref
@@ -30,25 +32,25 @@ from argo_env.run.simulation import Simulation
 from argo_env.run.validation import CheckedRun
 from argo_env.site.shapes import Vector
 
-FULL = 0.999  # charge from where on the battery counts as full
-_ESTIMATED = 1000  # steps of charging for which the charge is estimated ahead
-_TRAIL = 0.15  # m between poses that are kept
-_ROUNDING = 1e-6  # m, left by sums of floats
+FULL = 0.999  # charge from which on the battery counts as full
+_PREDICTED_STEPS = 1000  # steps of charging that are predicted at most
+_TRAIL_SPACING = 0.15  # m between the poses of a trail
+_ROUNDING = 1e-6  # m, error of sums of floats
 
 
 @dataclass(frozen=True)
-class Deed:
-    """What an action came to."""
+class ActionResult:
+    """Result of an action: the reading or the failure, and what happened during it."""
 
     reading: Reading | None = None
     failure: str | None = None
-    found: tuple[Anomaly, ...] = ()
-    trouble: tuple[Mishap, ...] = ()
+    anomalies: tuple[Anomaly, ...] = ()
+    mishaps: tuple[Mishap, ...] = ()
     contacts: int = 0
 
 
 class Inspection(Closing):
-    """A robot on a site with all that may go wrong. Holds the simulation; close it."""
+    """Robot on a site with all that may go wrong; it holds the simulation. Close it."""
 
     def __init__(
         self,
@@ -56,41 +58,43 @@ class Inspection(Closing):
         limit: float,
         observers: Sequence[Observer] = (),
     ) -> None:
-        """The run's mission begins where the robot is, and has no other task. The run is over
-        after `limit` s."""
+        """Start the simulation, which ends after `limit` s.
+
+        The run's mission must consist of the task in which the robot starts, and of no other.
+        """
         self._machine = OpenMachine(run.spec.mission)
-        self._told = _Told()
-        told = [self._told, *observers]
-        self._simulation = Simulation(self._machine, run.site, run, observers=told)
+        self._observer = _ActionObserver()
+        all_observers = [self._observer, *observers]
+        self._simulation = Simulation(self._machine, run.site, run, observers=all_observers)
         self._drive = self._simulation.setup.drive
         self._limit = limit
         self._tasks: dict[str, int] = {}
         self._noticed: list[EventKind] = []
         self._trail: list[tuple[float, BodyPose]] = []
-        self._mark(self.now, self._drive.pose)
+        self._record_pose(self.now, self._drive.pose)
 
     def close(self) -> None:
-        """Ends the run; only its record can be asked for afterwards."""
+        """End the run; only its record is available afterwards."""
         self._simulation.close()
 
     @property
     def now(self) -> float:
-        """s since the start."""
+        """Seconds since the start."""
         return self._simulation.now
 
     @property
-    def time_up(self) -> bool:
+    def is_time_up(self) -> bool:
         return self.now >= self._limit - 1e-6
 
     @property
-    def dead(self) -> bool:
-        """Whether the battery is empty."""
+    def is_battery_empty(self) -> bool:
+        """True if the battery is empty."""
         battery = self._simulation.setup.battery
         return battery is not None and battery.is_empty
 
     @property
     def charge(self) -> float:
-        """0 to 1, as the robot makes it out of the battery's voltage and current."""
+        """Charge, 0 to 1, as the robot estimates it from the battery's voltage and current."""
         battery = self._simulation.setup.battery
         return 1.0 if battery is None else estimated_charge(battery.voltage, battery.current)
 
@@ -100,50 +104,50 @@ class Inspection(Closing):
 
     @property
     def trail(self) -> tuple[tuple[float, BodyPose], ...]:
-        """Times (s) and poses, so near to one another that they show the way; the last is now."""
+        """Times (s) and poses, close enough to each other to show the path; the last one is now."""
         return (*self._trail, (self.now, self.pose))
 
     @property
     def navigator(self) -> Navigator:
-        """The site as the robot knows it, less what it has found to be closed."""
+        """Navigator with the site as the robot knows it, without what it has found to be closed."""
         return self._simulation.setup.navigator
 
     @property
     def noticed(self) -> tuple[EventKind, ...]:
-        """The kinds of what was found so far."""
+        """Kinds of the anomalies noticed so far."""
         return tuple(self._noticed)
 
     def record(self) -> RunRecord:
-        """The record of the run as it stands."""
+        """Return the record of the run so far."""
         return self._simulation.record()
 
-    def read(self, checkpoint: int) -> Deed:
-        """Drives to where the checkpoint can be read, and reads it."""
+    def measure_checkpoint(self, checkpoint: int) -> ActionResult:
+        """Drive to a pose from which the checkpoint can be read, and read it."""
         name, id = self._name(f"read {checkpoint}"), str(checkpoint)
         return self._carry_out(Task(name=name, action=Action.MEASURE, object_id=id))
 
-    def drive(self, pose: Pose) -> Deed:
-        """Drives there."""
+    def drive_to(self, pose: Pose) -> ActionResult:
+        """Drive to a pose."""
         return self._carry_out(Task(name=self._name("drive"), action=Action.WAYPOINT, pose=pose))
 
-    def stand(self, seconds: float, charging: bool = False) -> Deed:
-        """Stands still for so long, and with `charging` until the battery is full."""
-        self._told.clear()
+    def stay(self, seconds: float, charging: bool = False) -> ActionResult:
+        """Stay for so many seconds; with `charging` also until the battery is full."""
+        self._observer.clear()
         end = self.now + seconds
         while not self._over and (self.now < end or (charging and self.charge < FULL)):
-            self._step(end if self.now < end else self._surely_not_full)
-        if self.time_up:
+            self._advance(end if self.now < end else self._earliest_full_time)
+        if self.is_time_up:
             self._stop()
-        return self._deed()
+        return self._action_result()
 
-    def finish(self) -> None:
-        """No task will follow: the run ends with the last one."""
+    def end_mission(self) -> None:
+        """End the mission after the last task, and with it the run."""
         self._machine.close()
         self._simulation.end_if_finished()
 
     @property
-    def _surely_not_full(self) -> float:
-        """s, a time up to which the battery can't be found full, however it is charged."""
+    def _earliest_full_time(self) -> float:
+        """Time (s) up to which the estimated charge can't be full, however the battery charges."""
         battery = self._simulation.setup.battery
         assert battery is not None
         watts, seconds = (
@@ -154,86 +158,93 @@ class Inspection(Closing):
         charges = battery.current < 0.0
         if missing > 0.0 or not charges:
             return self.now + max(0.0, missing) * 3600.0 / watts
-        return self.now + battery.steps_until(FULL, -watts, seconds, _ESTIMATED) * seconds
+        return self.now + battery.steps_until(FULL, -watts, seconds, _PREDICTED_STEPS) * seconds
 
     @property
     def _over(self) -> bool:
-        return self._simulation.ended or self.time_up
+        return self._simulation.ended or self.is_time_up
 
-    def _carry_out(self, task: Task) -> Deed:
-        self._told.clear()
+    def _carry_out(self, task: Task) -> ActionResult:
+        self._observer.clear()
         began = self.now
         self._simulation.append_task(task)
         while self._simulation.task is not None and not self._over:
-            self._step(math.inf)
-        if self.time_up:
+            self._advance(math.inf)
+        if self.is_time_up:
             self._stop()
-        return self._deed(began)
+        return self._action_result(began)
 
     def _stop(self) -> None:
         if not self._simulation.ended:
             self._simulation.handle(StopRun(f"the time limit of {self._limit:g} s was reached"))
 
-    def _step(self, until: float) -> None:
-        """Goes on for one time step, or for many up to that time (s)."""
+    def _advance(self, until: float) -> None:
+        """Let time pass by one time step, or by many up to the time `until` (s)."""
         began = self.now
-        places = self._simulation.fast_forward(min(until, self._limit))
-        for number in _apart(_position(self._trail[-1][1]), places):
-            now = round(began + (number + 1) * self._drive.time_step, 6)
-            self._trail.append((now, BodyPose(*pose_tuple_at(places, number))))
-        self._mark(self.now, self._drive.pose)
+        poses = self._simulation.fast_forward(min(until, self._limit))
+        for index in _spaced_indices(_position(self._trail[-1][1]), poses):
+            now = round(began + (index + 1) * self._drive.time_step, 6)
+            self._trail.append((now, BodyPose(*pose_tuple_at(poses, index))))
+        self._record_pose(self.now, self._drive.pose)
 
-    def _deed(self, began: float = math.inf) -> Deed:
-        """What came since the clearing; contacts are those with a touch after time `began` (s)."""
-        told = self._told
-        found = tuple(n for n in told.sensed if isinstance(n, Anomaly))
-        self._noticed += [anomaly.kind for anomaly in found]
-        touched = {(c.start, c.link, c.element) for c in told.contacts() if c.end > began}
-        return Deed(told.reading, told.failure, found, tuple(told.mishaps), len(touched))
+    def _action_result(self, began: float = math.inf) -> ActionResult:
+        """Return what has happened since the observer was cleared.
+
+        It counts contacts in which there was a touch after the time `began` (s).
+        """
+        observer = self._observer
+        anomalies = tuple(n for n in observer.sensed if isinstance(n, Anomaly))
+        self._noticed += [anomaly.kind for anomaly in anomalies]
+        touched = {(c.start, c.link, c.element) for c in observer.contacts() if c.end > began}
+        return ActionResult(
+            observer.reading, observer.failure, anomalies, tuple(observer.mishaps), len(touched)
+        )
 
     def _name(self, what: str) -> str:
-        """A name that no task has yet."""
+        """Return a name that no task has yet."""
         self._tasks[what] = count = self._tasks.get(what, 0) + 1
         return what if count == 1 else f"{what} ({count})"
 
-    def _mark(self, now: float, pose: BodyPose) -> None:
-        """Keeps the pose at time `now` (s) if the robot is far enough from the last one kept."""
+    def _record_pose(self, now: float, pose: BodyPose) -> None:
+        """Add the pose at time `now` (s) to the trail if it is far enough from the last one."""
         if self._trail:
             last = self._trail[-1][1]
             if pose is last:
                 return
-            if math.dist(_position(pose), _position(last)) < _TRAIL:
+            if math.dist(_position(pose), _position(last)) < _TRAIL_SPACING:
                 return
         self._trail.append((now, pose))
 
 
-def _apart(last: Vector, places: PoseArray) -> Iterator[int]:
-    """The numbers of the places that are as far as `_TRAIL` from `last` (m), each then being the
-    last one for the next."""
-    if not len(places):
+def _spaced_indices(last: Vector, poses: PoseArray) -> Iterator[int]:
+    """Yield the indices of poses that are _TRAIL_SPACING or more from the preceding one.
+
+    The first one is that far from the position `last` (m).
+    """
+    if not len(poses):
         return
-    points = places[:, :3].tolist()
-    # No place is farther away than the way to it is long.
-    ways = np.linalg.norm(np.diff(places[:, :3], axis=0), axis=1)
-    gone = [*accumulate(ways.tolist(), initial=math.dist(last, points[0]))]
-    number, begun = 0, 0.0
+    points = poses[:, :3].tolist()
+    # The distance to a pose is at most the length of the path to it.
+    lengths = np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1)
+    distances = [*accumulate(lengths.tolist(), initial=math.dist(last, points[0]))]
+    index, passed = 0, 0.0
     while True:
-        number = bisect_left(gone, begun + _TRAIL - _ROUNDING, number)
-        while number < len(points) and math.dist(points[number], last) < _TRAIL:
-            number += 1
-        if number == len(points):
+        index = bisect_left(distances, passed + _TRAIL_SPACING - _ROUNDING, index)
+        while index < len(points) and math.dist(points[index], last) < _TRAIL_SPACING:
+            index += 1
+        if index == len(points):
             return
-        yield number
-        last, begun = points[number], gone[number]
-        number += 1
+        yield index
+        last, passed = points[index], distances[index]
+        index += 1
 
 
 def _position(pose: BodyPose) -> Vector:
     return pose.x, pose.y, pose.z
 
 
-class _Told(Observer):
-    """Holds what was told of the run since it was cleared."""
+class _ActionObserver(Observer):
+    """Observer that holds what has happened in the run since it was cleared."""
 
     wants_samples = False
 
@@ -245,86 +256,93 @@ class _Told(Observer):
         self.reading: Reading | None = None
         self.failure: str | None = None
         self.mishaps: list[Mishap] = []
-        self._over: list[Contact] = []
-        self._open: tuple[Contact, ...] = ()
+        self._ended_contacts: list[Contact] = []
+        self._present_contacts: tuple[Contact, ...] = ()
 
     def contacts(self) -> tuple[Contact, ...]:
-        """Those that are over, then those that may go on."""
-        return (*self._over, *self._open)
+        """Return the contacts that have ended, then those that may continue."""
+        return (*self._ended_contacts, *self._present_contacts)
 
     def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
         self.sensed += entry.sensed
         self.reading = entry.reading or self.reading
         self.mishaps += entry.mishaps
-        self._over += entry.contacts
-        self._open = entry.touching
+        self._ended_contacts += entry.contacts
+        self._present_contacts = entry.touching
         for event in entry.events:
             original = event.to_event()
             if isinstance(original, ActionFailed):
                 self.failure = original.reason
 
 
-def beginning(site: OpenedSite, start: Pose) -> Mission:
-    """The mission of an inspection before its first task: the robot stands at `start`."""
+def initial_mission(site: OpenedSite, start: Pose) -> Mission:
+    """Return the mission of an inspection before its first task, in which it starts at `start`."""
     task = Task(name="START", action=Action.START, pose=start)
     return Mission(site=site.name, tasks=(task,))
 
 
-_NEAR = 1.0  # m from a dock or view within which the robot is taken to be there
+_NEAR = 1.0  # m from a dock or a viewing pose, within which the robot counts as there
 
 
 class TravelTimes:
-    """What the ways between docks and checkpoints of a site take. Holds what it has worked out."""
+    """Travel times between docks and checkpoints of a site; it caches what it has computed."""
 
     def __init__(self, navigator: Navigator) -> None:
         self._navigator = weakref.ref(navigator)
         site = navigator.site
         docks = [site.docks[number] for number in sorted(site.docks)]
-        self._places = [*docks, *(_view(navigator, c.id) for c in site.checkpoints)]
-        self._known = known = [k for k, place in enumerate(self._places) if place is not None]
-        places = [place for place in self._places if place is not None]
-        self._times = np.full((len(self._places), len(self._places)), np.inf)
-        self._times[np.ix_(known, known)] = navigator.travel_times(places)
+        self._poses = [*docks, *(_viewing_pose(navigator, c.id) for c in site.checkpoints)]
+        self._reachable = reachable = [
+            k for k, place in enumerate(self._poses) if place is not None
+        ]
+        poses = [place for place in self._poses if place is not None]
+        self._times = np.full((len(self._poses), len(self._poses)), np.inf)
+        self._times[np.ix_(reachable, reachable)] = navigator.travel_times(poses)
         self._from_everywhere = navigator.parts.load_or_make(
-            "travel-times", lambda: {"times": navigator.travel_times_to(places)}
+            "travel-times", lambda: {"times": navigator.travel_times_to(poses)}
         )["times"]
 
-    def row(self, pose: BodyPose, navigator: Navigator) -> NDArray[np.float64]:
-        """Estimated s from a pose to the docks and then to the checkpoints, in the order of their
-        numbers, infinite where there is no way: as the site is known to `navigator`."""
+    def times_from(self, pose: BodyPose, navigator: Navigator) -> NDArray[np.float64]:
+        """Return estimated times (s) from a pose to the docks and then to the checkpoints.
+
+        Both are in the order of their numbers. Times are infinite where there is no path on the
+        site as `navigator` knows it.
+        """
         if navigator is self._navigator():
             apart = [
                 np.inf
                 if place is None
                 else math.dist((place.x, place.y, place.z), (pose.x, pose.y, pose.z))
-                for place in self._places
+                for place in self._poses
             ]
             nearest = int(np.argmin(apart))
             if apart[nearest] <= _NEAR:
                 return np.asarray(self._times[nearest])
         here = Pose(x=pose.x, y=pose.y, z=pose.z, yaw=pose.yaw)
-        row = np.full(len(self._places), np.inf)
+        row = np.full(len(self._poses), np.inf)
         try:
             state = navigator.state_at(here)
         except Unreachable:
             return row
         if navigator is self._navigator():
-            row[self._known] = self._from_everywhere[:, state]
+            row[self._reachable] = self._from_everywhere[:, state]
             return row
-        known = [k for k, place in enumerate(self._places) if place and _free(navigator, place)]
-        places = [place for k in known if (place := self._places[k])]
-        row[known] = navigator.travel_times_from(here, places)
+        reachable = [
+            k for k, place in enumerate(self._poses) if place and _can_stand_at(navigator, place)
+        ]
+        poses = [place for k in reachable if (place := self._poses[k])]
+        row[reachable] = navigator.travel_times_from(here, poses)
         return row
 
 
-def _view(navigator: Navigator, checkpoint: int) -> Pose | None:
+def _viewing_pose(navigator: Navigator, checkpoint: int) -> Pose | None:
     try:
         return navigator.viewing_pose(checkpoint)
     except Unreachable:
         return None
 
 
-def _free(navigator: Navigator, pose: Pose) -> bool:
+def _can_stand_at(navigator: Navigator, pose: Pose) -> bool:
     try:
         navigator.state_at(pose)
     except Unreachable:
@@ -332,11 +350,11 @@ def _free(navigator: Navigator, pose: Pose) -> bool:
     return True
 
 
-_found: WeakKeyDictionary[Navigator, TravelTimes] = WeakKeyDictionary()
+_cached_times: WeakKeyDictionary[Navigator, TravelTimes] = WeakKeyDictionary()
 
 
-def travel_times(navigator: Navigator) -> TravelTimes:
-    """The travel times of a navigator's site, found once and kept as long as the navigator."""
-    if navigator not in _found:
-        _found[navigator] = TravelTimes(navigator)
-    return _found[navigator]
+def cached_travel_times(navigator: Navigator) -> TravelTimes:
+    """Return the travel times of a navigator's site, computed once and kept as long as it."""
+    if navigator not in _cached_times:
+        _cached_times[navigator] = TravelTimes(navigator)
+    return _cached_times[navigator]

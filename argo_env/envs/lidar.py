@@ -1,4 +1,4 @@
-"""What Drive-v0 sees: a level ring of rays around the robot, and the ground below and about it."""
+"""Distances that Drive-v0 observes: a level ring of rays, and the height of the ground."""
 
 import math
 
@@ -10,28 +10,33 @@ from argo_env.world.world import World
 
 RAYS = 32
 RANGE = 5.0  # m
-HEIGHT = 0.45  # m of the ring above the robot's point on the ground
-ALONG = np.linspace(-1.25, 1.25, 11)  # m ahead of the robot's middle, of the points on the ground
-ASIDE = (-0.23, 0.23)  # m to the left: below the tracks
-DEPTH = 1.0  # m up and down that the ground is told of
-_ABOVE = 0.8  # m over the robot's point from where the ground is looked for
+HEIGHT = 0.45  # m from the robot's point on the ground up to the ring
+ALONG = np.linspace(-1.25, 1.25, 11)  # m ahead of the robot's middle, where the ground is observed
+ASIDE = (-0.23, 0.23)  # m to the left: below the right and the left track
+DEPTH = 1.0  # m up and down, the limits of the observed heights
+_ABOVE = 0.8  # m above the robot's point, where the rays down start
 
 _ANGLES = 2 * math.pi * np.arange(RAYS) / RAYS
 _GROUND = np.array([(x, y) for x in ALONG for y in ASIDE])
 
 
-def ring(world: World, pose: BodyPose) -> NDArray[np.float64]:
-    """Distances (m) to the first thing in each direction, counter-clockwise from straight ahead,
-    at most RANGE, shape (RAYS,)."""
+def ray_distances(world: World, pose: BodyPose) -> NDArray[np.float64]:
+    """Return the distances (m) to the nearest solid in each direction, shape (RAYS,).
+
+    The directions are counter-clockwise from straight ahead. Distances are at most RANGE.
+    """
     angles = pose.yaw + _ANGLES
     origin = (pose.x, pose.y, pose.z + HEIGHT)
     ends = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(RAYS)]) * RANGE
     return np.minimum(world.ranges(origin, ends + np.array(origin)), RANGE)
 
 
-def ground(world: World, pose: BodyPose) -> NDArray[np.float64]:
-    """Heights (m) of the ground above the robot's point, at most DEPTH up or down, along the right
-    and the left track from rear to front, shape (2 * len(ALONG),)."""
+def ground_heights(world: World, pose: BodyPose) -> NDArray[np.float64]:
+    """Return the heights (m) of the ground relative to the robot's point on the ground.
+
+    They are those along the right and the left track in turn, from rear to front, shape (2 *
+    len(ALONG),), and are limited to ±DEPTH.
+    """
     cos, sin = math.cos(pose.yaw), math.sin(pose.yaw)
     points = _GROUND @ np.array([[cos, sin], [-sin, cos]]) + np.array([pose.x, pose.y])
     heights = world.heights(points, np.full(len(points), pose.z + _ABOVE))

@@ -1,4 +1,4 @@
-"""Observations in parts, by name."""
+"""Observations with named parts."""
 
 from collections.abc import Mapping
 from typing import Any, cast
@@ -10,5 +10,5 @@ Observation = dict[str, NDArray[Any]]
 
 
 def dict_space(parts: Mapping[str, spaces.Space[Any]]) -> spaces.Space[Observation]:
-    """The space of observations with these parts."""
+    """Return the space of observations with these parts."""
     return cast("spaces.Space[Observation]", spaces.Dict(dict(parts)))

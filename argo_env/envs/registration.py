@@ -1,7 +1,7 @@
-"""How Gymnasium gets to know Argo's environments, without being imported for it.
+"""Registration of Argo's environments with Gymnasium, without importing it.
 
-Gymnasium and NumPy take longer to import than most of what a command does. So the environments are
-registered at once where Gymnasium has been imported already, and else right after it is.
+Gymnasium and NumPy take longer to import than most of the work of a command. So if Gymnasium has
+been imported already, the environments are registered at once, otherwise right after its import.
 """
 
 import sys
@@ -24,14 +24,15 @@ ENVIRONMENTS: dict[str, dict[str, str]] = {
         "vector_entry_point": "argo_env.envs.inspection:InspectVectorEnv",
     },
 }
-"""What is registered, by id: the tests run over all of them."""
+"""entry points of the registered environments, by id: the tests run over all of them"""
 
 _GYMNASIUM = "gymnasium"
 
 
 def register_with_gymnasium() -> None:
-    """Makes the environments known to Gymnasium, now or when it is imported; they are loaded when
-    one is made.
+    """Register the environments with Gymnasium, now or when it is imported.
+
+    Their modules are loaded when an environment is made.
     """
     if sys.modules.get(_GYMNASIUM):
         _register()
@@ -48,7 +49,7 @@ def _register() -> None:
 
 
 class _Finder(MetaPathFinder):
-    """Finds Gymnasium where the others find it, and has the environments registered with it."""
+    """Finder that finds Gymnasium as others do, and registers the environments with it."""
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
@@ -64,7 +65,7 @@ class _Finder(MetaPathFinder):
 
 
 class _RegisteringLoader(Loader):
-    """Loads a module as another loader does, then registers the environments."""
+    """Loader that loads a module as another loader does, then registers the environments."""
 
     def __init__(self, loader: Loader) -> None:
         self._loader = loader
@@ -73,7 +74,7 @@ class _RegisteringLoader(Loader):
         return self._loader.create_module(spec)
 
     def exec_module(self, module: ModuleType) -> None:
-        # The module is the other loader's: it is asked for the module's resources and source.
+        # The module keeps the other loader, which provides its resources and source.
         module.__loader__ = self._loader
         if module.__spec__:
             module.__spec__.loader = self._loader

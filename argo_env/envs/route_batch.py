@@ -1,4 +1,4 @@
-"""`argo/Route-v0` in batches: many routes at once, as arrays."""
+"""Batches of `argo/Route-v0`: many routes at once, as arrays."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -12,15 +12,15 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid
-from argo_env.envs.episode import Copying, check_render_mode, no_state, seeds_of
+from argo_env.envs.episode import Copyable, check_render_mode, expand_seeds, invalid_state_error
 from argo_env.envs.observations import Observation
-from argo_env.envs.options import check_whole
+from argo_env.envs.options import check_integer
 from argo_env.envs.route_drawing import draw_route
 from argo_env.envs.route_episodes import (
     FPS,
     Episodes,
     RouteOptions,
-    episode_number,
+    episode_hash,
     observation_space,
     read_route_options,
 )
@@ -28,15 +28,15 @@ from argo_env.envs.route_instance import DOCK, VISITED
 from argo_env.envs.route_sources import RouteSource
 
 _NAME = "argo/Route-v0"
-_MOST = 1_000_000  # routes
+_MAX_ENVS = 1_000_000  # routes
 
 
-class RouteVectorEnv(Copying, VectorEnv[Observation, NDArray[np.int64], NDArray[Any]]):
-    """Many routes at once, as `gymnasium.make_vec("argo/Route-v0", num_envs=1024,
-    vectorization_mode="vector_entry_point")` makes them.
+class RouteVectorEnv(Copyable, VectorEnv[Observation, NDArray[np.int64], NDArray[Any]]):
+    """Vector environment of many routes, which NumPy steps at once.
 
-    Each is to the bit what `RouteEnv` would be with the same seed and actions. A route that has
-    ended is begun anew by the next step, whose action for it is ignored and whose reward is 0:
+    `gymnasium.make_vec("argo/Route-v0", num_envs=1024, vectorization_mode="vector_entry_point")`
+    makes one. Each route equals, bit for bit, a `RouteEnv` with the same seed and actions. If a
+    route has ended, the next step starts a new one, ignores its action and gives reward 0:
     `metadata["autoreset_mode"]` is `AutoresetMode.NEXT_STEP`. Arguments and options are those of
     `RouteEnv`; the option `instance` may also be a list with one number for each route.
     """
@@ -58,9 +58,13 @@ class RouteVectorEnv(Copying, VectorEnv[Observation, NDArray[np.int64], NDArray[
         noise: Mapping[str, Any] | None = None,
         render_mode: str | None = None,
     ) -> None:
-        """Raises ArgoError if there is no such scenario, noise or render mode, or no route."""
+        """Create the batch; the docstring of `RouteEnv` describes the arguments.
+
+        Raises ArgoError if an argument is invalid, or if there is no such scenario, noise or render
+        mode.
+        """
         check_render_mode(render_mode, self.metadata["render_modes"])
-        check_whole(_NAME, 1, _MOST, num_envs=num_envs)
+        check_integer(_NAME, 1, _MAX_ENVS, num_envs=num_envs)
         self.num_envs = num_envs = int(num_envs)
         self.render_mode = render_mode
         self._full = full
@@ -70,7 +74,7 @@ class RouteVectorEnv(Copying, VectorEnv[Observation, NDArray[np.int64], NDArray[
         self.single_observation_space = observation_space(n, full)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
-        self._all = np.arange(num_envs)
+        self._all_rows = np.arange(num_envs)
         self._keys = np.zeros(num_envs, np.uint64)
         self._seeded = np.zeros(num_envs, np.bool_)
         self._episode = np.zeros(num_envs, np.uint64)
@@ -91,17 +95,17 @@ class RouteVectorEnv(Copying, VectorEnv[Observation, NDArray[np.int64], NDArray[
         seed: int | Sequence[int | None] | None = None,
         options: dict[str, Any] | None = None,
     ) -> tuple[Observation, dict[str, Any]]:
-        """Begins all routes; an int seeds them with seed, seed + 1 and so on."""
+        """Reset all routes; an int seeds them with seed, seed + 1 and so on."""
         if options is not None:
-            self._episodes.choose(read_route_options(options, self._episodes, self.num_envs))
-        seeds = seeds_of(seed, self.num_envs)
+            self._episodes.apply_options(read_route_options(options, self._episodes, self.num_envs))
+        seeds = expand_seeds(seed, self.num_envs)
         self._episode += 1
         for k, one in enumerate(seeds):
             if one is not None or not self._seeded[k]:
                 rng, _ = seeding.np_random(one)
                 self._keys[k], self._episode[k] = rng.integers(2**63), 0
         self._seeded[:] = True
-        self._begin(self._all)
+        self._start_routes(self._all_rows)
         observation = self._observe()
         every = np.ones(self.num_envs, np.bool_)
         return observation, {
@@ -112,61 +116,66 @@ class RouteVectorEnv(Copying, VectorEnv[Observation, NDArray[np.int64], NDArray[
     def step(
         self, actions: NDArray[np.int64]
     ) -> tuple[Observation, NDArray[Any], NDArray[Any], NDArray[Any], dict[str, Any]]:
-        mask, nodes = self._legal, self._nodes(actions)
-        rows, going, pool = self._all, ~self._ended, self._episodes.pool
+        mask, nodes = self._legal_actions, self._parse_actions(actions)
+        rows, continuing, pool = self._all_rows, ~self._ended, self._episodes.pool
         illegal = ~mask[rows, nodes]
         nodes = np.where(illegal, DOCK, nodes)
-        # Those that begin anew take part as well, and are put to their start after that.
-        anew = self._ended.nonzero()[0]
+        # Routes that restart take part as well, and are set to their start afterwards.
+        restarted = self._ended.nonzero()[0]
         rewards = pool.prizes[self._chosen, nodes]
         size = self._missing.shape[1]
         self._time += pool.arrival[self._known * (size + 1) + self._place, nodes]
         effect = pool.effect.take(self._chosen * size + nodes, axis=0)
         if pool.noisy:
-            failed = self._fail(nodes, rewards, effect)
+            failed = self._apply_failures(nodes, rewards, effect)
         else:
             self._prizes[rows, nodes] = 0.0
         self._missing -= effect
         self._place = nodes
         self._ended = nodes == DOCK
-        terms = {"prize": rewards.copy(), "_prize": going}
+        terms = {"prize": rewards.copy(), "_prize": continuing}
         info: dict[str, Any] = {}
         if pool.noisy:
             late = self._ended & (self._time > pool.budget[self._chosen])
-            lost = np.where(late & going, 0.0 - self._won, 0.0)
+            lost = np.where(late & continuing, 0.0 - self._won, 0.0)
             rewards += lost
-            terms |= {"late": lost, "_late": going}
-            info = {"late": late & going, "_late": going, "failed": failed, "_failed": going}
+            terms |= {"late": lost, "_late": continuing}
+            info = {
+                "late": late & continuing,
+                "_late": continuing,
+                "failed": failed,
+                "_failed": continuing,
+            }
             since = pool.since[self._chosen]
             passed = (self._time[:, None] >= since).sum(axis=1)
             self._known = self._chosen * pool.stages + passed
-        if anew.size:
-            self._episode[anew] += np.uint64(1)
-            self._begin(anew)
-            rewards[anew], illegal[anew] = 0.0, False
+        if restarted.size:
+            self._episode[restarted] += np.uint64(1)
+            self._start_routes(restarted)
+            rewards[restarted], illegal[restarted] = 0.0, False
         info |= {
             "terms": terms,
-            "_terms": going.copy(),
+            "_terms": continuing.copy(),
             "time": self._time.astype(np.float64),
-            "_time": going.copy(),
+            "_time": continuing.copy(),
             "illegal": illegal,
-            "_illegal": going.copy(),
+            "_illegal": continuing.copy(),
         }
-        if anew.size:
-            info["instance"] = np.where(going, 0, pool.numbers[self._chosen])
-            info["_instance"] = ~going
+        if restarted.size:
+            info["instance"] = np.where(continuing, 0, pool.numbers[self._chosen])
+            info["_instance"] = ~continuing
         truncated = np.zeros(self.num_envs, np.bool_)
         return self._observe(), rewards, self._ended.copy(), truncated, info
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Which actions are legal now, shape (num_envs, n + 1)."""
-        return self._legal.copy()
+        """Return which actions are legal now, shape (num_envs, n + 1)."""
+        return self._legal_actions.copy()
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
-        """A picture of each route's present state, without the way that led there."""
+        """Return a picture of each route's present state, without the path that led there."""
         if self.render_mode is None:
             return None
-        legal, episodes = self._legal, self._episodes
+        legal, episodes = self._legal_actions, self._episodes
         numbers = episodes.pool.numbers[self._chosen]
         return tuple(
             draw_route(
@@ -182,52 +191,54 @@ class RouteVectorEnv(Copying, VectorEnv[Observation, NDArray[np.int64], NDArray[
         )
 
     def get_state(self) -> dict[str, Any]:
-        """All that the future depends on, as plain data that can be pickled."""
-        kept = {name: getattr(self, name).copy() for name in _STATE}
-        return {"options": self._episodes.options, "arrays": kept}
+        """Return all that the future depends on, as plain data that can be pickled."""
+        arrays = {name: getattr(self, name).copy() for name in _STATE}
+        return {"options": self._episodes.options, "arrays": arrays}
 
     def set_state(self, state: Mapping[str, Any]) -> Observation:
-        """Goes on from what `get_state` gave; returns the observation of that moment. Raises
-        ArgoError if it is no state of such a batch, of the same size."""
-        if not self._fits(state):
-            raise no_state(f"a batch of {self.num_envs} {_NAME}")
-        self._episodes.choose(state["options"])
+        """Continue from a state that `get_state` returned, and return its observation.
+
+        Raises ArgoError if it is not a state of such a batch of the same size.
+        """
+        if not self._is_state(state):
+            raise invalid_state_error(f"a batch of {self.num_envs} {_NAME}")
+        self._episodes.apply_options(state["options"])
         for name, array in state["arrays"].items():
             getattr(self, name)[...] = array
         return self._observe()
 
-    def _copied_state(self) -> tuple[RouteOptions, dict[str, Any] | None]:
+    def _state_for_copy(self) -> tuple[RouteOptions, dict[str, Any] | None]:
         return self._episodes.options, None if self._mask is None else self.get_state()
 
-    def _go_on_from(self, state: tuple[RouteOptions, dict[str, Any] | None]) -> None:
+    def _restore_copy(self, state: tuple[RouteOptions, dict[str, Any] | None]) -> None:
         options, episodes = state
         if episodes is not None:
             self.set_state(episodes)
         elif options != self._episodes.options:
-            self._episodes.choose(options)
+            self._episodes.apply_options(options)
 
     @property
-    def _legal(self) -> NDArray[np.bool_]:
-        """The mask; ResetNeeded if there are no episodes yet."""
+    def _legal_actions(self) -> NDArray[np.bool_]:
+        """Mask of legal actions; raises ResetNeeded if there are no episodes yet."""
         if self._mask is None:
             raise gym.error.ResetNeeded(f"{_NAME}: no episode has begun: call reset")
         return self._mask
 
-    def _nodes(self, actions: Any) -> NDArray[np.int64]:
-        """The actions as an array, shape (num_envs,); ArgoError if they are none."""
+    def _parse_actions(self, actions: Any) -> NDArray[np.int64]:
+        """Return the actions as an array, shape (num_envs,); raise ArgoError for invalid ones."""
         nodes, size = np.asarray(actions), self._missing.shape[1]
         if nodes.shape == (self.num_envs,) and nodes.dtype.kind in "iu":
             nodes = np.ascontiguousarray(nodes, dtype=np.int64)
-            # As words, so that numbers below 0 are large ones.
+            # Negative numbers are large ones if they are read as unsigned.
             if nodes.view(np.uint64).max() < size:
                 return nodes
         raise Invalid(
-            f"{_NAME}: no actions {actions!r}; they are {self.num_envs} whole numbers, "
-            f"0 to {size - 1}"
+            f"{_NAME}: the actions are {actions!r}, and have to be {self.num_envs} whole numbers "
+            f"from 0 to {size - 1}"
         )
 
-    def _fits(self, state: Any) -> bool:
-        """Whether it is a state of such a batch."""
+    def _is_state(self, state: Any) -> bool:
+        """Return True if this is a state of such a batch."""
         if not isinstance(state, Mapping) or state.keys() != {"options", "arrays"}:
             return False
         options, arrays = state["options"], state["arrays"]
@@ -239,12 +250,14 @@ class RouteVectorEnv(Copying, VectorEnv[Observation, NDArray[np.int64], NDArray[
             for name in _STATE
         )
 
-    def _fail(
+    def _apply_failures(
         self, nodes: NDArray[np.int64], prizes: NDArray[np.float64], effect: NDArray[np.int16]
     ) -> NDArray[np.bool_]:
-        """Which visits fail; takes their prizes and their effect from the arrays given, and keeps
-        what the others win."""
-        rows = self._all
+        """Return which visits fail, shape (num_envs,), and update what the other visits win.
+
+        The prizes and the effects of visits that fail are set to 0 in `prizes` and `effect`.
+        """
+        rows = self._all_rows
         failed = self._failing[rows, nodes] > 0
         self._failing[rows, nodes] -= failed
         prizes[failed], effect[failed] = 0.0, 0
@@ -252,11 +265,11 @@ class RouteVectorEnv(Copying, VectorEnv[Observation, NDArray[np.int64], NDArray[
         self._won += prizes
         return failed
 
-    def _begin(self, rows: NDArray[np.int64]) -> None:
-        """New instances for these routes."""
+    def _start_routes(self, rows: NDArray[np.int64]) -> None:
+        """Start new instances in these rows."""
         pool = self._episodes.pool
-        drawn = episode_number(self._keys[rows], self._episode[rows])
-        chosen = pool.choose(rows, drawn)
+        drawn = episode_hash(self._keys[rows], self._episode[rows])
+        chosen = pool.select_rows(rows, drawn)
         self._chosen[rows] = chosen
         self._known[rows] = chosen * pool.stages
         self._missing[rows] = pool.missing[chosen]
@@ -277,7 +290,7 @@ class RouteVectorEnv(Copying, VectorEnv[Observation, NDArray[np.int64], NDArray[
         mask &= self._missing == 0
         mask[:, DOCK] = True
         self._mask = mask
-        if pool.noisy:  # one that is docked too late has no time left
+        if pool.noisy:  # a robot that docks too late has no time left
             np.maximum(left, np.float32(0.0), out=left)
         observation: Observation = {
             "travel": pool.travel.take(row, axis=0),

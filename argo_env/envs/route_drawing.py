@@ -1,4 +1,4 @@
-"""Routes as pictures: where the way leads depends on where the instances come from."""
+"""Pictures of routes; the source of an instance determines the paths between its positions."""
 
 from collections.abc import Collection, Iterable, Sequence
 from itertools import pairwise, product
@@ -19,67 +19,76 @@ from argo_env.pictures.drawing.way import Moment
 from argo_env.planning import open_site
 from argo_env.robot.spec import Footprint
 
-Place = tuple[float, float, int]
+Position = tuple[float, float, int]
 """x, y (m) and floor"""
 
-_STEP = 0.25  # m between the places of a way on a site
+_STEP = 0.25  # m between the points of a path on a site
 
 
 class LegPaths(Protocol):
-    """The ways from place to place."""
+    """Protocol of the paths between positions."""
 
     footprint: Footprint | None
-    """of the robot; None: it is a point"""
+    """footprint of the robot; None if it is a point"""
 
-    def stand(self, place: Place) -> tuple[Place, float]:
-        """Where the robot stands when it is at a place, and its heading (rad)."""
+    def robot_pose_at(self, position: Position) -> tuple[Position, float]:
+        """Return the point where the robot stands for a position, and its heading (rad)."""
         ...
 
-    def go(self, a: Place, b: Place, blocked: tuple[Stair, ...]) -> tuple[list[Place], float]:
-        """The way that avoids stairs that are blocked, and the heading at its end."""
+    def path_between(
+        self, a: Position, b: Position, blocked: tuple[Stair, ...]
+    ) -> tuple[list[Position], float]:
+        """Return the path that avoids the blocked stairs, and the heading (rad) at its end."""
         ...
 
 
-def legs_of(source: RouteSource) -> LegPaths:
-    """The ways between the places of a source's instances."""
+def leg_paths_for(source: RouteSource) -> LegPaths:
+    """Return the paths between the positions of a source's instances."""
     if isinstance(source, SiteRoutes):
         return _SiteLegs(open_site(source.scenario).navigator)
     return _AisleLegs(source.ends) if isinstance(source, RandomRoutes) else _StraightLegs()
 
 
 class _StraightLegs:
-    """From place to place, as of their site nothing is known."""
+    """Straight paths between positions, for sources about whose sites nothing is known."""
 
     footprint: Footprint | None = None
 
-    def stand(self, place: Place) -> tuple[Place, float]:
-        return place, 0.0
+    def robot_pose_at(self, position: Position) -> tuple[Position, float]:
+        return position, 0.0
 
-    def go(self, a: Place, b: Place, _: tuple[Stair, ...]) -> tuple[list[Place], float]:
+    def path_between(
+        self, a: Position, b: Position, _: tuple[Stair, ...]
+    ) -> tuple[list[Position], float]:
         return [a, b], 0.0
 
 
 class _AisleLegs(_StraightLegs):
-    """As the travel times of random routes count: along aisles, and by the stairs at an end."""
+    """Paths along the aisles and over the stairs at an end of the floors.
+
+    The travel times of random routes are those of these paths.
+    """
 
     def __init__(self, ends: int) -> None:
         self._ends = ends
 
-    def go(self, a: Place, b: Place, blocked: tuple[Stair, ...]) -> tuple[list[Place], float]:
+    def path_between(
+        self, a: Position, b: Position, blocked: tuple[Stair, ...]
+    ) -> tuple[list[Position], float]:
         if a[2] == b[2]:
             return [a, (b[0], a[1], a[2]), b], 0.0
         up = b[2] > a[2]
         levels = range(a[2], b[2]) if up else range(a[2] - 1, b[2] - 1, -1)
-        way = [a]
-        for x, level in zip(self._ends_of(a, b, levels, blocked), levels, strict=True):
-            floor, y = way[-1][2], way[-1][1]
-            way += [(x, y, floor), (x, b[1], floor), (x, b[1], level + 1 if up else level)]
-        return [*dict.fromkeys(way), b], 0.0
+        path = [a]
+        for x, level in zip(self._stair_ends(a, b, levels, blocked), levels, strict=True):
+            floor, y = path[-1][2], path[-1][1]
+            path += [(x, y, floor), (x, b[1], floor), (x, b[1], level + 1 if up else level)]
+        return [*dict.fromkeys(path), b], 0.0
 
-    def _ends_of(
-        self, a: Place, b: Place, levels: Sequence[int], blocked: tuple[Stair, ...]
+    def _stair_ends(
+        self, a: Position, b: Position, levels: Sequence[int], blocked: tuple[Stair, ...]
     ) -> list[float]:
-        """At which x the shortest way takes the stairs above each of the floors in `levels`."""
+        """Return the x (m) where the shortest path takes the stairs above each of `levels`."""
         choices = [
             [(0.0, WIDTH)[end] for end in range(self._ends) if (end, level) not in blocked]
             for level in levels
@@ -92,35 +101,37 @@ class _AisleLegs(_StraightLegs):
 
 
 class _SiteLegs:
-    """The paths that the robot's planner finds on a site."""
+    """Paths that the robot's planner finds on a site."""
 
     footprint: Footprint | None
 
     def __init__(self, navigator: Navigator) -> None:
         self._navigator, self._site = navigator, navigator.site
-        self._without: dict[tuple[Stair, ...], Navigator] = {(): navigator}
+        self._avoiding: dict[tuple[Stair, ...], Navigator] = {(): navigator}
         self.footprint = navigator.robot.footprint
         self._ids = {(c.position[0], c.position[1], c.floor): c.id for c in self._site.checkpoints}
 
-    def stand(self, place: Place) -> tuple[Place, float]:
-        pose = self._pose(place)
-        return (pose.x, pose.y, place[2]), pose.yaw
+    def robot_pose_at(self, position: Position) -> tuple[Position, float]:
+        pose = self._pose(position)
+        return (pose.x, pose.y, position[2]), pose.yaw
 
-    def go(self, a: Place, b: Place, blocked: tuple[Stair, ...]) -> tuple[list[Place], float]:
-        if blocked not in self._without:
-            self._without[blocked] = navigator_without(self._navigator, blocked)
-        path = self._without[blocked].plan(self._pose(a), self._pose(b))
-        way: list[Place] = []
+    def path_between(
+        self, a: Position, b: Position, blocked: tuple[Stair, ...]
+    ) -> tuple[list[Position], float]:
+        if blocked not in self._avoiding:
+            self._avoiding[blocked] = navigator_without(self._navigator, blocked)
+        path = self._avoiding[blocked].plan(self._pose(a), self._pose(b))
+        points: list[Position] = []
         for motion in path.motions:
             count = max(1, round(motion.length / _STEP))
             for k in range(count + 1):
                 p = motion.pose_at(k / count)
-                way.append((p.x, p.y, self._site.floor_at(p.z)))
-        return way or [a], path.end.yaw
+                points.append((p.x, p.y, self._site.floor_at(p.z)))
+        return points or [a], path.end.yaw
 
-    def _pose(self, place: Place) -> Pose:
-        if place in self._ids:
-            return self._navigator.viewing_pose(self._ids[place])
+    def _pose(self, position: Position) -> Pose:
+        if position in self._ids:
+            return self._navigator.viewing_pose(self._ids[position])
         return self._navigator.snap(self._site.docks[min(self._site.docks)])
 
 
@@ -142,57 +153,73 @@ def draw_route(
     legal: NDArray[np.bool_],
     time: float,
 ) -> NDArray[np.uint8]:
-    """The `route` so far: the rows of the instance in their order, the last one where the robot is.
-    Of `visited` checkpoints the way need not be known. With `floors`, only the checkpoints on these
-    count. A checkpoint's disc is as large as its prize is high."""
-    places: list[Place] = [(x, y, round(floor)) for x, y, floor in instance.places.tolist()]
+    """Draw the route so far, shape (720, 1280, 3).
+
+    The disc of a checkpoint is the larger, the higher its prize is.
+
+    Args:
+        source: Source of the instance.
+        floors: Floors whose checkpoints count; all floors if it is empty.
+        instance: The instance.
+        route: Rows of the instance in the order of the visits; the last one is where the robot is.
+        visited: Visited checkpoints; the route need not contain them.
+        legal: Which nodes are legal now.
+        time: s since the start.
+    """
+    positions: list[Position] = [
+        (x, y, round(floor)) for x, y, floor in instance.positions.tolist()
+    ]
     start = instance.start
     markers = []
     for node in range(1, instance.size):
-        x, y, floor = places[node]
-        there = bool(np.isfinite(instance.arrival[start, node]))
-        if not floor:  # an empty slot is nowhere
+        x, y, floor = positions[node]
+        is_reachable = bool(np.isfinite(instance.arrival[start, node]))
+        if not floor:  # an empty slot has no position
             continue
-        state = "closed" if not there else "open" if legal[node] else "waiting"
+        state = "closed" if not is_reachable else "open" if legal[node] else "waiting"
         state = "outside" if floors and floor not in floors else state
         state = "done" if node in visited else state
         radius = 7.5 + 5.5 * float(instance.prizes[node])
         markers.append(Marker(x, y, floor, str(node), state, radius, node == route[-1]))
-    together = places[DOCK] == places[start]
-    stations = [StationMark(*places[DOCK], "start, dock" if together else "dock")]
-    if not together:
-        stations.append(StationMark(*places[start], "start"))
-    legs = legs_of(source)
-    first, heading = legs.stand(places[route[0]])
-    way = [Moment(0.0, *first)]
+    starts_at_dock = positions[DOCK] == positions[start]
+    stations = [StationMark(*positions[DOCK], "start, dock" if starts_at_dock else "dock")]
+    if not starts_at_dock:
+        stations.append(StationMark(*positions[start], "start"))
+    legs = leg_paths_for(source)
+    first, heading = legs.robot_pose_at(positions[route[0]])
+    path = [Moment(0.0, *first)]
     for a, b in pairwise(route):
-        t = way[-1].t
-        took = float(instance.at(t).arrival[a, b])
-        part, heading = legs.go(places[a], places[b], instance.blocked_at(t))
-        way += [Moment(t + took * k / max(len(part) - 1, 1), *p) for k, p in enumerate(part)]
-    asked = {marker.floor for marker in markers if marker.state != "outside"}
-    used = asked | {station.floor for station in stations} | {moment.floor for moment in way}
-    sheet = _sheet(source, places, min(used), max(used), tuple(sorted(floors)))
+        t = path[-1].t
+        duration = float(instance.known_at(t).arrival[a, b])
+        part, heading = legs.path_between(positions[a], positions[b], instance.blocked_at(t))
+        path += [Moment(t + duration * k / max(len(part) - 1, 1), *p) for k, p in enumerate(part)]
+    requested = {marker.floor for marker in markers if marker.state != "outside"}
+    used = requested | {station.floor for station in stations} | {moment.floor for moment in path}
+    sheet = _sheet(source, positions, min(used), max(used), tuple(sorted(floors)))
     shown = [marker for marker in markers if marker.floor in sheet.panels]
     prize = sum(float(instance.prizes[node]) for node in visited)
-    wanted = sum(marker.state not in {"closed", "outside"} for marker in markers)
+    reachable_count = sum(marker.state not in {"closed", "outside"} for marker in markers)
     headline = f"{time:.0f} s of {instance.budget:.0f} s    prize {prize:.2f}    visited "
-    headline += f"{len(visited)} of {wanted}"
+    headline += f"{len(visited)} of {reachable_count}"
     return draw_plan(
-        sheet, PlanDrawing(headline, shown, stations, way, heading, legs.footprint, _LEGEND)
+        sheet, PlanDrawing(headline, shown, stations, path, heading, legs.footprint, _LEGEND)
     )
 
 
 def _sheet(
-    source: RouteSource, places: Sequence[Place], low: int, high: int, asked: tuple[int, ...]
+    source: RouteSource,
+    positions: Sequence[Position],
+    low: int,
+    high: int,
+    requested: tuple[int, ...],
 ) -> FloorSheet:
-    """The floors from `low` to `high`; if some are asked for, the others are pale."""
+    """Return the floors from `low` to `high`; if some are requested, the others are pale."""
     numbers = range(low, high + 1)
     if isinstance(source, SiteRoutes):
-        return site_sheet(source.scenario, low, high, asked or tuple(numbers))
+        return site_sheet(source.scenario, low, high, requested or tuple(numbers))
     plans: tuple[FloorPlan, ...]
     if isinstance(source, RandomRoutes):
         plans = aisles(WIDTH, DEPTH, high, source.ends)[low - 1 :]
     else:
-        plans = open_floors([place[:2] for place in places if place[2]], numbers)
-    return make_sheet(plans, [n for n in numbers if asked and n not in asked])
+        plans = open_floors([position[:2] for position in positions if position[2]], numbers)
+    return make_sheet(plans, [n for n in numbers if requested and n not in requested])

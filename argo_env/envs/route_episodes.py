@@ -1,5 +1,8 @@
-"""What single routes and batches share: the observation space, and which instance an episode has:
-options, a hash of seed and episode, and instances in arrays."""
+"""Parts that single routes and batches share: the observation space, and the choice of instances.
+
+An instance is chosen by the options and by a hash of seed and episode. Pools hold instances as
+arrays.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,14 +18,14 @@ from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Model
 from argo_env.envs.observations import Observation, dict_space
 from argo_env.envs.options import (
-    LONGEST,
+    MAX_DURATION,
     check_floors,
+    check_integer,
     check_positive,
     check_scenario,
-    check_whole,
     read_options,
 )
-from argo_env.envs.route_instance import DOCK, MOST_CHECKPOINTS, RouteInstance
+from argo_env.envs.route_instance import DOCK, MAX_CHECKPOINTS, RouteInstance
 from argo_env.envs.route_noise import NO_NOISE, RouteNoise
 from argo_env.envs.route_sources import (
     TEST,
@@ -31,18 +34,18 @@ from argo_env.envs.route_sources import (
     RouteFaults,
     RouteSource,
     SiteRoutes,
-    existing,
+    existing_checkpoints,
 )
 
-FPS = 4  # of films
+FPS = 4  # frames per second of films
 _NAME = "argo/Route-v0"
-_KEPT = 256  # instances that a single environment keeps
-_WORD = (1 << 64) - 1
-Words = NDArray[np.uint64]
+_CACHED_INSTANCES = 256  # instances that a single environment caches
+_UINT64_MASK = (1 << 64) - 1
+UInt64Array = NDArray[np.uint64]
 
 
 class RouteOptions(Model):
-    """What `reset(options=...)` of Route-v0 may say."""
+    """Options for `reset(options=...)` of Route-v0."""
 
     scenario: str | None = None
     floor: StrictInt | tuple[StrictInt, ...] = ()
@@ -57,41 +60,42 @@ class RouteOptions(Model):
 
 @dataclass(frozen=True)
 class InstancePool:
-    """Instances in arrays, one row for each; see `RouteInstance` for what they are."""
+    """Instances as arrays with one row for each; `RouteInstance` describes their parts."""
 
     numbers: NDArray[np.int64]
-    each: bool
-    """whether row k belongs to environment k, in place of being drawn"""
+    one_per_env: bool
+    """whether row k belongs to environment k; otherwise rows are drawn"""
     stages: int
-    """how many states of knowledge an instance has at most: one more than stairs are blocked"""
+    """largest number of stages of knowledge of an instance: one more than the stairs that are found
+    blocked"""
     arrival: NDArray[np.float32]
-    """this and the next two with the rows of all instances one below the other, each instance as
-    often as there are stages"""
+    """this and the next two have the rows of all instances one below the other, each instance once
+    for each stage"""
     need: NDArray[np.float32]
     travel: NDArray[np.float32]
     home: NDArray[np.float32]
-    """likewise, one row for each stage of an instance"""
+    """one row for each stage of each instance"""
     before: NDArray[np.int8]
     effect: NDArray[np.int16]
-    """shape (m * (n + 1), n + 1): what the visit of a node takes from `missing`"""
+    """numbers that the visit of a node subtracts from `missing`, shape (m * (n + 1), n + 1)"""
     missing: NDArray[np.int16]
     prizes: NDArray[np.float64]
     budget: NDArray[np.float32]
     noisy: bool
-    """whether the instances have something hidden, which is:"""
+    """whether the instances have hidden parts, which are the next two"""
     failing: NDArray[np.int16]
     since: NDArray[np.float32]
-    """s, when each but the first stage begins, shape (m, stages - 1)"""
+    """time (s) at which each stage but the first begins, shape (m, stages - 1)"""
 
-    def choose(self, rows: NDArray[np.int64], drawn: Words) -> NDArray[np.int64]:
-        """The row of the pool for each environment."""
-        if self.each:
+    def select_rows(self, rows: NDArray[np.int64], drawn: UInt64Array) -> NDArray[np.int64]:
+        """Return the row of the pool for each environment."""
+        if self.one_per_env:
             return rows
         return (drawn % np.uint64(len(self.numbers))).astype(np.int64)
 
 
 class Episodes:
-    """Gives the instances that the options ask for. Holds the options and what it has made."""
+    """Instances of the episodes, as the options choose them; it holds the options and a cache."""
 
     def __init__(
         self,
@@ -101,59 +105,59 @@ class Episodes:
         source: RouteSource | None,
         noise: Mapping[str, Any] | None = None,
     ) -> None:
-        """Raises ArgoError if there is no such scenario or noise."""
+        """Check the arguments; raise ArgoError if there is no such scenario or noise."""
         self._noise = NO_NOISE if noise is None else read_options(RouteNoise, noise, _NAME)
         if source is None:
             check_scenario(_NAME, scenario)
-            check_whole(_NAME, 1, MOST_CHECKPOINTS, checkpoints=checkpoints)
-            check_positive(_NAME, LONGEST, budget=budget)
+            check_integer(_NAME, 1, MAX_CHECKPOINTS, checkpoints=checkpoints)
+            check_positive(_NAME, MAX_DURATION, budget=budget)
         elif noise is not None:
             raise Invalid(
-                f"{_NAME}: `noise` and `source`: a source makes its instances with the noise that "
-                "it was made with; give one of the two"
+                f"{_NAME}: `noise` and `source`: a source has a noise of its own; "
+                "give one of the two"
             )
-        self._own = source
+        self._given_source = source
         self._scenario = scenario
         self._budget = budget
         self._checkpoints = source.checkpoints if source else int(checkpoints)
         self.size = self._checkpoints + 1
-        self.choose(RouteOptions())
+        self.apply_options(RouteOptions())
 
-    def choose(self, options: RouteOptions) -> None:
-        """From now on instances are as the options say."""
+    def apply_options(self, options: RouteOptions) -> None:
+        """Apply the options to the following instances."""
         self.options = options
-        self.source = self.source_of(options)
-        self.instance = lru_cache(maxsize=_KEPT)(self._draw)
+        self.source = self.source_for(options)
+        self.instance = lru_cache(maxsize=_CACHED_INSTANCES)(self._draw)
         self._pool: InstancePool | None = None
 
-    def scenario_of(self, options: RouteOptions) -> str:
-        """What messages call the scenario that the options ask for."""
-        if options.scenario is None and self._own is not None:
+    def scenario_name(self, options: RouteOptions) -> str:
+        """Return the name that messages use for the scenario of the options."""
+        if options.scenario is None and self._given_source is not None:
             return "of the `source`"
         return options.scenario or self._scenario
 
-    def source_of(self, options: RouteOptions) -> RouteSource:
-        """The source that the options ask for."""
-        if options.scenario is None and self._own is not None:
-            return self._own
-        scenario = self.scenario_of(options)
+    def source_for(self, options: RouteOptions) -> RouteSource:
+        """Return the source that the options name."""
+        if options.scenario is None and self._given_source is not None:
+            return self._given_source
+        scenario = self.scenario_name(options)
         if scenario == "random":
             return RandomRoutes(self._checkpoints, budget=self._budget, noise=self._noise)
         return _site_routes(self._checkpoints, scenario, self._budget, self._noise)
 
     @property
     def numbers(self) -> range | tuple[int, ...]:
-        """The numbers of the instances that episodes draw from."""
+        """Numbers of the instances from which episodes draw."""
         if isinstance(self.options.instance, int):
             return (self.options.instance,)
         return self.options.instance or (TEST if self.options.test else TRAINING)
 
     @property
     def pool(self) -> InstancePool:
-        """All instances that episodes draw from, made when they are asked for."""
+        """Pool of all instances from which episodes draw, made on first use."""
         if self._pool is None:
             source = self.source
-            # A source of somebody else's may give other instances each time.
+            # A source from elsewhere may give different instances each time.
             if type(source) is RandomRoutes:
                 self._pool = _shared_pool(source, self.options, self.numbers)
             else:
@@ -161,36 +165,39 @@ class Episodes:
         return self._pool
 
     def _draw(self, number: int) -> RouteInstance:
-        return _drawn(self.source, self.options, number)
+        return _draw_instance(self.source, self.options, number)
 
 
 def read_route_options(
     given: Mapping[str, Any], episodes: Episodes, count: int | None = None
 ) -> RouteOptions:
-    """The options, checked, for one environment or for a batch of `count`; else ArgoError."""
+    """Return the options for one environment, or for a batch of `count`.
+
+    Raises ArgoError if they are invalid.
+    """
     options = read_options(RouteOptions, given, _NAME)
     if options.instance is not None:
         _check_instance(options, count)
-    source, scenario = episodes.source_of(options), episodes.scenario_of(options)
+    source, scenario = episodes.source_for(options), episodes.scenario_name(options)
     check_floors(scenario, range(1, source.floors + 1), options.floors)
-    there, slots = existing(source), episodes.size - 1
-    if options.faults.closed > there:
-        of = f"scenario {scenario}" if there < slots else "a route"
-        more = "" if there < slots else ", or make the environment with more `checkpoints`"
+    available, slots = existing_checkpoints(source), episodes.size - 1
+    if options.faults.closed > available:
+        of = f"scenario {scenario}" if available < slots else "a route"
+        more = "" if available < slots else ", or make the environment with more `checkpoints`"
         raise Invalid(
             f"option `faults.closed` of {_NAME} is {options.faults.closed}, and has to be 0 to "
-            f"{there}: {of} has {there} checkpoints; close fewer{more}"
+            f"{available}: {of} has {available} checkpoints; close fewer{more}"
         )
     return options
 
 
 def _check_instance(options: RouteOptions, count: int | None) -> None:
-    """Raises ArgoError if there are no such instances, or other options choose instances too."""
+    """Raise ArgoError if there are no such instances, or if other options choose instances too."""
     given = options.instance
     numbers = given if isinstance(given, tuple) else (given,)
     if isinstance(given, tuple) and len(given) != count:
-        wanted = "one number" if count is None else f"one number, or one for each of {count}"
-        raise Invalid(f"option `instance` of {_NAME} is {wanted}, not {len(given)} numbers")
+        expected = "one number" if count is None else f"one number, or one for each of {count}"
+        raise Invalid(f"option `instance` of {_NAME} is {expected}, not {len(given)} numbers")
     for number in numbers:
         if number not in TRAINING and number not in TEST:
             raise NotFound(
@@ -212,68 +219,72 @@ def _check_instance(options: RouteOptions, count: int | None) -> None:
 
 
 @overload
-def episode_number(key: int, episode: int) -> int: ...
+def episode_hash(key: int, episode: int) -> int: ...
 @overload
-def episode_number(key: Words, episode: Words) -> Words: ...
-def episode_number(key: Any, episode: Any) -> Any:
-    """A number of 64 bits for each episode of an environment: the outputs of splitmix64 (Steele,
-    Lea and Flood, "Fast splittable pseudorandom number generators", 2014) that began at `key`."""
+def episode_hash(key: UInt64Array, episode: UInt64Array) -> UInt64Array: ...
+def episode_hash(key: Any, episode: Any) -> Any:
+    """Return a 64-bit number for each episode of an environment.
+
+    It is an output of splitmix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number
+    generators", 2014) that started at `key`.
+    """
     if isinstance(key, int):
-        z = (key + (episode + 1) * 0x9E3779B97F4A7C15) & _WORD
-        z = ((z ^ (z >> 30)) * 0xBF58476D1CE4E5B9) & _WORD
-        z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & _WORD
+        z = (key + (episode + 1) * 0x9E3779B97F4A7C15) & _UINT64_MASK
+        z = ((z ^ (z >> 30)) * 0xBF58476D1CE4E5B9) & _UINT64_MASK
+        z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & _UINT64_MASK
         return z ^ (z >> 31)
-    # Arrays of words wrap around by themselves.
+    # Arrays of 64-bit words wrap around by themselves.
     z = key + (episode + np.uint64(1)) * np.uint64(0x9E3779B97F4A7C15)
     z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
     return z ^ (z >> np.uint64(31))
 
 
-def _drawn(source: RouteSource, options: RouteOptions, number: int) -> RouteInstance:
+def _draw_instance(source: RouteSource, options: RouteOptions, number: int) -> RouteInstance:
     return source.draw(number, options.floors, options.faults)
 
 
 def _make_pool(
     source: RouteSource, options: RouteOptions, numbers: range | tuple[int, ...]
 ) -> InstancePool:
-    """The instances with these numbers in arrays."""
-    made = [_drawn(source, options, number) for number in numbers]
-    each = isinstance(options.instance, tuple)
-    changes = [m.hidden.changes if m.hidden else () for m in made]
+    """Return a pool of the instances with these numbers."""
+    instances = [_draw_instance(source, options, number) for number in numbers]
+    one_per_env = isinstance(options.instance, tuple)
+    changes = [m.hidden.changes if m.hidden else () for m in instances]
     stages = 1 + max(map(len, changes))
-    since = np.full((len(made), stages - 1), np.inf, np.float32)
+    since = np.full((len(instances), stages - 1), np.inf, np.float32)
     known = []
-    for row, (instance, found) in enumerate(zip(made, changes, strict=True)):
-        since[row, : len(found)] = [change.since for change in found]
-        known += [instance, *(change.known for change in found)]
-        known += [known[-1]] * (stages - 1 - len(found))
-    nothing = np.zeros(made[0].size, np.int16)
+    for row, (instance, instance_changes) in enumerate(zip(instances, changes, strict=True)):
+        since[row, : len(instance_changes)] = [change.since for change in instance_changes]
+        known += [instance, *(change.known for change in instance_changes)]
+        known += [known[-1]] * (stages - 1 - len(instance_changes))
+    no_failures = np.zeros(instances[0].size, np.int16)
     return InstancePool(
         numbers=np.array(numbers, dtype=np.int64),
-        each=each,
+        one_per_env=one_per_env,
         stages=stages,
-        arrival=np.concatenate([_resting(k) for k in known]),
+        arrival=np.concatenate([_arrival_at_rest(k) for k in known]),
         need=np.concatenate([k.need for k in known]),
         travel=np.concatenate([k.travel for k in known]),
         home=np.stack([k.home for k in known]),
-        before=np.stack([m.before for m in made]).astype(np.int8),
-        effect=np.concatenate([m.effect for m in made]),
-        missing=np.stack([m.before.sum(axis=0, dtype=np.int16) for m in made]),
-        prizes=np.stack([m.prizes for m in made]),
-        budget=np.array([m.budget for m in made], dtype=np.float32),
-        noisy=any(m.hidden is not None for m in made),
-        failing=np.stack([m.hidden.failing if m.hidden else nothing for m in made]),
+        before=np.stack([m.before for m in instances]).astype(np.int8),
+        effect=np.concatenate([m.effect for m in instances]),
+        missing=np.stack([m.before.sum(axis=0, dtype=np.int16) for m in instances]),
+        prizes=np.stack([m.prizes for m in instances]),
+        budget=np.array([m.budget for m in instances], dtype=np.float32),
+        noisy=any(m.hidden is not None for m in instances),
+        failing=np.stack([m.hidden.failing if m.hidden else no_failures for m in instances]),
         since=since,
     )
 
 
 _shared_pool = lru_cache(maxsize=2)(_make_pool)
-"""What takes seconds to make and nobody changes, once for all batches of a process."""
+"""`_make_pool` with a cache: pools take seconds to make and do not change, so that all batches of a
+process can share them"""
 
 
-def _resting(instance: RouteInstance) -> NDArray[np.float32]:
-    """`arrival`, with no time passing for a robot that is docked already."""
+def _arrival_at_rest(instance: RouteInstance) -> NDArray[np.float32]:
+    """Return `arrival`, but with no time from dock to dock, for a robot that has docked."""
     arrival = instance.arrival.copy()
     arrival[DOCK, DOCK] = 0.0
     return arrival
@@ -282,12 +293,12 @@ def _resting(instance: RouteInstance) -> NDArray[np.float32]:
 @lru_cache(maxsize=16)
 def _site_routes(checkpoints: int, scenario: str, budget: float, noise: RouteNoise) -> SiteRoutes:
     source = SiteRoutes(checkpoints, scenario, budget, noise)
-    source.check()
+    source.check_usable()
     return source
 
 
 def observation_space(size: int, full: bool) -> spaces.Space[Observation]:
-    """The space of the observations with `size` nodes."""
+    """Return the observation space for `size` nodes."""
     share = spaces.Box(0.0, 1.0, (size,), np.float32)
     parts: dict[str, spaces.Space[Any]] = {
         "travel": share,

@@ -1,5 +1,7 @@
-"""A route instance: travel times, prizes, precedence and a budget, what of that the robot finds out
-on its way only; and what a route is worth."""
+"""Route instances: travel times, prizes, precedence, a budget and hidden parts; and their scores.
+
+The robot learns the hidden parts only on its way.
+"""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -11,47 +13,47 @@ from numpy.typing import NDArray
 from argo_compiler.base.errors import Invalid
 
 DOCK = 0
-"""the node where every route ends"""
+"""node where every route ends"""
 TICK = 1 / 64
-"""s. Times are whole ticks, and below 2^18 s: so their sums are exact in single precision, in
-whatever order they are made, and the environment, its batch and `score_route` agree to the bit."""
-_LONGEST = 2.0**18  # s
-MOST_CHECKPOINTS = 500
-VISITED = MOST_CHECKPOINTS + 1
-"""what a visited checkpoint waits for: more than there are"""
+"""s. Times are whole ticks below 2^18 s, so their sums are exact in single precision in any order,
+and the environment, its batch and `score_route` agree bit for bit."""
+_TIME_LIMIT = 2.0**18  # s
+MAX_CHECKPOINTS = 500
+VISITED = MAX_CHECKPOINTS + 1
+"""number that marks a visited checkpoint in `missing`: more than there are checkpoints"""
 
 
 @dataclass(frozen=True)
 class RouteInstance:
-    """One problem with n checkpoints: the nodes 1 to n; node 0 is the dock; row n + 1 the start."""
+    """Route problem with n checkpoints: nodes 1 to n; node 0 is the dock; row n + 1 the start."""
 
     arrival: NDArray[np.float32]
-    """s from the end of one visit to the end of the next, the measurement included, shape
-    (n + 2, n + 1): row from, column to; inf where there is no way, and from the dock"""
+    """time (s) from the end of a visit to the end of the next one, with its measurement; inf
+    without a path, and from the dock; shape (n + 2, n + 1): row from, column to"""
     prizes: NDArray[np.float64]
     """0 to 1, shape (n + 1,); the dock has 0"""
     before: NDArray[np.bool_]
-    """shape (n + 1, n + 1): whether row must be visited before column"""
+    """whether row must be visited before column, shape (n + 1, n + 1)"""
     budget: float
-    """s in which the robot has to be docked"""
-    places: NDArray[np.float64]
+    """s within which the robot must dock"""
+    positions: NDArray[np.float64]
     """x, y (m) and floor, for pictures, shape (n + 2, 3)"""
     hidden: "Hidden | None" = None
-    """what the robot does not know when it sets off; None: it knows all"""
+    """parts that the robot does not know at the start; None if it knows all"""
 
     @property
     def size(self) -> int:
-        """The number of nodes, the dock included."""
+        """Number of nodes, with the dock."""
         return len(self.prizes)
 
     @property
     def start(self) -> int:
-        """The row of the place where the robot sets off."""
+        """Row of the robot's start."""
         return self.size
 
     @cached_property
     def home(self) -> NDArray[np.float32]:
-        """The way to the dock as a share of the budget, at most 1, shape (n + 1,)."""
+        """Time to the dock as a share of the budget, at most 1, shape (n + 1,)."""
         home: NDArray[np.float32] = np.minimum(
             self.arrival[: self.size, DOCK] / np.float32(self.budget), np.float32(1.0)
         )
@@ -60,83 +62,88 @@ class RouteInstance:
 
     @cached_property
     def need(self) -> NDArray[np.float32]:
-        """s that a visit takes and the way to the dock after it, shape of `arrival`."""
+        """Time (s) of a visit and of the path to the dock after it, shape of `arrival`."""
         home = self.arrival[: self.size, DOCK].copy()
         home[DOCK] = 0.0
         return np.asarray(self.arrival + home, dtype=np.float32)
 
     @cached_property
     def travel(self) -> NDArray[np.float32]:
-        """`arrival` as a share of the budget, 1 where it takes longer."""
+        """`arrival` as a share of the budget, at most 1."""
         return np.asarray(np.minimum(self.arrival / np.float32(self.budget), np.float32(1.0)))
 
     @cached_property
     def missing(self) -> NDArray[np.int16]:
-        """How many checkpoints must come before each node; a node is free at 0."""
+        """Number of checkpoints that must come before each node, shape (n + 1,)."""
         return np.asarray(self.before.sum(axis=0, dtype=np.int16))
 
     @cached_property
     def effect(self) -> NDArray[np.int16]:
-        """What the visit of a node (row) takes from `missing`: one for each node that it must come
-        before, and so much from itself that it is not free again."""
+        """Numbers that the visit of a node (row) subtracts from `missing`, shape (n + 1, n + 1).
+
+        It subtracts 1 from each node that must come after it, and adds VISITED to its own number,
+        so that it is not free again. A node is free while its number is 0.
+        """
         effect = self.before.astype(np.int16)
         np.fill_diagonal(effect, -VISITED)
         return effect
 
     @cached_property
-    def needs(self) -> list[NDArray[np.float32]]:
-        """The rows of `need`."""
+    def need_rows(self) -> list[NDArray[np.float32]]:
+        """Rows of `need`."""
         return list(self.need)
 
     @cached_property
-    def travels(self) -> list[NDArray[np.float32]]:
-        """The rows of `travel`."""
+    def travel_rows(self) -> list[NDArray[np.float32]]:
+        """Rows of `travel`."""
         return list(self.travel)
 
     @cached_property
-    def left(self) -> NDArray[np.float32]:
-        """The budget as an array of one number."""
+    def budget_array(self) -> NDArray[np.float32]:
+        """Budget as an array of one number."""
         return np.array([self.budget], dtype=np.float32)
 
-    def at(self, time: float) -> "RouteInstance":
-        """The instance as the robot knows it that long (s) after it set off."""
-        changes = self._changes_until(time)
+    def known_at(self, time: float) -> "RouteInstance":
+        """Return the instance as the robot knows it at a time (s) after its start."""
+        changes = self._changes_by(time)
         return changes[-1].known if changes else self
 
     def blocked_at(self, time: float) -> "tuple[Stair, ...]":
-        """The stairs that the robot knows to be blocked by that time (s)."""
-        changes = self._changes_until(time)
+        """Return the stairs that the robot knows to be blocked at a time (s) after its start."""
+        changes = self._changes_by(time)
         return changes[-1].blocked if changes else ()
 
-    def _changes_until(self, time: float) -> "list[Change]":
+    def _changes_by(self, time: float) -> "list[Change]":
         changes = self.hidden.changes if self.hidden else ()
         return [change for change in changes if change.since <= time]
 
 
 Stair = tuple[int, int]
-"""which of the ways up, and the number of the floor below"""
+"""number of the stair tower or of the floor's end, and number of the floor below"""
 
 
 @dataclass(frozen=True)
 class Change:
-    """Stairs that are found blocked while the robot is on its way."""
+    """Blocked stairs that the robot finds on its way, and the travel times from then on."""
 
     since: float
-    """s after it set off; a drive that began before that takes as long as it would have"""
+    """s after the start; a drive that started earlier takes as long as if nothing had changed"""
     known: RouteInstance
-    """the instance with the travel times from then on, and nothing hidden"""
+    """instance with the travel times from then on, without hidden parts"""
     blocked: tuple[Stair, ...]
-    """all that are blocked by then"""
+    """all stairs that are blocked by then"""
 
 
 @dataclass(frozen=True)
 class Hidden:
-    """What the robot finds out on its way only. All of it is drawn beforehand: what happens in an
-    episode follows from its instance and its actions."""
+    """Parts of an instance that the robot learns only on its way.
+
+    All of them are drawn beforehand, so an episode depends only on its instance and its actions.
+    """
 
     failing: NDArray[np.int16]
-    """how many visits of each node give no reading, and so no prize, before one does, shape
-    (n + 1,): the time is spent, and the checkpoint is as if it had not been visited"""
+    """number of visits of each node that give no reading, and so no prize, before one does, shape
+    (n + 1,); the time of such a visit is spent, and the checkpoint stays open"""
     changes: tuple[Change, ...] = ()
     """in the order of time"""
 
@@ -147,14 +154,20 @@ def with_hidden(
     blocked: Iterable[tuple[float, NDArray[np.float64], tuple[Stair, ...]]],
     service: NDArray[np.float64],
 ) -> RouteInstance:
-    """The instance with something that the robot does not know: which visits fail, and from when
-    (s) on travel times are others, in the order of time; times and service as `make_instance`
-    takes them."""
+    """Return the instance with parts that the robot does not know at the start.
+
+    Args:
+        instance: The instance without them.
+        failing: See `Hidden.failing`.
+        blocked: Times (s) at which stairs are found blocked, in order, each with the travel times
+            from then on and all stairs that are blocked by then.
+        service: As for `make_instance`; the travel times are as there, too.
+    """
     changes = []
     for since, times, stairs in blocked:
-        arrival = _arrival(times, service)
-        # A robot that is late is so by less than this: sums of times stay exact.
-        arrival[arrival >= _LONGEST - instance.budget] = np.inf
+        arrival = _make_arrival(times, service)
+        # So even a robot that is late docks before the limit, and sums of times stay exact.
+        arrival[arrival >= _TIME_LIMIT - instance.budget] = np.inf
         arrival.setflags(write=False)
         since = float(np.floor(since / TICK) * TICK)
         changes.append(Change(since, replace(instance, arrival=arrival), stairs))
@@ -167,80 +180,91 @@ def make_instance(
     prizes: NDArray[np.float64],
     pairs: Iterable[tuple[int, int]],
     budget: float,
-    places: NDArray[np.float64],
+    positions: NDArray[np.float64],
 ) -> RouteInstance:
-    """An instance from travel times (s), shape (n + 2, n + 1) as in `RouteInstance`, and the time
-    that the visit of each node takes (s), shape (n + 1,). Times are rounded up to whole ticks.
+    """Make an instance, with times rounded up to whole ticks.
 
-    Raises ArgoError if shapes don't fit, there are too many checkpoints, a prize is not from 0 to
-    1, a time is negative or the dock can't be reached in time.
+    Args:
+        times: Travel times (s), shape (n + 2, n + 1), with the rows and columns of `RouteInstance`.
+        service: Time (s) that the visit of each node takes, shape (n + 1,).
+        prizes: See `RouteInstance.prizes`.
+        pairs: Pairs of checkpoints, the first of which must be visited before the second.
+        budget: s within which the robot must dock.
+        positions: See `RouteInstance.positions`.
+
+    Raises:
+        ArgoError: Shapes don't fit, there are too many checkpoints, a prize is not from 0 to 1, a
+            time is negative, a checkpoint must precede itself, or the dock can't be reached in
+            time.
     """
     n = len(prizes)
-    if times.shape != (n + 1, n) or service.shape != (n,) or places.shape != (n + 1, 3):
+    if times.shape != (n + 1, n) or service.shape != (n,) or positions.shape != (n + 1, 3):
         raise Invalid(
             f"a route instance with {n - 1} checkpoints needs times of shape {(n + 1, n)}, "
             f"not {times.shape}, {n} service times and {n + 1} places"
         )
-    if n - 1 > MOST_CHECKPOINTS:
-        raise Invalid(f"a route has at most {MOST_CHECKPOINTS} checkpoints, not {n - 1}")
+    if n - 1 > MAX_CHECKPOINTS:
+        raise Invalid(f"a route has at most {MAX_CHECKPOINTS} checkpoints, not {n - 1}")
     if prizes.min() < 0.0 or prizes.max() > 1.0 or prizes[DOCK] != 0.0:
         raise Invalid("prizes are from 0 to 1, and 0 at the dock")
     if times.min() < 0.0 or service.min() < 0.0:
         raise Invalid("a travel or service time is negative")
-    if not 0.0 < budget < _LONGEST:
-        raise Invalid(f"a budget is more than 0 and less than {_LONGEST:.0f} s, not {budget:g}")
-    arrival = _arrival(times, service)
+    if not 0.0 < budget < _TIME_LIMIT:
+        raise Invalid(f"a budget is more than 0 and less than {_TIME_LIMIT:.0f} s, not {budget:g}")
+    arrival = _make_arrival(times, service)
     budget = float(np.floor(budget / TICK) * TICK)
     if arrival[n, DOCK] > budget:
-        raise Invalid(f"the way from the start to the dock takes longer than {budget:g} s")
+        raise Invalid(f"the path from the start to the dock takes longer than {budget:g} s")
     before = np.zeros((n, n), dtype=np.bool_)
-    for first, then in pairs:
-        before[first, then] = True
+    for first, second in pairs:
+        before[first, second] = True
     if np.diagonal(before).any():
-        raise Invalid("a checkpoint is to be visited before itself")
-    instance = RouteInstance(arrival, prizes.astype(np.float64), before, budget, places)
-    for array in (instance.arrival, instance.prizes, before, places):
+        raise Invalid("the pairs require a checkpoint to be visited before itself")
+    instance = RouteInstance(arrival, prizes.astype(np.float64), before, budget, positions)
+    for array in (instance.arrival, instance.prizes, before, positions):
         array.setflags(write=False)
     return instance
 
 
-def _arrival(times: NDArray[np.float64], service: NDArray[np.float64]) -> NDArray[np.float32]:
-    """See `RouteInstance.arrival`."""
+def _make_arrival(times: NDArray[np.float64], service: NDArray[np.float64]) -> NDArray[np.float32]:
+    """Return `RouteInstance.arrival`."""
     arrival = np.ceil((times + service) / TICK) * TICK
-    arrival[arrival >= _LONGEST] = np.inf
+    arrival[arrival >= _TIME_LIMIT] = np.inf
     arrival[DOCK] = np.inf
     return arrival.astype(np.float32)
 
 
 @dataclass(frozen=True)
 class Score:
-    """What a route is worth."""
+    """Value of a route."""
 
     prize: float
-    """0 if the robot is docked too late"""
+    """0 if the robot docks too late"""
     time: float
-    """s until the robot is docked"""
+    """s until the robot has docked"""
     visited: tuple[int, ...]
-    """the checkpoints that were read"""
+    """checkpoints that were read"""
     illegal: int | None
-    """the first node of the route that was not allowed, and not driven to"""
+    """first node of the route that was illegal, and so not visited; None if all were legal"""
     late: bool = False
-    """whether the robot is docked after the budget is over: only blocked stairs can do that"""
+    """whether the robot docks after the end of the budget, which only blocked stairs can cause"""
 
 
 def score_route(instance: RouteInstance, route: Sequence[int]) -> Score:
-    """What the route, nodes in order, is worth. The robot goes to the dock at its end, and already
-    where it would break a rule: visit a node again or before its time, or be docked too late by
-    what it knows when it sets off there.
+    """Return the value of a route, which is a sequence of nodes.
 
-    A visit that fails takes its time and counts for nothing. Stairs that are found blocked on the
-    way to a checkpoint may make the way back too long: a route that is docked too late is worth 0.
+    The robot goes to the dock at the end of the route, or earlier if the next node would break a
+    rule: it was visited already, or it comes before a node that must precede it, or the robot would
+    dock too late by what it knows when it leaves for that node.
 
-    Written for reading, and on purpose without anything that the environment uses.
+    A visit that fails takes its time and gives no prize. Stairs that are found blocked on the way
+    to a checkpoint may make the way back too long: a route that docks too late has prize 0.
+
+    This is written to be read, and deliberately shares no code with the environment.
     """
     place, time, prize = instance.start, 0.0, 0.0
     visited: list[int] = []
-    tries = [0] * instance.size
+    attempts = [0] * instance.size
     illegal = None
     for node in route:
         if node == DOCK:
@@ -248,13 +272,17 @@ def score_route(instance: RouteInstance, route: Sequence[int]) -> Score:
         times = _times_at(instance, time)
         arrived = time + float(times[place, node])
         docked = arrived + float(times[node, DOCK])
-        first = [k for k in range(instance.size) if instance.before[k, node]]
-        if node in visited or docked > instance.budget or any(k not in visited for k in first):
+        predecessors = [k for k in range(instance.size) if instance.before[k, node]]
+        if (
+            node in visited
+            or docked > instance.budget
+            or any(k not in visited for k in predecessors)
+        ):
             illegal = int(node)
             break
         place, time = node, arrived
-        tries[node] += 1
-        if instance.hidden is None or tries[node] > instance.hidden.failing[node]:
+        attempts[node] += 1
+        if instance.hidden is None or attempts[node] > instance.hidden.failing[node]:
             prize += float(instance.prizes[node])
             visited.append(int(node))
     docked = time + float(_times_at(instance, time)[place, DOCK])
@@ -263,7 +291,7 @@ def score_route(instance: RouteInstance, route: Sequence[int]) -> Score:
 
 
 def _times_at(instance: RouteInstance, time: float) -> NDArray[np.float32]:
-    """The travel times for a robot that sets off at that time."""
+    """Return the travel times for a robot that leaves at this time (s)."""
     if instance.hidden is None:
         return instance.arrival
     known = [change for change in instance.hidden.changes if change.since <= time]

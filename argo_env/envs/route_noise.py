@@ -1,4 +1,4 @@
-"""What goes wrong while a robot is on its way: what may be asked for, and how it is drawn."""
+"""Noise of Route-v0, which the robot learns only on its way: its settings, and how it is drawn."""
 
 from collections.abc import Callable, Sequence
 
@@ -14,46 +14,57 @@ _FIRST, _LAST = 0.1, 0.9
 
 
 class RouteNoise(Model):
-    """What the robot finds out on its way only."""
+    """Settings of what the robot learns only on its way."""
 
     failing: float = Field(default=0.0, ge=0.0, le=0.9, strict=True)
-    """the probability that a visit of a checkpoint gives no reading, each time anew"""
+    """probability that a visit of a checkpoint gives no reading, independently each time"""
     blocked: int = Field(default=0, ge=0, le=5, strict=True)
-    """how many stairs between two floors are found blocked, one after the other; fewer, if more
-    would leave no way round"""
+    """number of stairs between two floors that are found blocked, one after the other; fewer if
+    more would leave no detour"""
 
 
 NO_NOISE = RouteNoise()
 
 
-def draw_failing(noise: RouteNoise, count: int, rng: np.random.Generator) -> NDArray[np.int16]:
-    """How many visits of each node fail before one does not, shape (count + 1,); the dock's are
-    0."""
+def draw_failures(noise: RouteNoise, count: int, rng: np.random.Generator) -> NDArray[np.int16]:
+    """Draw the number of visits of each node that fail before one does not, shape (count + 1,).
+
+    It is 0 for the dock.
+    """
     failing = rng.geometric(1.0 - noise.failing, count) - 1
     return np.concatenate([[0], failing]).astype(np.int16)
 
 
-def draw_blocked(
+def draw_blocked_stairs(
     noise: RouteNoise,
     budget: float,
     stairs: Sequence[Stair],
     times_without: Callable[[tuple[Stair, ...]], NDArray[np.float64] | None],
     rng: np.random.Generator,
 ) -> list[tuple[float, NDArray[np.float64], tuple[Stair, ...]]]:
-    """When (s) stairs are found blocked, the travel times from then on, and all stairs that are
-    blocked by then.
+    """Draw the times (s) at which stairs are found blocked.
 
-    `times_without` says the travel times without some stairs, None if those are indispensable.
+    Args:
+        noise: Settings.
+        budget: s.
+        stairs: Stairs that may be blocked.
+        times_without: Function that returns the travel times (s) without some stairs, None if these
+            are indispensable.
+        rng: Generator.
+
+    Returns:
+        For each change, in the order of time: its time (s), the travel times (s) from then on, and
+            all stairs that are blocked by then.
     """
     moments = (budget * np.sort(rng.uniform(_FIRST, _LAST, noise.blocked))).tolist()
-    found: list[tuple[float, NDArray[np.float64], tuple[Stair, ...]]] = []
+    changes: list[tuple[float, NDArray[np.float64], tuple[Stair, ...]]] = []
     blocked: tuple[Stair, ...] = ()
     for k in rng.permutation(len(stairs)).tolist():
-        if len(found) == len(moments):
+        if len(changes) == len(moments):
             break
-        tried = (*blocked, stairs[k])
-        times = times_without(tried)
+        candidate = (*blocked, stairs[k])
+        times = times_without(candidate)
         if times is not None:
-            blocked = tried
-            found.append((moments[len(found)], times, blocked))
-    return found
+            blocked = candidate
+            changes.append((moments[len(changes)], times, blocked))
+    return changes

@@ -1,5 +1,4 @@
-"""Travel times between the first dock and all checkpoints of a real site, also without some of its
-stairs."""
+"""Travel times between the first dock and all checkpoints of a site, also without some stairs."""
 
 import math
 from dataclasses import dataclass
@@ -18,12 +17,12 @@ from argo_env.site.stairs import flight_run
 
 @dataclass(frozen=True)
 class SiteTimes:
-    """What instances on a site are made from."""
+    """Data from which instances on a site are made."""
 
     times: NDArray[np.float64]
-    """s, the dock first"""
-    places: NDArray[np.float64]
-    """x, y (m) and floor"""
+    """travel times (s), the dock first"""
+    positions: NDArray[np.float64]
+    """x, y (m) and floor, likewise"""
     floors: int
     measuring_time: float
     """s"""
@@ -31,21 +30,21 @@ class SiteTimes:
 
 @lru_cache(maxsize=8)
 def site_times(scenario: str) -> SiteTimes:
-    """The travel times of the site of that name. Raises ArgoError if there is none."""
+    """Return the travel times of the site with this name; raise ArgoError if there is none."""
     navigator = open_site(scenario).navigator
     site = navigator.site
     number = min(site.docks)
     dock = navigator.snap(site.docks[number])
     times = navigator.travel_times([dock, *(c.id for c in site.checkpoints)])
-    places = [(dock.x, dock.y, site.floor_at(dock.z))]
-    places += [(c.position[0], c.position[1], c.floor) for c in site.checkpoints]
+    positions = [(dock.x, dock.y, site.floor_at(dock.z))]
+    positions += [(c.position[0], c.position[1], c.floor) for c in site.checkpoints]
     measuring = navigator.robot.sensor.measuring_time
-    return SiteTimes(times, np.array(places), len(site.spec.floors), measuring)
+    return SiteTimes(times, np.array(positions), len(site.spec.floors), measuring)
 
 
 @lru_cache(maxsize=8)
-def stairs_of_site(scenario: str) -> tuple[Stair, ...]:
-    """The stairs of a site's towers, numbered from 0."""
+def site_stairs(scenario: str) -> tuple[Stair, ...]:
+    """Return the stairs of a site's towers, which are numbered from 0."""
     spec = open_site(scenario).site.spec
     return tuple(
         (tower, floor.number) for tower in range(len(spec.towers)) for floor in spec.floors[:-1]
@@ -53,21 +52,24 @@ def stairs_of_site(scenario: str) -> tuple[Stair, ...]:
 
 
 @lru_cache(maxsize=64)
-def times_without(scenario: str, blocked: tuple[Stair, ...]) -> NDArray[np.float64] | None:
-    """`SiteTimes.times` with some stairs blocked in their middle; None if there is no other way."""
+def site_times_without(scenario: str, blocked: tuple[Stair, ...]) -> NDArray[np.float64] | None:
+    """Return `SiteTimes.times` with some stairs blocked in their middle.
+
+    Returns None if there is no detour.
+    """
     navigator = open_site(scenario).navigator
     site = navigator.site
-    places = [navigator.snap(site.docks[min(site.docks)])]
-    places += [navigator.viewing_pose(c.id) for c in site.checkpoints]
+    positions = [navigator.snap(site.docks[min(site.docks)])]
+    positions += [navigator.viewing_pose(c.id) for c in site.checkpoints]
     try:
-        times = navigator_without(navigator, blocked).travel_times(places)
+        times = navigator_without(navigator, blocked).travel_times(positions)
     except Unreachable:
         return None
     return times if np.isfinite(times).all() else None
 
 
 def navigator_without(navigator: Navigator, blocked: tuple[Stair, ...]) -> Navigator:
-    """The navigator that avoids these stairs."""
+    """Return the navigator that avoids these stairs."""
     spec = navigator.site.spec
     base = {floor.number: floor.z for floor in spec.floors}
     blockages = []

@@ -1,5 +1,4 @@
-"""Sources of route instances: random sites, which have aisles and stairs along their ends, and the
-travel times of a real one."""
+"""Sources of route instances: random sites with aisles, and the travel times of real sites."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -13,79 +12,85 @@ from pydantic import Field
 from argo_compiler.base.errors import NotFound
 from argo_compiler.base.model import Model
 from argo_env.envs.route_instance import RouteInstance, Stair, make_instance, with_hidden
-from argo_env.envs.route_noise import NO_NOISE, RouteNoise, draw_blocked, draw_failing
-from argo_env.envs.route_site_times import SiteTimes, site_times, stairs_of_site, times_without
+from argo_env.envs.route_noise import NO_NOISE, RouteNoise, draw_blocked_stairs, draw_failures
+from argo_env.envs.route_site_times import SiteTimes, site_stairs, site_times, site_times_without
 from argo_env.seeding import generator
 
 WIDTH, DEPTH = 30.0, 20.0
-"""m, of the floors of sites that do not exist"""
+"""m, size of the floors of random sites"""
 SPEED = 0.4
 """m/s, see `urdf/robot/tracker.yaml`"""
-_UP, _DOWN = 33.0, 16.0  # s for a floor
+_UP, _DOWN = 33.0, 16.0  # s per floor
 
 
-def stairs_of(floors: int, ends: int) -> list[Stair]:
-    """All stairs between so many floors: at the end x = 0 (number 0), and at x = WIDTH (1) if there
-    are two."""
+def list_stairs(floors: int, ends: int) -> list[Stair]:
+    """Return all stairs between so many floors.
+
+    They are at the end x = 0 (number 0) and, if there are two ends, at x = WIDTH (number 1).
+    """
     return [(end, floor) for end in range(ends) for floor in range(1, floors)]
 
 
 def aisle_times(
-    places: NDArray[np.float64], floors: int, ends: int = 1, blocked: tuple[Stair, ...] = ()
+    positions: NDArray[np.float64], floors: int, ends: int = 1, blocked: tuple[Stair, ...] = ()
 ) -> NDArray[np.float64] | None:
-    """Seconds from each of the places (x, y in m, and floor) to each other, shape (n, n): along the
-    aisles, and up or down by stairs that reach all along one end, or both ends, of the floors.
+    """Return the travel times (s) between positions (x, y in m, and floor), shape (n, n).
 
-    None if a floor can't be reached, as all its stairs are blocked.
+    Paths lead along the aisles, and up or down by stairs that extend along one end, or both ends,
+    of the floors. Returns None if a floor can't be reached as all its stairs are blocked.
     """
-    crossing = _crossing(floors, ends, frozenset(blocked))
-    if not np.isfinite(crossing).all():
+    crossings = _floor_crossings(floors, ends, frozenset(blocked))
+    if not np.isfinite(crossings).all():
         return None
-    x, y, number = places.T
+    x, y, number = positions.T
     floor = number.astype(np.int64) - 1
     aside = np.abs(y[:, None] - y)
     level = np.abs(x[:, None] - x) + aside
     to_end = (x, WIDTH - x)
-    # In from both sides, and up or down between.
-    ways = [
-        to_end[a][:, None] + crossing[a, b][floor[:, None], floor] + to_end[b] + aside
+    # From both positions to an end, and up or down between the ends.
+    lengths = [
+        to_end[a][:, None] + crossings[a, b][floor[:, None], floor] + to_end[b] + aside
         for a in range(ends)
         for b in range(ends)
     ]
     rise = number - number[:, None]
-    way = np.where(rise == 0, level, np.minimum.reduce(ways)) / SPEED
-    return np.asarray(way + np.where(rise > 0, _UP * rise, -_DOWN * rise))
+    length = np.where(rise == 0, level, np.minimum.reduce(lengths)) / SPEED
+    return np.asarray(length + np.where(rise > 0, _UP * rise, -_DOWN * rise))
 
 
 @lru_cache(maxsize=256)
-def _crossing(floors: int, ends: int, blocked: frozenset[Stair]) -> NDArray[np.float64]:
-    """m that a way goes from end to end of floors between leaving the first floor at one end and
-    coming to the last floor at another, shape (ends, ends, floors, floors); inf: there is none."""
+def _floor_crossings(floors: int, ends: int, blocked: frozenset[Stair]) -> NDArray[np.float64]:
+    """Return the lengths (m) that paths go from end to end of floors.
+
+    Counted is what a path goes between leaving the first floor at one end and arriving on the last
+    floor at another end. The shape is (ends, ends, floors, floors); inf if there is no path.
+    """
     lengths = np.full((ends, ends, floors, floors), np.inf)
     for first in range(floors):
-        way = np.where(np.eye(ends, dtype=np.bool_), 0.0, WIDTH)  # row: where it left from
-        lengths[:, :, first, first] = way
+        # The row is the end at which the path left the first floor.
+        length = np.where(np.eye(ends, dtype=np.bool_), 0.0, WIDTH)
+        lengths[:, :, first, first] = length
         for floor in range(first + 1, floors):
-            way = way + [np.inf if (end, floor) in blocked else 0.0 for end in range(ends)]
-            way = np.minimum(way, way[:, ::-1] + WIDTH if ends > 1 else way)
-            lengths[:, :, first, floor] = way
-            lengths[:, :, floor, first] = way.T
+            length = length + [np.inf if (end, floor) in blocked else 0.0 for end in range(ends)]
+            length = np.minimum(length, length[:, ::-1] + WIDTH if ends > 1 else length)
+            lengths[:, :, first, floor] = length
+            lengths[:, :, floor, first] = length.T
     return lengths
 
 
 TRAINING = range(4096)
-"""the numbers of the instances that episodes draw from"""
+"""numbers of the instances from which episodes draw"""
 TEST = range(1_000_000, 1_000_100)
-"""the numbers of the instances that are kept for tests: never drawn unless asked for"""
+"""numbers of the instances for tests, which are never drawn unless they are requested"""
 PRECEDENCE = 0.2
-"""share of checkpoints that another one must come before"""
+"""share of checkpoints that another one must precede"""
 
 
 class RouteFaults(Model):
-    """Faults that are known before the robot sets off."""
+    """Faults that are known before the robot starts."""
 
     closed: int = Field(default=0, ge=0, strict=True)
-    """of the checkpoints that exist, drawn with the instance: so many can't be reached"""
+    """number of existing checkpoints that can't be reached; they are drawn with the instance"""
     battery: float = Field(default=1.0, gt=0.0, le=1.0, strict=True)
     """share of the budget that a worn battery leaves"""
 
@@ -94,32 +99,37 @@ NO_FAULTS = RouteFaults()
 
 
 class RouteSource(Protocol):
-    """Makes instances, each by its number. All have the same number of checkpoints."""
+    """Protocol of sources, which make instances by their numbers.
+
+    All instances of a source have the same number of checkpoints.
+    """
 
     @property
     def checkpoints(self) -> int:
-        """How many, those included that a site does not have."""
+        """Number of checkpoints, with those that a site does not have."""
         ...
 
     @property
     def floors(self) -> int:
-        """How many."""
+        """Number of floors."""
         ...
 
     def draw(
         self, number: int, floors: Sequence[int] = (), faults: RouteFaults = NO_FAULTS
     ) -> RouteInstance:
-        """The instance of that number. Checkpoints on other floors than `floors` can't be reached,
-        if any are given. Equal arguments give equal instances."""
+        """Return the instance with this number; equal arguments give equal instances.
+
+        If `floors` are given, checkpoints on other floors can't be reached.
+        """
         ...
 
 
 @dataclass(frozen=True)
 class RandomRoutes:
-    """Sites that do not exist: checkpoints anywhere on floors with aisles, stairs at one end; at
-    both ends where stairs may be found blocked.
+    """Random sites: checkpoints anywhere on floors with aisles, and stairs at one end.
 
-    Way along the aisles, 0.4 m/s (see `urdf/robot/tracker.yaml`); stairs take longer up than down.
+    There are stairs at both ends if some may be found blocked. The robot drives along the aisles at
+    0.4 m/s (see `urdf/robot/tracker.yaml`); stairs take longer up than down.
     """
 
     checkpoints: int = 20
@@ -131,32 +141,32 @@ class RandomRoutes:
 
     @property
     def ends(self) -> int:
-        """At how many ends of the floors there are stairs."""
+        """Number of ends of the floors at which there are stairs."""
         return 2 if self.noise.blocked else 1
 
     def draw(
         self, number: int, floors: Sequence[int] = (), faults: RouteFaults = NO_FAULTS
     ) -> RouteInstance:
-        """See RouteSource."""
+        """Return the instance with this number: see `RouteSource.draw`."""
         rng = generator(number, "random route", self.checkpoints, self.floors)
         n = self.checkpoints + 2
-        places = np.column_stack(
+        positions = np.column_stack(
             [
                 rng.uniform(0, WIDTH, n),
                 rng.uniform(0, DEPTH, n),
                 rng.integers(1, self.floors + 1, n),
             ]
         )
-        # The dock, and the start in another place; both on the ground.
-        places[[0, n - 1], 2] = 1
+        # The dock, and the start at another position, both on the ground.
+        positions[[0, n - 1], 2] = 1
         service = np.concatenate([[0.0], rng.uniform(5.0, 15.0, self.checkpoints)])
-        asked = _Asked(self.budget, self.noise, self.precedence, floors, faults)
-        return _finished(
-            partial(aisle_times, places, self.floors, self.ends),
-            stairs_of(self.floors, self.ends),
+        spec = _InstanceSpec(self.budget, self.noise, self.precedence, floors, faults)
+        return _complete_instance(
+            partial(aisle_times, positions, self.floors, self.ends),
+            list_stairs(self.floors, self.ends),
             service,
-            places,
-            asked,
+            positions,
+            spec,
             rng,
             generator(number, "route noise", self.checkpoints, self.floors),
         )
@@ -166,8 +176,8 @@ class RandomRoutes:
 class SiteRoutes:
     """Checkpoints of a real site, from its docking station 1 and back there.
 
-    Where the site has more checkpoints than wanted, an instance has some of them; where it has
-    fewer, the rest can't be reached.
+    If the site has more checkpoints than requested, an instance has some of them; if it has fewer,
+    the others can't be reached.
     """
 
     checkpoints: int
@@ -176,70 +186,72 @@ class SiteRoutes:
     """s"""
     noise: RouteNoise = NO_NOISE
     precedence: float = PRECEDENCE
-    kept: SiteTimes | None = field(default=None, compare=False)
-    """the site's travel times, where they are kept; None: they are found out"""
+    stored_times: SiteTimes | None = field(default=None, compare=False)
+    """stored travel times of the site; None if they are to be computed"""
 
     @property
     def floors(self) -> int:
         return self._site.floors
 
     @property
-    def existing(self) -> int:
-        """How many of the checkpoints the site has."""
-        return min(self.checkpoints, len(self._site.places) - 1)
+    def existing_checkpoints(self) -> int:
+        """Number of the checkpoints that the site has."""
+        return min(self.checkpoints, len(self._site.positions) - 1)
 
     @property
     def _site(self) -> SiteTimes:
-        return self.kept or site_times(self.scenario)
+        return self.stored_times or site_times(self.scenario)
 
-    def check(self) -> None:
-        """Raises ArgoError if there is no such site, or stairs are to be found blocked where there
-        is no other way."""
+    def check_usable(self) -> None:
+        """Raise ArgoError if there is no such site.
+
+        It is raised as well if stairs are to be found blocked on a site without any detour.
+        """
         name, _ = self.scenario, self.floors
         if self.noise.blocked and not any(
-            times_without(name, (stair,)) is not None for stair in stairs_of_site(name)
+            site_times_without(name, (stair,)) is not None for stair in site_stairs(name)
         ):
             raise NotFound(
-                f"scenario {name} has no stairs that can be blocked: there is no other way; take a "
-                "site with two stair towers, or noise without `blocked`"
+                f"scenario {name} has no stairs that can be blocked, as there is no detour: choose "
+                "a site with two stair towers, or noise without `blocked`"
             )
 
     def draw(
         self, number: int, floors: Sequence[int] = (), faults: RouteFaults = NO_FAULTS
     ) -> RouteInstance:
-        """See RouteSource."""
+        """Return the instance with this number: see `RouteSource.draw`."""
         site = self._site
         purpose = (self.checkpoints, self.scenario)
         rng = generator(number, "site route", *purpose)
-        there = len(site.places) - 1
-        chosen = rng.permutation(there)[: self.checkpoints] + 1
+        available = len(site.positions) - 1
+        chosen = rng.permutation(available)[: self.checkpoints] + 1
         n = self.checkpoints + 2
         nodes = np.concatenate([[0], np.sort(chosen), [0]])
         slots = np.concatenate([np.arange(len(nodes) - 1), [n - 1]])
-        places = np.zeros((n, 3))
-        places[slots] = site.places[nodes]
+        positions = np.zeros((n, 3))
+        positions[slots] = site.positions[nodes]
         service = np.full(n - 1, site.measuring_time)
         service[0] = 0.0
 
         def times(blocked: tuple[Stair, ...] = ()) -> NDArray[np.float64] | None:
-            found = times_without(self.scenario, blocked) if blocked else site.times
-            if found is None:
+            known_times = site_times_without(self.scenario, blocked) if blocked else site.times
+            if known_times is None:
                 return None
             spread = np.full((n, n), np.inf)
-            # A way round is never shorter, but for the rounding of what is rather avoided.
-            longer = np.maximum(found, site.times)
+            # A detour is never faster, except for the rounding of costs of what paths rather avoid.
+            longer = np.maximum(known_times, site.times)
             spread[np.ix_(slots, slots)] = longer[np.ix_(nodes, nodes)]
             return spread
 
-        stairs = stairs_of_site(self.scenario) if self.noise.blocked else ()
-        asked = _Asked(self.budget, self.noise, self.precedence, floors, faults)
+        stairs = site_stairs(self.scenario) if self.noise.blocked else ()
+        spec = _InstanceSpec(self.budget, self.noise, self.precedence, floors, faults)
         noise = generator(number, "route noise", *purpose)
-        return _finished(times, stairs, service, places, asked, rng, noise)
+        return _complete_instance(times, stairs, service, positions, spec, rng, noise)
 
 
 @dataclass(frozen=True)
-class _Asked:
-    """What an instance is to be like, wherever it is."""
+class _InstanceSpec:
+    """Requirements on an instance that do not depend on its site."""
 
     budget: float
     noise: RouteNoise
@@ -248,53 +260,53 @@ class _Asked:
     faults: RouteFaults
 
 
-def _finished(
+def _complete_instance(
     times_without: Callable[[tuple[Stair, ...]], NDArray[np.float64] | None],
     stairs: Sequence[Stair],
     service: NDArray[np.float64],
-    places: NDArray[np.float64],
-    asked: _Asked,
+    positions: NDArray[np.float64],
+    spec: _InstanceSpec,
     rng: np.random.Generator,
     noise: np.random.Generator,
 ) -> RouteInstance:
-    """The instance, its prizes, precedence and noise drawn, and what can't be reached closed.
+    """Return the instance with its prizes, precedence and noise drawn, and with closed checkpoints.
 
-    `times_without` says the travel times (s) between all places without some of the stairs, None
-    where these are indispensable.
+    `times_without` returns the travel times (s) between all positions without some of the stairs,
+    None if these are indispensable.
     """
     count = len(service) - 1
     prizes = np.concatenate([[0.0], rng.integers(1, 101, count) / 100])
     order = rng.permutation(count) + 1
-    later = np.flatnonzero(rng.random(count) < asked.precedence)
+    later = np.flatnonzero(rng.random(count) < spec.precedence)
     pairs = [(int(order[rng.integers(k)]), int(order[k])) for k in later if k > 0]
     drawn = rng.permutation(count) + 1
-    drawn = drawn[places[drawn, 2] > 0]  # those that exist: an empty slot is on no floor
-    closed = drawn[: asked.faults.closed]
-    if asked.floors:
-        elsewhere = np.flatnonzero(~np.isin(places[1:-1, 2], asked.floors)) + 1
+    drawn = drawn[positions[drawn, 2] > 0]  # existing ones: an empty slot is on no floor
+    closed = drawn[: spec.faults.closed]
+    if spec.floors:
+        elsewhere = np.flatnonzero(~np.isin(positions[1:-1, 2], spec.floors)) + 1
         closed = np.concatenate([closed, elsewhere])
 
     def reachable(blocked: tuple[Stair, ...]) -> NDArray[np.float64] | None:
-        found = times_without(blocked)
-        if found is None:
+        known_times = times_without(blocked)
+        if known_times is None:
             return None
-        found = found[:, :-1].copy()
-        found[:, closed] = np.inf
-        return found
+        known_times = known_times[:, :-1].copy()
+        known_times[:, closed] = np.inf
+        return known_times
 
     times = reachable(())
     assert times is not None
-    # What waits for a checkpoint that nobody gets to would wait for ever.
-    pairs = [(first, then) for first, then in pairs if np.isfinite(times[-1, first])]
-    budget = asked.budget * asked.faults.battery
-    instance = make_instance(times, service, prizes, pairs, budget, places)
-    if asked.noise == NO_NOISE:
+    # A checkpoint could never be visited after one that can't be reached.
+    pairs = [(first, second) for first, second in pairs if np.isfinite(times[-1, first])]
+    budget = spec.budget * spec.faults.battery
+    instance = make_instance(times, service, prizes, pairs, budget, positions)
+    if spec.noise == NO_NOISE:
         return instance
-    failing = draw_failing(asked.noise, count, noise)
-    blocked = draw_blocked(asked.noise, instance.budget, stairs, reachable, noise)
+    failing = draw_failures(spec.noise, count, noise)
+    blocked = draw_blocked_stairs(spec.noise, instance.budget, stairs, reachable, noise)
     return with_hidden(instance, failing, blocked, service)
 
 
-def existing(source: RouteSource) -> int:
-    """How many of a source's checkpoints exist: a site may have fewer than there are slots for."""
-    return source.existing if isinstance(source, SiteRoutes) else source.checkpoints
+def existing_checkpoints(source: RouteSource) -> int:
+    """Return the number of a source's checkpoints that exist, as a site may have too few."""
+    return source.existing_checkpoints if isinstance(source, SiteRoutes) else source.checkpoints

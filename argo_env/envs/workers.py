@@ -1,4 +1,4 @@
-"""Worker processes that hold the environments of a batch, several each, and step them."""
+"""Worker processes that hold and step the environments of a batch, several each."""
 
 import multiprocessing
 import os
@@ -18,162 +18,172 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from argo_compiler.base.errors import Unavailable
 from argo_env.closing import NonCopyable
 
-_PATIENCE = 10.0  # s that a worker has to end by itself
+_PATIENCE = 10.0  # s within which a worker must end by itself
 
 MakeEnv = Callable[[], gym.Env[Any, Any]]
 
 
 class Workers(NonCopyable):
-    """Processes that hold so many environments each, nearly the same number. Close it; else the
-    processes end with this object."""
+    """Worker processes with the environments of a batch, nearly the same number in each. Close it.
+
+    Otherwise the processes end together with this object.
+    """
 
     def __init__(self, make: MakeEnv, count: int, processes: int) -> None:
-        """`count` environments, each made by `make` in its process."""
+        """Start the processes, in which `make` creates `count` environments in all."""
         sizes = [count // processes + (k < count % processes) for k in range(processes)]
-        self.shares = [slice(*ends) for ends in pairwise(accumulate(sizes, initial=0))]
-        """which environments each process holds"""
+        self.slices = [slice(*ends) for ends in pairwise(accumulate(sizes, initial=0))]
+        """environments of each process"""
         context = multiprocessing.get_context()
         self._pipes: list[Connection] = []
         self._processes: list[BaseProcess] = []
-        self._asked = 0  # so that an answer nobody has waited for is told from the next one
-        self._end = weakref.finalize(self, _end_all, os.getpid(), self._pipes, self._processes)
+        # An answer that nobody has waited for is recognized by its request number.
+        self._request_count = 0
+        self._finalizer = weakref.finalize(
+            self, _end_processes, os.getpid(), self._pipes, self._processes
+        )
         try:
             for size in sizes:
                 ours, theirs = context.Pipe()
                 self._pipes.append(ours)
                 process = context.Process(
-                    target=_work, args=(make, size, theirs, ours), daemon=True
+                    target=_run_worker, args=(make, size, theirs, ours), daemon=True
                 )
                 process.start()
                 theirs.close()
                 self._processes.append(process)
-            self._hear()  # that all are made
+            self._receive()  # wait until all environments are made
         except BaseException:
             self.close()
             raise
 
-    def ask(self, name: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
-        """Calls a method of each share with its own arguments, and gives what each environment
-        answered, in their order. What an environment raised is raised once all have answered, that
-        of the first one; Unavailable, once all have ended, if a process has died."""
-        if not self._end.alive:
+    def request(self, name: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
+        """Call a method in each process with its own arguments, and return all answers in order.
+
+        There is one answer for each environment. If environments raise errors, the first one is
+        raised after all processes have answered. If a process has died, all processes are ended and
+        Unavailable is raised.
+        """
+        if not self._finalizer.alive:
             raise gym.error.ClosedEnvironmentError("the processes of this batch have ended")
-        self._asked += 1
+        self._request_count += 1
         for k, pipe in enumerate(self._pipes):
             try:
-                pipe.send((self._asked, name, arguments[k]))
+                pipe.send((self._request_count, name, arguments[k]))
             except OSError:
-                raise self._died(k) from None
-        return self._hear()
+                raise self._dead_worker_error(k) from None
+        return self._receive()
 
     def close(self) -> None:
-        """Ends the processes; their environments are closed."""
-        self._end()
+        """Close the environments and end the processes."""
+        self._finalizer()
 
-    def _hear(self) -> list[Any]:
+    def _receive(self) -> list[Any]:
         answers, errors = [], []
         for k, pipe in enumerate(self._pipes):
             try:
-                asked, answer, error = pipe.recv()
-                while asked != self._asked:
-                    asked, answer, error = pipe.recv()
+                request_number, answer, error = pipe.recv()
+                while request_number != self._request_count:
+                    request_number, answer, error = pipe.recv()
             except (EOFError, OSError):
-                raise self._died(k) from None
+                raise self._dead_worker_error(k) from None
             answers += answer
             errors += [error] if error is not None else []
         if errors:
             raise errors[0]
         return answers
 
-    def _died(self, number: int) -> Unavailable:
-        process, share = self._processes[number], self.shares[number]
+    def _dead_worker_error(self, number: int) -> Unavailable:
+        process, held = self._processes[number], self.slices[number]
         process.join(_PATIENCE)
         code = process.exitcode
         self.close()
         return Unavailable(
-            f"the process of the environments {share.start} to {share.stop - 1} has died with exit "
+            f"the process of the environments {held.start} to {held.stop - 1} has died with exit "
             f"code {code}, and the batch is closed: make another one"
         )
 
 
-class _Share(SyncVectorEnv[Any, Any]):
-    """The environments of one process. Begins those anew that have ended, by Gymnasium's rules."""
+class _WorkerEnvs(SyncVectorEnv[Any, Any]):
+    """Environments of one process; by Gymnasium's rules, ended ones are reset by the next step."""
 
     def __init__(self, make: MakeEnv, count: int) -> None:
         super().__init__([make] * count, copy=False, autoreset_mode=AutoresetMode.NEXT_STEP)
 
-    def resets(self, seeds: list[int | None], options: dict[str, Any] | None) -> list[Any]:
-        """Observation and info of each."""
+    def reset_each(self, seeds: list[int | None], options: dict[str, Any] | None) -> list[Any]:
+        """Reset the environments, and return observation and info of each."""
         _, infos = self.reset(seed=seeds, options=options)
         return list(zip(self._env_obs, infos.values(), strict=True))
 
-    def steps(self, actions: Any) -> list[Any]:
-        """All that a step of each has given."""
+    def step_each(self, actions: Any) -> list[Any]:
+        """Step the environments, and return all that each step returns."""
         _, rewards, terminated, truncated, infos = self.step(actions)
-        told = zip(rewards.tolist(), terminated.tolist(), truncated.tolist(), strict=True)
+        results = zip(rewards.tolist(), terminated.tolist(), truncated.tolist(), strict=True)
         return [
-            (observation, *one, info)
-            for observation, one, info in zip(self._env_obs, told, infos.values(), strict=True)
+            (observation, *member, info)
+            for observation, member, info in zip(
+                self._env_obs, results, infos.values(), strict=True
+            )
         ]
 
-    def calls(self, name: str, arguments: list[tuple[Any, ...]], named: dict[str, Any]) -> Any:
-        """What a method of each returns, called with its own arguments, or an attribute."""
-        found = [env.get_wrapper_attr(name) for env in self.envs]
+    def call_each(self, name: str, arguments: list[tuple[Any, ...]], named: dict[str, Any]) -> Any:
+        """Call a method of each environment with its own arguments, or return an attribute."""
+        members = [env.get_wrapper_attr(name) for env in self.envs]
         return [
-            one(*own, **named) if callable(one) else one
-            for one, own in zip(found, arguments, strict=True)
+            member(*own, **named) if callable(member) else member
+            for member, own in zip(members, arguments, strict=True)
         ]
 
-    def sets(self, name: str, values: list[Any]) -> list[None]:
-        """Sets an attribute of each."""
+    def set_each(self, name: str, values: list[Any]) -> list[None]:
+        """Set an attribute of each environment."""
         self.set_attr(name, values)
         return [None] * self.num_envs
 
-    def ended(self) -> list[bool]:
-        """Whether each begins anew with the next step."""
-        return [bool(one) for one in self._autoreset_envs]
+    def ended_flags(self) -> list[bool]:
+        """Return for each environment True if the next step resets it."""
+        return [bool(member) for member in self._autoreset_envs]
 
-    def continues(self, ended: list[bool]) -> list[None]:
-        """Takes on what `ended` gave."""
+    def set_ended_flags(self, ended: list[bool]) -> list[None]:
+        """Restore the flags that `ended_flags` returned."""
         self._autoreset_envs[:] = ended
         return [None] * self.num_envs
 
     def _add_info(
         self, vector_infos: dict[str, Any], env_info: dict[str, Any], env_num: int
     ) -> dict[str, Any]:
-        # One by one: they are put together where those of all processes are.
+        # They stay separate here: the batch merges those of all processes.
         return vector_infos | {str(env_num): env_info}
 
 
-def _work(make: MakeEnv, count: int, pipe: Connection, other_end: Connection) -> None:
-    """What a process does: answers until its pipe is closed."""
-    # Who asks decides when it ends, also after Ctrl-C, which every process of a terminal gets.
+def _run_worker(make: MakeEnv, count: int, pipe: Connection, other_end: Connection) -> None:
+    """Answer requests until the pipe is closed: the main function of a process."""
+    # The parent decides when it ends, also after Ctrl-C, which all processes of a terminal get.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     other_end.close()
-    share: _Share | None = None
+    envs: _WorkerEnvs | None = None
     try:
         try:
-            share = _Share(make, count)
+            envs = _WorkerEnvs(make, count)
             pipe.send((0, [], None))
         except Exception as error:
-            pipe.send((0, [], _portable(error)))
+            pipe.send((0, [], _picklable_error(error)))
             return
         while True:
-            asked, name, arguments = pipe.recv()
+            request_number, name, arguments = pipe.recv()
             try:
-                answer = pickle.dumps((asked, getattr(share, name)(*arguments), None))
+                answer = pickle.dumps((request_number, getattr(envs, name)(*arguments), None))
             except Exception as error:
-                answer = pickle.dumps((asked, [], _portable(error)))
+                answer = pickle.dumps((request_number, [], _picklable_error(error)))
             pipe.send_bytes(answer)
-    except (EOFError, OSError):  # nobody asks any more
+    except (EOFError, OSError):  # the parent has closed the pipe
         return
     finally:
-        if share is not None:
-            share.close()
+        if envs is not None:
+            envs.close()
 
 
-def _portable(error: Exception) -> Exception:
-    """The error as it can be sent, with a note on where it was raised."""
+def _picklable_error(error: Exception) -> Exception:
+    """Return the error in a form that can be sent, with a note on where it was raised."""
     trace = "".join(traceback.format_exception(error))
     try:
         sent: Exception = pickle.loads(pickle.dumps(error))
@@ -183,9 +193,9 @@ def _portable(error: Exception) -> Exception:
     return sent
 
 
-def _end_all(owner: int, pipes: list[Connection], processes: list[BaseProcess]) -> None:
+def _end_processes(owner: int, pipes: list[Connection], processes: list[BaseProcess]) -> None:
     if os.getpid() != owner:
-        return  # a process that was forked later has no part in them
+        return  # a process that was forked later does not own them
     for pipe in pipes:
         pipe.close()
     for process in processes:

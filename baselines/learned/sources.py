@@ -89,5 +89,5 @@ def pad_instance(instance: RouteInstance, checkpoints: int) -> RouteInstance:
         arrival=np.pad(arrival, ((0, 0), (0, more)), constant_values=np.inf),
         prizes=np.pad(instance.prizes, (0, more)),
         before=np.pad(instance.before, (0, more)),
-        places=np.insert(instance.places, [instance.size] * more, 0.0, axis=0),
+        positions=np.insert(instance.positions, [instance.size] * more, 0.0, axis=0),
     )

@@ -54,7 +54,7 @@ def test_sites_take_turns():
         observation, _ = env.reset(options={"instance": number})
         assert np.array_equal(env.instance.arrival, source.sources[number % 5].draw(number).arrival)
         assert observation["mask"].sum() > 5
-        top_floors.add(env.instance.places[:, 2].max())
+        top_floors.add(env.instance.positions[:, 2].max())
     assert top_floors == {2, 3, 4, 5, 6}
 
 

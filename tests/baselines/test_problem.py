@@ -84,7 +84,7 @@ def test_the_problem_of_a_later_state_loses_nothing(number, checkpoints, failing
     instance, done, time, over = env.instance, [], 0.0, False
     while not over:
         open_problem = problem_from_observation(observation, instance.budget, Objective.PRIZE)
-        known, place = instance.at(time), int(observation["place"])
+        known, place = instance.known_at(time), int(observation["place"])
         assert open_problem.nodes == tuple(k for k in range(1, instance.size) if k not in done)
         problem, nodes = open_problem.problem, [*open_problem.nodes, DOCK]
         assert problem.max_duration * TICK == instance.budget - time

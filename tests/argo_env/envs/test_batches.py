@@ -1,4 +1,4 @@
-"""Batches that are spread over processes: as single environments, and gone when closed."""
+"""Batches that are distributed over processes equal single environments, and end when closed."""
 
 import copy
 import gc
@@ -25,7 +25,7 @@ SEED = 31
 
 @pytest.fixture
 def make(yard_file, closing):
-    """Makes batches on a small site, and closes them."""
+    """Return a function that makes batches on a small site; they are closed after the test."""
 
     def one(id, count=3, mode="vector_entry_point", **arguments):
         return closing(
@@ -37,20 +37,20 @@ def make(yard_file, closing):
 
 @pytest.fixture
 def workers():
-    """Returns the processes that have begun since the test did."""
+    """Return a function that returns the processes started since the beginning of the test."""
     before = set(multiprocessing.active_children())
     return lambda: set(multiprocessing.active_children()) - before
 
 
 def random_actions(batch, observation, rng):
-    """Random ones; legal ones where the environment tells which are."""
+    """Return random actions, legal ones if the observation has a mask."""
     if "mask" in observation:
         return (rng.random(observation["mask"].shape) * observation["mask"]).argmax(axis=1)
     return rng.uniform(-1.0, 1.0, batch.action_space.shape).astype(np.float32)
 
 
 def plain(value):
-    """The same with lists in place of arrays of objects, whose bytes are addresses."""
+    """Return the value with lists in place of arrays of objects, whose bytes are addresses."""
     if isinstance(value, dict):
         return {key: plain(part) for key, part in value.items()}
     if isinstance(value, np.ndarray) and value.dtype == object:
@@ -59,31 +59,31 @@ def plain(value):
 
 
 def trajectory(batch, steps, seed=SEED, options=None):
-    """The digests of a reset, and of each step with random actions; and whether any has ended."""
+    """Return the digests of a reset and of random steps, and the number of ended episodes."""
     rng = np.random.default_rng(SEED)
     observation, info = batch.reset(seed=seed, options=options)
-    heard, ended = [rollouts.digest(plain((observation, info)))], 0
+    digests, ended = [rollouts.digest(plain((observation, info)))], 0
     for _ in range(steps):
         observation, *rest = batch.step(random_actions(batch, observation, rng))
         ended += int(rest[1].sum() + rest[2].sum())
-        heard.append(rollouts.digest(plain((observation, *rest))))
-    return heard, ended
+        digests.append(rollouts.digest(plain((observation, *rest))))
+    return digests, ended
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("id", [DRIVE, INSPECT])
 @pytest.mark.parametrize("processes", [1, 2, 3])
-def test_batch_is_what_single_environments_are(make, id, processes):
-    """Episodes that have ended and begun anew included."""
+def test_batch_equals_single_environments(make, id, processes):
+    """This includes episodes that have ended and restarted."""
     batch, singles = make(id, processes=processes), make(id, mode="sync")
     assert batch.metadata["autoreset_mode"] == AutoresetMode.NEXT_STEP
     assert batch.observation_space == singles.observation_space
     assert batch.action_space == singles.action_space
     own = {"floor": 1}
     for seed, options in ((SEED, None), (None, None), ([9, None, 2], own), (5, {})):
-        told = [trajectory(one, 17, seed, options) for one in (batch, singles)]
-        assert told[0] == told[1]
-        assert told[0][1] > 2
+        results = [trajectory(one, 17, seed, options) for one in (batch, singles)]
+        assert results[0] == results[1]
+        assert results[0][1] > 2
 
 
 def test_masks_are_those_of_the_observation(make):
@@ -122,7 +122,7 @@ def test_pictures_of_each(make):
     "duplicate", [copy.deepcopy, lambda batch: pickle.loads(pickle.dumps(batch))]
 )
 @pytest.mark.parametrize("steps", [7, *(pytest.param(n, marks=pytest.mark.long) for n in (0, 3))])
-def test_goes_on_the_same_from_a_state_and_in_a_copy(make, closing, id, duplicate, steps):
+def test_continues_equally_from_a_state_and_in_a_copy(make, closing, id, duplicate, steps):
     batch = make(id, processes=2)
     rng = np.random.default_rng(SEED)
     observation, _ = batch.reset(seed=SEED)
@@ -142,11 +142,11 @@ def test_a_copy_of_a_closed_one_is_closed(make):
     assert copy.deepcopy(batch).closed
 
 
-def test_no_state_of_such_a_batch(make):
+def test_invalid_states_are_refused(make):
     batch = make(DRIVE)
     batch.reset(seed=SEED)
     for state in (None, {}, {"states": (), "ended": ()}, {"states": 3, "ended": 3}):
-        with pytest.raises(ArgoError, match="no state of a batch of 3"):
+        with pytest.raises(ArgoError, match="not a state of a batch of 3"):
             batch.set_state(state)
 
 
@@ -161,7 +161,7 @@ def test_closing_leaves_no_process(make, workers):
         batch.reset()
 
 
-def test_one_that_is_forgotten_leaves_no_process(yard_file, workers):
+def test_a_garbage_collected_batch_leaves_no_process(yard_file, workers):
     batch = gym.make_vec(DRIVE, 2, scenario=yard_file)
     batch.reset(seed=SEED)
     del batch
@@ -169,25 +169,25 @@ def test_one_that_is_forgotten_leaves_no_process(yard_file, workers):
     assert not workers()
 
 
-def test_errors_are_those_of_a_single_one_with_where_they_were_raised(make):
+def test_errors_are_those_of_a_single_environment_with_the_place_in_the_worker(make):
     batch = make(INSPECT, processes=2)
     before = trajectory(batch, 3)
     with pytest.raises(Invalid, match="colour") as caught:
         batch.reset(options={"colour": 3})
-    told = "".join(traceback.format_exception(caught.value))
-    assert "read_options" in told
-    assert "worker process" in told
-    # Until all have been reset nobody knows which of them have gone on.
+    results = "".join(traceback.format_exception(caught.value))
+    assert "read_options" in results
+    assert "worker process" in results
+    # Until all are reset, it is unknown which of them have made the step.
     with pytest.raises(gym.error.ResetNeeded):
         batch.step(np.zeros(3, np.int64))
     assert trajectory(batch, 3) == before
-    with pytest.raises(Invalid, match=r"no action np.int64\(10000\)"):
+    with pytest.raises(Invalid, match=r"the action is np.int64\(10000\)"):
         batch.step(np.array([0, 10_000, 10_000]))
     assert trajectory(batch, 3) == before
 
 
 @pytest.mark.parametrize("actions", [None, np.zeros(2), np.zeros((2, 3)), "abc"])
-def test_what_are_no_actions_changes_nothing(make, actions):
+def test_invalid_actions_change_nothing(make, actions):
     batch = make(DRIVE)
     batch.reset(seed=SEED)
     with pytest.raises(Invalid, match=r"shape \(3, 3\)"):
@@ -200,7 +200,7 @@ def test_a_step_before_a_reset_is_refused(make):
         make(DRIVE).step(np.zeros((3, 3), np.float32))
 
 
-def test_seeds_of_another_number_are_refused(make):
+def test_a_wrong_number_of_seeds_is_refused(make):
     with pytest.raises(ValueError, match="3 environments"):
         make(DRIVE).reset(seed=[1, 2])
 
@@ -219,7 +219,7 @@ def test_arguments_are_refused_before_any_process_starts(make, arguments, kind, 
     assert not workers()
 
 
-def test_a_process_that_dies_is_told_once_and_ends_the_batch(make, workers):
+def test_a_dead_process_is_reported_once_and_ends_the_batch(make, workers):
     batch = make(DRIVE, processes=2)
     batch.reset(seed=SEED)
     [os.kill(p.pid, signal.SIGKILL) for p in workers()][:1]

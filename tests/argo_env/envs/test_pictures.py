@@ -1,4 +1,4 @@
-"""Pictures of routes and inspections: what is in them, and that they change nothing."""
+"""Pictures of episodes: they show the state, and drawing them changes nothing."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -31,13 +31,13 @@ SHAPE = (SIZE[1], SIZE[0], 3)
 
 
 def near(picture, sheet, x, y, floor, radius=12):
-    """The part of a picture about a point of a floor."""
+    """Return the part of a picture around a point of a floor."""
     column, row = (round(v / FINER) for v in sheet.at(x, y, floor))
     return picture[row - radius : row + radius, column - radius : column + radius]
 
 
 def has(part, colour):
-    """Whether a colour is in a part of a picture, but for what smoothing does."""
+    """Return True if a colour is in a part of a picture, with a tolerance for smoothing."""
     wanted = np.array(ImageColor.getrgb(colour) if isinstance(colour, str) else colour)
     return bool((np.abs(part.astype(int) - wanted).max(axis=-1) <= 3).any())
 
@@ -47,7 +47,7 @@ def differs(one, other):
 
 
 def draw(sheet, **changed):
-    """A picture of a plan with little on it, but for what is changed."""
+    """Return a picture of a plan with little on it, except for what is changed."""
     parts = {
         "headline": "10 s",
         "markers": [],
@@ -61,7 +61,7 @@ def draw(sheet, **changed):
 
 
 def legend_of(picture):
-    """The part of a picture that explains what is in it, less the scale of lengths."""
+    """Return the legend at the bottom of a picture, without the scale."""
     return picture[-FOOT:, : SIZE[0] - 200]
 
 
@@ -127,14 +127,14 @@ def test_plans_show_the_site(navigator):
 
 def test_upper_floors_have_one_frame(navigator):
     site = navigator.site
-    # With less on its upper three floors: as they are, all reach equally far.
+    # The upper three floors get less on them, as all of them are equally wide.
     height = site.spec.floors[3].z - 0.5
     places = [(e, e.solids[0].center) for e in site.elements]
     less = tuple(e for e, (x, _, z) in places if z < height or 3.0 < x < 11.0)
     plans = plans_of(site.with_elements(less))
     assert len({plan.bounds for plan in plans[1:]}) == 1
     lowest, upper = plans[0].bounds, plans[1].bounds
-    # The ground is larger, and reaches as far as all that is above it.
+    # The ground floor is larger, and extends beyond all that is above it.
     assert all(a < b for a, b in zip(lowest[:2], upper[:2], strict=True))
     assert all(a > b for a, b in zip(lowest[2:], upper[2:], strict=True))
     for plan in plans[1:]:
@@ -181,7 +181,7 @@ def test_the_legend_has_what_is_in_the_picture(navigator):
 
 
 def test_no_line_crosses_a_disc():
-    """Discs that have to make room are joined to their places below all the others."""
+    """Lines that join shifted discs to their positions lie below all discs."""
     sheet = make_sheet(aisles(30.0, 20.0, 1))
     crowd = [Marker(15.0, 10.0, 1, "", "open") for _ in range(12)]
     picture = draw(sheet, markers=crowd, way=[Moment(0.0, 1.0, 1.0, 1)])
@@ -209,7 +209,7 @@ def test_the_footprint_is_drawn_to_scale():
 
 
 def test_the_name_of_a_dock_is_not_covered(navigator):
-    """By the robot, the way or the checkpoints: it is there as a whole, in every such picture."""
+    """The robot, the path and the checkpoints leave it whole."""
     sheet = make_sheet(aisles(30.0, 20.0, 1))
     dock = StationMark(15.0, 10.0, 1, "dock")
     crowd = [Marker(15.0 + dx, 10.0 + dy, 1, "9", "open") for dx in (-1, 1, 2) for dy in (-1, 0, 1)]
@@ -237,7 +237,7 @@ def test_the_name_of_a_dock_is_not_covered(navigator):
     assert found
 
 
-def test_the_way_is_drawn_between_floors():
+def test_the_path_is_drawn_between_floors():
     sheet = make_sheet(aisles(30.0, 20.0, 2))
     climb = [
         Moment(0.0, 20.0, 10.0, 1),
@@ -252,8 +252,8 @@ def test_the_way_is_drawn_between_floors():
         assert (line.points[:, 0] >= panel.left).all()
         assert (line.points[:, 0] <= panel.left + panel.width).all()
         assert all(a <= b for a, b in pairwise(line.shades))
-    # A mark at the lower end and at the upper one: about each, more is in the colour of its time
-    # than the line, which is drawn the same with the stairs' marks left out.
+    # There is a mark at the lower end and one at the upper end: around each, more pixels have the
+    # colour of its time than in a picture with the line alone.
     picture, bare = draw(sheet, way=climb), sheet.image.copy()
     draw_lines(ImageDraw.Draw(bare), drawn)
     bare = np.asarray(bare.reduce(FINER))
@@ -274,7 +274,7 @@ def inspect():
 
 
 @pytest.mark.long
-def test_an_inspection_is_drawn_as_it_is(inspect, navigator):
+def test_a_picture_shows_the_state_of_an_inspection(inspect, navigator):
     inspect.reset(seed=2, options={})
     before = inspect.render()
     assert before.shape == SHAPE
@@ -287,8 +287,8 @@ def test_an_inspection_is_drawn_as_it_is(inspect, navigator):
     after = inspect.render()
     assert not differs(after, inspect.render())
     assert has(near(after, sheet, *place, 24), STYLES["done"].fill)
-    # Nothing but the ring of the one chosen last, and what the legend says of it, is new if it is
-    # taken to be chosen.
+    # If another checkpoint counts as the one chosen last, only the ring and its entry in the
+    # legend change.
     inspect._actions[-1] = 20
     part, other = (near(p, sheet, *place, 24) for p in (after, inspect.render()))
     ring = (part == ROBOT).all(axis=-1) & (part != other).any(axis=-1)
@@ -311,7 +311,7 @@ def test_an_inspection_shows_the_chosen_floors(inspect, navigator):
     inspect.reset(seed=2, options={})
 
 
-def test_the_trail_of_an_inspection_is_the_way_that_it_drove(inspect, navigator):
+def test_the_trail_of_an_inspection_is_the_driven_path(inspect, navigator):
     inspect.reset(seed=2, options={})
     inspect.step(12)
     trail = inspect._run.trail
@@ -328,7 +328,7 @@ def test_the_trail_of_an_inspection_is_the_way_that_it_drove(inspect, navigator)
 
 def test_rendering_changes_no_rollout(yard_file):
     for kind, arguments in ((InspectEnv, {"scenario": yard_file}), (RouteEnv, {})):
-        heard = []
+        digests = []
         for looks in (False, True):
             env = kind(**arguments, render_mode="rgb_array")
             if looks:
@@ -341,13 +341,13 @@ def test_rendering_changes_no_rollout(yard_file):
                     return outcome
 
                 env.step = seen
-            heard.append(rollouts.digest(rollouts.rollout(env, 4, 6)))
+            digests.append(rollouts.digest(rollouts.rollout(env, 4, 6)))
             env.close()
-        assert heard[0] == heard[1]
+        assert digests[0] == digests[1]
 
 
 @pytest.mark.parametrize("scenario", ["random", "umad"])
-def test_a_route_is_drawn_as_it_is(scenario):
+def test_a_picture_shows_the_state_of_a_route(scenario):
     env = RouteEnv(scenario=scenario, render_mode="rgb_array")
     env.reset(seed=0)
     before = env.render()
@@ -367,14 +367,14 @@ def test_routes_show_the_chosen_floors():
     env = RouteEnv(render_mode="rgb_array")
     env.reset(seed=0, options={"floor": [1, 3]})
     sheet = make_sheet(aisles(30.0, 20.0, 3))
-    x, y, _ = next(p for p in env.instance.places[1:-1].tolist() if p[2] == 2)
+    x, y, _ = next(p for p in env.instance.positions[1:-1].tolist() if p[2] == 2)
     part = near(env.render(), sheet, x, y, 2)
     assert has(part, STYLES["outside"].rim)
     assert not has(part, STYLES["open"].fill)
 
 
 class ThreeInALine:
-    """Instances of one's own: of their site nothing is known."""
+    """Custom source of instances, about whose site nothing is known."""
 
     checkpoints, floors = 3, 2
 
@@ -385,7 +385,7 @@ class ThreeInALine:
         return make_instance(times, np.zeros(4), prizes, [], 100.0, places)
 
 
-def test_routes_of_ones_own_are_drawn():
+def test_routes_of_custom_sources_are_drawn():
     env = RouteEnv(source=ThreeInALine(), render_mode="rgb_array")
     env.reset(seed=0)
     pictures = [env.render()]
@@ -406,8 +406,8 @@ def test_a_batch_draws_each_route():
     assert has(one, STYLES["done"].fill)
 
 
-def test_a_batch_counts_what_was_visited():
-    """Also of a route that has ended, where the robot is in the dock."""
+def test_a_batch_counts_visited_checkpoints():
+    """It does so for a route that has ended as well, where the robot is in the dock."""
     batch = RouteVectorEnv(1, checkpoints=5, render_mode="rgb_array")
     single = RouteEnv(checkpoints=5, render_mode="rgb_array")
     observation, _ = batch.reset(seed=1)
@@ -422,7 +422,7 @@ def test_a_drive_is_drawn_with_its_goal(yard_file):
     env = DriveEnv(yard_file, render_mode="rgb_array")
     env.reset(seed=1)
     state, pose = env.get_state(), env.pose
-    # Ahead of the robot, where the camera behind it looks.
+    # The camera behind the robot looks ahead.
     goals = [
         (pose.x + far * np.cos(pose.yaw), pose.y + far * np.sin(pose.yaw), pose.z)
         for far in (1.5, -30.0)
@@ -433,12 +433,12 @@ def test_a_drive_is_drawn_with_its_goal(yard_file):
     assert ahead.shape == (322, 640, 3)
     assert (ahead == GOAL).all(axis=-1).sum() > 50
     assert not (behind == GOAL).all(axis=-1).any()
-    # All else is the same.
+    # Nothing else differs.
     assert np.ptp(np.nonzero((ahead != behind).any(axis=-1))[1]) < 100
     env.set_state(state)
     first = env.render()
     env.step(np.zeros(3))
-    assert differs(first[-38:], env.render()[-38:])  # the caption goes on
+    assert differs(first[-38:], env.render()[-38:])  # the caption changes
     env.close()
 
 

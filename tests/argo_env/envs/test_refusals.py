@@ -1,4 +1,4 @@
-"""What environments refuse, and that they can be used afterwards."""
+"""Errors of environments, which can be used afterwards."""
 
 import gc
 import math
@@ -39,8 +39,8 @@ def test_faults_that_are_drawn_fit_the_site():
         resolve_faults(faults, site, seed)
 
 
-def test_observations_do_not_depend_on_what_the_process_has_kept(yard_file):
-    heard = []
+def test_observations_do_not_depend_on_cached_sites(yard_file):
+    digests = []
     for forget in (False, True):
         env = InspectEnv(yard_file, faults=0, render_mode="rgb_array")
         observation, _ = env.reset(seed=1)
@@ -48,16 +48,16 @@ def test_observations_do_not_depend_on_what_the_process_has_kept(yard_file):
         kept = weakref.ref(open_site(yard_file).navigator)
         if forget:  # as when other environments have been on many other sites
             forget_sites()
-        heard.append(rollouts.digest(rollouts.rollout(env, 1, 3, observation)))
+        digests.append(rollouts.digest(rollouts.rollout(env, 1, 3, observation)))
         env.close()
-    assert heard[0] == heard[1]
-    # Neither pictures nor travel times keep the site's navigator, which is large.
+    assert digests[0] == digests[1]
+    # Neither pictures nor travel times keep the site's large navigator alive.
     del env
     gc.collect()
     assert kept() is None
 
 
-def test_drive_goes_on_after_refused_options(yard_file):
+def test_drive_continues_after_refused_options(yard_file):
     env = DriveEnv(yard_file)
     env.reset(seed=1)
     for options in (
@@ -120,7 +120,7 @@ def test_bad_arguments_are_refused(kind, arguments, words):
         kind(**arguments)
 
 
-def test_nothing_goes_without_an_episode(env, id):
+def test_methods_that_need_an_episode_are_refused_without_one(env, id):
     calls = [lambda: env.step(env.action_space.sample()), env.get_state]
     if id != "argo/Drive-v0":
         calls.append(env.action_masks)
@@ -133,7 +133,7 @@ def test_wrong_actions_are_refused_and_change_nothing(env, id):
     observation, _ = env.reset(seed=1)
     state = rollouts.digest(env.get_state())
     for action in COMMANDS if id == "argo/Drive-v0" else CHOICES:
-        with pytest.raises(ArgoError, match=rf"{id}: no action .*(whole|three) number"):
+        with pytest.raises(ArgoError, match=rf"{id}: the action is .*(whole|three) number"):
             env.step(action)
     assert rollouts.digest(env.get_state()) == state
     env.step(np.asarray(an_action(env, observation)))
@@ -146,16 +146,16 @@ def test_wrong_actions_of_a_batch_are_refused():
     batch.reset(seed=1)
     before = rollouts.digest(batch.get_state()["arrays"])
     for actions in ([0, 0], [0, 0, 5], [0, -1, 0], [0.0, 1.0, 2.0], None, "dock", 0, [[0, 0, 0]]):
-        with pytest.raises(ArgoError, match="3 whole numbers, 0 to 4"):
+        with pytest.raises(ArgoError, match="3 whole numbers from 0 to 4"):
             batch.step(actions)
     assert rollouts.digest(batch.get_state()["arrays"]) == before
     for state in ({"x": 1}, None, RouteVectorEnv(2, checkpoints=4).get_state()):
-        with pytest.raises(ArgoError, match="no state of a batch of 3"):
+        with pytest.raises(ArgoError, match="not a state of a batch of 3"):
             batch.set_state(state)
     batch.step([0, 1, 2])
 
 
-def test_after_its_end_an_episode_does_not_go_on(env, id):
+def test_steps_after_the_end_of_an_episode_are_refused(env, id):
     if id == "argo/Drive-v0":
         env.reset(seed=1)
         state = env.get_state()
@@ -174,7 +174,7 @@ def test_after_its_end_an_episode_does_not_go_on(env, id):
     env.step(an_action(env, observation))
 
 
-def test_what_is_no_state_is_refused(env, id):
+def test_invalid_states_are_refused(env, id):
     env.render_mode = "rgb_array"
     observation, _ = env.reset(seed=1)
     env.step(an_action(env, observation))
@@ -182,7 +182,7 @@ def test_what_is_no_state_is_refused(env, id):
     other = RouteEnv() if id != "argo/Route-v0" else RouteVectorEnv(2)
     other.reset(seed=1)
     for wrong in ({"x": 1}, None, other.get_state(), state | {"generator": {"state": 1}}):
-        with pytest.raises(ArgoError, match=f"no state of {id}"):
+        with pytest.raises(ArgoError, match=f"not a state of {id}"):
             env.set_state(wrong)
     assert rollouts.digest(env.get_state()) == rollouts.digest(state)
     with pytest.raises(ArgoError, match="nowhere"):
@@ -207,7 +207,7 @@ def test_what_is_no_state_is_refused(env, id):
         ({"floor": 1.0}, "`floor` has to be a whole number, or a list"),
     ],
 )
-def test_wrong_options_are_told_in_plain_words(env, options, words):
+def test_errors_of_options_are_in_plain_words(env, options, words):
     with pytest.raises(ArgoError, match=words) as error:
         env.reset(options=options)
     for internal in ("constrained", "tagged", "union", "tuple", "valid"):
@@ -224,7 +224,7 @@ def test_wrong_options_are_told_in_plain_words(env, options, words):
         ([{"kind": "gas"}], r"`faults\[0\]`: no kind `gas`"),
     ],
 )
-def test_of_wrong_faults_the_one_mistake_is_told(yard_file, faults, words):
+def test_errors_of_faults_name_only_the_mistake(yard_file, faults, words):
     env = InspectEnv(yard_file)
     with pytest.raises(ArgoError, match=words):
         env.reset(options={"faults": faults})
@@ -243,14 +243,14 @@ def test_of_wrong_faults_the_one_mistake_is_told(yard_file, faults, words):
         (DriveEnv, {"max_way": 3.0}, "`max_way` has to be at least 5"),
     ],
 )
-def test_options_are_of_their_types(kind, options, words, yard_file):
+def test_options_of_wrong_types_are_refused(kind, options, words, yard_file):
     env = kind() if kind is RouteEnv else kind(yard_file)
     with pytest.raises(ArgoError, match=words):
         env.reset(options=options)
     env.close()
 
 
-def test_numbers_of_numpy_are_numbers(env):
+def test_numbers_of_numpy_are_accepted(env):
     plain = env.reset(seed=1, options={"floor": [1]})[0]
     for floor in (np.int64(1), np.array([1]), [np.int32(1)], (1,)):
         again = env.reset(seed=1, options={"floor": floor})[0]
@@ -263,7 +263,7 @@ def test_numbers_of_numpy_are_numbers(env):
     RouteVectorEnv(np.int64(2), np.int32(5)).reset(seed=1)
 
 
-def test_floors_that_are_not_there_are_told_alike(env, id, yard_file):
+def test_missing_floors_have_one_message(env, id, yard_file):
     name, floors = ("random", "the floors 1 to 6") if "Route" in id else (yard_file, "floor 1 only")
     with pytest.raises(ArgoError) as error:
         env.reset(options={"floor": 9})

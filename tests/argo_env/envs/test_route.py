@@ -1,4 +1,4 @@
-"""Route-v0: the environment, its batch and the plain evaluator say the same, to the bit."""
+"""Route-v0: the environment, its batch and the simple evaluator agree bit for bit."""
 
 import gymnasium as gym
 import numpy as np
@@ -22,7 +22,7 @@ def make_batch(count, **arguments):
 
 
 def equal(a, b):
-    """Whether two structures of dictionaries and arrays are the same, types included."""
+    """Return True if two structures of dictionaries and arrays are equal, with their types."""
     if isinstance(a, dict):
         return isinstance(b, dict) and a.keys() == b.keys() and all(equal(a[k], b[k]) for k in a)
     if isinstance(a, tuple):
@@ -32,18 +32,18 @@ def equal(a, b):
 
 
 def choose(env, rng, far=False):
-    """A legal checkpoint, if there is one; with `far` the one that leaves the least time."""
+    """Return a legal checkpoint, if there is one; with `far` the one that leaves the least time."""
     allowed = np.flatnonzero(env.action_masks())[1:]
     if not len(allowed):
         return DOCK
     if far:
-        known = env.instance.at(env._time())
+        known = env.instance.known_at(env._time())
         return int(allowed[np.argmax(known.need[env._place, allowed])])
     return int(rng.choice(allowed))
 
 
-def driven(env, next_node):
-    """The score of a route to the end of the episode, by the environment and by the evaluator."""
+def score_episode(env, next_node):
+    """Return the score of an episode and its last info, after a comparison with the evaluator."""
     route, total, over = [], 0.0, False
     while not over:
         route.append(next_node())
@@ -71,7 +71,7 @@ def test_return_is_the_evaluators_score(number, checkpoints, seed, legal):
         # The dock only where there is nothing else, so that routes get long.
         return int(rng.choice(allowed[1:] if len(allowed) > 1 else allowed))
 
-    score, _ = driven(env, next_node)
+    score, _ = score_episode(env, next_node)
     assert score.time <= env.instance.budget
     if legal:
         assert score.illegal is None
@@ -100,7 +100,7 @@ def test_mask_is_what_the_evaluator_allows(checkpoints, noise, number, seed, sho
 
 @pytest.mark.parametrize("arguments", [{}, {"full": True, "checkpoints": 7}])
 @pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP])
-def test_batch_is_what_single_environments_are(arguments, mode):
+def test_batch_equals_single_environments(arguments, mode):
     batch = make_batch(5, **arguments)
     singles = gym.make_vec(ID, num_envs=5, vectorization_mode="sync", **arguments)
     assert batch.metadata["autoreset_mode"] == singles.metadata["autoreset_mode"] == mode
@@ -123,7 +123,7 @@ def test_batch_is_what_single_environments_are(arguments, mode):
                 assert equal(one, other)
 
 
-def test_batch_goes_on_from_a_state():
+def test_batch_continues_from_a_state():
     batch = make_batch(16).unwrapped
     observation, _ = batch.reset(seed=1)
     rng = np.random.default_rng(0)
@@ -177,7 +177,7 @@ def test_faults_close_checkpoints_and_shorten_the_time():
 
 @pytest.mark.parametrize("checkpoints", [3, 20])
 def test_faults_close_checkpoints_that_exist(checkpoints):
-    """The site has 6: of more slots the rest are empty."""
+    """The site has 6: further slots are empty."""
     source = SiteRoutes(checkpoints, "darmstadt", 3000.0)
     there = min(6, checkpoints)
     drawn = set()
@@ -222,7 +222,7 @@ def test_bad_options_are_refused(options, words):
     assert equal(env.reset(seed=3)[0], first)
 
 
-def test_options_at_the_bounds_are_taken():
+def test_options_at_the_bounds_are_accepted():
     env = RouteEnv(checkpoints=4)
     for number in (0, 4095, 1_000_000, 1_000_099):
         assert env.reset(options={"instance": number, "test": False})[1]["instance"] == number
@@ -239,7 +239,7 @@ def test_bad_options_of_a_batch_are_refused(options):
 
 
 @pytest.mark.parametrize("count", [0, -1, 1.5, True, None])
-def test_a_batch_has_one_route_at_least(count):
+def test_a_batch_without_routes_is_refused(count):
     with pytest.raises(ArgoError, match=f"`num_envs` is {count}, .* whole number of at least 1"):
         make_batch(count)
 
@@ -252,7 +252,7 @@ def test_bad_instances_are_refused():
             "prizes": np.array([0.0, 0.5, 1.0]),
             "pairs": [(1, 2)],
             "budget": 10.0,
-            "places": np.zeros((4, 3)),
+            "positions": np.zeros((4, 3)),
         } | changed
         return make_instance(**given_parts)
 
@@ -268,7 +268,7 @@ def test_bad_instances_are_refused():
             "times": np.ones((602, 601)),
             "service": np.zeros(601),
             "prizes": np.zeros(601),
-            "places": np.zeros((602, 3)),
+            "positions": np.zeros((602, 3)),
         },
     ):
         with pytest.raises(ArgoError):

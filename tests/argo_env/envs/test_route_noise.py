@@ -1,4 +1,4 @@
-"""What goes wrong on the way in Route-v0: readings that fail, and stairs that are blocked."""
+"""Noise in Route-v0: readings that fail, and stairs that are blocked."""
 
 import gymnasium as gym
 import numpy as np
@@ -11,7 +11,7 @@ from argo_env.envs.route import RouteEnv
 from argo_env.envs.route_instance import DOCK, TICK
 from argo_env.envs.route_noise import RouteNoise
 from argo_env.envs.route_sources import RandomRoutes, RouteFaults, SiteRoutes
-from tests.argo_env.envs.test_route import NUMBERS, choose, driven, equal, make_batch
+from tests.argo_env.envs.test_route import NUMBERS, choose, equal, make_batch, score_episode
 from tests.conftest import examples
 
 NOISES = st.builds(RouteNoise, failing=st.floats(0.01, 0.9), blocked=st.integers(0, 5))
@@ -29,7 +29,7 @@ def test_return_is_the_evaluators_score(number, checkpoints, noise, seed, batter
         legal = rng.random() < 0.97
         return choose(env, rng, far) if legal else int(rng.integers(checkpoints + 1))
 
-    score, info = driven(env, next_node)
+    score, info = score_episode(env, next_node)
     assert info["late"] == score.late
     assert score.late == (score.time > env.instance.budget)
     if score.late:
@@ -51,7 +51,7 @@ def test_some_routes_are_late_and_lose_their_prize():
     assert 2 < sum(late) < 50
 
 
-def test_batch_is_what_single_environments_are():
+def test_batch_equals_single_environments():
     arguments = {"checkpoints": 9, "full": True, "noise": {"failing": 0.3, "blocked": 5}}
     batch = make_batch(24, **arguments)
     singles = gym.make_vec("argo/Route-v0", num_envs=24, vectorization_mode="sync", **arguments)
@@ -61,7 +61,7 @@ def test_batch_is_what_single_environments_are():
     assert equal(*outcomes)
     for k in range(120):
         mask = outcomes[0][0]["mask"]
-        # Mostly as far as it goes, so that some are late.
+        # Mostly the farthest checkpoints, so that some routes are late.
         drawn = (rng.random(mask.shape) + outcomes[0][0]["travel"]) * (mask + 0.01)
         drawn[:, DOCK] = 0.005
         actions = drawn.argmax(axis=1)
@@ -76,27 +76,27 @@ def test_batch_is_what_single_environments_are():
     assert late > 0
 
 
-def test_a_visit_that_fails_can_be_made_again():
+def test_a_failed_visit_can_be_repeated():
     env = RouteEnv(noise={"failing": 0.9})
     env.reset(options={"instance": 3})
     failing = env.instance.hidden.failing
     node = next(k for k in np.flatnonzero(env.action_masks())[1:] if 1 <= failing[k] <= 8)
-    worth = env.instance.prizes[node]
+    prize = env.instance.prizes[node]
     for _ in range(failing[node]):
         assert env.action_masks()[node]
         observation, reward, _, _, info = env.step(node)
         assert (reward, info["failed"]) == (0.0, True)
-        assert observation["prize"][node] == np.float32(worth)
+        assert observation["prize"][node] == np.float32(prize)
     observation, reward, _, _, info = env.step(node)
-    assert (reward, info["failed"]) == (worth, False)
+    assert (reward, info["failed"]) == (prize, False)
     assert not observation["mask"][node]
 
 
-def test_what_is_hidden_is_seen_only_when_it_appears():
+def test_hidden_parts_are_observed_only_when_they_appear():
     plain, noisy = RouteEnv(full=True), RouteEnv(full=True, noise={"failing": 0.5})
     for number in range(20):
         seen = [e.reset(options={"instance": number})[0] for e in (plain, noisy)]
-        assert equal(*seen)  # which readings fail is not to be seen
+        assert equal(*seen)  # the failing readings are not observed
     env = RouteEnv(full=True, noise={"blocked": 2})
     env.reset(options={"instance": 5})
     (first, second) = env.instance.hidden.changes
@@ -107,9 +107,9 @@ def test_what_is_hidden_is_seen_only_when_it_appears():
         node = choose(env, rng)
         place, begun = env._place, max(before, 0.0)
         observation, _, over, _, info = env.step(node)
-        # A drive takes as long as it was said to take when it began.
-        assert info["time"] - begun == env.instance.at(begun).arrival[place, node]
-        known = env.instance.at(info["time"])
+        # A drive takes the time that was observed at its start.
+        assert info["time"] - begun == env.instance.known_at(begun).arrival[place, node]
+        known = env.instance.known_at(info["time"])
         assert np.array_equal(observation["matrix"], known.travel)
         assert np.array_equal(observation["home"], known.home)
         before = info["time"]
@@ -134,11 +134,11 @@ def test_blocked_stairs_only_ever_make_ways_longer(number, floors, blocked):
     assert (instance.arrival[1:] <= RandomRoutes(12, floors).draw(number).arrival[1:]).all()
 
 
-def test_noise_changes_nothing_that_is_known_beforehand():
+def test_noise_does_not_change_the_known_parts():
     for faults in (RouteFaults(), RouteFaults(closed=2, battery=0.7)):
         plain = RandomRoutes(15).draw(8, (1, 2, 3), faults)
         noisy = RandomRoutes(15, noise=RouteNoise(failing=0.4)).draw(8, (1, 2, 3), faults)
-        for name in ("arrival", "prizes", "before", "places"):
+        for name in ("arrival", "prizes", "before", "positions"):
             assert equal(getattr(plain, name), getattr(noisy, name))
         assert plain.budget == noisy.budget
         assert plain.hidden is None
@@ -154,8 +154,8 @@ def test_blocked_stairs_of_a_site(navigator):
     assert (now >= before).all()
     longer = (now > before).any(axis=1)
     assert longer.any()
-    # Those above and below can't both do without these stairs; places on one floor can.
-    places = instance.places
+    # Some paths between floors need these stairs; those on one floor do not.
+    places = instance.positions
     same = places[1:, None, 2] == places[None, :-1, 2]
     assert (now[same] - before[same]).max() < 60.0
     assert floor in range(1, 6)
@@ -170,7 +170,7 @@ def test_blocked_stairs_of_a_site(navigator):
         ({"noise": {"wind": 1}}, "`wind`"),
         ({"noise": 3}, "dictionary"),
         ({"noise": {"failing": 0.2}, "source": RandomRoutes(3)}, "`noise` and `source`"),
-        ({"noise": {"blocked": 1}, "scenario": "darmstadt"}, "no other way"),
+        ({"noise": {"blocked": 1}, "scenario": "darmstadt"}, "no detour"),
     ],
 )
 def test_bad_noise_is_refused(arguments, words):
@@ -178,7 +178,7 @@ def test_bad_noise_is_refused(arguments, words):
         RouteEnv(**arguments)
 
 
-def test_a_site_without_a_way_round_is_refused_and_changes_nothing():
+def test_a_site_without_a_detour_is_refused_and_changes_nothing():
     env = RouteEnv(noise={"blocked": 1})
     first, _ = env.reset(seed=3)
     with pytest.raises(ArgoError, match="darmstadt"):

@@ -25,7 +25,7 @@ from argo_compiler.hfsm import (
     lower,
 )
 from argo_compiler.il import EventKind, Reaction, Response
-from argo_env.envs.inspection_run import Inspection, beginning
+from argo_env.envs.inspection_run import Inspection, initial_mission
 from argo_env.faults.checkpoints import AbnormalValue
 from argo_env.faults.plant import GasLeakFault
 from argo_env.faults.robot import ConnectionLoss, DriveDysfunction, LowBattery, SensorDysfunction
@@ -99,23 +99,27 @@ class TestTheSameWhoeverSteps:
     def test_by_tasks_given_one_by_one(self, site, drive):
         """Environments append each task when the previous one has ended."""
         start = PLAN.tasks[0].pose
-        spec = spec_of(drive, mission=beginning(site, start), faults=FAULTS)
+        spec = spec_of(drive, mission=initial_mission(site, start), faults=FAULTS)
         given, whole = Entries(), Entries()
         with Inspection(check_run(spec, site), 600.0, [given]) as inspection:
-            deeds = [inspection.read(1)]
+            results = [inspection.measure_checkpoint(1)]
             if drive != "tracked":
-                deeds += [inspection.read(2), inspection.read(2), inspection.drive(start)]
-            inspection.finish()
+                results += [
+                    inspection.measure_checkpoint(2),
+                    inspection.measure_checkpoint(2),
+                    inspection.drive_to(start),
+                ]
+            inspection.end_mission()
             record = inspection.record()
         names = [task.name for task in record.mission.tasks]
-        assert names == ["START", "read 1", "read 2", "read 2 (2)", "drive"][: 1 + len(deeds)]
+        assert names == ["START", "read 1", "read 2", "read 2 (2)", "drive"][: 1 + len(results)]
         planned = spec.model_copy(update={"mission": record.mission})
         assert simulate(planned, site, observers=[whole]) == record
         assert given.all == whole.all
         assert record.result.success
-        assert [d.reading for d in deeds if d.reading] == list(record.readings)
+        assert [d.reading for d in results if d.reading] == list(record.readings)
         noticed = [a for a in record.anomalies if a.kind is not EventKind.ABNORMAL_READING]
-        assert [a for d in deeds for a in d.found] == noticed
+        assert [a for d in results for a in d.anomalies] == noticed
 
 
 @pytest.fixture(scope="module")
@@ -421,7 +425,7 @@ class TestGivenEvents:
 
 class TestOpenMachine:
     def test_a_task_at_a_time(self, site):
-        spec = spec_of("route", mission=beginning(site, PLAN.tasks[0].pose))
+        spec = spec_of("route", mission=initial_mission(site, PLAN.tasks[0].pose))
         machine = OpenMachine(spec.mission)
         with Simulation(machine, site, spec) as simulation:
             steps(simulation, 20)

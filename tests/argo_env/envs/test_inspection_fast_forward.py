@@ -1,10 +1,10 @@
-"""An inspection goes from event to event: all that it tells is what it tells step by step."""
+"""An inspection that goes from event to event reports the same as one that goes step by step."""
 
 import random
 
 import pytest
 
-from argo_env.envs.inspection_run import Inspection, beginning
+from argo_env.envs.inspection_run import Inspection, initial_mission
 from argo_env.faults.loading import decode_faults
 from argo_env.planning.opening import open_site
 from argo_env.run.simulation import Simulation
@@ -23,37 +23,37 @@ FAULTS = (
 )
 
 
-def told_of(seed: int) -> list[object]:
-    """All that is told of a random inspection."""
+def results_of(seed: int) -> list[object]:
+    """Return all that a random inspection reports."""
     chosen = random.Random(seed)
     docks = SITE.site.docks
     faults = ", ".join(chosen.sample(FAULTS, chosen.choice([0, 1, 1, 2])))
     spec = RunSpec(
-        mission=beginning(SITE, docks[chosen.choice([1, 2])]),
+        mission=initial_mission(SITE, docks[chosen.choice([1, 2])]),
         drive="route",
         seed=seed,
         faults=decode_faults(f"faults: [{faults}]".encode(), "test").faults,
         conditions=RunConditions(charge=chosen.choice([None, 0.97, 0.995, 0.3])),
     )
-    told: list[object] = []
+    results: list[object] = []
     with Inspection(check_run(spec, SITE), chosen.choice([150.0, 400.0, 1500.0])) as run:
-        while not (run.time_up or run.dead or len(told) > 20):
+        while not (run.is_time_up or run.is_battery_empty or len(results) > 20):
             match chosen.randrange(3):
                 case 0:
-                    deed = run.read(chosen.choice(SITE.site.checkpoints).id)
+                    result = run.measure_checkpoint(chosen.choice(SITE.site.checkpoints).id)
                 case 1:
-                    deed = run.drive(docks[chosen.choice([1, 2])])
-                    if not (run.time_up or run.dead):
-                        deed = run.stand(chosen.choice([0.0, 10.0]), charging=True)
+                    result = run.drive_to(docks[chosen.choice([1, 2])])
+                    if not (run.is_time_up or run.is_battery_empty):
+                        result = run.stay(chosen.choice([0.0, 10.0]), charging=True)
                 case _:
-                    deed = run.stand(chosen.choice([0.05, 0.3, 33.3, 200.0]))
-            told += [deed, run.now, run.charge, run.pose]
-        return [*told, run.trail, run.noticed, run.record().model_dump_json()]
+                    result = run.stay(chosen.choice([0.05, 0.3, 33.3, 200.0]))
+            results += [result, run.now, run.charge, run.pose]
+        return [*results, run.trail, run.noticed, run.record().model_dump_json()]
 
 
 @pytest.mark.parametrize("seed", seeds(20))
-def test_it_tells_what_it_tells_step_by_step(seed, monkeypatch):
-    leaping = told_of(seed)
+def test_fast_forward_equals_single_steps(seed, monkeypatch):
+    fast_results = results_of(seed)
     monkeypatch.setattr(Simulation, "fast_forward", lambda self, until: self.step() or ())  # noqa: ARG005
-    for fast, slow in zip(leaping, told_of(seed), strict=True):
+    for fast, slow in zip(fast_results, results_of(seed), strict=True):
         assert fast == slow

@@ -1,5 +1,4 @@
-"""What the tests of environments share: UMAD as the environments keep it, a small yard, the ids of
-all environments, and what makes them and closes those that a test has made."""
+"""Fixtures of the tests of environments: UMAD, a small yard, all ids, and closed environments."""
 
 from contextlib import ExitStack
 
@@ -13,13 +12,13 @@ from tests.yard import AWAY_FROM_THE_EDGE, write_site
 
 @pytest.fixture(scope="session")
 def navigator():
-    """That of UMAD, as the environments keep it."""
+    """Return the navigator of UMAD that the environments cache."""
     return open_site("umad").prepare().navigator
 
 
 @pytest.fixture(scope="session")
 def yard_file(tmp_path_factory):
-    """A site on one level, for what does not depend on the site."""
+    """Return the file of a site on one level, for tests that do not depend on the site."""
     return write_site(tmp_path_factory.mktemp("yard") / "site.yaml", areas=AWAY_FROM_THE_EDGE)
 
 
@@ -30,13 +29,13 @@ def id(request):
 
 @pytest.fixture
 def small(id, yard_file):
-    """The arguments with which an environment has a small site, where it has one."""
+    """Return the arguments with which an environment has a small site, if it has one."""
     return {} if id == "argo/Route-v0" else {"scenario": yard_file}
 
 
 @pytest.fixture
 def closing():
-    """Closes what it is given when the test has ended."""
+    """Yield a function that returns an environment and closes it after the test."""
     with ExitStack() as stack:
 
         def one(env):
@@ -48,7 +47,7 @@ def closing():
 
 @pytest.fixture
 def make(id, small, closing):
-    """Makes environments of one kind, without wrappers, and closes them."""
+    """Return a function that makes environments without wrappers, closed after the test."""
 
     def one(**arguments):
         return closing(gym.make(id, disable_env_checker=True, **small | arguments)).unwrapped

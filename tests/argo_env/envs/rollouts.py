@@ -1,6 +1,6 @@
-"""Rollouts of any environment, and digests to compare them by, bit for bit.
+"""Rollouts of any environment, and digests to compare them bit for bit.
 
-As a program it prints the digests of the environments named: what another process sees.
+As a program, it prints the digests of the given environments, to compare them with another process.
 """
 
 import hashlib
@@ -12,8 +12,10 @@ import numpy as np
 
 
 def choose(env, observation, rng):
-    """A random action; a legal one, and the last resort 0 only if there is no other, where the
-    environment tells which are."""
+    """Return a random action; if there is a mask, one of the last three legal ones.
+
+    So action 0 is chosen only if there are at most two others.
+    """
     if "mask" in observation:
         return int(rng.choice(np.flatnonzero(observation["mask"])[-3:]))
     low, high = env.action_space.low, env.action_space.high
@@ -21,23 +23,23 @@ def choose(env, observation, rng):
 
 
 def rollout(env, seed, steps, observation=None):
-    """All that `steps` random actions give; from a reset unless there is an observation."""
+    """Return the outcomes of `steps` random actions, after a reset if there is no observation."""
     rng = np.random.default_rng(seed)
-    heard = []
+    outcomes = []
     if observation is None:
         observation, info = env.reset(seed=seed)
-        heard.append((observation, info))
+        outcomes.append((observation, info))
     for _ in range(steps):
         observation, *rest = env.step(choose(env, observation, rng))
-        heard.append((observation, *rest))
+        outcomes.append((observation, *rest))
         if rest[1] or rest[2]:
             observation, info = env.reset()
-            heard.append((observation, info))
-    return heard
+            outcomes.append((observation, info))
+    return outcomes
 
 
 def digest(value):
-    """A digest of nested data: equal for equal bits only."""
+    """Return a digest of nested data, which is equal for equal bits only."""
     sink = hashlib.sha256()
     _feed(sink, value)
     return sink.hexdigest()
@@ -59,15 +61,15 @@ def _feed(sink, value):
 
 
 def digests(ids, seed, steps):
-    """The digest of a rollout for each id."""
+    """Return the digest of a rollout for each id."""
     import argo_env  # noqa: F401
 
-    found = {}
+    results = {}
     for id in ids:
         env = gym.make(id).unwrapped
-        found[id] = digest(rollout(env, seed, steps))
+        results[id] = digest(rollout(env, seed, steps))
         env.close()
-    return found
+    return results
 
 
 if __name__ == "__main__":

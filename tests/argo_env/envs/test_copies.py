@@ -1,4 +1,4 @@
-"""Copies and pickles of environments stand on their own and go on the same."""
+"""Copies and pickles of environments are independent and continue equally."""
 
 import copy
 import pickle
@@ -25,35 +25,35 @@ def pickled(value):
     return pickle.loads(pickle.dumps(value))
 
 
-WAYS = {"copy": copy.copy, "deepcopy": copy.deepcopy, "pickle": pickled}
+METHODS = {"copy": copy.copy, "deepcopy": copy.deepcopy, "pickle": pickled}
 
 
-@pytest.fixture(params=sorted(WAYS))
+@pytest.fixture(params=sorted(METHODS))
 def duplicate(request, closing):
-    """Duplicates an environment in one of the ways there are."""
-    return lambda env: closing(WAYS[request.param](env))
+    """Return a function that duplicates an environment by one of the methods."""
+    return lambda env: closing(METHODS[request.param](env))
 
 
 @pytest.fixture
 def make(id, small, closing, request):
-    """Makes environments of one kind as Gymnasium does, on a small site where they have one."""
+    """Return a function that makes environments as Gymnasium does, on a small site if possible."""
 
     def one(**arguments):
         env = gym.make(id, **small | arguments)
-        # A shallow copy of one of Gymnasium's wrappers has the same environment in it.
+        # A shallow copy of a wrapper of Gymnasium contains the same environment.
         bare = request.node.callspec.params.get("duplicate") == "copy"
         return closing(env.unwrapped if bare else env)
 
     return one
 
 
-def begun(env, steps=STEPS):
-    """The observation after so many steps that don't end the episode."""
+def start_episode(env, steps=STEPS):
+    """Reset, and return the observation after so many steps that don't end the episode."""
     env.action_space.seed(SEED)
     observation, _ = env.reset(seed=SEED)
     rng = np.random.default_rng(SEED)
     for _ in range(steps):
-        # The first checkpoint of Inspect-v0, which is an illegal action after the first time.
+        # The first checkpoint of Inspect-v0, which is illegal after the first time.
         inspecting = "battery" in observation
         action = 0 if inspecting else rollouts.choose(env, observation, rng)
         observation, _, terminated, truncated, _ = env.step(action)
@@ -62,29 +62,29 @@ def begun(env, steps=STEPS):
     return observation
 
 
-def following(env, observation):
-    """What further steps give, with resets in between, and sampled actions."""
-    heard = rollouts.rollout(env, SEED + 1, 2 * STEPS, observation)
-    return rollouts.digest((heard, [env.action_space.sample() for _ in range(3)]))
+def continue_episode(env, observation):
+    """Return the digest of further steps, with resets in between, and of sampled actions."""
+    outcomes = rollouts.rollout(env, SEED + 1, 2 * STEPS, observation)
+    return rollouts.digest((outcomes, [env.action_space.sample() for _ in range(3)]))
 
 
-def test_goes_on_the_same_in_the_middle_of_an_episode(make, duplicate):
+def test_copy_continues_equally_in_the_middle_of_an_episode(make, duplicate):
     env = make()
-    observation = begun(env)
+    observation = start_episode(env)
     before = env.unwrapped.get_state()
     other = duplicate(env)
     assert other is not env
     assert other.unwrapped is not env.unwrapped
     assert type(other) is type(env)
-    there = following(other, observation)
-    # The original has noticed nothing of what the other did.
+    there = continue_episode(other, observation)
+    # The steps of the copy have not affected the original.
     assert rollouts.digest(env.unwrapped.get_state()) == rollouts.digest(before)
-    assert following(env, observation) == there
+    assert continue_episode(env, observation) == there
 
 
-def test_step_by_step_side_by_side(make, duplicate):
+def test_copy_and_original_agree_step_by_step(make, duplicate):
     env = make()
-    observation = begun(env)
+    observation = start_episode(env)
     other, rng = duplicate(env), np.random.default_rng(SEED)
     for _ in range(STEPS):
         action = rollouts.choose(env, observation, rng)
@@ -95,7 +95,7 @@ def test_step_by_step_side_by_side(make, duplicate):
             break
 
 
-def test_before_a_reset(make, duplicate):
+def test_copy_before_a_reset(make, duplicate):
     env = make()
     other = duplicate(env)
     with pytest.raises(gym.error.ResetNeeded):
@@ -104,7 +104,7 @@ def test_before_a_reset(make, duplicate):
     assert twins[0] == twins[1]
 
 
-def test_after_the_end(id, make, duplicate):
+def test_copy_after_the_end(id, make, duplicate):
     arguments = {} if id == "argo/Route-v0" else {"time_limit": 0.3}
     env = make(**arguments)
     observation, over, rng = env.reset(seed=SEED)[0], False, np.random.default_rng(SEED)
@@ -117,16 +117,16 @@ def test_after_the_end(id, make, duplicate):
     assert rollouts.digest(other.reset()) == rollouts.digest(env.reset())
 
 
-def test_after_close(make, duplicate):
+def test_copy_after_close(make, duplicate):
     env = make()
-    begun(env)
+    start_episode(env)
     env.close()
     other = duplicate(env)
     assert rollouts.digest(other.reset(seed=SEED)) == rollouts.digest(make().reset(seed=SEED))
 
 
-def test_options_and_generator_last(id, make, duplicate):
-    """What was chosen holds on in the copy, and the next episode is drawn by the same generator."""
+def test_options_and_generator_are_copied(id, make, duplicate):
+    """The options apply in the copy too, and the same generator draws the next episode."""
     options = {
         "argo/Route-v0": {"faults": {"closed": 3}},
         "argo/Drive-v0": {"max_way": 9.0},
@@ -135,7 +135,7 @@ def test_options_and_generator_last(id, make, duplicate):
     env = make()
     env.reset(seed=SEED, options=options)
     running, closed = duplicate(env), None
-    if id != "argo/Route-v0":  # which has nothing to close, so that its episode goes on
+    if id != "argo/Route-v0":  # which has nothing to close, so its episode continues
         env.close()
         closed = duplicate(env)
     expected = rollouts.digest([env.reset() for _ in range(3)])
@@ -143,27 +143,27 @@ def test_options_and_generator_last(id, make, duplicate):
         assert rollouts.digest([other.reset() for _ in range(3)]) == expected
 
 
-def test_closing_the_copy_leaves_the_original(make, duplicate):
+def test_closing_the_copy_does_not_close_the_original(make, duplicate):
     env = make(render_mode="rgb_array")
-    observation = begun(env)
+    observation = start_episode(env)
     duplicate(env).close()
     assert env.render().ndim == 3
-    following(env, observation)
+    continue_episode(env, observation)
 
 
-def test_draws_itself(make, duplicate):
+def test_copy_draws_the_same_picture(make, duplicate):
     env = make(render_mode="rgb_array")
-    begun(env)
+    start_episode(env)
     other = duplicate(env)
     assert np.array_equal(other.render(), env.render())
 
 
-def test_has_a_window_of_its_own(make, duplicate, monkeypatch):
+def test_copy_has_a_window_of_its_own(make, duplicate, monkeypatch):
     monkeypatch.setenv("MPLBACKEND", "agg")  # windows are drawn in memory
     from matplotlib import pyplot
 
     env = make(render_mode="human")
-    begun(env, 1)
+    start_episode(env, 1)
     windows = len(pyplot.get_fignums())
     other = duplicate(env)
     assert len(pyplot.get_fignums()) == windows  # it opens with the next step
@@ -173,33 +173,33 @@ def test_has_a_window_of_its_own(make, duplicate, monkeypatch):
     assert len(pyplot.get_fignums()) == windows
 
 
-def test_what_was_given_may_change_afterwards(closing, duplicate):
+def test_arguments_may_change_afterwards(closing, duplicate):
     noise = {"failing": 0.3, "blocked": 1}
     env = closing(gym.make("argo/Route-v0", noise=noise)).unwrapped
     made = closing(type(env)(noise=noise))
-    observation = begun(made)
+    observation = start_episode(made)
     noise["failing"] = 0.0
-    assert following(duplicate(made), observation) == following(made, observation)
+    assert continue_episode(duplicate(made), observation) == continue_episode(made, observation)
 
 
-def test_elsewhere(make, tmp_path):
-    """Pickled into another process it does the same."""
+def test_copy_in_another_process(make, tmp_path):
+    """A pickle that is loaded in another process continues equally."""
     env = make()
-    observation = begun(env)
+    observation = start_episode(env)
     (tmp_path / "env").write_bytes(pickle.dumps((env, observation)))
     code = (
-        "import pickle, sys; from tests.argo_env.envs.test_copies import following; "
-        "print(following(*pickle.load(open(sys.argv[1], 'rb'))))"
+        "import pickle, sys; from tests.argo_env.envs.test_copies import continue_episode; "
+        "print(continue_episode(*pickle.load(open(sys.argv[1], 'rb'))))"
     )
     run = run_python("-c", code, tmp_path / "env")
-    assert run.stdout.strip() == following(env, observation)
+    assert run.stdout.strip() == continue_episode(env, observation)
 
 
 # -- batches
 
 
 FEW = {"instance": [3, 1, 4, 1, 5], "faults": {"closed": 2}}
-"""options, so that there are fewer instances to be made than the 4,096 of training"""
+"""options, so that fewer instances than the 4,096 of training have to be made"""
 
 
 @pytest.fixture
@@ -212,16 +212,16 @@ def batch(closing):
 
 
 def steps_of(batch, observation, steps=30):
-    rng, heard = np.random.default_rng(SEED), []
+    rng, outcomes = np.random.default_rng(SEED), []
     for _ in range(steps):
         actions = [rng.choice(np.flatnonzero(mask)) for mask in observation["mask"]]
         observation, *rest = batch.step(np.array(actions))
-        heard.append((observation, *rest))
-    return rollouts.digest((heard, batch.action_space.sample()))
+        outcomes.append((observation, *rest))
+    return rollouts.digest((outcomes, batch.action_space.sample()))
 
 
 @pytest.mark.parametrize("steps", [0, 4, 25])
-def test_batch_goes_on_the_same(batch, duplicate, steps):
+def test_batch_copy_continues_equally(batch, duplicate, steps):
     batch.action_space.seed(SEED)
     observation, _ = batch.reset(seed=SEED, options=FEW)
     for _ in range(steps):
@@ -233,7 +233,7 @@ def test_batch_goes_on_the_same(batch, duplicate, steps):
     assert steps_of(batch, observation) == there
 
 
-def test_batch_before_a_reset(batch, duplicate):
+def test_batch_copy_before_a_reset(batch, duplicate):
     other = duplicate(batch)
     with pytest.raises(gym.error.ResetNeeded):
         other.step(np.zeros(5, int))
@@ -241,7 +241,7 @@ def test_batch_before_a_reset(batch, duplicate):
     assert resets[0] == resets[1]
 
 
-def test_batch_after_close(batch, duplicate):
+def test_batch_copy_after_close(batch, duplicate):
     batch.reset(seed=SEED, options=FEW)
     batch.close()
     other = duplicate(batch)
@@ -251,28 +251,28 @@ def test_batch_after_close(batch, duplicate):
 
 
 def test_batches_of_gymnasium(id, small, closing):
-    """Those of copies, and copies of those."""
+    """Gymnasium's batches may contain copies, and may be copied."""
     env = closing(gym.make(id, **small))
     several = closing(gym.vector.SyncVectorEnv([lambda: copy.deepcopy(env)] * 2))
     several.reset(seed=SEED)
     several.step(several.action_space.sample())
     other = closing(copy.deepcopy(several))
     actions = several.action_space.sample()
-    # What Gymnasium tells in `info` are arrays of objects, which are not compared bit by bit.
+    # Gymnasium's `info` has arrays of objects, which can't be compared bit by bit.
     assert rollouts.digest(other.step(actions)[:4]) == rollouts.digest(several.step(actions)[:4])
     apart = closing(gym.make_vec(id, 2, "async", **small))
     first = closing(gym.make_vec(id, 2, "sync", **small))
     assert rollouts.digest(apart.reset(seed=SEED)[0]) == rollouts.digest(first.reset(seed=SEED)[0])
 
 
-# -- what holds a simulator is refused
+# -- objects that hold a simulator
 
 
-@pytest.mark.parametrize("way", sorted(WAYS))
+@pytest.mark.parametrize("method", sorted(METHODS))
 @pytest.mark.parametrize(
     "kind", ["World", "Scene", "TrackedBody", "TrackedDrive", "KinematicDrive"]
 )
-def test_refused_with_the_reason(yard_file, robot, way, kind):
+def test_copies_of_simulators_are_refused_with_the_reason(yard_file, robot, method, kind):
     site = load_site(yard_file)
     with World(site, robot) as world:
         made = {
@@ -283,11 +283,11 @@ def test_refused_with_the_reason(yard_file, robot, way, kind):
             "KinematicDrive": lambda: KinematicDrive(world, robot),
         }[kind]()
         with pytest.raises(ArgoError, match=f"a {kind} can't be copied or pickled, as") as caught:
-            WAYS[way](made)
+            METHODS[method](made)
         assert isinstance(caught.value, TypeError)
 
 
-def test_connections_that_are_forgotten_end(yard_file, robot):
+def test_garbage_collected_connections_end(yard_file, robot):
     """PyBullet has 1,024; a search that copies environments does not close all of them."""
     import gc
 

@@ -1,4 +1,4 @@
-"""Drive-v0: the tracked robot under continuous commands."""
+"""Drive-v0: the tracked robot with continuous actions."""
 
 import math
 
@@ -16,7 +16,7 @@ from tests.argo_env.envs.rollouts import digest
 
 @pytest.fixture(scope="module")
 def env():
-    """On UMAD; a test says in the options of its reset what it needs."""
+    """Yield an environment on UMAD; tests set what they need by the options of a reset."""
     env = gym.make("argo/Drive-v0", disable_env_checker=True).unwrapped
     yield env
     env.close()
@@ -24,14 +24,17 @@ def env():
 
 @pytest.fixture
 def make(yard_file, closing):
-    """Makes environments on the yard."""
+    """Return a function that makes environments on the yard."""
     return lambda **arguments: closing(
         gym.make("argo/Drive-v0", **{"scenario": yard_file} | arguments, disable_env_checker=True)
     )
 
 
 def follow(observation):
-    """A plain controller on the level: turn to the heading of the plan, then drive to its place."""
+    """Return the action of a simple controller on the level.
+
+    It turns to the heading of the path, then drives to its next point.
+    """
     x, y, _, sine, cosine = observation["way"]
     turn = math.atan2(sine, cosine)
     gear = 1 if x >= 0 else -1
@@ -42,8 +45,10 @@ def follow(observation):
 
 
 def drive(env, expert, until=lambda: False):
-    """Steps by the expert to the end of the episode, or until something is so; each step's
-    outcome."""
+    """Return the outcomes of the expert's steps.
+
+    They go on to the end of the episode, or until a condition is true.
+    """
     outcomes = []
     while not (until() or (outcomes and (outcomes[-1][2] or outcomes[-1][3]))):
         outcomes.append(env.step(expert.act()))
@@ -51,7 +56,7 @@ def drive(env, expert, until=lambda: False):
 
 
 def repeat(env, action, steps):
-    """The outcomes of one action, again and again, until the episode ends."""
+    """Return the outcomes of one action, repeated until the episode ends."""
     outcomes = []
     for _ in range(steps):
         outcomes.append(env.step(np.array(action, np.float32)))
@@ -62,7 +67,7 @@ def repeat(env, action, steps):
 
 @pytest.fixture(scope="module")
 def descent(env):
-    """A drive to a goal one floor down: the states in mid-flight, and all outcomes."""
+    """Return a state in mid-flight of a drive to a goal one floor down, and all outcomes."""
     env.reset(seed=21, options={"floor": [5, 6], "max_way": 60.0})
     expert, top = Expert(env), env.pose.z
     first = drive(env, expert, lambda: env.pose.z < top - 1.3)
@@ -104,34 +109,34 @@ def test_the_expert_takes_over_from_another_driver(make):
 
 
 def test_the_expert_sets_off_after_a_turn(env):
-    """It does not swing about the heading that it turned to."""
+    """It does not swing about the heading of the turn's end."""
     env.reset(seed=1_000_002, options={})
     expert, start = Expert(env), env.pose
     drive(env, expert, lambda: math.hypot(env.pose.x - start.x, env.pose.y - start.y) > 0.3)
     assert len(env.get_state()["actions"]) < 60
 
 
-def test_the_expert_is_for_this_environment():
+def test_the_expert_refuses_other_environments():
     with pytest.raises(ArgoError, match="Drive-v0"):
         Expert(gym.make("argo/Route-v0"))
 
 
 @pytest.mark.long
-def test_on_a_flight_a_restored_state_goes_on_the_same(env, descent):
+def test_on_a_flight_a_restored_state_continues_equally(env, descent):
     middle, outcomes = descent
-    heard = []
+    outcomes_twice = []
     for _ in range(2):
         env.set_state(middle)
-        heard.append(repeat(env, (-0.3, 0.4, 0.1), 8))
-    assert digest(heard[0]) == digest(heard[1])
-    # Nor does asking for the state change what follows.
+        outcomes_twice.append(repeat(env, (-0.3, 0.4, 0.1), 8))
+    assert digest(outcomes_twice[0]) == digest(outcomes_twice[1])
+    # `get_state` does not change the following steps either.
     actions = middle["actions"]
     env.set_state(middle | {"actions": actions[:-1]})
     env.get_state()
     assert digest(env.step(np.array(actions[-1]))) == digest(outcomes[len(actions) - 1])
 
 
-def test_on_a_flight_a_restored_snapshot_of_the_body_goes_on_the_same(env, descent):
+def test_on_a_flight_a_restored_snapshot_of_the_body_continues_equally(env, descent):
     env.set_state(descent[0])
     body = env.site.body
     moment = body.snapshot()
@@ -156,7 +161,7 @@ def test_turning_across_a_flight_tips_the_robot_over(env, descent):
     assert all(info["terms"]["tipped"] == 0.0 for *_, info in outcomes[:-1])
 
 
-def test_following_the_way_reaches_the_goal(env):
+def test_following_the_waypoints_reaches_the_goal(env):
     observation, _ = env.reset(seed=5, options={"floor": 1, "max_way": 12.0})
     before, total, steps = env.get_state(), 0.0, 0
     togo = observation["goal"][3] * 300
@@ -169,26 +174,26 @@ def test_following_the_way_reaches_the_goal(env):
     assert info["success"]
     assert info["terms"]["goal"] == GOAL
     assert info["terms"]["time"] == TIME
-    # What is gained on the way adds up to what there was to go.
+    # The progress adds up to the decrease of the travel time.
     assert total == pytest.approx(PROGRESS * (togo - observation["goal"][3] * 300), abs=1e-3)
     assert len(env.get_state()["actions"]) == steps
     assert not before["actions"]
 
 
-def test_commands_move_the_robot_as_they_say(env):
+def test_actions_have_the_documented_effects(env):
     env.reset(seed=3, options={"floor": 1})
     start = env.get_state()
-    ways = {}
+    observations = {}
     for name, action in {"stay": (0, 0, 0), "turn": (0, 1, 0), "flippers": (0, 0, 1)}.items():
         first = env.set_state(start)
-        ways[name] = first, repeat(env, action, 12)[-1][0]
-    first, last = ways["stay"]
+        observations[name] = first, repeat(env, action, 12)[-1][0]
+    first, last = observations["stay"]
     assert np.abs(last["body"][2:4]).max() < 0.02
-    assert ways["turn"][1]["body"][3] > 0.2
-    assert ways["flippers"][1]["body"][4] > 0.9
-    # To the left turned, the goal goes to the right.
+    assert observations["turn"][1]["body"][3] > 0.2
+    assert observations["flippers"][1]["body"][4] > 0.9
+    # After a turn to the left, the goal is farther to the right.
     before = math.atan2(first["goal"][1], first["goal"][0])
-    after = math.atan2(ways["turn"][1]["goal"][1], ways["turn"][1]["goal"][0])
+    after = math.atan2(observations["turn"][1]["goal"][1], observations["turn"][1]["goal"][0])
     assert math.sin(after - before) < 0
 
 
@@ -199,7 +204,7 @@ def test_the_time_limit_truncates(make):
     assert ends == [(False, False)] * 4 + [(False, True)]
 
 
-def test_lidar_meets_what_stands_around(env):
+def test_lidar_detects_railings_and_equipment(env):
     for seed in range(3):
         observation, _ = env.reset(seed=seed, options={"floor": 3})
         # Railings and equipment are near everywhere on a floor.
@@ -233,6 +238,6 @@ def test_start_and_goal_are_on_the_floors_asked_for(env, navigator):
         assert min(abs(env.get_state()["start"][2] - heights[f]) for f in (2, 5)) < 0.05
 
 
-def test_faults_that_it_does_not_know_are_refused(env):
+def test_unsupported_faults_are_refused(env):
     with pytest.raises(ArgoError, match="brick"):
         env.reset(options={"faults": [{"kind": "gas_leak"}]})

@@ -1,4 +1,4 @@
-"""Inspect-v0: actions are drives and measurements, and faults change what comes of them."""
+"""Inspect-v0: actions are drives and measurements, and faults change their results."""
 
 import gymnasium as gym
 import numpy as np
@@ -25,7 +25,10 @@ def make(closing):
 
 @pytest.fixture
 def begin(make):
-    """Makes an environment and resets it with a fault; it, the observation and what is told."""
+    """Return a function that makes an environment and resets it with a fault.
+
+    The function returns the environment, the observation and the info.
+    """
 
     def one(fault, drive="route", **options):
         env = make(drive=drive)
@@ -35,7 +38,7 @@ def begin(make):
 
 
 def end_dock(observation):
-    """The action that ends the episode: the only dock that has points."""
+    """Return the action that ends the episode: the only dock with points."""
     docks = np.flatnonzero(observation["points"][CHECKPOINTS:])
     assert len(docks) == 1
     return CHECKPOINTS + int(docks[0])
@@ -45,7 +48,7 @@ def nearest(observation):
     return int(np.argmin(np.where(observation["mask"], observation["travel"], 2)[:CHECKPOINTS]))
 
 
-def test_a_reading_takes_its_time_and_is_done_once(make, navigator):
+def test_a_reading_takes_time_and_is_done_once(make, navigator):
     env = make(faults=0)
     observation, _ = env.reset(seed=2)
     k = nearest(observation)
@@ -113,7 +116,7 @@ def test_a_camera_that_fails_is_noticed_and_checkpoints_are_given_up(begin):
     assert findings == [FINDING, 0]
 
 
-def test_what_was_stopped_and_released_is_noticed_once(begin):
+def test_an_emergency_stop_that_is_released_is_noticed_once(begin):
     env, observation, _ = begin({"kind": "emergency_stop", "at": 30.0, "until": 40.0})
     farthest = int(np.argmax(np.where(observation["mask"], observation["travel"], 0)[:CHECKPOINTS]))
     _, _, _, _, info = env.step(farthest)
@@ -133,11 +136,11 @@ def test_the_kinematic_drive_finds_what_blocks_the_stairs(begin):
     blocked = {"kind": "blocked_stairs", "tower": "west tower", "floor": 1}
     env, observation, info = begin(blocked, drive="kinematic", floor=2)
     assert info["settings"]["drive"] == "kinematic"
-    k = 4  # the checkpoint on floor 2 that the fastest way to leads over the western stairs
+    k = 4  # the checkpoint on floor 2 whose fastest path leads over the western stairs
     expected = observation["travel"][k] * 1800
     observation, _, _, _, info = env.step(k)
     assert info["found"] == ("positive_obstacle",)
-    # It got there all the same, by the other stairs.
+    # It arrived nevertheless, over the other stairs.
     assert info["terms"]["reading"] == READING
     assert info["time"] > expected + 30.0
     assert observation["noticed"].sum() == 1
@@ -151,8 +154,8 @@ def test_after_the_platform_alarm_only_docks_are_legal(begin):
     assert np.flatnonzero(observation["mask"]).tolist() == [20, 21]
 
 
-class TestOneLoop:
-    """An episode is a run like any other."""
+class TestEpisodeAsRun:
+    """An episode equals a run."""
 
     @pytest.mark.parametrize(
         ("drive", "actions"),
@@ -162,7 +165,7 @@ class TestOneLoop:
             pytest.param("tracked", (1, 3), marks=pytest.mark.long),
         ],
     )
-    def test_its_record_is_that_of_the_mission_that_it_made(self, make, yard_file, drive, actions):
+    def test_its_record_equals_that_of_a_run_of_its_mission(self, make, yard_file, drive, actions):
         env = make(scenario=yard_file, drive=drive)
         faults = [
             {"kind": "abnormal_value", "checkpoint": 2, "at": 4.0},
@@ -178,7 +181,7 @@ class TestOneLoop:
         spec = RunSpec(mission=record.mission, site=yard_file, **info["settings"])
         assert simulate(spec) == record
 
-    def test_a_record_of_an_episode_under_way_and_of_one_cut_short(self, make, yard_file):
+    def test_records_of_unfinished_and_truncated_episodes(self, make, yard_file):
         env = make(scenario=yard_file, faults=0, time_limit=40.0)
         env.reset(seed=4)
         env.step(0)
@@ -188,8 +191,8 @@ class TestOneLoop:
             truncated = env.step(1)[3]
         assert "the time limit of 40 s was reached" in env.record().result.verdict
 
-    def test_trouble_of_the_drive_is_told(self, make, yard_file, monkeypatch):
-        """Slipping and being stuck, as the record of a run tells them."""
+    def test_mishaps_of_the_drive_are_reported(self, make, yard_file, monkeypatch):
+        """Slipping and being stuck are in the info as in the record of a run."""
         slipped = Incident(Trouble.SLIPPING, "made 0.1 m of 0.5 m", BodyPose(2, 2, 0.02, 0))
         env = make(scenario=yard_file, faults=0)
         monkeypatch.setattr(RouteDrive, "incidents", (slipped,))
@@ -200,14 +203,14 @@ class TestOneLoop:
 
 
 @pytest.mark.parametrize("mode", ["sync", "async"])
-def test_many_at_a_time_are_as_each_alone(make, yard_file, mode):
-    """Also in processes of their own, to which spaces and observations are sent."""
+def test_a_batch_equals_single_environments(make, yard_file, mode):
+    """It may use other processes, to which spaces and observations are sent."""
     arguments = {"scenario": yard_file, "drive": "kinematic", "faults": 2}
-    many = gym.make_vec("argo/Inspect-v0", 2, mode, **arguments)
+    batch = gym.make_vec("argo/Inspect-v0", 2, mode, **arguments)
     try:
-        observations, infos = many.reset(seed=[6, 7])
-        alone = [make(**arguments) for _ in range(2)]
-        firsts = [env.reset(seed=6 + k) for k, env in enumerate(alone)]
+        observations, infos = batch.reset(seed=[6, 7])
+        singles = [make(**arguments) for _ in range(2)]
+        firsts = [env.reset(seed=6 + k) for k, env in enumerate(singles)]
         for actions in ([0, 1], [1, 3]):
             for k, (observation, info) in enumerate(firsts):
                 for name, value in observation.items():
@@ -215,11 +218,11 @@ def test_many_at_a_time_are_as_each_alone(make, yard_file, mode):
                 if "found" in info:
                     assert infos["found"][k] == info["found"]
                     assert infos["trouble"][k] == info["trouble"]
-            observations, rewards, ended, _, infos = many.step(np.array(actions))
-            steps = [env.step(action) for env, action in zip(alone, actions, strict=True)]
+            observations, rewards, ended, _, infos = batch.step(np.array(actions))
+            steps = [env.step(action) for env, action in zip(singles, actions, strict=True)]
             assert rewards.tolist() == [s[1] for s in steps]
             assert ended.tolist() == [s[2] for s in steps]
             firsts = [(s[0], s[4]) for s in steps]
         assert ended.tolist() == [False, True]
     finally:
-        many.close()
+        batch.close()

@@ -1,4 +1,4 @@
-"""What every environment keeps, whatever it is: tests run over all that is registered."""
+"""Properties that all registered environments have."""
 
 import gc
 import json
@@ -25,8 +25,8 @@ PAGE = 4096  # bytes
 
 
 @pytest.fixture(scope="module")
-def elsewhere():
-    """The digests of rollouts in another process, by id."""
+def digests_of_another_process():
+    """Return the digests of rollouts in another process, by id."""
     run = run_python("-m", "tests.argo_env.envs.rollouts", SEED, FEWER, *IDS)
     return json.loads(run.stdout)
 
@@ -44,16 +44,16 @@ def test_registration_loads_no_environment():
     assert run_python("-c", code).stdout.strip() == "[]"
 
 
-def test_gymnasium_finds_nothing(make, monkeypatch):
+def test_gymnasium_reports_no_error(make, monkeypatch):
     monkeypatch.setenv("MPLBACKEND", "agg")  # windows are drawn in memory
     check_env(make(render_mode="rgb_array"))
 
 
-def test_stable_baselines_finds_nothing(make):
+def test_stable_baselines_reports_no_error(make):
     check_for_baselines(make())
 
 
-def test_documented_in_sections(make):
+def test_docstrings_have_all_sections(make):
     parts = (
         "Description", "Observation Space", "Action Space", "Rewards", "Starting State",
         "Episode End", "Randomisation", "Arguments", "Version History",
@@ -64,22 +64,22 @@ def test_documented_in_sections(make):
 
 
 @pytest.mark.long
-def test_twins_are_the_same_here_and_in_another_process(id, make, elsewhere):
+def test_rollouts_are_equal_here_and_in_another_process(id, make, digests_of_another_process):
     first, second = (rollouts.digests([id], SEED, FEWER) for _ in range(2))
-    assert first[id] == second[id] == elsewhere[id]
-    # And another seed gives something else.
+    assert first[id] == second[id] == digests_of_another_process[id]
+    # Another seed gives another rollout.
     one, other = (rollouts.digest(rollouts.rollout(make(), SEED + k, STEPS)) for k in range(2))
     assert one != other
 
 
-def test_a_reset_with_the_seed_begins_the_same_anew(make):
+def test_a_reset_with_the_same_seed_repeats_the_episode(make):
     env = make()
     first = rollouts.digest(rollouts.rollout(env, SEED, STEPS))
     rollouts.rollout(env, SEED + 5, 5)
     assert rollouts.digest(rollouts.rollout(env, SEED, STEPS)) == first
 
 
-def test_a_restored_state_goes_on_the_same(make):
+def test_a_restored_state_continues_equally(make):
     env = make()
     before = rollouts.rollout(env, SEED, 4)[-1][0]
     state = pickle.loads(pickle.dumps(env.get_state()))
@@ -91,15 +91,15 @@ def test_a_restored_state_goes_on_the_same(make):
 
 
 def test_rewards_are_the_sum_of_their_terms(make):
-    for heard in rollouts.rollout(make(), SEED, STEPS):
-        if len(heard) == 5:
-            _, reward, terminated, truncated, info = heard
+    for outcome in rollouts.rollout(make(), SEED, STEPS):
+        if len(outcome) == 5:
+            _, reward, terminated, truncated, info = outcome
             assert reward == pytest.approx(sum(info["terms"].values()), abs=1e-12)
             assert not (terminated and truncated)
 
 
 class OnlyOneTerm(gym.Wrapper):
-    """A reward of one's own: one term, and a penalty for time."""
+    """Wrapper with another reward: one term, and a penalty for time."""
 
     def step(self, action):
         observation, _, terminated, truncated, info = self.env.step(action)
@@ -107,7 +107,7 @@ class OnlyOneTerm(gym.Wrapper):
         return observation, reward, terminated, truncated, info
 
 
-def test_a_wrapper_makes_a_reward_of_the_terms(make):
+def test_a_wrapper_computes_a_reward_from_the_terms(make):
     env = OnlyOneTerm(make())
     observation, _ = env.reset(seed=SEED)
     rng = np.random.default_rng(0)

@@ -28,7 +28,7 @@ def test_missions_that_are_shipped_have_no_errors(catalog):
     for script in sorted(MISSIONS.glob("*.txt")):
         findings = check_source(read_upload(script), catalog, 1, 1)
         codes = [f.code for f in findings if f.severity == "error"]
-        # Areas are chosen for the scripts that leave them open only.
+        # Areas may be chosen only for scripts that name none.
         assert set(codes) <= {"script.area-conflict"}, script
 
 

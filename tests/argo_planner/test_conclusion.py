@@ -62,7 +62,7 @@ def test_a_report_that_cannot_be_written(conclude):
     )
 
 
-def test_a_report_that_cannot_be_written_of_a_run_that_was_not_kept(conclude):
+def test_an_unwritable_report_of_a_run_that_is_not_stored(conclude):
     Path("report/report.html").mkdir(parents=True)
     status, _, said = conclude(report="report", kept=StoredRun())
     assert (status, said.splitlines()[-1]) == (

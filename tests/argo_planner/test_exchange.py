@@ -71,7 +71,7 @@ def test_areas_are_not_chosen_for_them(sources):
             load_upload(read_upload(source), CATALOG, 1)
 
 
-def test_warnings_of_the_import_are_kept(tmp_path):
+def test_warnings_of_the_import_are_returned(tmp_path):
     data = json.loads(to_isar(PLAN, lower(PLAN), VIEWS))
     data["tasks"][1]["zoom"] = {"objectWidth": 1, "objectHeight": 1}
     path = tmp_path / "isar.json"

@@ -37,7 +37,7 @@ def test_every_format_is_written(export, to):
     assert output.is_file() == bool(EXPORTERS[to].suffixes)
 
 
-def test_all_that_a_format_can_not_say_is_said(export):
+def test_all_that_a_format_can_not_express_is_reported(export):
     reaction = Reaction(event=EventKind.GAS_LEAK, response=Response.PAUSE)
     back = measure("B", "A", object_id="4")
     mission = Mission(tasks=(TASKS[0], back), reactions=(reaction,))
@@ -46,7 +46,7 @@ def test_all_that_a_format_can_not_say_is_said(export):
     assert [d.code for d in caught.value.diagnostics] == ["export.reaction", "export.backward"]
 
 
-def test_unknown_formats_are_told_the_known_ones(export):
+def test_an_unknown_format_is_refused_with_the_known_ones(export):
     with pytest.raises(ArgoError, match=r"--to word: .*scxml.*isar"):
         export(Mission(tasks=TASKS), "word")
 

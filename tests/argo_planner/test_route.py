@@ -222,7 +222,7 @@ def test_options_that_make_no_sense_are_refused(argo, source, options, said):
     assert said in argo("route", source, *options, status=1)
 
 
-def test_a_file_of_requirements_says_where_it_is_wrong(argo, source, tmp_path):
+def test_errors_in_requirements_name_the_line(argo, source, tmp_path):
     wanted = tmp_path / "wanted.yaml"
     wanted.write_text("mandatory: [2]\nbudgets: 5 min\n")
     text = argo("route", source, "--requirements", wanted, status=1)

@@ -122,7 +122,7 @@ def argo_on_new_sites(tmp_path, monkeypatch):
     verbosity.set_verbosity()
 
 
-def test_a_site_that_is_made_anew_says_so_on_standard_error(argo_on_new_sites):
+def test_the_generation_of_a_site_is_shown_on_standard_error(argo_on_new_sites):
     told = argo_on_new_sites("told", "sites", "generated:seed=7")
     lines = list(dict.fromkeys(told.stderr.splitlines()))  # the refreshing thread may repeat one
     assert lines[0].startswith("making the site generated:")

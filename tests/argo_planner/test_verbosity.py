@@ -38,12 +38,12 @@ def test_a_quiet_run_shows_its_results_only():
     assert quiet.stdout.splitlines() == kept
 
 
-def test_errors_are_said_all_the_same():
+def test_quiet_commands_still_report_errors():
     assert "no drive `rocket`" in str(argo("-q", "run", "plan.txt", "--drive", "rocket").exception)
 
 
 @pytest.mark.parametrize("arguments", [("-v", *RUN), (*RUN, "-v"), ("run", "--verbose", *RUN[1:])])
-def test_the_stages_of_a_run_are_told_on_demand(arguments):
+def test_verbose_runs_show_their_stages(arguments):
     result = argo(*arguments)
     assert "INFO argo_env.run.session: a run on yard: drive route" in result.stderr
     assert "INFO argo_env.run.simulation: the run has ended at" in result.stderr

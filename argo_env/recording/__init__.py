@@ -1,1 +1,1 @@
-"""Recordings: a run as an .mcap file that Foxglove opens and a replay reads back."""
+"""Recordings: a run in an .mcap file, which Foxglove opens and a replay reads back."""

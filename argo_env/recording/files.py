@@ -1,5 +1,4 @@
-"""Files of recordings, checked before a long run is made; and a recorder whose failure does not end
-its run."""
+"""Files of recordings, checked before a run, and a recorder whose failure does not end its run."""
 
 import logging
 from collections.abc import Callable, Iterator
@@ -24,16 +23,19 @@ if TYPE_CHECKING:
     from argo_env.recording.run_recorder import RunRecorder
 
 
-class BestEffort(Observer):
-    """Tells a recorder of a run until the recording can't be written any further, as on a full
-    disk; the run goes on without it. Holds the recorder, and why that ended."""
+class BestEffortRecorder(Observer):
+    """Observer that passes a run to a recorder until the recording can't be written any further.
+
+    After that, for example on a full disk, the run continues without it. The object holds the
+    recorder and the reason why the recording ended.
+    """
 
     def __init__(self, recorder: "RunRecorder", warn: Callable[[str], None]) -> None:
-        """`warn` is told what is lost, when that happens."""
+        """Take the recorder, and a function that is called with a warning when data are lost."""
         self._recorder = recorder
         self._warn = warn
         self.loss = ""
-        """why the recording ends before the run, and where; empty if it does not"""
+        """where and why the recording ends before the run; empty if it does not"""
 
     def on_begin(self, setup: RunSetup, spec: RunSpec) -> None:
         self._try(lambda: self._recorder.on_begin(setup, spec))
@@ -54,20 +56,21 @@ class BestEffort(Observer):
         self._try(lambda: self._recorder.on_end(record))
 
     def close(self) -> None:
-        """Writes the end of the recording."""
+        """Write the end of the recording."""
         self._try(self._recorder.close)
 
-    def _try(self, act: Callable[[], None]) -> None:
+    def _try(self, write: Callable[[], None]) -> None:
+        """Call the function, unless the recording has ended; end the recording if it fails."""
         if self.loss:
             return
         try:
-            act()
+            write()
         except UnwritableRecording as error:
             until = self._recorder.until
-            reached = "nothing of the run is in it" if until is None else f"it ends at {until:g} s"
-            self.loss = f"{reached}: {error.reason}"
-            self._recorder.give_up()
-            self._warn(f"{error}; {reached}, and the run goes on without it")
+            end = "it has nothing of the run" if until is None else f"it ends at {until:g} s"
+            self.loss = f"{end}: {error.reason}"
+            self._recorder.stop_recording()
+            self._warn(f"{error}; {end}, and the run continues without it")
 
 
 _log = logging.getLogger(__name__)
@@ -76,15 +79,17 @@ _LIBRARIES = ("mcap", "mcap_protobuf", "foxglove_schemas_protobuf")
 
 
 def require_libraries() -> None:
-    """Raises ArgoError if the extra that recordings need isn't installed."""
+    """Raise ArgoError if the extra that recordings need is not installed."""
     missing = [name for name in _LIBRARIES if find_spec(name) is None]
     if missing:
         raise Unavailable(f"recordings need {', '.join(missing)}: {install_line('recording')}")
 
 
 def check_recording(file: Path) -> None:
-    """Raises ArgoError if no recording can be written there: for its suffix, its folder, or an
-    extra that isn't installed. To be called before a long run is made."""
+    """Raise ArgoError if no recording can be written to the file; call it before a long run.
+
+    The reason is its suffix, its folder, or an extra that is not installed.
+    """
     if file.suffix.lower() != ".mcap":
         raise Invalid(f"{file}: a recording is an .mcap file; name it so")
     check_writable(file)
@@ -94,20 +99,27 @@ def check_recording(file: Path) -> None:
 @contextmanager
 def recording_to(
     file: Path, source: Path | None = None, warn: Callable[[str], None] = _log.warning
-) -> Iterator[BestEffort]:
-    """A recorder that writes to the file, and the text of the mission's `source` with it.
+) -> Iterator[BestEffortRecorder]:
+    """Yield a recorder that writes to the file, and close it afterwards.
 
-    A recording that was there is replaced. What has been recorded stays, and can be read, if the
-    run fails, its process is killed, or the disk is full: then the run goes on without, and `warn`
-    is told what is lost. Raises ArgoError where `check_recording` does.
+    The recorded part stays, and can be read, if the run fails, its process is killed or the disk is
+    full. On a full disk the run continues without the recording.
+
+    Args:
+        file: file to write; an existing one is replaced.
+        source: file or folder that the mission was read from; it is stored in the recording.
+        warn: function that is called with a warning when data are lost.
+
+    Raises:
+        ArgoError: as `check_recording` does, or if the file can't be made.
     """
     check_recording(file)
-    # What this needs is not there without the extra.
+    # These modules import packages of the extra.
     from argo_env.recording.run_recorder import RunRecorder
     from argo_env.recording.writer import RecordingWriter
 
     with closing(RecordingFile(file)) as stream:
-        recorder = BestEffort(RunRecorder(RecordingWriter(stream), source, warn), warn)
+        recorder = BestEffortRecorder(RunRecorder(RecordingWriter(stream), source, warn), warn)
         try:
             yield recorder
         finally:

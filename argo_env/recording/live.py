@@ -1,4 +1,4 @@
-"""A run live in Foxglove: the topics of a recording, served to those who look on."""
+"""Live view of a run in Foxglove: a server of the topics that a recording has."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,22 +11,24 @@ from argo_compiler.base.extras import install_line
 from argo_env.recording.files import require_libraries
 from argo_env.recording.topic_writer import TopicWriter
 
-if TYPE_CHECKING:  # what the extras bring
+if TYPE_CHECKING:  # packages of the extras
     import foxglove
     from foxglove.websocket import WebSocketServer
 
 PORT = 8765
-"""where Foxglove looks by itself"""
+"""port that Foxglove connects to by default"""
 HOST = "127.0.0.1"
-"""this machine only: the server lets pages of any origin in"""
+"""address of the server: this machine only, because it accepts pages of any origin"""
 
-_PATIENCE = 1.0
-"""s that clients have at the end to read what they were sent"""
+_STOP_TIMEOUT = 1.0
+"""time in s that clients have at the end to read the remaining messages"""
 
 
 class LiveWriter(TopicWriter):
-    """Serves what a recorder writes. Holds the last message of each topic, which whoever begins to
-    look at it gets first. Nobody can send anything."""
+    """Writer that serves messages to viewers, which can't send anything.
+
+    It holds the server and the last message of each topic, which a new subscriber gets first.
+    """
 
     def __init__(self, server: "WebSocketServer", context: "foxglove.Context") -> None:
         super().__init__()
@@ -35,14 +37,14 @@ class LiveWriter(TopicWriter):
         self._lock = Lock()
         self._last: dict[int, tuple[foxglove.Channel, bytes, int]] = {}
 
-    def tell_again(self, channel: int) -> None:
-        """Tells the last message of a channel once more, as somebody has begun to look at it."""
+    def resend_last(self, channel: int) -> None:
+        """Send the last message of a channel again, for a new subscriber."""
         with self._lock:
-            known = self._last.get(channel)
-        if known is not None:
-            known[0].log(known[1], log_time=known[2])
+            last = self._last.get(channel)
+        if last is not None:
+            last[0].log(last[1], log_time=last[2])
 
-    def _open(self, topic: str, encoding: str, name: str, schema: bytes) -> None:
+    def _open_channel(self, topic: str, encoding: str, name: str, schema: bytes) -> None:
         import foxglove
 
         kind = "protobuf" if encoding == "protobuf" else "jsonschema"
@@ -53,61 +55,61 @@ class LiveWriter(TopicWriter):
             context=self._context,
         )
 
-    def _tell(self, topic: str, data: bytes, t: float) -> None:
-        channel, at = self._channels[topic], round(t * 1e9)
+    def _write_message(self, topic: str, data: bytes, t: float) -> None:
+        channel, time = self._channels[topic], round(t * 1e9)
         with self._lock:
-            self._last[channel.id()] = channel, data, at
-        channel.log(data, log_time=at)
+            self._last[channel.id()] = channel, data, time
+        channel.log(data, log_time=time)
 
 
-class _Latch:
-    """Gives those who begin to look at a topic what was told last."""
+class _SubscriptionListener:
+    """Listener of the server that sends new subscribers the last message of the topic."""
 
     def __init__(self) -> None:
         self.writer: LiveWriter | None = None
 
     def on_subscribe(self, client: Any, channel: Any) -> None:  # noqa: ARG002
         if self.writer is not None:
-            self.writer.tell_again(channel.id)
+            self.writer.resend_last(channel.id)
 
     def on_unsubscribe(self, client: Any, channel: Any) -> None:
-        """Nothing changes."""
+        """Do nothing."""
 
 
 def require_foxglove() -> None:
-    """Raises Unavailable if an extra that this needs isn't installed."""
+    """Raise Unavailable if an extra that a live view needs is not installed."""
     if find_spec("foxglove") is None:
         raise Unavailable(f"a live view needs foxglove: {install_line('foxglove')}")
     require_libraries()
 
 
 @contextmanager
-def served_live(port: int = PORT) -> Iterator[LiveWriter]:
-    """A writer for a `RunRecorder` that Foxglove shows live, on this machine at the port; 0: a free
-    one. It is read only.
+def serve_live(port: int = PORT) -> Iterator[LiveWriter]:
+    """Serve a live view on this machine, and yield its writer for a `RunRecorder`.
 
-    Raises Unavailable if an extra is missing, or the port is taken.
+    The view is read-only. Port 0 means a free port. Raises Unavailable if an extra is missing or
+    the port is taken.
     """
     require_foxglove()
     import foxglove
 
-    context, latch = foxglove.Context(), _Latch()
+    context, listener = foxglove.Context(), _SubscriptionListener()
     try:
         server = foxglove.start_server(
             name="Argo",
             host=HOST,
             port=port,
             capabilities=[],
-            server_listener=cast(Any, latch),
+            server_listener=cast(Any, listener),
             context=context,
         )
     except (RuntimeError, OSError) as error:
         raise Unavailable(f"{HOST}:{port}: no live view can be served there: {error}") from None
-    latch.writer = writer = LiveWriter(server, context)
+    listener.writer = writer = LiveWriter(server, context)
     try:
         yield writer
     finally:
-        # The library waits for clients that read nothing, for as long as they stay.
+        # `stop` waits for connected clients, even for those that read nothing.
         stopping = Thread(target=server.stop, daemon=True)
         stopping.start()
-        stopping.join(_PATIENCE)
+        stopping.join(_STOP_TIMEOUT)

@@ -1,4 +1,4 @@
-"""Foxglove's messages from Argo's data."""
+"""Messages in Foxglove's schemas, made from Argo's data."""
 
 from collections.abc import Iterable
 
@@ -18,29 +18,29 @@ from argo_env.robot.robot_model import Colour, Quaternion, from_rpy
 from argo_env.site.shapes import Vector
 
 WORLD = "world"
-"""the frame of the site"""
+"""frame of the site"""
 BASE = "base_link"
-"""the robot's frame: its origin on the ground between the tracks, x forwards, z up"""
+"""frame of the robot: its origin is on the ground between the tracks, x forwards, z up"""
 
 
-def timestamp(t: float) -> Timestamp:
-    """The time t (s)."""
+def make_timestamp(t: float) -> Timestamp:
+    """Return the message for the time t (s)."""
     return set_time(Timestamp(), t)
 
 
 def set_time(message: Timestamp, t: float) -> Timestamp:
-    """The same message, with the time t (s)."""
+    """Set the message to the time t (s), and return it."""
     message.seconds, message.nanos = divmod(nanoseconds(t), 1_000_000_000)
     return message
 
 
-def vector(v: Vector) -> Vector3:
-    """A vector (m)."""
+def make_vector(v: Vector) -> Vector3:
+    """Return the message for a vector, in m."""
     return Vector3(x=v[0], y=v[1], z=v[2])
 
 
-def pose(position: Vector, rotation: Quaternion) -> PoseMessage:
-    """A position (m) and an attitude."""
+def make_pose(position: Vector, rotation: Quaternion) -> PoseMessage:
+    """Return the message for a position (m) and an attitude."""
     message = PoseMessage()
     set_vector(message.position, position)
     set_rotation(message.orientation, rotation)
@@ -48,39 +48,39 @@ def pose(position: Vector, rotation: Quaternion) -> PoseMessage:
 
 
 def set_vector(message: Vector3, v: Vector) -> None:
-    """Puts a vector (m) into a message."""
+    """Set a message to the vector, in m."""
     message.x, message.y, message.z = v
 
 
 def set_rotation(message: QuaternionMessage, q: Quaternion) -> None:
-    """Puts an attitude into a message."""
+    """Set a message to the attitude."""
     message.x, message.y, message.z, message.w = q
 
 
 def attitude(body: BodyPose) -> Quaternion:
-    """The attitude of the robot's body."""
+    """Return the attitude of the robot's body."""
     return from_rpy((body.roll, body.pitch, body.yaw))
 
 
-def colour(c: Colour) -> Color:
-    """A colour."""
+def make_colour(c: Colour) -> Color:
+    """Return the message for a colour."""
     return Color(r=c[0], g=c[1], b=c[2], a=c[3])
 
 
-def point(v: Vector) -> Point3:
-    """A point (m)."""
+def make_point(v: Vector) -> Point3:
+    """Return the message for a point, in m."""
     return Point3(x=v[0], y=v[1], z=v[2])
 
 
-def path(poses: Iterable[Pose], t: float) -> PosesInFrame:
-    """A way through poses of the site."""
+def make_path(poses: Iterable[Pose], t: float) -> PosesInFrame:
+    """Return the message for a path through poses on the site, at the time t (s)."""
     return PosesInFrame(
-        timestamp=timestamp(t),
+        timestamp=make_timestamp(t),
         frame_id=WORLD,
-        poses=[pose((p.x, p.y, p.z), from_rpy((0.0, 0.0, p.yaw))) for p in poses],
+        poses=[make_pose((p.x, p.y, p.z), from_rpy((0.0, 0.0, p.yaw))) for p in poses],
     )
 
 
-def log(text: str, level: "Log.Level.ValueType", name: str, t: float) -> Log:
-    """A line of the log, told by the part called `name`."""
-    return Log(timestamp=timestamp(t), level=level, message=text, name=name)
+def make_log(text: str, level: "Log.Level.ValueType", name: str, t: float) -> Log:
+    """Return a line of the log; `name` is the part of the run that it is about."""
+    return Log(timestamp=make_timestamp(t), level=level, message=text, name=name)

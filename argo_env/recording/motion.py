@@ -1,5 +1,8 @@
-"""The robot in motion, transforms of all its frames, its pose and its joints; and the pictures that
-it takes, each with where its camera was and how it draws."""
+"""Topics of the robot's motion and of its pictures.
+
+Motion: the transforms of all its frames, its pose and its joints. Each picture has the pose and the
+calibration of its camera.
+"""
 
 from collections.abc import Callable
 from io import BytesIO
@@ -17,10 +20,10 @@ from argo_env.recording.messages import (
     BASE,
     WORLD,
     attitude,
+    make_timestamp,
     set_rotation,
     set_time,
     set_vector,
-    timestamp,
 )
 from argo_env.recording.topic_writer import TopicWriter
 from argo_env.robot.pose import BodyPose
@@ -29,18 +32,20 @@ from argo_env.site.shapes import Vector
 from argo_env.world.world import Shot
 
 LIMB_PERIOD = 1.0
-"""s between two messages about limbs that do not move"""
+"""time in s between two messages about limbs that do not move"""
 
-Limbs = Callable[[list[str]], list[float]]
-"""Positions (rad or m) of the robot's joints of those names."""
+JointPositions = Callable[[list[str]], list[float]]
+"""function that returns the positions (rad or m) of the robot's joints with these names"""
 
 
 class MotionTopics:
-    """Writes where the robot is and how its limbs stand. Holds its messages, to fill them anew."""
+    """Writer of the poses of the robot and its joints; it holds its messages to reuse them."""
 
-    def __init__(self, writer: TopicWriter, model: RobotModel, limbs: Limbs) -> None:
+    def __init__(
+        self, writer: TopicWriter, model: RobotModel, joint_positions: JointPositions
+    ) -> None:
         self._writer = writer
-        self._limbs = limbs
+        self._joint_positions = joint_positions
         self._moving = [joint for joint in model.joints if joint.is_movable]
         self._names = [joint.name for joint in self._moving]
         self._values: list[float] | None = None
@@ -57,17 +62,20 @@ class MotionTopics:
         for name in self._names:
             self._joints.joints.add(name=name)
 
-    def begin(self, t: float) -> None:
-        """Writes what does not change."""
-        still = FrameTransforms(
+    def write_static(self, t: float) -> None:
+        """Write the transforms of the joints that do not move, at the time t (s)."""
+        static = FrameTransforms(
             transforms=[_transform(joint, *joint.child_pose(0.0)) for joint in self._fixed]
         )
-        for transform in still.transforms:
+        for transform in static.transforms:
             set_time(transform.timestamp, t)
-        self._writer.put("/tf_static", still, t)
+        self._writer.put("/tf_static", static, t)
 
-    def sample(self, body: BodyPose, t: float) -> None:
-        """Writes how the robot stands at time t (s)."""
+    def write_sample(self, body: BodyPose, t: float) -> None:
+        """Write the pose of the robot and its joints at the time t (s).
+
+        The joints are written only if they have moved or `LIMB_PERIOD` has passed.
+        """
         position, rotation = (body.x, body.y, body.z), attitude(body)
         base = self._base.transforms[0]
         set_time(base.timestamp, t)
@@ -78,7 +86,7 @@ class MotionTopics:
         set_vector(self._pose.pose.position, position)
         set_rotation(self._pose.pose.orientation, rotation)
         self._writer.put("/pose", self._pose, t)
-        values = self._limbs(self._names)
+        values = self._joint_positions(self._names)
         if values != self._values or t >= self._limbs_due - 1e-9:
             self._write_limbs(values, t)
             self._values, self._limbs_due = values, t + LIMB_PERIOD
@@ -106,23 +114,25 @@ def _transform(joint: Joint, position: Vector, rotation: Quaternion) -> FrameTra
 
 
 CAMERA = "camera"
-"""the optical frame of the camera: x to the right in the picture, y down, z into it"""
+"""optical frame of the camera: x to the right in the picture, y down, z into it"""
 _QUALITY = 90  # of JPEG: a tenth of the size of a PNG with the camera's noise
 
 
 def write_shot(writer: TopicWriter, shot: Shot, t: float) -> None:
-    """Writes a picture that was taken at time t (s)."""
+    """Write a picture that was taken at the time t (s), with its camera's pose and calibration."""
     x, y, z = shot.position.tolist()
     qx, qy, qz, qw = Rotation.from_matrix(shot.rotation).as_quat().tolist()
-    place = FrameTransform(timestamp=timestamp(t), parent_frame_id=WORLD, child_frame_id=CAMERA)
-    set_vector(place.translation, (x, y, z))
-    set_rotation(place.rotation, (qx, qy, qz, qw))
-    writer.put("/tf_camera", FrameTransforms(transforms=[place]), t)
+    camera_frame = FrameTransform(
+        timestamp=make_timestamp(t), parent_frame_id=WORLD, child_frame_id=CAMERA
+    )
+    set_vector(camera_frame.translation, (x, y, z))
+    set_rotation(camera_frame.rotation, (qx, qy, qz, qw))
+    writer.put("/tf_camera", FrameTransforms(transforms=[camera_frame]), t)
     writer.put("/camera/calibration", _calibration(shot, t), t)
     file = BytesIO()
     Image.fromarray(shot.pixels).save(file, "JPEG", quality=_QUALITY)
     picture = CompressedImage(
-        timestamp=timestamp(t), frame_id=CAMERA, data=file.getvalue(), format="jpeg"
+        timestamp=make_timestamp(t), frame_id=CAMERA, data=file.getvalue(), format="jpeg"
     )
     writer.put("/camera/image", picture, t)
 
@@ -131,7 +141,7 @@ def _calibration(shot: Shot, t: float) -> CameraCalibration:
     height, width, _ = shot.pixels.shape
     f, u, v = shot.focal, (width - 1) / 2, (height - 1) / 2
     return CameraCalibration(
-        timestamp=timestamp(t),
+        timestamp=make_timestamp(t),
         frame_id=CAMERA,
         width=width,
         height=height,

@@ -1,5 +1,7 @@
-"""Mark and version of recordings, and the file that one is written to, without a buffer: what is
-written is with the system."""
+"""Magic bytes and version of recordings, and the file that a recording is written to.
+
+The file has no buffer: the operating system has all written data at once.
+"""
 
 import os
 from contextlib import suppress
@@ -9,16 +11,16 @@ from argo_compiler.base.errors import Unavailable
 from argo_env.files.folders import CHOOSE_ANOTHER_PLACE, reporting_write_errors
 
 VERSION = "2"
-"""of what a recording of Argo's holds"""
+"""version of the contents of Argo's recordings"""
 MAGIC = b"\x89MCAP0\r\n"
-"""what every .mcap file begins and ends with (MCAP specification)"""
+"""bytes that each .mcap file begins and ends with (MCAP specification)"""
 
 
 class UnwritableRecording(Unavailable):
-    """The recording can't be written any further."""
+    """Error of a recording that can't be written any further."""
 
     def __init__(self, path: Path, reason: str) -> None:
-        """The `reason` is in the words of the system."""
+        """Take the file, and the operating system's message as `reason`."""
         super().__init__(f"{path}: the recording can't be written any further: {reason}")
         self.path = path
         self.reason = reason
@@ -28,7 +30,7 @@ class UnwritableRecording(Unavailable):
 
 
 class RecordingFile:
-    """A new file, open for writing. Holds it until it is closed; replaces what was there.
+    """A new file that is open for writing until it is closed; it replaces an existing one.
 
     Raises ArgoError if the file can't be made, and `write` raises UnwritableRecording.
     """
@@ -38,33 +40,36 @@ class RecordingFile:
         with reporting_write_errors(path, "the recording", CHOOSE_ANOTHER_PLACE):
             self._file = path.open("wb", buffering=0)
         self._size = 0
-        self._kept = 0
+        self._intact_size = 0
         self._failed = False
 
     def write(self, data: bytes) -> int:
-        """Writes all of the data; after a failure nothing more, so that no gap comes about, and
-        the file ends where it was whole last."""
+        """Write all of the data.
+
+        After a failure, the file is truncated to the intact part, and nothing more is written, so
+        that it has no gap.
+        """
         left = memoryview(data)
         try:
             while left and not self._failed:
                 left = left[self._file.write(left) or 0 :]
         except OSError as error:
             self._failed = True
-            with suppress(OSError):  # no file but a device
-                os.ftruncate(self._file.fileno(), self._kept)
+            with suppress(OSError):  # a device can't be truncated
+                os.ftruncate(self._file.fileno(), self._intact_size)
             raise UnwritableRecording(self._path, error.strerror or str(error)) from error
         self._size += len(data)
         return len(data)
 
-    def keep(self) -> None:
-        """What has been written so far is whole: it stays if what follows can't be written."""
-        self._kept = self._size
+    def mark_intact(self) -> None:
+        """Mark all data written so far as intact: they stay if later data can't be written."""
+        self._intact_size = self._size
 
     def tell(self) -> int:
         return self._size
 
     def flush(self) -> None:
-        """Has nothing to do: there is no buffer."""
+        """Do nothing: there is no buffer."""
 
     def close(self) -> None:
         self._file.close()

@@ -1,8 +1,7 @@
-"""A recording read back: what a report is made from, or what is left of a run cut short.
+"""Reader of recordings, for reports, and for the rest of recordings that are incomplete.
 
 An .mcap file has two sections, the data and the index, with their checksums. The library checks
-those of chunks and of the data section. Those of attachments and of the index it leaves to its
-users.
+those of chunks and of the data section, but not those of attachments and of the index.
 """
 
 import struct
@@ -30,12 +29,12 @@ if TYPE_CHECKING:
     from mcap.records import Attachment, McapRecord
 
 _FOOTER = struct.Struct("<BQQQI")
-"""opcode, length, where the index and its offsets begin, checksum (MCAP specification)"""
+"""opcode, length, positions of the index and of its offsets, checksum (MCAP specification)"""
 _FOOTER_OPCODE = 2
 
 
-class Content(BytesIO):
-    """The bytes of a file, which are never fewer than asked for: EndOfFile instead."""
+class ContentStream(BytesIO):
+    """Stream of a file's bytes that raises EndOfFile rather than returning too few."""
 
     def read(self, size: int | None = -1, /) -> bytes:
         from mcap.exceptions import EndOfFile
@@ -46,33 +45,33 @@ class Content(BytesIO):
         return data
 
 
-def data_section(content: Content) -> "Iterator[McapRecord]":
-    """The records of the data section up to its DataEnd, each once its checksum is found right; the
-    content stands behind that section then.
+def read_data_section(content: ContentStream) -> "Iterator[McapRecord]":
+    """Yield the records of the data section up to its DataEnd, each after its checksum is verified.
 
-    Raises what `unreadable` names where they make no sense.
+    After the last one, the position of the stream is the end of the section. Raises one of
+    `decoding_errors` where the bytes can't be decoded.
     """
     from mcap.exceptions import McapError
     from mcap.records import Attachment, Chunk, DataEnd, Footer, Metadata
     from mcap.stream_reader import StreamReader, breakup_chunk
 
-    limit = len(content.getbuffer())  # a longer part can't be in it
+    limit = len(content.getbuffer())  # no record is longer than the file
     reader = StreamReader(content, emit_chunks=True, validate_crcs=True, record_size_limit=limit)
-    argos = False
+    is_argos = False
     for record in reader.records:
         match record:
             case Metadata() if record.name == "argo":
-                argos = True
+                is_argos = True
                 yield record
             case Chunk():
                 yield from breakup_chunk(record, validate_crc=True)
             case Attachment():
-                if not _is_as_written(record, content):
+                if not _is_intact(record, content):
                     raise McapError(f"the checksum of {record.name} is wrong")
                 yield record
             case DataEnd():
-                if argos and record.data_section_crc == 0:
-                    # 0 says that there is none (MCAP specification); Argo always writes it.
+                if is_argos and record.data_section_crc == 0:
+                    # 0 means no checksum (MCAP specification); Argo always writes one.
                     raise McapError("the checksum of its data is missing")
                 yield record
                 return
@@ -82,37 +81,42 @@ def data_section(content: Content) -> "Iterator[McapRecord]":
                 yield record
 
 
-def is_sound_end(content: bytes, start: int) -> bool:
-    """Whether from `start` on there is the index that was written, the footer and nothing else."""
-    at = len(content) - len(MAGIC) - _FOOTER.size
-    if at < start or not content.endswith(MAGIC):
+def has_intact_end(content: bytes, start: int) -> bool:
+    """Return True if the content from `start` on is an intact index and the footer, and no more."""
+    position = len(content) - len(MAGIC) - _FOOTER.size
+    if position < start or not content.endswith(MAGIC):
         return False
-    opcode, _, index, _, checksum = _FOOTER.unpack_from(content, at)
+    opcode, _, index, _, checksum = _FOOTER.unpack_from(content, position)
     summed = content[start : -len(MAGIC) - 4]
     return bool(opcode == _FOOTER_OPCODE and index == start and zlib.crc32(summed) == checksum)
 
 
-def trailing(content: bytes, start: int) -> int | None:
-    """How many bytes follow after a sound end, where the index begins at `start`; None if no sound
-    end is in it."""
-    at = start
-    while (at := content.find(MAGIC, at)) >= 0:
-        at += len(MAGIC)
-        if is_sound_end(content[:at], start):
-            return len(content) - at
+def count_trailing_bytes(content: bytes, start: int) -> int | None:
+    """Return the number of bytes after an intact end whose index begins at `start`.
+
+    None means that the content has no intact end.
+    """
+    position = start
+    while (position := content.find(MAGIC, position)) >= 0:
+        position += len(MAGIC)
+        if has_intact_end(content[:position], start):
+            return len(content) - position
     return None
 
 
-def unreadable() -> tuple[type[Exception], ...]:
-    """What the libraries raise for bytes that make no sense."""
+def decoding_errors() -> tuple[type[Exception], ...]:
+    """Return the exceptions that the libraries raise for bytes that can't be decoded."""
     from mcap.exceptions import McapError
     from zstandard import ZstdError
 
     return McapError, ZstdError, struct.error, ValueError, OverflowError, MemoryError
 
 
-def _is_as_written(attachment: "Attachment", content: Content) -> bool:
-    """Whether what was read last is what the library would write of it, checksum included."""
+def _is_intact(attachment: "Attachment", content: ContentStream) -> bool:
+    """Return True if the bytes read last are those that the library would write, checksum included.
+
+    The library reads attachments without verifying their checksums.
+    """
     from mcap.data_stream import RecordBuilder
 
     builder = RecordBuilder()
@@ -123,32 +127,32 @@ def _is_as_written(attachment: "Attachment", content: Content) -> bool:
 
 
 MAX_BYTES = 16 * 1024**3
-"""of a recording; one with a camera's pictures takes some 100 MB an hour"""
+"""greatest size of a recording; one with a camera's pictures takes some 100 MB an hour"""
 _HINT = "name a file that a run was recorded in"
 
 
 @dataclass(frozen=True)
 class Recording:
-    """What a recording holds beside its pictures of the run."""
+    """Contents of a recording that reports and summaries need; most messages are only counted."""
 
     name: str
-    """what the file is called"""
+    """name of the file"""
     facts: dict[str, str]
-    """site, robot, drive, sensor and seed of the run, as texts"""
+    """metadata of the run, among them version, site, robot, drive, sensor and seed, as texts"""
     site: Site
     record: RunRecord | None
-    """None: the run did not come to its end"""
+    """record of the run; None if it is missing because the run or the file did not end properly"""
     flaw: str | None
-    """what is wrong with the file's end, in words; None: it is as it was written"""
+    """defect of the file's end, in words; None if the file is intact"""
     until: float
-    """s of simulated time that it reaches to"""
+    """simulated time in s of the last message"""
     messages: dict[str, int]
-    """how many there are, by topic"""
+    """number of messages by topic"""
     readings: tuple[Reading, ...]
     tasks: tuple[TaskRun, ...]
 
     def require_record(self) -> RunRecord:
-        """The run's record; ArgoError if the run did not come to its end."""
+        """Return the run's record; raise ArgoError if the recording has none."""
         if self.record is None:
             raise Invalid(
                 f"{self.name}: has no record of the run, which is written at its end: {self.loss}. "
@@ -159,36 +163,39 @@ class Recording:
 
     @property
     def loss(self) -> str:
-        """What is missing of a run without a record, in words."""
+        """Reason why the record is missing, in words."""
         if self.flaw is None:
             return f"the run broke off after {self.until:g} s"
         return f"the recording {self.flaw}"
 
 
 def read_recording(path: Path) -> Recording:
-    """Reads a recording, also one that breaks off or has a damaged end: its `flaw` says so.
+    """Return the contents of a recording, also of one whose end is missing or damaged; see `flaw`.
 
-    What it returns has the checksums that it was written with. Raises ArgoError if the file can't
-    be read, is damaged before its end, is no .mcap file or none of Argo's.
+    All checksums of the returned data are verified. Raises ArgoError if the file can't be read, is
+    damaged before its end, or is not an .mcap file of Argo.
     """
-    return decode_recording(_content(path), str(path))
+    return decode_recording(_load(path), str(path))
 
 
 def decode_recording(content: bytes, name: str) -> Recording:
-    """The same of a recording's bytes, which messages call `name`."""
+    """Return the contents of a recording from its bytes, like `read_recording`.
+
+    `name` is the name of the recording in messages.
+    """
     require_libraries()
     parts = _Parts()
-    flaw = _read(name, content, parts)
+    flaw = _read_parts(name, content, parts)
     if parts.facts is None:
-        _refuse(name, f"is no recording of Argo's: {_HINT}", Remedy.RECORD)
+        _raise_invalid(name, f"is no recording of Argo's: {_HINT}", Remedy.RECORD)
     if parts.facts.get("version") != VERSION:
-        _refuse(
+        _raise_invalid(
             name,
             f"has version {parts.facts.get('version')} of Argo's recordings, and this Argo reads "
-            f"{VERSION}: replay it with the Argo that made it",
+            f"version {VERSION}: replay it with the Argo that made it",
         )
     if "site.json" not in parts.attachments:
-        _refuse(name, "breaks off before the run's first step: there is nothing to replay")
+        _raise_invalid(name, "breaks off before the run's first step: there is nothing to replay")
     try:
         record = parts.attachments.get("record.json")
         return Recording(
@@ -203,13 +210,13 @@ def decode_recording(content: bytes, name: str) -> Recording:
             tuple(TaskRun.model_validate_json(text) for text in parts.tasks),
         )
     except ValidationError as error:
-        fault = error.errors(include_url=False)[0]
-        place, said = format_path(fault["loc"]), error_message(fault, fault["loc"])
-        _refuse(name, f"does not fit this Argo: {place}: {said}")
+        first = error.errors(include_url=False)[0]
+        place, message = format_path(first["loc"]), error_message(first, first["loc"])
+        _raise_invalid(name, f"does not fit this Argo: {place}: {message}")
 
 
 class _Parts:
-    """What has been read of a file so far."""
+    """Parts of a recording that have been read so far."""
 
     def __init__(self) -> None:
         self.facts: dict[str, str] | None = None
@@ -218,10 +225,11 @@ class _Parts:
         self.readings: list[bytes] = []
         self.tasks: list[bytes] = []
         self.until = 0
-        """ns"""
+        """simulated time in ns of the last message"""
         self._topics: dict[int, str] = {}
 
     def add(self, record: "McapRecord") -> None:
+        """Add a record of the data section."""
         from mcap.records import Attachment, Channel, Message, Metadata
 
         match record:
@@ -241,35 +249,35 @@ class _Parts:
                     self.tasks.append(record.data)
 
 
-def _read(name: str, content: bytes, parts: _Parts) -> str | None:
-    """Reads as far as there is anything; what is wrong with the file's end, if anything is."""
+def _read_parts(name: str, content: bytes, parts: _Parts) -> str | None:
+    """Add all readable records of the content to `parts`; return the defect of the end, if any."""
     from mcap.exceptions import EndOfFile, RecordLengthLimitExceeded
 
     if not content:
-        _refuse(name, f"is empty: {_HINT}", Remedy.RECORD)
+        _raise_invalid(name, f"is empty: {_HINT}", Remedy.RECORD)
     if not MAGIC.startswith(content[: len(MAGIC)]):
-        _refuse(name, f"is no .mcap file: {_HINT}", Remedy.RECORD)
-    stream = Content(content)
+        _raise_invalid(name, f"is no .mcap file: {_HINT}", Remedy.RECORD)
+    stream = ContentStream(content)
     try:
-        for record in data_section(stream):
+        for record in read_data_section(stream):
             parts.add(record)
-    except unreadable() as error:
+    except decoding_errors() as error:
         until, why = f"after {parts.until / 1e9:g} s", f"({str(error) or type(error).__name__})"
         if len(content) > len(MAGIC) and content.endswith(MAGIC):
-            _refuse(name, f"is damaged {until} {why}: take it from a copy")
-        # A part that reaches beyond the end of the file is the last one of a file that breaks off.
+            _raise_invalid(name, f"is damaged {until} {why}: restore it from a copy")
+        # A record that is longer than the rest of the file is the last one of an incomplete file.
         if isinstance(error, EndOfFile | RecordLengthLimitExceeded):
-            return f"breaks off {until}, as where its process was killed, or the disk full"
+            return f"breaks off {until}, as if its process was killed or the disk was full"
         return f"is damaged {until} {why}, and has no end"
-    if is_sound_end(content, stream.tell()):
+    if has_intact_end(content, stream.tell()):
         return None
-    extra = trailing(content, stream.tell())
+    extra = count_trailing_bytes(content, stream.tell())
     if extra is None:
         return "has a missing or damaged index"
-    return f"goes on for {extra} byte{'s' if extra > 1 else ''} after its end"
+    return f"has {extra} more byte{'s' if extra > 1 else ''} after its end"
 
 
-def _content(path: Path) -> bytes:
+def _load(path: Path) -> bytes:
     try:
         return read_bytes(path, "recording", MAX_BYTES, MAGIC)
     except FileError as error:
@@ -278,9 +286,9 @@ def _content(path: Path) -> bytes:
                 message = "there is no such recording: a run makes one"
                 raise NotFound(f"{path}: {message}", remedies=(Remedy.RECORD,)) from None
             case FileProblem.DIRECTORY:
-                _refuse(str(path), f"is a folder: {_HINT}", Remedy.RECORD)
+                _raise_invalid(str(path), f"is a folder: {_HINT}", Remedy.RECORD)
         raise
 
 
-def _refuse(name: str, message: str, *remedies: Remedy) -> NoReturn:
+def _raise_invalid(name: str, message: str, *remedies: Remedy) -> NoReturn:
     raise Invalid(f"{name}: {message}", remedies=remedies) from None

@@ -1,4 +1,4 @@
-"""What Foxglove's 3D panel draws: the site, floor by floor, the robot, and the checkpoints."""
+"""Scenes for Foxglove's 3D panel: the site by floors, the robot, checkpoints and findings."""
 
 from collections.abc import Iterable, Mapping, Sequence
 
@@ -9,7 +9,13 @@ from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 from foxglove_schemas_protobuf.SpherePrimitive_pb2 import SpherePrimitive
 from foxglove_schemas_protobuf.TextPrimitive_pb2 import TextPrimitive
 
-from argo_env.recording.messages import WORLD, colour, pose, timestamp, vector
+from argo_env.recording.messages import (
+    WORLD,
+    make_colour,
+    make_pose,
+    make_timestamp,
+    make_vector,
+)
 from argo_env.robot.robot_model import (
     Colour,
     Quaternion,
@@ -24,20 +30,20 @@ from argo_env.site.shapes import Box, Element, Solid, Vector
 from argo_env.site.storeys import storeys
 from argo_env.site.urdf import COLOURS
 
-_FACE = (0.16, 0.16, 0.02)  # m, the disc that marks a checkpoint
+_FACE = (0.16, 0.16, 0.02)  # m, size of the disc that marks a checkpoint
 _LABEL_HEIGHT = 0.18  # m above the face
 _LABEL_SIZE = 0.12  # m, height of the text
-_BALL = 0.2  # m, that marks a finding
-_CLOSED = 0.05  # m, height of what shows that a part of the surface is closed
-_SEEN_THROUGH: Colour = (0.85, 0.15, 0.12, 0.4)
-_TO_READ: Colour = (0.55, 0.57, 0.60, 1.0)
+_BALL = 0.2  # m, diameter of the ball that marks a finding
+_BOX_HEIGHT = 0.05  # m, height of the box that marks a closed part of the surface
+_TRANSLUCENT: Colour = (0.85, 0.15, 0.12, 0.4)
+_UNREAD: Colour = (0.55, 0.57, 0.60, 1.0)
 _NORMAL: Colour = (0.15, 0.65, 0.25, 1.0)
 _ABNORMAL: Colour = (0.85, 0.15, 0.12, 1.0)
 _INK: Colour = (0.05, 0.05, 0.05, 1.0)
 
 
 def site_scenes(site: Site, t: float) -> dict[int, SceneUpdate]:
-    """The site's elements for each floor, by its number."""
+    """Return the scene of the site's elements on each floor, by the floor's number."""
     return {
         number: SceneUpdate(entities=[_element(e, t) for e in elements])
         for number, elements in storeys(site).items()
@@ -45,7 +51,7 @@ def site_scenes(site: Site, t: float) -> dict[int, SceneUpdate]:
 
 
 def robot_scene(model: RobotModel, t: float) -> SceneUpdate:
-    """The robot's links, each in its own frame."""
+    """Return the scene of the robot's links, each in its own frame."""
     return SceneUpdate(
         entities=[
             _entity(link, link, solids, t, locked=True) for link, solids in model.visuals.items()
@@ -56,92 +62,101 @@ def robot_scene(model: RobotModel, t: float) -> SceneUpdate:
 def checkpoint_scene(
     checkpoints: Iterable[SiteCheckpoint], readings: Mapping[int, Reading], t: float
 ) -> SceneUpdate:
-    """Checkpoints, with what was read last of each: grey before that, then green or red."""
+    """Return the scene of checkpoints with their last readings.
+
+    A checkpoint is grey before its first reading, then green if it is normal and red if not.
+    """
     return SceneUpdate(entities=[_checkpoint(c, readings.get(c.id), t) for c in checkpoints])
 
 
-def finding_scene(found: Sequence[Anomaly], t: float) -> SceneUpdate:
-    """All that was found and has a place: a ball with a few words, and what is closed by it. Of
-    what was only noticed or told of somewhere, the words stand there alone."""
+def finding_scene(anomalies: Sequence[Anomaly], t: float) -> SceneUpdate:
+    """Return the scene of anomalies.
+
+    An anomaly with a position has a ball, a label, and a box on the surface that it closes. One
+    that was only noticed or reported somewhere has a label there. Others are left out.
+    """
     return SceneUpdate(
         entities=[
-            _finding(f"finding {number}", anomaly, at, t)
-            for number, anomaly in enumerate(found, start=1)
-            if (at := anomaly.place or anomaly.noticed_from) is not None
+            _finding(f"finding {number}", anomaly, position, t)
+            for number, anomaly in enumerate(anomalies, start=1)
+            if (position := anomaly.place or anomaly.noticed_from) is not None
         ]
     )
 
 
-def _finding(id: str, anomaly: Anomaly, place: Vector, t: float) -> SceneEntity:
+def _finding(id: str, anomaly: Anomaly, position: Vector, t: float) -> SceneEntity:
     level: Quaternion = (0.0, 0.0, 0.0, 1.0)
     text = anomaly.kind.replace("_", " ") + (f": {anomaly.detail}" if anomaly.detail else "")
-    looks = [Visual("sphere", (_BALL, _BALL, _BALL), place, level, _ABNORMAL)]
+    visuals = [Visual("sphere", (_BALL, _BALL, _BALL), position, level, _ABNORMAL)]
     if anomaly.place is None:
-        text, looks = f"{'told' if anomaly.is_reported else 'noticed from'} here: {text}", []
+        text, visuals = f"{'reported' if anomaly.is_reported else 'noticed from'} here: {text}", []
     if anomaly.extent is not None:
         x0, y0, x1, y1 = anomaly.extent
-        middle = ((x0 + x1) / 2, (y0 + y1) / 2, place[2])
-        looks.append(Visual("box", (x1 - x0, y1 - y0, _CLOSED), middle, level, _SEEN_THROUGH))
-    entity = _entity(id, WORLD, looks, t)
-    entity.texts.append(_label(place, text))
+        middle = ((x0 + x1) / 2, (y0 + y1) / 2, position[2])
+        visuals.append(Visual("box", (x1 - x0, y1 - y0, _BOX_HEIGHT), middle, level, _TRANSLUCENT))
+    entity = _entity(id, WORLD, visuals, t)
+    entity.texts.append(_label(position, text))
     return entity
 
 
-def _label(place: Vector, text: str) -> TextPrimitive:
-    x, y, z = place
+def _label(position: Vector, text: str) -> TextPrimitive:
+    """Return a text above the position."""
+    x, y, z = position
     return TextPrimitive(
-        pose=pose((x, y, z + _LABEL_HEIGHT), (0.0, 0.0, 0.0, 1.0)),
+        pose=make_pose((x, y, z + _LABEL_HEIGHT), (0.0, 0.0, 0.0, 1.0)),
         billboard=True,
         font_size=_LABEL_SIZE,
-        color=colour(_INK),
+        color=make_colour(_INK),
         text=text,
     )
 
 
 def _element(element: Element, t: float) -> SceneEntity:
     red, green, blue = COLOURS[element.material]
-    looks = [_look(solid, (red, green, blue, 1.0)) for solid in element.solids]
-    return _entity(element.name, WORLD, looks, t)
+    visuals = [_visual(solid, (red, green, blue, 1.0)) for solid in element.solids]
+    return _entity(element.name, WORLD, visuals, t)
 
 
-def _look(solid: Solid, colour: Colour) -> Visual:
+def _visual(solid: Solid, colour: Colour) -> Visual:
     if isinstance(solid, Box):
         return Visual("box", solid.size, solid.center, from_rpy(solid.rpy), colour)
-    across = 2 * solid.radius
-    size = (across, across, solid.length)
+    diameter = 2 * solid.radius
+    size = (diameter, diameter, solid.length)
     return Visual("cylinder", size, solid.center, from_rpy(solid.rpy), colour)
 
 
 def _entity(
-    id: str, frame: str, looks: Iterable[Visual], t: float, locked: bool = False
+    id: str, frame: str, visuals: Iterable[Visual], t: float, locked: bool = False
 ) -> SceneEntity:
-    entity = SceneEntity(timestamp=timestamp(t), frame_id=frame, id=id, frame_locked=locked)
-    for look in looks:
-        place, size, shade = (
-            pose(look.position, look.rotation), vector(look.size), colour(look.colour),
+    """Return an entity of visuals in a frame; with `locked` it moves with the frame."""
+    entity = SceneEntity(timestamp=make_timestamp(t), frame_id=frame, id=id, frame_locked=locked)
+    for visual in visuals:
+        pose, size, colour = (
+            make_pose(visual.position, visual.rotation), make_vector(visual.size),
+            make_colour(visual.colour),
         )  # fmt: skip
-        match look.shape:
+        match visual.shape:
             case "box":
-                entity.cubes.append(CubePrimitive(pose=place, size=size, color=shade))
+                entity.cubes.append(CubePrimitive(pose=pose, size=size, color=colour))
             case "sphere":
-                entity.spheres.append(SpherePrimitive(pose=place, size=size, color=shade))
+                entity.spheres.append(SpherePrimitive(pose=pose, size=size, color=colour))
             case _:
                 entity.cylinders.append(
                     CylinderPrimitive(
-                        pose=place, size=size, color=shade, bottom_scale=1.0, top_scale=1.0
+                        pose=pose, size=size, color=colour, bottom_scale=1.0, top_scale=1.0
                     )
                 )
     return entity
 
 
 def _checkpoint(checkpoint: SiteCheckpoint, reading: Reading | None, t: float) -> SceneEntity:
-    text, shade = f"#{checkpoint.id} {checkpoint.name}", _TO_READ
+    text, colour = f"#{checkpoint.id} {checkpoint.name}", _UNREAD
     if reading is not None:
         text += f": {reading.value:.4g} {reading.unit}"
-        shade = _NORMAL if reading.normal else _ABNORMAL
-    # The face looks along x of the checkpoint's frame; a cylinder stands along its z.
+        colour = _NORMAL if reading.normal else _ABNORMAL
+    # The face looks along x of the checkpoint's frame; the axis of a cylinder is z.
     turned = multiply(from_rpy((0.0, 0.0, checkpoint.yaw)), from_rpy((0.0, 1.5707963267948966, 0)))
-    face = Visual("cylinder", _FACE, checkpoint.position, turned, shade)
+    face = Visual("cylinder", _FACE, checkpoint.position, turned, colour)
     entity = _entity(f"checkpoint {checkpoint.id}", WORLD, [face], t)
     entity.texts.append(_label(checkpoint.position, text))
     return entity

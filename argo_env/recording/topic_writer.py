@@ -1,9 +1,9 @@
-"""Writers of a recorder's topics, to a file or a viewer; and JSON schemas that viewers understand.
+"""Base class of writers of topics, to a file or a viewer, and JSON schemas that viewers support.
 
-Foxglove shows a JSON topic whose schema has objects, arrays of one kind of item, and scalars.
-Its open-source version knows no `$ref` and no `anyOf`, which pydantic uses for parts and for fields
-that may be None; so parts are put where they are used, and a field that may be None is one that may
-be left out.
+Foxglove shows a JSON topic whose schema has objects, arrays of one kind of item, and scalars. Its
+open-source version does not support `$ref` and `anyOf`, which pydantic uses for nested models and
+for fields that may be None. So nested schemas are inlined, and a field that may be None is one that
+may be left out.
 """
 
 import json
@@ -13,88 +13,97 @@ from typing import TYPE_CHECKING, Any
 
 from argo_compiler.base.model import Model
 
-if TYPE_CHECKING:  # what the extra brings
+if TYPE_CHECKING:  # a package of the extra
     from google.protobuf.message import Message
 
 
 class TopicWriter:
-    """Takes messages on topics, at simulated times (s). Holds the channels of the topics; what a
-    writer keeps besides them, and when, is its own business."""
+    """Base class of a writer of messages on topics, at simulated times (s).
+
+    It holds the channels of the topics. Subclasses decide what they store besides, and when.
+    """
 
     until: float | None = None
-    """s up to which all can be read, whatever happens; None: nothing can"""
+    """time in s up to which all messages can be read, whatever happens; None: no message"""
 
     def __init__(self) -> None:
         self._channels: dict[str, Any] = {}
 
     def put(self, topic: str, message: "Message", t: float) -> None:
-        """Tells a protobuf message at time t (s)."""
+        """Write a protobuf message at the time t (s)."""
         if topic not in self._channels:
             from mcap_protobuf.schema import build_file_descriptor_set
 
             schema = build_file_descriptor_set(type(message)).SerializeToString(deterministic=True)
-            self._open(topic, "protobuf", message.DESCRIPTOR.full_name, schema)
-        self._tell(topic, message.SerializeToString(), t)
+            self._open_channel(topic, "protobuf", message.DESCRIPTOR.full_name, schema)
+        self._write_message(topic, message.SerializeToString(), t)
 
     def put_json(self, topic: str, message: Model, t: float) -> None:
-        """Tells a model as JSON at time t (s); fields that are None are left out."""
+        """Write a model as JSON at the time t (s); fields that are None are left out."""
         if topic not in self._channels:
             schema = json.dumps(plain_schema(type(message)), ensure_ascii=False).encode()
-            self._open(topic, "json", f"argo.{type(message).__name__}", schema)
-        self._tell(topic, message.model_dump_json(exclude_none=True).encode(), t)
+            self._open_channel(topic, "json", f"argo.{type(message).__name__}", schema)
+        self._write_message(topic, message.model_dump_json(exclude_none=True).encode(), t)
 
     def attach(self, name: str, media_type: str, content: str | bytes, t: float = 0.0) -> None:
-        """A file that belongs to the run."""
+        """Write a file that belongs to the run; by default do nothing."""
 
     def describe(self, name: str, facts: Mapping[str, str]) -> None:
-        """Texts by name."""
+        """Write metadata with this name; by default do nothing."""
 
     def flush_if_due(self, t: float) -> None:
-        """Time has passed."""
+        """Store the messages now and then, as simulated time passes; by default do nothing."""
 
     def flush(self, t: float) -> None:
-        """What came before the time t is to be kept."""
+        """Store all messages before the time t (s); by default do nothing."""
 
     def close(self) -> None:
-        """The run is over."""
+        """Write the end of the run; by default do nothing."""
 
     @abstractmethod
-    def _open(self, topic: str, encoding: str, name: str, schema: bytes) -> None:
-        """Makes the channel of a topic; `encoding` is `protobuf` or `json`."""
+    def _open_channel(self, topic: str, encoding: str, name: str, schema: bytes) -> None:
+        """Make the channel of a topic; `encoding` is `protobuf` or `json`."""
 
     @abstractmethod
-    def _tell(self, topic: str, data: bytes, t: float) -> None:
-        """Tells a message of a topic whose channel there is."""
+    def _write_message(self, topic: str, data: bytes, t: float) -> None:
+        """Write a message on a topic that has a channel."""
 
 
 Schema = dict[str, Any]
 
 
 def plain_schema(model: type[Model]) -> Schema:
-    """The schema of what a model writes with `exclude_none`; fields of free form, such as
-    mappings, are not in it."""
+    """Return the schema of a model's JSON with `exclude_none`, without references.
+
+    Fields of free form, such as mappings, are left out.
+    """
     full = model.model_json_schema(mode="serialization")
-    return _object(full, full.get("$defs", {})) | {"title": full["title"]}
+    return _plain_object(full, full.get("$defs", {})) | {"title": full["title"]}
 
 
-def _object(schema: Schema, parts: Schema) -> Schema:
-    plain = {name: _plain(field, parts) for name, field in schema.get("properties", {}).items()}
+def _plain_object(schema: Schema, definitions: Schema) -> Schema:
+    plain = {
+        name: _plain_field(field, definitions)
+        for name, field in schema.get("properties", {}).items()
+    }
     return {"type": "object", "properties": {k: v for k, v in plain.items() if v is not None}}
 
 
-def _plain(schema: Schema, parts: Schema) -> Schema | None:
-    """A field's schema; None if it can't be said plainly."""
+def _plain_field(schema: Schema, definitions: Schema) -> Schema | None:
+    """Return the schema of a field without references; None if there is none."""
     while "$ref" in schema:
-        schema = parts[schema["$ref"].rpartition("/")[2]]
+        schema = definitions[schema["$ref"].rpartition("/")[2]]
     if "anyOf" in schema:
         kinds = [kind for kind in schema["anyOf"] if kind.get("type") != "null"]
-        return _plain(kinds[0], parts) if len(kinds) == 1 else None
+        return _plain_field(kinds[0], definitions) if len(kinds) == 1 else None
     match schema.get("type"):
         case "object" if "properties" in schema:
-            return _object(schema, parts)
+            return _plain_object(schema, definitions)
         case "array":
             # The items of a tuple of fixed length are of one kind here, such as coordinates.
-            items = _plain(schema.get("items") or schema.get("prefixItems", [{}])[0], parts)
+            items = _plain_field(
+                schema.get("items") or schema.get("prefixItems", [{}])[0], definitions
+            )
             return None if items is None else {"type": "array", "items": items}
         case "boolean" | "integer" | "number" | "string" as scalar:
             return {"type": scalar}

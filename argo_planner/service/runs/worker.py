@@ -12,7 +12,7 @@ from uuid import uuid4
 from argo_compiler.base.errors import ArgoError, Unavailable
 from argo_compiler.files.atomic_write import write_atomically
 from argo_env.planning.opening import OpenedSite, open_site
-from argo_env.recording.live import LiveWriter, served_live
+from argo_env.recording.live import LiveWriter, serve_live
 from argo_env.remote.channel import Channel
 from argo_env.remote.robot import RemoteRobot
 from argo_env.run.drives_and_sensors import ROUTE
@@ -70,7 +70,7 @@ def carry_out(
     try:
         site = with_obstacles(open_site(order.site).prepare(), order.obstacles)
         with ExitStack() as stack:
-            live = None if foxglove is None else stack.enter_context(served_live(foxglove))
+            live = None if foxglove is None else stack.enter_context(serve_live(foxglove))
             process = _Segments(WorkerPipe(pipe), folder, order, first, site, live, asked)
             record = process.carry_out()
     except ArgoError as error:

@@ -1,4 +1,4 @@
-"""A run of the yard, recorded: with a reaction, a pause, rounds and an abnormal value."""
+"""A recorded run on the yard, with a reaction, a pause, rounds and an abnormal value."""
 
 from types import SimpleNamespace
 
@@ -37,7 +37,7 @@ SPEC = RunSpec(
 
 @pytest.fixture(scope="session")
 def record_run(yard):
-    """Runs the plan and records it to a file; returns the run's record."""
+    """Return a function that runs the plan, records it to a file and returns the run's record."""
 
     def run(file, spec=SPEC, source=None):
         with recording_to(file, source) as recorder:
@@ -48,12 +48,12 @@ def record_run(yard):
 
 @pytest.fixture(scope="session")
 def recorded(record_run, tmp_path_factory):
-    """The run's record, the file with its recording, and what was read of it."""
+    """Return the run's record, the recording as a file and as bytes, and its decoded contents."""
     folder = tmp_path_factory.mktemp("recorded")
     source = folder / "plan.txt"
     source.write_text("the plan as a person wrote it", encoding="utf-8")
     file = folder / "run.mcap"
     record = record_run(file, source=source)
     return SimpleNamespace(
-        record=record, file=file, content=file.read_bytes(), found=read_recording(file)
+        record=record, file=file, content=file.read_bytes(), decoded=read_recording(file)
     )

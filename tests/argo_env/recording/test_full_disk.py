@@ -1,4 +1,4 @@
-"""A run does not depend on its recording: what was recorded stays, and what is lost is said."""
+"""A run does not depend on its recording: the recorded part stays, and a loss is reported."""
 
 import os
 import re
@@ -6,7 +6,7 @@ import re
 import pytest
 
 from argo_compiler.base.errors import ArgoError
-from argo_env.recording.files import BestEffort, recording_to
+from argo_env.recording.files import BestEffortRecorder, recording_to
 from argo_env.recording.reader import read_recording
 from argo_env.run.observer import Observer
 from argo_env.run.session import simulate
@@ -19,7 +19,7 @@ _PAGE = 4096  # bytes
 
 
 def record_on(disk, navigator, *observers, spec=SPEC):
-    """The record of the run, what was warned of, and the loss."""
+    """Record a run on the disk; return its record, the warnings and the loss."""
     warnings = []
     with recording_to(disk / "run.mcap", warn=warnings.append) as recorder:
         record = simulate(spec, opened(navigator), observers=[recorder, *observers])
@@ -31,37 +31,37 @@ def test_a_recording_ends_where_the_disk_is_full(recorded, yard, share) -> None:
     pages = int(share * (len(recorded.content) - 1) / _PAGE)
     with small_disk(pages * _PAGE) as disk:
         record, warnings, loss = record_on(disk, yard)
-        found = read_recording(disk / "run.mcap")
+        recording = read_recording(disk / "run.mcap")
     assert record == recorded.record
     (warning,) = warnings
     assert "run.mcap: the recording can't be written any further: No space left" in warning
-    assert f"it ends at {found.until:g} s, and the run goes on" in warning
-    assert loss == f"it ends at {found.until:g} s: No space left on device"
-    assert found.flaw
-    assert found.record in (None, record)
-    assert found.readings == record.readings[: len(found.readings)]
+    assert f"it ends at {recording.until:g} s, and the run continues" in warning
+    assert loss == f"it ends at {recording.until:g} s: No space left on device"
+    assert recording.flaw
+    assert recording.record in (None, record)
+    assert recording.readings == record.readings[: len(recording.readings)]
 
 
-def test_a_disk_that_is_full_from_the_first_step_on_is_no_loss_of_the_run(yard) -> None:
+def test_a_run_succeeds_on_a_disk_that_is_full_from_the_first_step_on(yard) -> None:
     with small_disk(_PAGE) as disk:
         record, warnings, loss = record_on(disk, yard, spec=SHORT)
     assert record.result.success
     assert len(warnings) == 1
-    assert loss == "nothing of the run is in it: No space left on device"
+    assert loss == "it has nothing of the run: No space left on device"
 
 
-def test_a_disk_that_is_full_before_the_run_is_said_before_it(yard) -> None:
+def test_a_disk_that_is_full_before_the_run_is_an_error(yard) -> None:
     with small_disk(_PAGE) as disk:
         fill(disk)
         with pytest.raises(ArgoError, match=r"run\.mcap: the recording can't be written.*No space"):
             record_on(disk, yard, spec=SHORT)
 
 
-def test_a_recorder_is_told_all_that_observers_are() -> None:
-    assert {n for n in vars(Observer) if n.startswith("on_")} <= vars(BestEffort).keys()
+def test_a_best_effort_recorder_has_all_methods_of_observers() -> None:
+    assert {n for n in vars(Observer) if n.startswith("on_")} <= vars(BestEffortRecorder).keys()
 
 
-def test_room_that_comes_back_makes_no_gap(recorded, yard) -> None:
+def test_a_recording_has_no_gap_if_space_becomes_free_again(recorded, yard) -> None:
     with small_disk(int(0.9 * len(recorded.content))) as disk:
         (disk / "other").write_bytes(bytes(len(recorded.content) // 3))
 
@@ -70,13 +70,13 @@ def test_room_that_comes_back_makes_no_gap(recorded, yard) -> None:
                 (disk / "other").unlink(missing_ok=True)
 
         record, _, loss = record_on(disk, yard, Watching(make_room))
-        found = read_recording(disk / "run.mcap")
+        recording = read_recording(disk / "run.mcap")
     assert record == recorded.record
-    assert loss.startswith(f"it ends at {found.until:g} s")
+    assert loss.startswith(f"it ends at {recording.until:g} s")
 
 
 @pytest.mark.parametrize("kind", ["missing", "pipe"])
-def test_a_run_is_recorded_without_a_source_that_is_gone(yard, tmp_path, kind) -> None:
+def test_a_run_is_recorded_without_a_source_that_can_not_be_read(yard, tmp_path, kind) -> None:
     source, warnings = tmp_path / "plan.txt", []
     if kind == "pipe":
         os.mkfifo(source)

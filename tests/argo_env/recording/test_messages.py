@@ -1,4 +1,4 @@
-"""What is in a recording, read with the libraries of those who define the formats."""
+"""Messages of a recording, decoded with the libraries of the formats' authors."""
 
 import json
 import math
@@ -53,30 +53,30 @@ OWN = {
 
 @pytest.fixture(scope="module")
 def messages(recorded):
-    """The messages of each topic: schema, channel, message and what it says."""
-    found = defaultdict(list)
+    """Return schema, channel, message and decoded content of all messages, by topic."""
+    rows = defaultdict(list)
     with recorded.file.open("rb") as stream:
         reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
         for schema, channel, message in reader.iter_messages():
             if channel.message_encoding == "protobuf":
                 decoder = DecoderFactory().decoder_for(channel.message_encoding, schema)
-                said = decoder(message.data)
+                content = decoder(message.data)
             else:
-                said = json.loads(message.data)
-            found[channel.topic].append((schema, channel, message, said))
-    return found
+                content = json.loads(message.data)
+            rows[channel.topic].append((schema, channel, message, content))
+    return rows
 
 
 @pytest.fixture(scope="module")
-def said(messages):
-    """What the messages of each topic say, with their times (s)."""
+def contents(messages):
+    """Return the times (s) and decoded contents of all messages, by topic."""
     return {
-        topic: [(message.log_time / 1e9, said) for _, _, message, said in rows]
+        topic: [(message.log_time / 1e9, content) for _, _, message, content in rows]
         for topic, rows in messages.items()
     }
 
 
-def test_topics_have_the_schemas_that_foxglove_knows(messages) -> None:
+def test_topics_have_foxgloves_schemas(messages) -> None:
     forms = {t: (f"foxglove.{name}", "protobuf", "protobuf") for t, name in FOXGLOVE.items()}
     forms |= {t: (f"argo.{name}", "jsonschema", "json") for t, name in OWN.items()}
     for topic, form in forms.items():
@@ -85,7 +85,7 @@ def test_topics_have_the_schemas_that_foxglove_knows(messages) -> None:
     assert forms.keys() <= messages.keys()
 
 
-def test_json_messages_keep_their_schema(messages) -> None:
+def test_json_messages_satisfy_their_schema(messages) -> None:
     for rows in messages.values():
         for schema, _, _, value in rows:
             if schema.encoding == "jsonschema":
@@ -95,7 +95,7 @@ def test_json_messages_keep_their_schema(messages) -> None:
 
 
 def forbid_more(schema):
-    """The same schema, with which fields that it does not name are errors."""
+    """Return the schema with fields that it does not name forbidden."""
     if schema["type"] == "object":
         fields = {name: forbid_more(field) for name, field in schema["properties"].items()}
         return schema | {"properties": fields, "additionalProperties": False}
@@ -103,15 +103,15 @@ def forbid_more(schema):
 
 
 def require_plain(schema) -> None:
-    """Foxglove's open-source version shows no schema with references or alternatives."""
+    """Fail for references and alternatives, which Foxglove's open-source version can't parse."""
     assert not {"$ref", "anyOf", "oneOf", "allOf", "prefixItems"} & schema.keys()
     assert schema["type"] in {"object", "array", "boolean", "integer", "number", "string"}
     for part in (*schema.get("properties", {}).values(), *filter(None, [schema.get("items")])):
         require_plain(part)
 
 
-def test_timestamps_are_simulated_time(said, recorded) -> None:
-    for rows in said.values():
+def test_timestamps_are_simulated_time(contents, recorded) -> None:
+    for rows in contents.values():
         times = [t for t, _ in rows]
         assert times == sorted(times)
         assert times[0] >= 0.0
@@ -119,32 +119,32 @@ def test_timestamps_are_simulated_time(said, recorded) -> None:
         for t, message in rows:
             if hasattr(message, "timestamp"):
                 assert stamp(message) == pytest.approx(t, abs=1e-9)
-    assert said["/tf"][-1][0] == recorded.record.result.duration
+    assert contents["/tf"][-1][0] == recorded.record.result.duration
 
 
 def stamp(message) -> float:
     return message.timestamp.seconds + message.timestamp.nanos / 1e9
 
 
-def test_poses_come_ten_times_a_second_and_are_those_of_the_record(said, recorded) -> None:
-    poses = {round(t, 6): message for t, message in said["/pose"]}
+def test_poses_come_ten_times_a_second_and_are_those_of_the_record(contents, recorded) -> None:
+    poses = {round(t, 6): message for t, message in contents["/pose"]}
     assert np.diff(sorted(poses)) == pytest.approx(0.1, abs=1e-6)
     for sample in recorded.record.path:
         pose = poses[sample.t].pose
         assert poses[sample.t].frame_id == "world"
-        where = (pose.position.x, pose.position.y, pose.position.z)
-        assert where == pytest.approx((sample.x, sample.y, sample.z), abs=1e-4)
+        position = (pose.position.x, pose.position.y, pose.position.z)
+        assert position == pytest.approx((sample.x, sample.y, sample.z), abs=1e-4)
         q = pose.orientation
         assert math.hypot(q.x, q.y, q.z, q.w) == pytest.approx(1.0)
         yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y**2 + q.z**2))
         assert math.remainder(yaw - sample.yaw, math.tau) == pytest.approx(0.0, abs=1e-3)
 
 
-def test_transforms_make_one_tree_that_all_that_is_drawn_hangs_on(said) -> None:
+def test_transforms_make_one_tree_with_all_drawn_frames(contents) -> None:
     parents = {}
     for topic in ("/tf", "/tf_limbs", "/tf_static"):
-        first = said[topic][0][1]
-        for _, message in said[topic]:
+        first = contents[topic][0][1]
+        for _, message in contents[topic]:
             assert [t.child_frame_id for t in message.transforms] == [
                 t.child_frame_id for t in first.transforms
             ]
@@ -155,71 +155,72 @@ def test_transforms_make_one_tree_that_all_that_is_drawn_hangs_on(said) -> None:
         chain = [frame]
         while chain[-1] in parents:
             chain.append(parents[chain[-1]])
-            assert len(chain) <= len(parents) + 1, "a circle"
+            assert len(chain) <= len(parents) + 1, "a cycle"
         assert chain[-1] == "world"
     drawn = {
         entity.frame_id
         for topic in ("/robot", "/checkpoints", "/site/floor_1")
-        for _, message in said[topic]
+        for _, message in contents[topic]
         for entity in message.entities
     }
     assert drawn <= parents.keys() | {"world"}
     assert "sensor_head" in drawn
 
 
-def test_limbs_are_told_when_they_move_and_once_a_second(said) -> None:
-    assert len(said["/joints"]) == len(said["/tf_limbs"])
-    for (before, _), (after, _) in zip(said["/joints"], said["/joints"][1:], strict=False):
+def test_limbs_are_recorded_when_they_move_and_once_a_second(contents) -> None:
+    assert len(contents["/joints"]) == len(contents["/tf_limbs"])
+    for (before, _), (after, _) in zip(contents["/joints"], contents["/joints"][1:], strict=False):
         assert after - before <= 1.0 + 1e-6
     shoulder = [
         next(j.position for j in message.joints if j.name == "arm_shoulder")
-        for _, message in said["/joints"]
+        for _, message in contents["/joints"]
     ]
     assert len(set(shoulder)) >= 2, "the arm is raised to measure"
 
 
-def test_site_is_drawn_with_all_its_solids(said, recorded) -> None:
-    """Upright solids are cut at the floors, so their volumes are compared, colour by colour."""
-    drawn, meant = Counter(), Counter()
-    for topic, rows in said.items():
+def test_site_is_drawn_with_all_its_solids(contents, recorded) -> None:
+    """Upright solids are cut at the floors, so the volumes of each colour are compared."""
+    drawn, expected = Counter(), Counter()
+    for topic, rows in contents.items():
         if topic.startswith("/site/"):
             assert [t for t, _ in rows] == [0.0]
             for entity in rows[0][1].entities:
                 for cube in entity.cubes:
-                    drawn[shade(cube)] += cube.size.x * cube.size.y * cube.size.z
+                    drawn[colour_of(cube)] += cube.size.x * cube.size.y * cube.size.z
                 for tube in entity.cylinders:
-                    drawn[shade(tube)] += math.pi / 4 * tube.size.x * tube.size.y * tube.size.z
-    for element in recorded.found.site.elements:
+                    volume = math.pi / 4 * tube.size.x * tube.size.y * tube.size.z
+                    drawn[colour_of(tube)] += volume
+    for element in recorded.decoded.site.elements:
         key = tuple(round(c, 3) for c in COLOURS[element.material])
         for solid in element.solids:
-            meant[key] += (
+            expected[key] += (
                 math.prod(solid.size)
                 if isinstance(solid, Box)
                 else math.pi * solid.radius**2 * solid.length
             )
-    assert drawn == pytest.approx(meant)
+    assert drawn == pytest.approx(expected)
 
 
-def shade(primitive):
+def colour_of(primitive):
     return tuple(round(getattr(primitive.color, c), 3) for c in "rgb")
 
 
-def test_readings_tasks_and_trace_are_those_of_the_record(said, recorded) -> None:
+def test_readings_tasks_and_trace_are_those_of_the_record(contents, recorded) -> None:
     record = recorded.record
     for topic, models in (
         ("/readings", record.readings), ("/tasks", record.tasks), ("/trace", record.trace),
         ("/findings", record.anomalies),
     ):  # fmt: skip
-        assert [message for _, message in said[topic]] == [
+        assert [message for _, message in contents[topic]] == [
             json.loads(model.model_dump_json(exclude_none=True)) for model in models
         ]
 
 
-def test_checkpoints_change_colour_when_they_are_read(said, recorded) -> None:
-    updates = [message for _, message in said["/checkpoints"]]
+def test_checkpoints_change_colour_when_they_are_read(contents, recorded) -> None:
+    updates = [message for _, message in contents["/checkpoints"]]
     assert len(updates) == 1 + len(recorded.record.readings)
     for update in updates:
-        assert len(update.entities) == 3, "each message tells of all, so that one is enough"
+        assert len(update.entities) == 3, "each message has all, so the last one is enough"
     texts = [{e.id: e.texts[0].text for e in update.entities} for update in updates]
     assert texts[0]["checkpoint 2"] == "#2 gauge 2"
     assert texts[-1]["checkpoint 2"] == "#2 gauge 2: 7.25 bar"
@@ -231,20 +232,20 @@ def test_checkpoints_change_colour_when_they_are_read(said, recorded) -> None:
     assert green.g > 2 * green.r
 
 
-def test_findings_are_marked_where_they_are(said, recorded) -> None:
-    marks = said["/findings/markers"][-1][1].entities
-    found = recorded.record.anomalies
-    placed = [anomaly for anomaly in found if anomaly.place]
-    assert len(marks) == len(found) > len(placed) >= 1
-    told = [entity.texts[0].text for entity in marks if not entity.spheres]
-    assert told == ["told here: gas leak: by hand", "told here: all clear"]
-    for entity, anomaly in zip([m for m in marks if m.spheres], placed, strict=True):
+def test_findings_are_marked_where_they_are(contents, recorded) -> None:
+    markers = contents["/findings/markers"][-1][1].entities
+    anomalies = recorded.record.anomalies
+    placed = [anomaly for anomaly in anomalies if anomaly.place]
+    assert len(markers) == len(anomalies) > len(placed) >= 1
+    reported = [entity.texts[0].text for entity in markers if not entity.spheres]
+    assert reported == ["reported here: gas leak: by hand", "reported here: all clear"]
+    for entity, anomaly in zip([m for m in markers if m.spheres], placed, strict=True):
         ball = entity.spheres[0].pose.position
         assert (ball.x, ball.y, ball.z) == pytest.approx(anomaly.place)
         assert anomaly.detail in entity.texts[0].text
 
 
-def test_what_has_no_place_has_words_only_from_where_it_was_noticed() -> None:
+def test_a_finding_without_a_position_has_a_label_where_it_was_noticed() -> None:
     leak = Anomaly(
         t=3.0, kind=EventKind.GAS_LEAK, detail="a hiss", source="gas", noticed_from=(1.0, 2.0, 0.0),
         floor=1,
@@ -256,16 +257,16 @@ def test_what_has_no_place_has_words_only_from_where_it_was_noticed() -> None:
     assert (entity.texts[0].pose.position.x, entity.texts[0].pose.position.y) == (1.0, 2.0)
 
 
-def test_battery_is_that_of_the_path(said, recorded) -> None:
-    charges = {round(t, 6): state["charge"] for t, state in said["/battery"]}
+def test_battery_is_that_of_the_path(contents, recorded) -> None:
+    charges = {round(t, 6): state["charge"] for t, state in contents["/battery"]}
     for sample in recorded.record.path:
         assert charges[sample.t] == pytest.approx(sample.charge, abs=1e-4)
     assert charges[max(charges)] < charges[0.0]
-    assert all(23.0 <= state["voltage"] <= 29.0 for _, state in said["/battery"])
+    assert all(23.0 <= state["voltage"] <= 29.0 for _, state in contents["/battery"])
 
 
-def test_mission_state_tells_what_interrupts_it(said, recorded) -> None:
-    states = said["/mission"]
+def test_mission_state_has_reactions_pauses_and_rounds(contents, recorded) -> None:
+    states = contents["/mission"]
     assert states[0][0] == 0.0
     reacting = [t for t, state in states if state.get("reaction") == "gas_leak"]
     assert reacting[0] == pytest.approx(22.0)
@@ -278,21 +279,21 @@ def test_mission_state_tells_what_interrupts_it(said, recorded) -> None:
     assert last["done"] == sum(t.outcome == "done" for t in recorded.record.tasks)
 
 
-def test_log_tells_events_and_the_verdict(said, recorded) -> None:
-    lines = [(message.level, message.message) for _, message in said["/log"]]
+def test_log_has_events_and_the_verdict(contents, recorded) -> None:
+    lines = [(message.level, message.message) for _, message in contents["/log"]]
     assert (3, "gas leak: by hand") in lines
-    # A warning: there are findings.
+    # Level 3 is a warning, because there are findings.
     assert lines[-1] == (3, str(recorded.record.headline))
     assert lines[-1][1].startswith("Done, 3 findings: gas leak at 00:22 (answered by reaction")
 
 
-def test_path_begins_where_the_robot_is(said) -> None:
-    poses = {round(t, 6): message.pose.position for t, message in said["/pose"]}
-    assert len(said["/path"]) >= 5
-    for t, way in said["/path"]:
-        assert way.frame_id == "world"
-        # The step in which the way was planned is a part of it already.
-        here, start = poses[round(t, 6)], way.poses[0].position
+def test_path_begins_where_the_robot_is(contents) -> None:
+    poses = {round(t, 6): message.pose.position for t, message in contents["/pose"]}
+    assert len(contents["/path"]) >= 5
+    for t, path in contents["/path"]:
+        assert path.frame_id == "world"
+        # The robot has already driven for one step when the path is recorded.
+        here, start = poses[round(t, 6)], path.poses[0].position
         assert math.dist((here.x, here.y), (start.x, start.y)) <= 0.1
 
 
@@ -302,32 +303,35 @@ MOVED = DisplacedCheckpoint(checkpoint=3, at=10.0, until=20.0, offset=(0.0, 0.05
 
 @pytest.fixture(scope="module")
 def drawn(record_run, yard, tmp_path_factory):
-    """The scenes of a run with the faults, with their times (s), and where gauge 3 was planned."""
+    """Return the scenes of a run with the faults, and the planned position of gauge 3.
+
+    Scenes of checkpoints have their times (s).
+    """
     file = tmp_path_factory.mktemp("faults") / "run.mcap"
     record_run(file, SPEC.model_copy(update={"faults": (BRICK, MOVED)}))
-    said = decoded(file, "/site/floor_1", "/checkpoints")
+    messages = decode_topics(file, "/site/floor_1", "/checkpoints")
     return SimpleNamespace(
-        site=[scene for _, scene in said["/site/floor_1"]],
-        checkpoints=[(time / 1e9, scene) for time, scene in said["/checkpoints"]],
+        site=[scene for _, scene in messages["/site/floor_1"]],
+        checkpoints=[(time / 1e9, scene) for time, scene in messages["/checkpoints"]],
         planned=yard.site.checkpoint(3).position,
     )
 
 
-def decoded(file, *topics):
-    """Return what is said on each of the topics, with the times (ns)."""
-    found = defaultdict(list)
+def decode_topics(file, *topics):
+    """Return the times (ns) and contents of the messages on each of the topics."""
+    rows = defaultdict(list)
     with file.open("rb") as stream:
         reader = make_reader(stream, decoder_factories=[DecoderFactory()])
-        for _, channel, message, said in reader.iter_decoded_messages(topics):
-            found[channel.topic].append((message.log_time, said))
-    return found
+        for _, channel, message, content in reader.iter_decoded_messages(topics):
+            rows[channel.topic].append((message.log_time, content))
+    return rows
 
 
 def test_a_brick_lies_where_it_is(drawn) -> None:
     (scene,) = drawn.site
     (cube,) = next(e for e in scene.entities if e.id == "brick").cubes
-    place, size = cube.pose.position, cube.size
-    assert (place.x, place.y, place.z) == pytest.approx((6.2, 2.5, 0.07))
+    position, size = cube.pose.position, cube.size
+    assert (position.x, position.y, position.z) == pytest.approx((6.2, 2.5, 0.07))
     assert (size.x, size.y, size.z) == pytest.approx((0.3, 0.2, 0.1))
 
 
@@ -336,13 +340,13 @@ def test_a_checkpoint_is_drawn_where_it_was_moved_to(drawn) -> None:
     moved = (x, y + 0.05, z + 0.02)
     for t, scene in drawn.checkpoints:
         entity = next(e for e in scene.entities if e.id == "checkpoint 3")
-        place = entity.cylinders[0].pose.position
-        there = moved if 10.05 < t < 19.95 else drawn.planned
+        position = entity.cylinders[0].pose.position
+        expected = moved if 10.05 < t < 19.95 else drawn.planned
         if min(abs(t - 10.0), abs(t - 20.0)) > 0.2:
-            assert (place.x, place.y, place.z) == pytest.approx(there)
+            assert (position.x, position.y, position.z) == pytest.approx(expected)
     times = [t for t, _ in drawn.checkpoints]
     for change in (10.0, 20.0):
-        assert min(abs(t - change) for t in times) <= 0.2, "it is told at once"
+        assert min(abs(t - change) for t in times) <= 0.2, "the change is recorded at once"
     assert any(10.05 < t < 19.95 for t in times)
 
 
@@ -351,7 +355,7 @@ pytest.importorskip("cv2")
 
 @pytest.fixture(scope="module")
 def taken(yard, tmp_path_factory):
-    """The middle of gauge 1 (m), and the messages that tell of the pictures taken of it."""
+    """Return the centre of gauge 1 (m), and the messages of the pictures taken of it."""
     from argo_env.sensing.vision.sensor import CameraSensor
 
     file = tmp_path_factory.mktemp("shots") / "run.mcap"
@@ -367,7 +371,7 @@ def taken(yard, tmp_path_factory):
             recorder.on_begin(RunSetup(world, yard, drive, sensor), SPEC)
             sensor.measure(1, drive.pose)
             recorder.on_step(4.2, None)
-    messages = decoded(file, "/camera/image", "/camera/calibration", "/tf_camera")
+    messages = decode_topics(file, "/camera/image", "/camera/calibration", "/tf_camera")
     return np.array(site.checkpoint(1).position), messages
 
 
@@ -381,7 +385,7 @@ def test_pictures_are_recorded_when_they_are_taken(taken) -> None:
         assert (time, *stamp) == (4_200_000_000, 4, 200_000_000)
         assert (message.format, message.frame_id) == ("jpeg", "camera")
         with Image.open(BytesIO(message.data)) as picture:
-            assert np.asarray(picture).std() > 20.0, "there is something in it"
+            assert np.asarray(picture).std() > 20.0, "the picture is not blank"
 
 
 def test_calibration_and_transform_lead_to_the_gauge_in_the_picture(taken) -> None:
@@ -405,6 +409,6 @@ def test_calibration_and_transform_lead_to_the_gauge_in_the_picture(taken) -> No
         column, row = round(column / depth), round(row / depth)
         radius = round(0.06 * calibration.K[0] / depth)
         face = pixels[row - radius : row + radius, column - radius : column + radius]
-        # The drawn face has ink on it; the sky around the gauge has not.
+        # The drawn face has ink on it, so it is darker than the sky around the gauge.
         assert face.size > 0.5 * (2 * radius) ** 2
         assert face.mean() < np.percentile(pixels, 95) - 5.0

@@ -93,8 +93,8 @@ class DriveSite(Closing):
         self._scene.show_floors(self.site.floor_at(pose.z))
         joints = {f"{side}_flipper_joint": flipper for side in ("left", "right")}
         self._scene.place_robot(pose, self.robot.arm_stowed | joints)
-        camera = self._camera.follow(pose)
-        return self._scene.look(camera), camera
+        camera = self._camera.next_camera(pose)
+        return self._scene.render_view(camera), camera
 
     def reset_camera(self) -> None:
         """Choose the best viewpoint for the next picture, without regard to earlier ones."""

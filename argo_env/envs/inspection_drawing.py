@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_env.envs.inspection_run import Inspection
+from argo_env.pictures.drawing.path import PathPoint
 from argo_env.pictures.drawing.plan import Marker, PlanDrawing, StationMark, draw_plan
 from argo_env.pictures.drawing.sheet import site_sheet
-from argo_env.pictures.drawing.way import Moment
 
 _LEGEND = {
     "open": "to be read",
@@ -38,7 +38,7 @@ def draw_inspection(
         headline: Text above the plan.
     """
     site = run.navigator.site
-    path = [Moment(t, p.x, p.y, site.floor_at(p.z)) for t, p in run.trail]
+    path = [PathPoint(t, p.x, p.y, site.floor_at(p.z)) for t, p in run.trail]
     requested = {c.floor for c, s in zip(site.checkpoints, states, strict=True) if s != "outside"}
     markers = [
         Marker(c.position[0], c.position[1], c.floor, str(c.id), state, chosen=k == chosen)

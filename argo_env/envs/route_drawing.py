@@ -12,10 +12,10 @@ from argo_env.envs.route_instance import DOCK, RouteInstance, Stair
 from argo_env.envs.route_site_times import navigator_without
 from argo_env.envs.route_sources import DEPTH, WIDTH, RandomRoutes, RouteSource, SiteRoutes
 from argo_env.navigation import Navigator
-from argo_env.pictures.drawing.floors import FloorPlan, aisles, open_floors
+from argo_env.pictures.drawing.floors import FloorPlan, aisle_plans, empty_floor_plans
+from argo_env.pictures.drawing.path import PathPoint
 from argo_env.pictures.drawing.plan import Marker, PlanDrawing, StationMark, draw_plan
 from argo_env.pictures.drawing.sheet import FloorSheet, make_sheet, site_sheet
-from argo_env.pictures.drawing.way import Moment
 from argo_env.planning import open_site
 from argo_env.robot.spec import Footprint
 
@@ -187,12 +187,14 @@ def draw_route(
         stations.append(StationMark(*positions[start], "start"))
     legs = leg_paths_for(source)
     first, heading = legs.robot_pose_at(positions[route[0]])
-    path = [Moment(0.0, *first)]
+    path = [PathPoint(0.0, *first)]
     for a, b in pairwise(route):
         t = path[-1].t
         duration = float(instance.known_at(t).arrival[a, b])
         part, heading = legs.path_between(positions[a], positions[b], instance.blocked_at(t))
-        path += [Moment(t + duration * k / max(len(part) - 1, 1), *p) for k, p in enumerate(part)]
+        path += [
+            PathPoint(t + duration * k / max(len(part) - 1, 1), *p) for k, p in enumerate(part)
+        ]
     requested = {marker.floor for marker in markers if marker.state != "outside"}
     used = requested | {station.floor for station in stations} | {moment.floor for moment in path}
     sheet = _sheet(source, positions, min(used), max(used), tuple(sorted(floors)))
@@ -219,7 +221,7 @@ def _sheet(
         return site_sheet(source.scenario, low, high, requested or tuple(numbers))
     plans: tuple[FloorPlan, ...]
     if isinstance(source, RandomRoutes):
-        plans = aisles(WIDTH, DEPTH, high, source.ends)[low - 1 :]
+        plans = aisle_plans(WIDTH, DEPTH, high, source.ends)[low - 1 :]
     else:
-        plans = open_floors([position[:2] for position in positions if position[2]], numbers)
+        plans = empty_floor_plans([position[:2] for position in positions if position[2]], numbers)
     return make_sheet(plans, [n for n in numbers if requested and n not in requested])

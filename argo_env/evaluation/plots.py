@@ -20,7 +20,7 @@ from argo_env.evaluation.results import (
 )
 from argo_env.evaluation.row import RunOutcome
 from argo_env.formatting import clock
-from argo_env.pictures.drawing.floors import plans_of
+from argo_env.pictures.drawing.floors import floor_plans
 from argo_env.report.svg import clean, shorten
 from argo_env.seeding import generator
 from argo_env.site import Site
@@ -392,7 +392,7 @@ def failure_places(
     """
     from matplotlib.collections import PolyCollection
 
-    floor_plan = next(plan for plan in plans_of(site) if plan.number == floor)
+    floor_plan = next(plan for plan in floor_plans(site) if plan.number == floor)
     x0, y0, x1, y1 = floor_plan.bounds
     ax = prepare_axes(ax, min(_MAX_HEIGHT, WIDTH * (y1 - y0) / (x1 - x0) + 0.3))
     for role, shapes in floor_plan.shapes:

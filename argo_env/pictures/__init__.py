@@ -1,4 +1,4 @@
-"""Pictures of a run: one that shows the whole path, and a film that follows the robot."""
+"""Pictures of a run: an image of the whole path, and a film that follows the robot."""
 
 from argo_env.pictures.film import check_film, write_film
 from argo_env.pictures.overview import write_overview

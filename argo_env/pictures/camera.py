@@ -1,4 +1,4 @@
-"""Cameras: where they are, and where a point of the site lies in their pictures."""
+"""Pinhole cameras, and the projection between points of the site and pixels."""
 
 from dataclasses import dataclass
 
@@ -11,28 +11,28 @@ from argo_env.world.pybullet_client import pybullet
 
 @dataclass(frozen=True)
 class Camera:
-    """A pinhole camera at `eye` that looks at `target` (m), upright."""
+    """A pinhole camera at `eye` that looks at `target` (both in m), upright."""
 
     eye: Vector
     target: Vector
     size: tuple[int, int]
-    """px, width and height of its pictures"""
+    """width and height of its pictures in px"""
     field_of_view: float
-    """deg, vertical"""
+    """vertical angle in deg"""
     near: float = 0.1
-    """m, nothing nearer is seen"""
+    """distance in m, nearer things are invisible"""
     far: float = 100.0
-    """m, nothing farther is seen"""
+    """distance in m, farther things are invisible"""
 
     @property
     def view_matrix(self) -> tuple[float, ...]:
-        """From the site's frame to the camera's, column by column."""
+        """Transformation from the site's frame to the camera's, column by column."""
         matrix: tuple[float, ...] = pybullet.computeViewMatrix(self.eye, self.target, (0, 0, 1))
         return matrix
 
     @property
     def projection_matrix(self) -> tuple[float, ...]:
-        """From the camera's frame to clip space, column by column."""
+        """Transformation from the camera's frame to clip space, column by column."""
         width, height = self.size
         matrix: tuple[float, ...] = pybullet.computeProjectionMatrixFOV(
             self.field_of_view, width / height, self.near, self.far
@@ -40,7 +40,10 @@ class Camera:
         return matrix
 
     def project(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Column and row (px) and depth along the line of sight (m) of points, shape (n, 3)."""
+        """Return column and row (px) and depth (m) of points, shape (n, 3).
+
+        The depth is along the camera's line of sight.
+        """
         view = np.array(self.view_matrix).reshape(4, 4).T
         projection = np.array(self.projection_matrix).reshape(4, 4).T
         clip = np.column_stack([points, np.ones(len(points))]) @ (projection @ view).T
@@ -56,7 +59,7 @@ class Camera:
     def unproject(
         self, column: NDArray[np.intp], row: NDArray[np.intp], depth: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """The points of the site (m) that pixels show at these depths (m), shape (n, 3)."""
+        """Return the points of the site (m) that pixels show at given depths (m), shape (n, 3)."""
         view = np.array(self.view_matrix).reshape(4, 4).T
         projection = np.array(self.projection_matrix).reshape(4, 4).T
         width, height = self.size
@@ -67,8 +70,11 @@ class Camera:
 
 
 def depth_in_metres(buffer: NDArray[np.float64], camera: Camera) -> NDArray[np.float64]:
-    """A depth buffer from 0 to 1 as m along the line of sight; infinite where nothing is seen."""
+    """Return the depths along the line of sight (m) for a depth buffer with values from 0 to 1.
+
+    The depth is infinite where there is nothing.
+    """
     near, far = camera.near, camera.far
     depth = far * near / (far - (far - near) * buffer)
-    # An empty pixel holds the far end only about.
+    # The depth of an empty pixel is only approximately that of the far end.
     return np.where(depth < 0.98 * far, depth, np.inf)

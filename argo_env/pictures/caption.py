@@ -1,5 +1,4 @@
-"""The caption of a frame: the time, the task, the floor and the last reading; in the end the
-verdict."""
+"""Captions of frames, with the time, the task, the floor, the last reading and the verdict."""
 
 import math
 from collections.abc import Sequence
@@ -10,10 +9,10 @@ from argo_env.formatting import clock
 from argo_env.run.record import Reading, RunRecord
 from argo_env.run.verdict_line import Tone
 
-HEIGHT = 0.105  # of the frame
+HEIGHT = 0.105  # of the bar, as a share of the frame's
 LINES = 3  # of the verdict, at most
 Text = tuple[str, tuple[int, int, int, int]]
-"""words and their colour"""
+"""text and its colour"""
 _Font = ImageFont.FreeTypeFont
 _BAR = (20, 28, 38, 205)
 BRIGHT, DIM = (255, 255, 255, 255), (178, 190, 204, 255)
@@ -22,12 +21,12 @@ _TONES = {Tone.GOOD: _NORMAL, Tone.NOTICE: (255, 196, 92, 255), Tone.BAD: _ABNOR
 
 
 def add_caption(frame: Image.Image, record: RunRecord, t: float, floor: int) -> Image.Image:
-    """The frame, RGB, with a bar at its bottom that says what happens at the time t (s)."""
-    return add_bar(frame, *_texts(record, t, floor))
+    """Return the RGB frame with a bar at its bottom that describes the run at the time t (s)."""
+    return add_bar(frame, *_caption_texts(record, t, floor))
 
 
 def add_bar(frame: Image.Image, left: Sequence[Text], right: Sequence[Text]) -> Image.Image:
-    """The frame, RGB, with a bar at its bottom and words at the left and at the right of it."""
+    """Return the RGB frame with a bar at its bottom, and texts at the left and the right of it."""
     width, height = frame.size
     bar = Image.new("RGBA", (width, round(height * HEIGHT)), _BAR)
     draw = ImageDraw.Draw(bar)
@@ -53,7 +52,7 @@ def add_bar(frame: Image.Image, left: Sequence[Text], right: Sequence[Text]) -> 
 
 
 def add_verdict(frame: Image.Image, record: RunRecord) -> Image.Image:
-    """The frame, RGB, with a bar over its caption that says how the mission has ended."""
+    """Return the RGB frame with a bar above its caption that contains the verdict of the run."""
     width, height = frame.size
     headline = record.headline
     word, ink = headline.word, _TONES[headline.tone]
@@ -62,22 +61,22 @@ def add_verdict(frame: Image.Image, record: RunRecord) -> Image.Image:
     gap, pitch = size * 0.8, size * 1.35
     draw = ImageDraw.Draw(frame)
     indent = draw.textlength(f"{word}:  ", font=font)
-    lines = _lines(headline.text, draw, font, width - 2 * gap - indent)
+    lines = _wrap_lines(headline.text, draw, font, width - 2 * gap - indent)
     bar = Image.new("RGBA", (width, round(pitch * len(lines) + 2 * gap - (pitch - size))), _BAR)
     draw = ImageDraw.Draw(bar)
     draw.text((gap, gap + size / 2), f"{word}:", fill=ink, font=font, anchor="lm")
     for k, line in enumerate(lines):
-        place = (gap + indent, gap + size / 2 + k * pitch)
-        draw.text(place, line, fill=BRIGHT, font=font, anchor="lm")
+        position = (gap + indent, gap + size / 2 + k * pitch)
+        draw.text(position, line, fill=BRIGHT, font=font, anchor="lm")
     result = frame.copy()
     result.paste(bar, (0, height - round(height * HEIGHT) - bar.height), bar)
     return result
 
 
-def _lines(
+def _wrap_lines(
     text: str, draw: ImageDraw.ImageDraw, font: ImageFont.ImageFont | _Font, room: float
 ) -> list[str]:
-    """The text in lines of at most `room` px; what there is no room for is cut off."""
+    """Return the text in lines of at most `room` px; what does not fit is cut off."""
     lines = [""]
     for word in text.split():
         longer = f"{lines[-1]} {word}".strip()
@@ -95,16 +94,16 @@ def _lines(
     return lines
 
 
-def _texts(record: RunRecord, t: float, floor: int) -> tuple[list[Text], list[Text]]:
-    """What stands at the left and at the right of the bar."""
+def _caption_texts(record: RunRecord, t: float, floor: int) -> tuple[list[Text], list[Text]]:
+    """Return the texts at the left and the right of the bar."""
     under_way = [run.task for run in record.tasks if run.start <= t < run.end]
     task = under_way[-1] if under_way else ("ended" if t > 0 else "setting off")
     left = [(clock(math.floor(t)), BRIGHT), (task, BRIGHT), (f"floor {floor}", DIM)]
     taken = [reading for reading in record.readings if reading.t <= t]
-    return left, (_verdict(taken[-1]) if taken else [])
+    return left, (_reading_texts(taken[-1]) if taken else [])
 
 
-def _verdict(reading: Reading) -> list[Text]:
+def _reading_texts(reading: Reading) -> list[Text]:
     value = f"{reading.name}: {reading.value:g} {reading.unit}"
     if reading.normal:
         return [(value, BRIGHT), ("nominal", _NORMAL)]

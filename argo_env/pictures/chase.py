@@ -1,4 +1,4 @@
-"""The camera that follows the robot: behind and above it, where nothing stands in between."""
+"""The camera that follows the robot from behind and above, where nothing hides it."""
 
 import math
 
@@ -12,28 +12,40 @@ from argo_env.robot.pose import BodyPose
 
 _DISTANCE = 4.0  # m from the robot
 _FIELD_OF_VIEW = 48.0  # deg
-_TARGET_HEIGHT = 0.45  # m above the ground, which the camera looks at
+_TARGET_HEIGHT = 0.45  # m above the ground, of the point that the camera looks at
 _SIDES = np.radians(np.arange(-180, 180, 20))
 _HEIGHTS = np.radians([32.0, 48.0, 64.0])
 _HEIGHT_COST = np.array([0.0, 0.25, 0.6])
-_BLOCKED_COST = 2.0  # against 1 for looking the robot in the face
-_TURN_COST = 0.6  # for leaving a place that is as good
-_EASE = 0.7  # s of the film in which the camera goes most of its way to a better place
+_OCCLUDED_COST = 2.0  # of a hidden robot; a view from the front costs 1
+_TURN_COST = 0.6  # of half a turn about the robot, so that only a better view is worth it
+_EASE = 0.7  # s, time constant with which the camera moves to a better position
 
 
 class ChaseCamera:
-    """Follows the robot from frame to frame. Keeps where it is, so that it moves smoothly."""
+    """Camera that follows the robot from frame to frame.
+
+    It holds its position, so that it moves smoothly.
+    """
 
     def __init__(self, scene: Scene, size: tuple[int, int], frame_time: float) -> None:
-        """`frame_time` (s) is how long each frame of the film is shown."""
+        """Initialise the camera before its first frame.
+
+        Args:
+            scene: Scene that shows what may hide the robot.
+            size: Width and height of the frames in px.
+            frame_time: Duration (s) for which each frame of the film is shown.
+        """
         self._scene = scene
         self._size = size
         self._share = 1.0 - math.exp(-frame_time / _EASE)
         self._side: float | None = None
         self._height = float(_HEIGHTS[0])
 
-    def follow(self, pose: BodyPose) -> Camera:
-        """The camera for the next frame. The scene must show the floors that the frame shows."""
+    def next_camera(self, pose: BodyPose) -> Camera:
+        """Return the camera for the next frame.
+
+        The scene must show the floors that the frame shows.
+        """
         target = np.array([pose.x, pose.y, pose.z + _TARGET_HEIGHT])
         side, height = self._best(pose, target)
         if self._side is None:
@@ -50,7 +62,7 @@ class ChaseCamera:
         )
 
     def _best(self, pose: BodyPose, target: NDArray[np.float64]) -> tuple[float, float]:
-        """Direction from the robot to the camera (rad) and height of it over the horizon (rad)."""
+        """Return the direction from the robot to the camera and its elevation, both in rad."""
         behind = pose.yaw + math.pi
         now = behind if self._side is None else self._side
         sides, heights = (g.ravel() for g in np.meshgrid(behind + _SIDES, _HEIGHTS))
@@ -61,7 +73,7 @@ class ChaseCamera:
             np.abs(np.tile(_SIDES, len(_HEIGHTS))) / math.pi
             + np.repeat(_HEIGHT_COST, len(_SIDES))
             + _TURN_COST * turns
-            + _BLOCKED_COST * self._scene.blocked(start, ends)
+            + _OCCLUDED_COST * self._scene.occluded(start, ends)
         )
         best = int(np.argmin(cost))
         return float(sides[best]), float(heights[best])
@@ -70,7 +82,7 @@ class ChaseCamera:
 def _eyes(
     target: NDArray[np.float64], sides: NDArray[np.float64], heights: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Places at the distance of the camera from the target, shape (n, 3)."""
+    """Return positions at the camera's distance from the target, shape (n, 3)."""
     level = np.cos(heights)
     ways = np.column_stack([level * np.cos(sides), level * np.sin(sides), np.sin(heights)])
     return np.asarray(target + _DISTANCE * ways)

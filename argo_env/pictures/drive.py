@@ -1,4 +1,4 @@
-"""Drives as pictures: what the camera behind the robot sees, the goal, and how far it is."""
+"""Pictures of drives, with the view of the camera behind the robot, the goal and the time to it."""
 
 import math
 
@@ -13,9 +13,9 @@ from argo_env.pictures.scene import CameraView
 GOAL = (251, 191, 36)
 _RIM = (255, 255, 255)
 _POLE = 0.8  # m from the goal up to the head of its mark
-_HEAD = 0.09  # m, its radius
-_LEAST = 4.0  # px, likewise
-_BEHIND = 0.1  # m that something may be before the head
+_HEAD = 0.09  # m, radius of the head
+_MIN_HEAD = 4.0  # px, smallest radius of the head
+_BEHIND = 0.1  # m that something may be in front of the head without hiding it
 
 
 def draw_drive(
@@ -26,21 +26,29 @@ def draw_drive(
     floors: tuple[int, int],
     togo: float,
 ) -> NDArray[np.uint8]:
-    """What the camera sees, with the goal marked if it is in view, and a caption: the `time` (s),
-    the floors of the robot and of the goal, and the s to go at planning speeds."""
+    """Return the camera's view with a mark at the goal, if it is in view, and a caption.
+
+    Args:
+        view: View of the camera.
+        camera: Camera behind the robot.
+        goal: Position of the goal in m.
+        time: Time in s.
+        floors: Floors of the robot and of the goal.
+        togo: Time (s) to the goal at planning speeds; infinite without a path.
+    """
     frame = Image.fromarray(view.colours)
     _mark(ImageDraw.Draw(frame), view, camera, goal)
     here, there = floors
-    way = f"{togo:.0f} s to the goal" if math.isfinite(togo) else "no way to the goal"
+    remaining = f"{togo:.0f} s to the goal" if math.isfinite(togo) else "no path to the goal"
     left = [(f"{time:.1f} s", BRIGHT), (f"floor {here}", DIM)]
-    right = [(way, BRIGHT), (f"floor {there}", DIM)]
+    right = [(remaining, BRIGHT), (f"floor {there}", DIM)]
     return np.asarray(add_bar(frame, left, right), dtype=np.uint8)
 
 
 def _mark(
     draw: ImageDraw.ImageDraw, view: CameraView, camera: Camera, goal: tuple[float, float, float]
 ) -> None:
-    """A pole with a round head on the goal, unless all of its head is hidden."""
+    """Draw a pole with a round head at the goal, unless the whole head is hidden."""
     x, y, z = goal
     foot, head = camera.project(np.array([goal, (x, y, z + _POLE)]))
     width, height = camera.size
@@ -48,7 +56,7 @@ def _mark(
     if min(depth, foot[2]) < camera.near:
         return
     focal = height / 2 / math.tan(math.radians(camera.field_of_view) / 2)
-    radius = max(_HEAD * focal / depth, _LEAST)
+    radius = max(_HEAD * focal / depth, _MIN_HEAD)
     bottom = height * (1 - HEIGHT) - radius  # above the caption
     if not (radius <= column < width - radius and radius <= row < bottom):
         return

@@ -1,5 +1,8 @@
-"""A film of a run, made from its record: a camera follows the robot through the site, several
-processes may draw the frames, and an animated GIF or H.264 in an .mp4 takes them one by one."""
+"""A film of a run, made from its record.
+
+A camera follows the robot through the site. Several processes may draw the frames, which are
+written one by one to an animated GIF or to H.264 in an .mp4.
+"""
 
 import math
 import os
@@ -25,8 +28,8 @@ from argo_env.files.folders import CHOOSE_ANOTHER_PLACE, reporting_write_errors
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.caption import add_caption, add_verdict
 from argo_env.pictures.chase import ChaseCamera
-from argo_env.pictures.light import compose, depth_shading
-from argo_env.pictures.motion import RecordedMotion, check_site
+from argo_env.pictures.light import depth_shading, shade_view
+from argo_env.pictures.motion import RecordedMotion, check_record_site
 from argo_env.pictures.scene import Scene
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
@@ -38,7 +41,11 @@ GIF_COLOURS = 128
 
 
 def find_ffmpeg() -> str:
-    """The path of the ffmpeg program; ArgoError if the extra that brings it isn't installed."""
+    """Return the path of the ffmpeg program.
+
+    Raises:
+        Unavailable: The extra isn't installed, or contains no ffmpeg for this computer.
+    """
     try:
         import imageio_ffmpeg
     except ImportError as error:
@@ -56,9 +63,11 @@ def find_ffmpeg() -> str:
 
 
 def write_mp4(frames: Iterable[Image.Image], file: Path, size: tuple[int, int], fps: int) -> None:
-    """Writes RGB frames of even width and height as H.264 that browsers play.
+    """Write RGB frames of even width and height as H.264 that browsers can play.
 
-    Raises ArgoError if ffmpeg fails, and OSError if the file can't be written.
+    Raises:
+        Unavailable: ffmpeg fails or isn't installed.
+        OSError: The file can't be written.
     """
     with tempfile.TemporaryFile() as messages:
         encoder = subprocess.Popen(
@@ -66,7 +75,7 @@ def write_mp4(frames: Iterable[Image.Image], file: Path, size: tuple[int, int], 
                 *(find_ffmpeg(), "-y", "-loglevel", "error"),
                 *("-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}"),
                 *("-r", str(fps), "-i", "-", "-an", "-c:v", "libx264", "-preset", "veryfast"),
-                # Two threads whatever the machine, so that equal frames give equal files.
+                # Always two threads, so that equal frames give equal files on all machines.
                 *("-threads", "2", "-crf", "21", "-pix_fmt", "yuv420p"),
                 *("-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact"),
                 *("-movflags", "+faststart", "-f", "mp4", str(file.absolute())),
@@ -77,7 +86,7 @@ def write_mp4(frames: Iterable[Image.Image], file: Path, size: tuple[int, int], 
         )
         assert encoder.stdin is not None
         try:
-            # The encoder closes its end when it fails; what it says then is the error.
+            # The encoder closes the pipe when it fails, and prints the error.
             with suppress(BrokenPipeError):
                 for frame in frames:
                     encoder.stdin.write(frame.tobytes())
@@ -92,17 +101,20 @@ def write_mp4(frames: Iterable[Image.Image], file: Path, size: tuple[int, int], 
             raise
         if status:
             messages.seek(0)
-            said = messages.read().decode(errors="replace").strip() or f"status {status}"
-            said = said.replace(f"{file.absolute()}: ", "")  # a draft, which nobody knows
-            raise Unavailable(f"ffmpeg can't write the film: {said}")
+            error = messages.read().decode(errors="replace").strip() or f"status {status}"
+            error = error.replace(f"{file.absolute()}: ", "")  # users don't know the draft's name
+            raise Unavailable(f"ffmpeg can't write the film: {error}")
 
 
 def write_gif(
     frames: Iterable[Image.Image], file: Path, palette: Image.Image, frame_time: float
 ) -> None:
-    """Writes RGB frames as a GIF that loops, all in the colours of `palette`, a palette image.
+    """Write RGB frames as a GIF that loops, in the colours of `palette`, a palette image.
 
-    `frame_time` (s) is a whole number of hundredths. Raises OSError if the file can't be written.
+    `frame_time` (s) is a whole number of hundredths.
+
+    Raises:
+        OSError: The file can't be written.
     """
     with file.open("wb") as stream:
         size: tuple[int, int] | None = None
@@ -111,7 +123,7 @@ def write_gif(
                 size = frame.size
                 _write_gif_header(stream, size, palette)
             indexed = frame.quantize(palette=palette, dither=Image.Dither.NONE)
-            # Pillow's own writer of several frames keeps them all until the last has come.
+            # Pillow's own writer of several frames keeps all of them in memory.
             blocks = GifImagePlugin.getdata(indexed, duration=round(frame_time * 1000), interlace=0)
             for block in blocks:
                 stream.write(block)
@@ -119,7 +131,7 @@ def write_gif(
 
 
 def make_palette(samples: list[Image.Image]) -> Image.Image:
-    """A palette image with the colours that suit all the samples, RGB of one size, best."""
+    """Return a palette image with the best colours for all the samples, RGB images of one size."""
     width, height = samples[0].size
     sheet = Image.new("RGB", (width, height * len(samples)))
     for row, sample in enumerate(samples):
@@ -128,110 +140,126 @@ def make_palette(samples: list[Image.Image]) -> Image.Image:
 
 
 def _write_gif_header(stream: IO[bytes], size: tuple[int, int], palette: Image.Image) -> None:
-    """Everything before the first frame: the size, the colours of all frames, and the loop."""
+    """Write what precedes the first frame: the size, the colours of all frames, and the loop."""
     colours = bytes(palette.getpalette() or []).ljust(768, b"\0")[:768]
     stream.write(b"GIF89a" + struct.pack("<HHBBB", *size, 0b1111_0111, 0, 0) + colours)
     stream.write(b"\x21\xff\x0bNETSCAPE2.0\x03\x01\x00\x00\x00")
 
 
-_DECKS = 2  # the robot's floor and the one below it are seen from above
-_WORTH_IT = 60  # shots: processes take as long to begin as a few of them to be drawn
+_DECKS = 2  # the robot's floor and the one below it are visible from above
+_MIN_PARALLEL_SHOTS = 60  # fewer are drawn before processes have started
 
 
 @dataclass(frozen=True)
 class FilmShot:
-    """A moment of the run as the camera sees it."""
+    """A moment of the run in the camera's view."""
 
     t: float
-    """s"""
+    """time in s"""
     floor: int
     pose: BodyPose
     joints: Mapping[str, float]
-    """deg, by name"""
+    """positions in deg, by name"""
     camera: Camera
-    shown: int
-    """how many frames of the film show it"""
+    repeats: int
+    """number of frames of the film that show it"""
 
 
-def shots_of(
+def make_shots(
     motion: RecordedMotion,
     scene: Scene,
     times: list[float],
     size: tuple[int, int],
     frame_time: float,
 ) -> Iterator[FilmShot]:
-    """A shot for each of the times (s), one for equal ones that follow each other. The scene tells
-    what stands in the camera's way; `frame_time` (s) is how long a frame is shown."""
+    """Yield a shot for each of the times (s), and only one for consecutive equal times.
+
+    Args:
+        motion: Motion of the robot.
+        scene: Scene that shows what may hide the robot from the camera.
+        times: Times in s.
+        size: Width and height of the frames in px.
+        frame_time: Duration (s) for which a frame is shown.
+    """
     camera = ChaseCamera(scene, size, frame_time)
     for t, same in groupby(times):
-        pose, floor = motion.pose(t), motion.floor(t)
+        pose, floor = motion.pose_at(t), motion.floor_at(t)
         scene.show_floors(floor, _DECKS)
-        yield FilmShot(t, floor, pose, motion.joints(t), camera.follow(pose), len(list(same)))
+        yield FilmShot(
+            t, floor, pose, motion.joints_at(t), camera.next_camera(pose), len(list(same))
+        )
 
 
-def draw(record: RunRecord, scene: Scene, shot: FilmShot, end: float) -> Image.Image:
-    """The frame of a shot; at the `end` (s) of the run it says how it went."""
+def draw_frame(record: RunRecord, scene: Scene, shot: FilmShot, end: float) -> Image.Image:
+    """Return the frame of a shot; at the `end` (s) of the run it contains the verdict."""
     scene.show_floors(shot.floor, _DECKS)
     scene.place_robot(shot.pose, shot.joints)
-    view = scene.look(shot.camera)
+    view = scene.render_view(shot.camera)
     brightness = depth_shading(view, shot.camera.size[1] / 50, 0.45)
-    frame = add_caption(Image.fromarray(compose(view, brightness)), record, shot.t, shot.floor)
+    frame = add_caption(Image.fromarray(shade_view(view, brightness)), record, shot.t, shot.floor)
     return add_verdict(frame, record) if shot.t >= end else frame
 
 
-def draw_all(
+def draw_frames(
     record: RunRecord, site: Site, robot: RobotSpec, shots: list[FilmShot], end: float
 ) -> Iterator[Image.Image]:
-    """The frames of the shots in their order, drawn by all processors if there are many.
+    """Yield the frames of the shots in their order; several processes draw many shots.
 
-    Raises Unavailable if a process that draws is killed.
+    Raises:
+        Unavailable: A process that draws is killed.
     """
-    workers = min(usable_processors(), len(shots) // (_WORTH_IT // 2))
+    workers = min(usable_processors(), len(shots) // (_MIN_PARALLEL_SHOTS // 2))
     if workers < 2:
         with Scene(site, robot) as scene:
-            yield from (draw(record, scene, shot, end) for shot in shots)
+            yield from (draw_frame(record, scene, shot, end) for shot in shots)
         return
     executor = ProcessPoolExecutor(
-        workers, initializer=_begin, initargs=(os.getpid(), record, site, robot, end)
+        workers, initializer=_start_worker, initargs=(os.getpid(), record, site, robot, end)
     )
     try:
-        yield from executor.map(_drawn, shots)
+        yield from executor.map(_draw_shot, shots)
     except BrokenProcessPool:
         raise Unavailable(
-            "a process that drew the frames was ended: is there enough memory?"
+            "a process that drew the frames was killed, perhaps for lack of memory; "
+            "free some memory, and try again"
         ) from None
     finally:
         executor.shutdown(wait=True, kill_workers=True)
 
 
 _drawing: tuple[RunRecord, Scene, float]
-"""of a worker process: what it draws, and where"""
+"""record and scene of a worker process, and the end of the run in s"""
 
 
-def _begin(parent: int, record: RunRecord, site: Site, robot: RobotSpec, end: float) -> None:
+def _start_worker(parent: int, record: RunRecord, site: Site, robot: RobotSpec, end: float) -> None:
     global _drawing
     end_with_parent(parent)
     _drawing = record, Scene(site, robot), end
 
 
-def _drawn(shot: FilmShot) -> Image.Image:
+def _draw_shot(shot: FilmShot) -> Image.Image:
     record, scene, end = _drawing
-    return draw(record, scene, shot, end)
+    return draw_frame(record, scene, shot, end)
 
 
 MP4_SIZE, MP4_FPS = (640, 400), 12
 GIF_SIZE, GIF_FPS = (480, 300), 6  # a GIF is many times larger than an .mp4 of the same frames
 _PALETTE_SAMPLES = 6
 VERDICT_TIME = 2.0
-"""s, for which the film stands still in the end and shows the verdict"""
+"""s for which the film stops at its end and shows the verdict"""
 
 Progress = Callable[[float], None]
-"""Told the share that is done, from 0 to 1."""
+"""function that is called with the completed share, from 0 to 1"""
 
 
 def check_film(file: Path) -> None:
-    """Raises ArgoError if no film can be written there: for its suffix, its folder, or an extra
-    that isn't installed. To be called before a long run is made."""
+    """Raise an error if no film can be written to the file.
+
+    Call this before a long run.
+
+    Raises:
+        ArgoError: The suffix or the folder is wrong, or an extra isn't installed.
+    """
     if file.suffix.lower() not in {".mp4", ".gif"}:
         raise Invalid(f"{file}: a film is an .mp4 or a .gif; name the file so")
     check_writable(file)
@@ -249,16 +277,28 @@ def write_film(
     size: tuple[int, int] | None = None,
     progress: Progress | None = None,
 ) -> None:
-    """Writes a film of the run, `speed` times as fast as it was and with the verdict in the end,
-    as .mp4 or .gif.
+    """Write a film of the run as .mp4 or .gif, with the verdict at the end.
 
-    Without `fps` (frames a second) and `size` (px, even), an .mp4 has 12 and 640 by 400, a .gif 6
-    and 480 by 300. A GIF shows each frame for a whole number of hundredths of a second. Equal
-    records give equal films. Raises ArgoError where `check_film` does, if the record is of another
-    site or has no path, if a number makes no sense, or if the film can't be written.
+    Equal records give equal films. A GIF shows each frame for a whole number of hundredths of a
+    second.
+
+    Args:
+        record: Record of the run.
+        site: Site of the run.
+        robot: Robot of the run.
+        file: File to write.
+        speed: Factor by which the film is faster than the run.
+        fps: Frames per second; by default 12 for an .mp4, and 6 for a .gif.
+        size: Width and height in px, both even; by default 640 by 400 for an .mp4, and 480 by 300
+            for a .gif.
+        progress: Function that is called with the completed share, 0 to 1.
+
+    Raises:
+        ArgoError: The film can't be written (see `check_film`), the record is of another site or
+            has no path, or a number is invalid.
     """
     check_film(file)
-    check_site(record, site)
+    check_record_site(record, site)
     is_gif = file.suffix.lower() == ".gif"
     fps = fps or (GIF_FPS if is_gif else MP4_FPS)
     width, height = size or (GIF_SIZE if is_gif else MP4_SIZE)
@@ -276,11 +316,13 @@ def write_film(
         atomic_draft(file) as draft,
     ):
         with Scene(site, robot) as scene:
-            shots = [*shots_of(motion, scene, times, (width, height), frame_time)]
-            spread = _spread(times) if is_gif else []
-            sampled = shots_of(motion, scene, spread, (width, height), math.inf)
-            samples = [draw(record, scene, shot, motion.end) for shot in sampled]
-        frames = _shown(draw_all(record, site, robot, shots, motion.end), shots, progress)
+            shots = [*make_shots(motion, scene, times, (width, height), frame_time)]
+            spread = _spread_times(times) if is_gif else []
+            sampled = make_shots(motion, scene, spread, (width, height), math.inf)
+            samples = [draw_frame(record, scene, shot, motion.end) for shot in sampled]
+        frames = _repeat_frames(
+            draw_frames(record, site, robot, shots, motion.end), shots, progress
+        )
         if is_gif:
             write_gif(frames, draft, make_palette(samples), frame_time)
         else:
@@ -290,19 +332,19 @@ def write_film(
                 raise located(error, str(file)) from None
 
 
-def _spread(times: list[float]) -> list[float]:
-    """Some of the times (s), as far apart as possible."""
+def _spread_times(times: list[float]) -> list[float]:
+    """Return some of the times (s), as far apart as possible."""
     picks = np.linspace(0, len(times) - 1, _PALETTE_SAMPLES).round().astype(int)
     return [times[k] for k in dict.fromkeys(picks.tolist())]
 
 
-def _shown(
+def _repeat_frames(
     drawn: Iterable[Image.Image], shots: list[FilmShot], progress: Progress | None
 ) -> Iterator[Image.Image]:
-    """Each frame as often as the film shows it."""
-    count, done = sum(shot.shown for shot in shots), 0
+    """Yield each frame as often as the film shows it."""
+    count, done = sum(shot.repeats for shot in shots), 0
     for frame, shot in zip(drawn, shots, strict=True):
-        for _ in range(shot.shown):
+        for _ in range(shot.repeats):
             yield frame
             done += 1
             if progress:

@@ -1,4 +1,4 @@
-"""Light on a view: what the renderer leaves out to be fast."""
+"""Sky, shadows and depth shading of a view, which the renderer omits to be fast."""
 
 import numpy as np
 import scipy
@@ -10,22 +10,22 @@ from argo_env.site import Site
 from argo_env.world.pybullet_client import SUN
 
 ALL = (slice(None), slice(None))
-"""of a picture"""
+"""rows and columns of the whole picture"""
 _SKY = np.array([(222, 231, 240), (247, 249, 251)], dtype=np.float64)
-_SHADE = 0.66  # of its brightness is left to what lies in the shadow
-_SUN_DISTANCE = 120.0  # m: far enough for rays that are nearly parallel
-_BIAS = 0.06  # m that a surface may lie behind the shadow map, which has pixels
+_SHADE = 0.66  # share of the brightness that remains in the shadow
+_SUN_DISTANCE = 120.0  # m, far enough for rays that are nearly parallel
+_BIAS = 0.06  # m that a lit surface may be behind the shadow map, whose pixels are coarse
 
 
 def backdrop(size: tuple[int, int]) -> NDArray[np.float64]:
-    """A soft sky, light at the bottom, shape (height, width, 3)."""
+    """Return a soft sky, light at the bottom, shape (height, width, 3)."""
     width, height = size
     share = np.linspace(0.0, 1.0, height)[:, None, None]
     return np.broadcast_to(_SKY[0] + share * (_SKY[1] - _SKY[0]), (height, width, 3))
 
 
-def compose(view: CameraView, brightness: NDArray[np.float64]) -> NDArray[np.uint8]:
-    """The view with each pixel dimmed to its brightness (0 to 1), on the backdrop."""
+def shade_view(view: CameraView, brightness: NDArray[np.float64]) -> NDArray[np.uint8]:
+    """Return the view on the backdrop, with each pixel dimmed to its brightness (0 to 1)."""
     height, width = view.depth.shape
     lit = (view.colours * brightness[:, :, None].astype(np.float32)).astype(np.uint8)
     empty = ~np.isfinite(view.depth)
@@ -34,11 +34,15 @@ def compose(view: CameraView, brightness: NDArray[np.float64]) -> NDArray[np.uin
 
 
 def depth_shading(view: CameraView, radius: float, strength: float) -> NDArray[np.float64]:
-    """Brightness that sets things off from what lies behind them, shape (height, width).
+    """Return brightness that separates things from what is behind them, shape (height, width).
 
-    What is farther away than its surroundings gets darker: the depth buffer minus its blurred
-    self (Luft, Colditz and Deussen, "Image enhancement by unsharp masking the depth buffer",
-    2006). `radius` is that of the blur in px, `strength` the darkening for a step of 1 in 10.
+    What is farther away than its surroundings gets darker: the depth buffer minus its blurred self
+    (Luft, Colditz and Deussen, "Image enhancement by unsharp masking the depth buffer", 2006).
+
+    Args:
+        view: View to shade.
+        radius: Radius of the blur in px.
+        strength: Darkening for a step of 1 in 10.
     """
     seen = np.isfinite(view.depth)
     if not seen.any():
@@ -51,8 +55,7 @@ def depth_shading(view: CameraView, radius: float, strength: float) -> NDArray[n
 
 
 def sun_camera(site: Site, size: int) -> Camera:
-    """Where the sun looks at the site from: its picture, `size` px wide and high, is the shadow
-    map."""
+    """Return a camera at the sun, whose view of `size` px by `size` px is the shadow map."""
     x0, y0, x1, y1 = site.spec.ground
     top = site.spec.floors[-1].z + site.spec.storey
     middle = np.array([(x0 + x1) / 2, (y0 + y1) / 2, top / 2])
@@ -68,17 +71,24 @@ def sun_camera(site: Site, size: int) -> Camera:
     )
 
 
-def shadowed(
+def shadow_mask(
     camera: Camera,
     depth: NDArray[np.float64],
     sun: Camera,
     lit_depth: NDArray[np.float64],
     part: tuple[slice, slice] = ALL,
 ) -> NDArray[np.bool_]:
-    """Whether the sun does not reach what the pixels in a part of the picture show, in the shape of
-    the part.
+    """Return a mask of the pixels in a part of the picture that the sun does not reach.
 
-    `depth` (m) is that of the whole picture, `lit_depth` (m) the shadow map.
+    Args:
+        camera: Camera of the picture.
+        depth: Depth (m) of the whole picture.
+        sun: Camera at the sun.
+        lit_depth: Depth (m) of the sun's view, which is the shadow map.
+        part: Rows and columns of the part.
+
+    Returns:
+        Mask in the shape of the part.
     """
     within = depth[part]
     dark = np.zeros(within.shape, dtype=np.bool_)
@@ -87,7 +97,7 @@ def shadowed(
     points = camera.unproject(column + right, row + below, within[row, column])
     x, y, away = sun.project(points).T
     width, height = sun.size
-    # What lies outside of the map is lit.
+    # Points outside the map are lit.
     inside = (x >= 0) & (x < width) & (y >= 0) & (y < height)
     nearest = np.full(away.shape, np.inf)
     nearest[inside] = lit_depth[y[inside].astype(int), x[inside].astype(int)]
@@ -95,8 +105,10 @@ def shadowed(
     return dark
 
 
-def shade(dark: NDArray[np.bool_], softness: float) -> NDArray[np.float64]:
-    """Brightness, from 0.66 to 1, of a picture in which some pixels lie in the shadow; its edges
-    are blurred by `softness` px."""
+def shadow_brightness(dark: NDArray[np.bool_], softness: float) -> NDArray[np.float64]:
+    """Return the brightness, from 0.66 to 1, of a picture with a mask of pixels in the shadow.
+
+    The shadow's edges are blurred by `softness` px.
+    """
     blurred = scipy.ndimage.gaussian_filter(dark.astype(np.float32), softness)
     return np.asarray(1.0 - (1.0 - _SHADE) * blurred, dtype=np.float64)

@@ -1,4 +1,4 @@
-"""The robot's motion as a record tells it: where it is at any time, and what its limbs do."""
+"""The robot's motion according to a record: its pose and its joints at any time."""
 
 import math
 
@@ -11,8 +11,8 @@ from argo_env.robot.spec import RobotSpec
 from argo_env.run.record import RunRecord
 from argo_env.site import Site
 
-_STAIR_PITCH = math.radians(5.0)  # from which the flippers lie flat
-_PITCH_RAMP = math.radians(2.0)  # to each side of it, so that they don't jump
+_STAIR_PITCH = math.radians(5.0)  # above which the flippers are flat
+_PITCH_RAMP = math.radians(2.0)  # to each side of it, in which they move, so that they don't jump
 _ARM_TIME = 2.0  # s to raise or to stow the arm
 
 
@@ -20,7 +20,11 @@ class RecordedMotion:
     """The motion of a record, interpolated between the samples of its path."""
 
     def __init__(self, record: RunRecord, robot: RobotSpec) -> None:
-        """Raises ArgoError if the record has no path."""
+        """Initialise the motion from a record.
+
+        Raises:
+            Invalid: The record has no path.
+        """
         if not record.path:
             raise Invalid("the record has no path: there is nothing to draw")
         path = record.path
@@ -34,21 +38,21 @@ class RecordedMotion:
 
     @property
     def end(self) -> float:
-        """s, the time of the last sample."""
+        """Time (s) of the last sample."""
         return float(self._times[-1])
 
-    def pose(self, t: float) -> BodyPose:
-        """Where the robot is at the time t (s)."""
+    def pose_at(self, t: float) -> BodyPose:
+        """Return the robot's pose at the time t (s)."""
         x, y, z, pitch, yaw = (float(np.interp(t, self._times, v)) for v in self._values.T)
         return BodyPose(x, y, z, yaw, pitch)
 
-    def floor(self, t: float) -> int:
-        """The floor that the robot is on at the time t (s)."""
+    def floor_at(self, t: float) -> int:
+        """Return the floor that the robot is on at the time t (s)."""
         return self._floors[max(0, int(np.searchsorted(self._times, t, side="right")) - 1)]
 
-    def joints(self, t: float) -> dict[str, float]:
-        """Positions of the robot's joints at the time t (s), in degrees, by name."""
-        stairs = (abs(self.pose(t).pitch) - _STAIR_PITCH) / _PITCH_RAMP
+    def joints_at(self, t: float) -> dict[str, float]:
+        """Return the positions of the robot's joints at the time t (s), in degrees, by name."""
+        stairs = (abs(self.pose_at(t).pitch) - _STAIR_PITCH) / _PITCH_RAMP
         level = min(1.0, max(0.0, (1.0 - stairs) / 2))
         flippers = math.degrees(FLAT + level * (RAISED - FLAT))
         raised = self._raised(t)
@@ -57,7 +61,7 @@ class RecordedMotion:
         return arm | {"left_flipper_joint": flippers, "right_flipper_joint": flippers}
 
     def _raised(self, t: float) -> float:
-        """How far the arm is raised, from 0 to 1."""
+        """Return the share to which the arm is raised, from 0 to 1."""
         share = 0.0
         for end in self._readings:
             since, left = t - (end - self._robot.sensor.measuring_time), end - t
@@ -65,8 +69,12 @@ class RecordedMotion:
         return share
 
 
-def check_site(record: RunRecord, site: Site) -> None:
-    """Raises ArgoError if the record is of a run on another site."""
+def check_record_site(record: RunRecord, site: Site) -> None:
+    """Raise an error if the record is of a run on another site.
+
+    Raises:
+        Conflict: The sites differ.
+    """
     if record.site != site.name:
         raise Conflict(
             f"the record is of a run on site `{record.site}`, not on `{site.name}`: load that site"

@@ -1,8 +1,8 @@
-"""The whole site in one picture, with the way that the robot took.
+"""A picture of the whole site, with the path that the robot drove.
 
-What stands still in it is rendered once, and then kept. A picture of a site and the robot is the
-nearer of two pictures, pixel by pixel: of the site alone, which is the same for all runs on it, and
-of the robot alone.
+The view of the site alone is the same for all runs on it, so it is rendered once and cached. A
+picture of the site and the robot takes, for each pixel, the nearer one of two views: of the site
+alone, and of the robot alone.
 """
 
 import hashlib
@@ -23,8 +23,14 @@ from argo_compiler.files.atomic_write import write_atomically
 from argo_env.files import cache
 from argo_env.files.folders import CHOOSE_ANOTHER_PLACE, reporting_write_errors
 from argo_env.pictures.camera import Camera
-from argo_env.pictures.light import compose, depth_shading, shade, shadowed, sun_camera
-from argo_env.pictures.motion import RecordedMotion, check_site
+from argo_env.pictures.light import (
+    depth_shading,
+    shade_view,
+    shadow_brightness,
+    shadow_mask,
+    sun_camera,
+)
+from argo_env.pictures.motion import RecordedMotion, check_record_site
 from argo_env.pictures.scene import CameraView, Scene
 from argo_env.report.track import colour
 from argo_env.robot.spec import RobotSpec
@@ -33,61 +39,64 @@ from argo_env.site import Site
 
 _HERE = Path(__file__).parent
 _CODE = (_HERE, _HERE.parent / "site", _HERE.parent / "world")
-"""where what changes a picture is written"""
-_NEAR = 60  # px: a pixel of the shadow map covers some in the picture
+"""folders of the code that pictures depend on"""
+_NEAR = 60  # px about a pixel: a pixel of the shadow map covers several in the picture
 
 
 @dataclass(frozen=True)
 class LitView:
-    """What a camera sees, and what of it the sun reaches."""
+    """View of a camera, and the part of it that the sun reaches."""
 
     view: CameraView
     lit_depth: NDArray[np.float64]
-    """m along the rays of the sun to what they reach, shape (height, width) of the shadow map"""
+    """length of the sun's rays in m, shape (height, width) of the shadow map"""
     dark: NDArray[np.bool_]
-    """the pixels of the view that lie in the shadow, shape (height, width)"""
+    """mask of the view's pixels in the shadow, shape (height, width)"""
 
 
-def still_view(site: Site, robot: RobotSpec, camera: Camera, sun: Camera) -> LitView:
-    """What is seen of the site without the robot; looked up if it was rendered before."""
-    said = (_digest_of_code(), repr(site.elements), repr(site.checkpoints), repr((camera, sun)))
+def site_view(site: Site, robot: RobotSpec, camera: Camera, sun: Camera) -> LitView:
+    """Return the view of the site without the robot, from the cache if it was rendered before."""
+    key = (_digest_of_code(), repr(site.elements), repr(site.checkpoints), repr((camera, sun)))
 
-    def rendered() -> dict[str, NDArray[Any]]:
+    def render() -> dict[str, NDArray[Any]]:
         with Scene(site, robot) as scene:
-            seen, lit = scene.look(camera), scene.look(sun)
-        # The renderer has no more than single precision.
+            seen, lit = scene.render_view(camera), scene.render_view(sun)
+        # The renderer has single precision.
         return {
             "colours": seen.colours,
             "depth": seen.depth.astype(np.float32),
             "lit_depth": lit.depth.astype(np.float32),
-            "dark": shadowed(camera, seen.depth, sun, lit.depth),
+            "dark": shadow_mask(camera, seen.depth, sun, lit.depth),
         }
 
-    found = cache.entry_for(said).load_or_make("overview", rendered)
-    view = CameraView(found["colours"], found["depth"].astype(np.float64))
-    return LitView(view, found["lit_depth"].astype(np.float64), found["dark"])
+    arrays = cache.entry_for(key).load_or_make("overview", render)
+    view = CameraView(arrays["colours"], arrays["depth"].astype(np.float64))
+    return LitView(view, arrays["lit_depth"].astype(np.float64), arrays["dark"])
 
 
-def with_robot(still: LitView, robot: Scene, camera: Camera, sun: Camera) -> LitView:
-    """The same with the robot of a scene that has nothing else."""
-    seen, lit = robot.look(camera), robot.look(sun)
-    front = seen.depth < still.view.depth
-    colours = np.where(front[:, :, None], seen.colours, still.view.colours)
-    depth = np.where(front, seen.depth, still.view.depth)
-    lit_depth = np.minimum(still.lit_depth, lit.depth)
-    # Only there the light is another: on the robot, and where the site lies behind it in the sun.
-    row, column = np.nonzero((lit.depth < still.lit_depth) & np.isfinite(still.lit_depth))
-    behind = camera.project(sun.unproject(column, row, still.lit_depth[row, column]))
-    part = _about(np.vstack([np.argwhere(front)[:, ::-1], behind[:, :2]]), camera.size)
-    dark = still.dark.copy()
+def add_robot(site_only: LitView, robot: Scene, camera: Camera, sun: Camera) -> LitView:
+    """Return the view with the robot of a scene that contains nothing else."""
+    seen, lit = robot.render_view(camera), robot.render_view(sun)
+    front = seen.depth < site_only.view.depth
+    colours = np.where(front[:, :, None], seen.colours, site_only.view.colours)
+    depth = np.where(front, seen.depth, site_only.view.depth)
+    lit_depth = np.minimum(site_only.lit_depth, lit.depth)
+    # The light only changes on the robot, and where its shadow falls on the site.
+    row, column = np.nonzero((lit.depth < site_only.lit_depth) & np.isfinite(site_only.lit_depth))
+    behind = camera.project(sun.unproject(column, row, site_only.lit_depth[row, column]))
+    part = _part_around(np.vstack([np.argwhere(front)[:, ::-1], behind[:, :2]]), camera.size)
+    dark = site_only.dark.copy()
     if part is not None:
-        dark[part] = shadowed(camera, depth, sun, lit_depth, part)
+        dark[part] = shadow_mask(camera, depth, sun, lit_depth, part)
     return LitView(CameraView(colours, depth), lit_depth, dark)
 
 
-def _about(pixels: NDArray[np.float64], size: tuple[int, int]) -> tuple[slice, slice] | None:
-    """The part of a picture, rows and columns, that has these pixels (column and row) in it and
-    those near them; None if there are none."""
+def _part_around(pixels: NDArray[np.float64], size: tuple[int, int]) -> tuple[slice, slice] | None:
+    """Return the rows and columns of a picture that contain some pixels and those near them.
+
+    `pixels` are columns and rows, shape (n, 2). The result is None if none of them is in the
+    picture.
+    """
     if not len(pixels):
         return None
     (left, top), (right, bottom) = pixels.min(axis=0) - _NEAR, pixels.max(axis=0) + _NEAR
@@ -106,8 +115,8 @@ def _digest_of_code() -> str:
 
 
 SIZE = (1200, 900)
-"""px"""
-_FINER = 2  # the picture is made so many times larger and then reduced, for smooth edges
+"""width and height in px"""
+_FINER = 2  # factor by which the picture is drawn larger and then reduced, for smooth edges
 _SHADOW_MAP = 1600  # px
 _PATH_HEIGHT = 0.25  # m above the robot's tracks at which its path is drawn
 _PATH_STEP = 0.05  # m between the points of the drawn path
@@ -115,30 +124,32 @@ _PATH_WIDTH = 5  # px
 _HIDDEN_WIDTH = 4  # px
 _HIDDEN_OPACITY = 0.8
 _DASH = 9  # px
-_TOLERANCE = 0.3  # m that a point may lie behind what is seen and still be seen
+_TOLERANCE = 0.3  # m that a visible point may be behind the surface at its pixel
 _INK = (23, 32, 42)
 _NORMAL, _ABNORMAL = (16, 128, 84), (196, 43, 43)
 
 
 def write_overview(record: RunRecord, site: Site, robot: RobotSpec, file: Path) -> None:
-    """Writes a PNG of SIZE of the site seen from the south-west with the driven path.
+    """Write a PNG of SIZE of the site seen from the south-west, with the driven path.
 
-    The path's colour goes with time as in the report; where something hides it, it is dashed.
-    Checkpoints that were measured carry their ids, red where the value is not nominal. Raises
-    ArgoError if the record is of another site or has no path, or the file can't be written.
+    The path's colour depends on the time, as in the report; it is dashed where something hides it.
+    Measured checkpoints are labelled with their ids, red where the value is not nominal.
+
+    Raises:
+        ArgoError: The record is of another site or has no path, or the file can't be written.
     """
-    check_site(record, site)
+    check_record_site(record, site)
     motion = RecordedMotion(record, robot)
     camera = site_camera(site, (SIZE[0] * _FINER, SIZE[1] * _FINER))
     sun = sun_camera(site, _SHADOW_MAP)
-    still = still_view(site, robot, camera, sun)
+    site_only = site_view(site, robot, camera, sun)
     with Scene(None, robot) as scene:
-        scene.place_robot(motion.pose(motion.end), motion.joints(motion.end))
-        lit = with_robot(still, scene, camera, sun)
+        scene.place_robot(motion.pose_at(motion.end), motion.joints_at(motion.end))
+        lit = add_robot(site_only, scene, camera, sun)
     view = lit.view
-    brightness = shade(lit.dark, float(_FINER))
+    brightness = shadow_brightness(lit.dark, float(_FINER))
     brightness *= depth_shading(view, 10.0 * _FINER, 0.3)
-    image = Image.fromarray(compose(view, brightness))
+    image = Image.fromarray(shade_view(view, brightness))
     _draw_path(image, record, motion, camera, view)
     _draw_markers(image, record, site, motion, camera)
     content = io.BytesIO()
@@ -148,7 +159,7 @@ def write_overview(record: RunRecord, site: Site, robot: RobotSpec, file: Path) 
 
 
 def site_camera(site: Site, size: tuple[int, int]) -> Camera:
-    """A camera in the south-west and above that sees the whole site."""
+    """Return a camera in the south-west and above that sees the whole site."""
     x0, y0, x1, y1 = site.spec.ground
     low, high = site.spec.ground_z, site.spec.floors[-1].z + site.spec.storey
     middle = np.array([(x0 + x1) / 2, (y0 + y1) / 2, low + 0.37 * (high - low)])
@@ -167,12 +178,12 @@ def site_camera(site: Site, size: tuple[int, int]) -> Camera:
 def _draw_path(
     image: Image.Image, record: RunRecord, motion: RecordedMotion, camera: Camera, view: CameraView
 ) -> None:
-    """Draws the path over the picture: hidden parts dashed and faint, the others on top."""
-    times = np.array(list(_times(record)))
-    poses = [motion.pose(float(t)) for t in times]
+    """Draw the path over the picture: hidden parts dashed and faint, the others on top."""
+    times = np.array(list(_path_times(record)))
+    poses = [motion.pose_at(float(t)) for t in times]
     points = np.array([(p.x, p.y, p.z + _PATH_HEIGHT) for p in poses])
     pixels = camera.project(points)
-    seen = _seen(pixels, view)
+    seen = _visible(pixels, view)
     end = motion.end or 1.0
     faint = Image.new("RGBA", image.size, (0, 0, 0, 0))
     clear = Image.new("RGBA", image.size, (0, 0, 0, 0))
@@ -192,8 +203,8 @@ def _draw_path(
     image.paste(clear, mask=clear)
 
 
-def _times(record: RunRecord) -> Iterator[float]:
-    """Times (s) at which the robot is no more than 5 cm farther than at the one before."""
+def _path_times(record: RunRecord) -> Iterator[float]:
+    """Yield times (s) between which the robot moves by no more than 5 cm."""
     for a, b in pairwise(record.path):
         away = math.dist((a.x, a.y, a.z), (b.x, b.y, b.z))
         count = math.ceil(away / _PATH_STEP)
@@ -201,8 +212,8 @@ def _times(record: RunRecord) -> Iterator[float]:
     yield record.path[-1].t
 
 
-def _seen(pixels: NDArray[np.float64], view: CameraView) -> NDArray[np.bool_]:
-    """Whether nothing hides the points, for more than half of those about each of them."""
+def _visible(pixels: NDArray[np.float64], view: CameraView) -> NDArray[np.bool_]:
+    """Return a mask of the points that nothing hides, by the majority of the points about each."""
     height, width = view.depth.shape
     column = np.clip(pixels[:, 0].astype(int), 0, width - 1)
     row = np.clip(pixels[:, 1].astype(int), 0, height - 1)
@@ -219,7 +230,7 @@ def _stroke(
     width: int,
     ink: str | tuple[int, int, int],
 ) -> None:
-    """A line with a round end."""
+    """Draw a line with a round end."""
     draw.line([(a[0], a[1]), (b[0], b[1])], fill=ink, width=width)
     half = width / 2 - 0.5
     draw.ellipse([b[0] - half, b[1] - half, b[0] + half, b[1] + half], fill=ink)
@@ -231,17 +242,17 @@ def _draw_markers(
     draw = ImageDraw.Draw(image)
     font = ImageFont.load_default(21.0 * _FINER)
     labels: dict[tuple[float, float, float], tuple[str, str | tuple[int, int, int]]] = {}
-    first, last = motion.pose(0.0), motion.pose(motion.end)
+    first, last = motion.pose_at(0.0), motion.pose_at(motion.end)
     together = math.dist((first.x, first.y, first.z), (last.x, last.y, last.z)) < 1.0
     if not together:
         labels[(last.x, last.y, last.z + _PATH_HEIGHT)] = ("end", colour(1.0))
     start = "start and end" if together else "start"
     labels[(first.x, first.y, first.z + _PATH_HEIGHT)] = (start, colour(0.0))
     for reading in record.readings:
-        place = site.checkpoint(reading.checkpoint).position
-        labels[place] = (str(reading.checkpoint), _NORMAL if reading.normal else _ABNORMAL)
+        position = site.checkpoint(reading.checkpoint).position
+        labels[position] = (str(reading.checkpoint), _NORMAL if reading.normal else _ABNORMAL)
     pixels = camera.project(np.array(list(labels)))
-    # The nearest are drawn last, so that they lie on top.
+    # The nearest are drawn last, so that they are on top.
     for index in np.argsort(-pixels[:, 2], kind="stable"):
         text, ink = list(labels.values())[index]
         _pin(draw, float(pixels[index, 0]), float(pixels[index, 1]), text, ink, font)
@@ -255,7 +266,7 @@ def _pin(
     ink: str | tuple[int, int, int],
     font: ImageFont.ImageFont | ImageFont.FreeTypeFont,
 ) -> None:
-    """A label above a dot at (x, y), joined by a line."""
+    """Draw a label above a dot at (x, y), with a line between them."""
     n = _FINER
     half = max(17 * n, draw.textlength(text, font=font) / 2 + 11 * n)
     middle, radius = y - 44 * n, 17 * n

@@ -1,4 +1,4 @@
-"""A suggested order as pictures: a plan of each floor with the way as written and as suggested."""
+"""Pictures of a suggested order: a plan of each floor with the written and the suggested path."""
 
 import io
 from collections.abc import Iterator, Sequence
@@ -17,7 +17,15 @@ from argo_compiler.route.problem import Tour
 from argo_env.files.folders import CHOOSE_ANOTHER_PLACE, reporting_write_errors
 from argo_env.formatting import clock
 from argo_env.navigation import Navigator
-from argo_env.pictures.drawing.floors import plans_of
+from argo_env.pictures.drawing.floors import floor_plans
+from argo_env.pictures.drawing.label_placement import LabelPlacer, draw_plate
+from argo_env.pictures.drawing.path import (
+    PathPoint,
+    draw_lines,
+    draw_stairs_taken,
+    draw_thin_lines,
+    path_lines,
+)
 from argo_env.pictures.drawing.sheet import (
     FINER,
     FOOT,
@@ -28,14 +36,12 @@ from argo_env.pictures.drawing.sheet import (
     font,
     make_sheet,
 )
-from argo_env.pictures.drawing.spots import Spots, draw_plate
-from argo_env.pictures.drawing.style import disc, draw_headline, paint_disc, paint_station
-from argo_env.pictures.drawing.way import Moment, draw_crossings, draw_lines, draw_thin, lines
+from argo_env.pictures.drawing.style import draw_disc, draw_headline, paint_disc, paint_station
 from argo_env.planning.travel import SiteTravel
 from argo_env.report.track import colour
 from argo_env.site import Site
 
-_STEP = 0.1  # m between the points of a drawn way
+_STEP = 0.1  # m between the points of a drawn path
 _RADIUS = 11.0  # px
 _STATION = 7.0  # px from the middle of a station's mark to its sides
 _BAR = 120.0 * FINER  # px
@@ -44,7 +50,7 @@ _OLD = (120, 132, 145)
 
 
 def picture_names(site: Site) -> tuple[str, ...]:
-    """The names of the files that `write_route` may write."""
+    """Return the names of the files that `write_route` may write."""
     return tuple(_name(floor.number) for floor in site.spec.floors)
 
 
@@ -55,10 +61,15 @@ def write_route(
     travel: SiteTravel,
     folder: FilePath,
 ) -> list[FilePath]:
-    """Writes `floor-<number>.png` into the folder for each floor that a way or a task touches, and
-    returns the paths. Rounds are drawn once, and what is done only in some cases is left out.
+    """Write `floor-<number>.png` for each floor that a path or a task touches.
 
-    Raises ArgoError if a file can't be written.
+    Rounds are drawn once, and tasks that are executed only in some cases are omitted.
+
+    Returns:
+        The paths of the files in the folder.
+
+    Raises:
+        ArgoError: A file can't be written.
     """
     site = navigator.site
     seconds = [
@@ -68,14 +79,14 @@ def write_route(
     headline = f"{clock(seconds[0])} as written, {clock(seconds[1])} as suggested"
     if planned.mission.designation:
         headline = f"{planned.mission.designation}: {headline}"
-    old = _way(planned, planned.written, navigator, travel)
-    new = _way(planned, route, navigator, travel)
-    floors = {moment.floor for moment in (*old, *new)}
+    old = _path_points(planned, planned.written, navigator, travel)
+    new = _path_points(planned, route, navigator, travel)
+    floors = {point.floor for point in (*old, *new)}
     pictures = {}
-    for plan in plans_of(site):
+    for plan in floor_plans(site):
         if plan.number not in floors:
             continue
-        image = _draw(
+        image = _draw_floor(
             make_sheet([plan]), plan.number, planned, route, old, new, travel, site, headline
         )
         content = io.BytesIO()
@@ -90,30 +101,30 @@ def _name(floor: int) -> str:
     return f"floor-{floor}.png"
 
 
-def _way(
+def _path_points(
     planned: MissionProblem, route: Tour, navigator: Navigator, travel: SiteTravel
-) -> list[Moment]:
-    """Where the robot is when, from its start to the mission's end."""
+) -> list[PathPoint]:
+    """Return the robot's positions over time, from its start to the mission's end."""
     here = travel.start(planned.mission)
     site, robot = navigator.site, navigator.robot
-    moments = [Moment(0.0, here.x, here.y, site.floor_at(here.z))]
+    points = [PathPoint(0.0, here.x, here.y, site.floor_at(here.z))]
     for task in _tasks(planned, route):
         path = travel.way(here, task)
-        t = moments[-1].t
+        t = points[-1].t
         for motion in path.motions:
             takes = motion.duration(robot)
             count = max(1, round(motion.length / _STEP))
             for k in range(1, count + 1):
                 p = motion.pose_at(k / count)
-                moments.append(Moment(t + takes * k / count, p.x, p.y, site.floor_at(p.z)))
+                points.append(PathPoint(t + takes * k / count, p.x, p.y, site.floor_at(p.z)))
             t += takes
         here = path.end
-        moments.append(Moment(t + travel.work(task), here.x, here.y, site.floor_at(here.z)))
-    return moments
+        points.append(PathPoint(t + travel.work(task), here.x, here.y, site.floor_at(here.z)))
+    return points
 
 
 def _tasks(planned: MissionProblem, route: Tour) -> Iterator[Task]:
-    """The tasks that are always done, with the way into the docking station at the end."""
+    """Yield the tasks that are always executed, and then the one of the end, if there is one."""
     visits = planned.visits
     for visit in route.order:
         yield visits.task(visits.task_units[visit].entry)
@@ -121,63 +132,63 @@ def _tasks(planned: MissionProblem, route: Tour) -> Iterator[Task]:
         yield visits.task(visits.chain.end)
 
 
-def _draw(
+def _draw_floor(
     sheet: FloorSheet,
     floor: int,
     planned: MissionProblem,
     route: Tour,
-    old: Sequence[Moment],
-    new: Sequence[Moment],
+    old: Sequence[PathPoint],
+    new: Sequence[PathPoint],
     travel: SiteTravel,
     site: Site,
     headline: str,
 ) -> NDArray[np.uint8]:
-    """One floor, shape (720, 1280, 3)."""
+    """Return the picture of a floor, shape (720, 1280, 3)."""
     image = sheet.image.copy()
     draw = ImageDraw.Draw(image)
-    spots = Spots(sheet)
+    labels = LabelPlacer(sheet)
     stations = _stations(planned, travel, site)
-    for x, y, there, _ in stations:
-        if there == floor:
+    for x, y, own_floor, _ in stations:
+        if own_floor == floor:
             size = (_STATION + 1.0) * FINER
-            spots.take(sheet.at(x, y, floor), size, size)
+            labels.occupy(sheet.pixel_at(x, y, floor), size, size)
     size = (_RADIUS + 1.0) * FINER
     marks = []
     for visit in range(planned.problem.size):
-        x, y, there = _place(planned, visit, site)
-        if there == floor:
-            true = sheet.at(x, y, floor)
-            marks.append((visit, true, spots.nearest(true, size, size, floor)))
-    thin, bold = lines(sheet, old), lines(sheet, new)
-    draw_thin(draw, thin, _OLD)
+        x, y, own_floor = _visit_position(planned, visit, site)
+        if own_floor == floor:
+            true = sheet.pixel_at(x, y, floor)
+            marks.append((visit, true, labels.reserve_nearest(true, size, size, floor)))
+    thin, bold = path_lines(sheet, old), path_lines(sheet, new)
+    draw_thin_lines(draw, thin, _OLD)
     for line in bold:
-        spots.pass_by(line.points)
+        labels.avoid_path(line.points)
     draw_lines(draw, bold)
-    position = {visit: k + 1 for k, visit in enumerate(route.order)}
-    for x, y, there, _ in stations:
-        if there == floor:
-            paint_station(draw, sheet.at(x, y, floor), _STATION)
-    for visit, true, place in marks:
-        if place != true:
-            draw.line([true, place], fill=INK, width=2 * FINER)
-            disc(draw, true, 3.0 * FINER, INK)
-        state = "open" if visit in position else "closed"
-        paint_disc(draw, place, _RADIUS, state, str(position.get(visit, "")))
-    for visit, _, place in marks:
-        draw_plate(draw, spots, place, planned.visits.names[visit], floor)
-    for x, y, there, name in stations:
-        if there == floor:
-            draw_plate(draw, spots, sheet.at(x, y, floor), name, floor)
-    draw_crossings(draw, sheet, spots, new)
+    number_of = {visit: k + 1 for k, visit in enumerate(route.order)}
+    for x, y, own_floor, _ in stations:
+        if own_floor == floor:
+            paint_station(draw, sheet.pixel_at(x, y, floor), _STATION)
+    for visit, true, position in marks:
+        if position != true:
+            draw.line([true, position], fill=INK, width=2 * FINER)
+            draw_disc(draw, true, 3.0 * FINER, INK)
+        state = "open" if visit in number_of else "closed"
+        paint_disc(draw, position, _RADIUS, state, str(number_of.get(visit, "")))
+    for visit, _, position in marks:
+        draw_plate(draw, labels, position, planned.visits.names[visit], floor)
+    for x, y, own_floor, name in stations:
+        if own_floor == floor:
+            draw_plate(draw, labels, sheet.pixel_at(x, y, floor), name, floor)
+    draw_stairs_taken(draw, sheet, labels, new)
     draw_headline(draw, headline)
-    _draw_legend(draw, bool(thin), bool(bold), len(position) < planned.problem.size)
+    _draw_legend(draw, bool(thin), bool(bold), len(number_of) < planned.problem.size)
     return np.asarray(image.reduce(FINER), dtype=np.uint8)
 
 
 def _stations(
     planned: MissionProblem, travel: SiteTravel, site: Site
 ) -> list[tuple[float, float, int, str]]:
-    """Where the mission starts and ends: x, y (m), floor and name."""
+    """Return the start and the end of the mission: x, y (m), floor and name."""
     start = travel.start(planned.mission)
     end = planned.visits.chain.end
     dock = None if end is None else planned.visits.task(end).pose
@@ -189,8 +200,8 @@ def _stations(
     return [(*first, "start"), (dock.x, dock.y, site.floor_at(dock.z), "end")]
 
 
-def _place(planned: MissionProblem, visit: int, site: Site) -> tuple[float, float, int]:
-    """Where a visit's task is: x, y (m) and floor."""
+def _visit_position(planned: MissionProblem, visit: int, site: Site) -> tuple[float, float, int]:
+    """Return the position of a visit's task: x, y (m) and floor."""
     task = planned.visits.task(planned.visits.task_units[visit].entry)
     if task.action is Action.MEASURE:
         checkpoint = site.checkpoint_for(task.object_id)
@@ -200,22 +211,22 @@ def _place(planned: MissionProblem, visit: int, site: Site) -> tuple[float, floa
 
 
 def _draw_legend(draw: ImageDraw.ImageDraw, old: bool, new: bool, dropped: bool) -> None:
-    """What lines and discs mean."""
+    """Draw the legend of lines and discs."""
     y, face, x = (SIZE[1] - FOOT / 2) * FINER, font(12), _LEFT
 
-    def word(text: str, x: float) -> float:
+    def draw_entry(text: str, x: float) -> float:
         draw.text((x, y), text, fill=SOFT, font=face, anchor="lm")
         return x + draw.textlength(text, font=face) + 16 * FINER
 
     if new:
         for k in range(round(_BAR / 2)):
             draw.line((x + k, y - 3 * FINER, x + k, y + 3 * FINER), fill=colour(2 * k / _BAR))
-        x = word("way as suggested, from its start to its end", x + _BAR / 2 + 6 * FINER)
+        x = draw_entry("path as suggested, from its start to its end", x + _BAR / 2 + 6 * FINER)
     if old:
         draw.line((x, y, x + 30 * FINER, y), fill=_OLD, width=round(1.5 * FINER))
-        x = word("as written", x + 36 * FINER)
+        x = draw_entry("as written", x + 36 * FINER)
     paint_disc(draw, (x + 8 * FINER, y), 8.0, "open", "3")
-    x = word("place in the order", x + 21 * FINER)
+    x = draw_entry("position in the order", x + 21 * FINER)
     if dropped:
         paint_disc(draw, (x + 8 * FINER, y), 8.0, "closed", "")
-        word("left out", x + 21 * FINER)
+        draw_entry("left out", x + 21 * FINER)

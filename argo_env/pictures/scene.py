@@ -1,4 +1,4 @@
-"""The site and the robot as they are drawn: a PyBullet world of its own, storey by storey."""
+"""The site and the robot in a separate PyBullet world for rendering, storey by storey."""
 
 import math
 import tempfile
@@ -21,24 +21,29 @@ from argo_env.site.urdf import to_urdf
 from argo_env.world.pybullet_client import Connection, pybullet
 
 _HIDDEN: Vector = (0.0, 0.0, -1000.0)
-_SOLID_BIT = 1  # what a ray along a line of sight stops at
+_SOLID_BIT = 1  # collision filter of what stops rays along a line of sight
 _DECK_ROLES = frozenset({Role.DECK, Role.STAIR, Role.RAILING})
 
 
 @dataclass(frozen=True)
 class CameraView:
-    """What a camera sees: colours (0 to 255), shape (height, width, 3), and the depth of each
-    pixel along the line of sight (m), infinite where there is nothing."""
+    """View of a camera: colours (0 to 255), shape (height, width, 3), and the depth of each pixel.
+
+    The depth is along the line of sight in m, infinite where there is nothing.
+    """
 
     colours: NDArray[np.uint8]
     depth: NDArray[np.float64]
 
 
 class Scene(Connection):
-    """What is drawn. Holds a PyBullet connection; close it, or use it as a context."""
+    """Scene to render, which holds a PyBullet connection.
+
+    Close it, or use it as a context.
+    """
 
     def __init__(self, site: Site | None, robot: RobotSpec) -> None:
-        """Without a site there is the robot alone."""
+        """Load the site and the robot; without a site the robot is alone."""
         super().__init__()
         self.robot = robot
         self._floors: dict[int, list[int]] = {}
@@ -50,17 +55,17 @@ class Scene(Connection):
         for body in chain.from_iterable((*self._floors.values(), *self._decks.values())):
             self._origins.setdefault(body, ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
         self._joints = {name: k for k, (name, _) in self._parts(self._robot_body).items()}
-        self._let_sight_pass()
+        self._set_ray_filters()
         self._shown: tuple[int, int] | None = None
         if self._floors:
             self.show_floors(max(self._floors))
         self.hide_robot()
 
     def show_floors(self, top: int, decks: int | None = None) -> None:
-        """Shows the floors up to the one numbered `top` and hides those above it.
+        """Show the floors up to the one numbered `top`, and hide those above it.
 
-        Decks, stairs and railings of the `decks` uppermost of them only, if given: those farther
-        down are hardly seen, and cost most of the time.
+        If `decks` is given, decks, stairs and railings are shown for that many of the uppermost of
+        these floors only: the lower ones are hardly visible, and take most of the time.
         """
         lowest = min(self._floors) if decks is None else top - decks + 1
         if (lowest, top) == self._shown:
@@ -74,7 +79,7 @@ class Scene(Connection):
         self._detect()
 
     def place_robot(self, pose: BodyPose, joints: Mapping[str, float]) -> None:
-        """Puts the robot there, with joints at positions in degrees, by name."""
+        """Place the robot at the pose, with joints at positions in degrees, by name."""
         for name, angle in joints.items():
             pybullet.resetJointState(
                 self._robot_body,
@@ -85,16 +90,16 @@ class Scene(Connection):
         self._place(self._robot_body, (pose.x, pose.y, pose.z), (pose.roll, pose.pitch, pose.yaw))
 
     def hide_robot(self) -> None:
-        """Takes the robot out of sight until it is placed again."""
+        """Hide the robot until it is placed again."""
         self._place(self._robot_body, _HIDDEN, (0.0, 0.0, 0.0))
 
-    def look(self, camera: Camera) -> CameraView:
-        """What the camera sees, without shadows."""
+    def render_view(self, camera: Camera) -> CameraView:
+        """Return the camera's view, without shadows."""
         colours, buffer = self._render(camera.view_matrix, camera.projection_matrix, camera.size)
         return CameraView(colours, depth_in_metres(buffer, camera))
 
-    def blocked(self, start: Vector, ends: list[Vector]) -> NDArray[np.bool_]:
-        """Whether something of the site, railings left out, lies between `start` and each end."""
+    def occluded(self, start: Vector, ends: list[Vector]) -> NDArray[np.bool_]:
+        """Return a mask of the ends that the site, without railings, hides from `start`."""
         hits = pybullet.rayTestBatch(
             [start] * len(ends),
             ends,
@@ -103,8 +108,8 @@ class Scene(Connection):
         )
         return np.array([hit[0] >= 0 for hit in hits])
 
-    def _let_sight_pass(self) -> None:
-        """Rays stop at the site's solid parts only: one sees past railings."""
+    def _set_ray_filters(self) -> None:
+        """Let rays stop at the site's solid parts only, as railings can be seen through."""
         for bodies in (*self._floors.values(), *self._decks.values(), [self._robot_body]):
             for body in bodies:
                 solid = body != self._robot_body

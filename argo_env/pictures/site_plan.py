@@ -1,4 +1,4 @@
-"""A site as a picture: the plans of its floors, and where what is wrong with it shows."""
+"""A picture of a site: plans of its floors, and marks at its flaws."""
 
 import io
 import math
@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from argo_env.navigation.raster import CELL
-from argo_env.pictures.drawing.floors import plans_of
+from argo_env.pictures.drawing.floors import floor_plans
+from argo_env.pictures.drawing.label_placement import LabelPlacer, draw_plate
 from argo_env.pictures.drawing.sheet import (
     FINER,
     FOOT,
@@ -24,57 +25,60 @@ from argo_env.pictures.drawing.sheet import (
     font,
     make_sheet,
 )
-from argo_env.pictures.drawing.spots import Spots, draw_plate
-from argo_env.pictures.drawing.style import STYLES, draw_headline, draw_length, paint_disc
+from argo_env.pictures.drawing.style import STYLES, draw_headline, draw_length_scale, paint_disc
 from argo_env.planning.flaws import Flaw, Standing
 from argo_env.site import Site
 
 _RADIUS = 9.0  # px of a checkpoint's disc
-_FACE = 15.0  # px that a checkpoint's face is shown to look
+_FACE = 15.0  # px, length of the line that shows a checkpoint's direction
 _STATION = 6.0  # px from the middle of a dock's mark to its sides
 _FLAW = 10.0  # px from the middle of a flaw's mark to its corners
 _LEFT = 16.0 * FINER
 _LINE = 17 * FINER  # px from one line of text to the next
-_SWEPT = 4  # cells from the middle of the robot that it covers about
-_LEAST = 5  # cells: narrower pieces of deck are no place for a robot, reached or not
-_HATCH = 9 * FINER  # px from line to line
+_SWEPT = 4  # cells about the robot's middle that it covers approximately
+_MIN_WIDTH = 5  # cells; narrower pieces of deck are too small for a robot, and not hatched
+_HATCH = 9 * FINER  # px between the lines of a hatch
 _REACHED, _UNREACHED, _RED = (52, 168, 110), (205, 50, 50), (190, 24, 24)
 
 
-def draw_site(site: Site, flaws: Sequence[Flaw] = (), standing: Standing | None = None) -> bytes:
-    """A PNG of the floors side by side, with checkpoints, docking stations, places and stairs.
+def draw_site_plan(
+    site: Site, flaws: Sequence[Flaw] = (), standing: Standing | None = None
+) -> bytes:
+    """Return a PNG of the floors with checkpoints, docking stations, places and stairs.
 
-    Flaws are numbered where they show, and said below; with `standing`, which deck can be reached
-    is shaded, and which can't is hatched, if any docking station is of use.
+    Flaws are numbered at their marks, and described below the plans. With `standing`, the reachable
+    part of the decks is shaded and the unreachable part hatched, if a docking station is usable.
     """
-    sheet = make_sheet(plans_of(site))
+    sheet = make_sheet(floor_plans(site))
     image = sheet.image.copy()
     shaded = standing is not None and standing.first_dock is not None
     if standing is not None and shaded:
         for number in sheet.panels:
             _shade(image, sheet, number, standing)
     draw = ImageDraw.Draw(image)
-    spots = Spots(sheet)
+    labels = LabelPlacer(sheet)
     numbers: dict[tuple[int, float, float], str] = {}
     for k, flaw in enumerate(flaws, start=1):
         for mark in flaw.marks:
-            numbers.setdefault((mark.floor, *_at(sheet, mark.x, mark.y, mark.floor)), str(k))
+            numbers.setdefault(
+                (mark.floor, *_pixel_within(sheet, mark.x, mark.y, mark.floor)), str(k)
+            )
     for _, x, y in numbers:
-        spots.take((x, y), 3 * FINER, 3 * FINER)
-    _draw_things(draw, sheet, spots, site)
+        labels.occupy((x, y), 3 * FINER, 3 * FINER)
+    _draw_marks(draw, sheet, labels, site)
     for (floor, x, y), text in numbers.items():
-        _draw_flaw(draw, spots, (x, y), floor, text)
+        _draw_flaw(draw, labels, (x, y), floor, text)
     wrong = f": {len(flaws)} error{'s' if len(flaws) > 1 else ''}" if flaws else ""
     draw_headline(draw, f"{site.spec.title} ({site.name}){wrong}")
     _draw_north(draw)
     _draw_legend(draw, sheet, bool(site.places), shaded, bool(flaws))
     content = io.BytesIO()
-    _with_text(image, flaws).reduce(FINER).save(content, "png")
+    _add_flaw_texts(image, flaws).reduce(FINER).save(content, "png")
     return content.getvalue()
 
 
 def _shade(image: Image.Image, sheet: FloorSheet, number: int, standing: Standing) -> None:
-    """Shades what can be reached of a floor, and hatches what can't."""
+    """Shade the reachable part of a floor, and hatch the unreachable one."""
     from scipy.ndimage import binary_dilation, binary_opening
 
     surface, site = standing.lattice.surface, standing.site
@@ -88,7 +92,7 @@ def _shade(image: Image.Image, sheet: FloorSheet, number: int, standing: Standin
     middles[surface.i[cells], surface.j[cells]] = True
     across = np.hypot(*np.mgrid[-_SWEPT : _SWEPT + 1, -_SWEPT : _SWEPT + 1])
     reached = binary_dilation(middles, across <= _SWEPT + 0.5) & deck
-    unreached = binary_opening(deck & ~reached, np.ones((_LEAST, _LEAST), dtype=bool))
+    unreached = binary_opening(deck & ~reached, np.ones((_MIN_WIDTH, _MIN_WIDTH), dtype=bool))
     panel = sheet.panels[number]
     rows, columns = np.mgrid[0 : panel.height, 0 : panel.width]
     stripes = (rows + columns) % _HATCH < 2 * FINER
@@ -107,7 +111,7 @@ def _shade(image: Image.Image, sheet: FloorSheet, number: int, standing: Standin
 def _in_panel(
     cells: NDArray[np.bool_], panel: Panel, scale: float, origin: tuple[float, float]
 ) -> NDArray[np.bool_]:
-    """Cells of a grid that begins at `origin` (m) as the pixels of a panel."""
+    """Return a mask of a panel's pixels from a mask of cells, whose grid begins at `origin` (m)."""
     x0, _, _, y1 = panel.plan.bounds
     x = x0 + (np.arange(panel.width) + 0.5) / scale
     y = y1 - (np.arange(panel.height) + 0.5) / scale
@@ -118,83 +122,87 @@ def _in_panel(
     return np.asarray(cells[i[None, :], j[:, None]] & inside)
 
 
-def _at(sheet: FloorSheet, x: float, y: float, floor: int) -> Pixel:
-    """Where a point (m) is, or the edge of its floor that is nearest to what lies outside."""
+def _pixel_within(sheet: FloorSheet, x: float, y: float, floor: int) -> Pixel:
+    """Return the pixel of a point (m), or the nearest one in its floor's panel."""
     panel, margin = sheet.panels[floor], _STATION * FINER
-    px, py = sheet.at(x, y, floor)
+    px, py = sheet.pixel_at(x, y, floor)
     return (
         min(max(px, panel.left + margin), panel.left + panel.width - margin),
         min(max(py, panel.top + margin), panel.top + panel.height - margin),
     )
 
 
-def _draw_things(draw: ImageDraw.ImageDraw, sheet: FloorSheet, spots: Spots, site: Site) -> None:
-    """Docking stations, places, checkpoints and the names of stairs."""
+def _draw_marks(
+    draw: ImageDraw.ImageDraw, sheet: FloorSheet, labels: LabelPlacer, site: Site
+) -> None:
+    """Draw docking stations, places, checkpoints and the names of stairs."""
     lowest = site.spec.floors[0].number
     named: list[tuple[Pixel, int, str]] = []
     for number, dock in site.docks.items():
-        x, y = place = _at(sheet, dock.x, dock.y, lowest)
+        x, y = position = _pixel_within(sheet, dock.x, dock.y, lowest)
         r = _STATION * FINER
-        spots.take(place, r, r)
+        labels.occupy(position, r, r)
         draw.rectangle((x - r, y - r, x + r, y + r), fill=INK, outline=PAPER, width=FINER)
-        named.append((place, lowest, f"dock {number}"))
+        named.append((position, lowest, f"dock {number}"))
     for name, pose in site.places.items():
-        x, y = place = _at(sheet, pose.x, pose.y, lowest)
+        x, y = position = _pixel_within(sheet, pose.x, pose.y, lowest)
         r = _STATION * FINER * 0.7
-        spots.take(place, r, r)
+        labels.occupy(position, r, r)
         draw.ellipse((x - r, y - r, x + r, y + r), fill=PAPER, outline=INK, width=2 * FINER)
-        named.append((place, lowest, name))
+        named.append((position, lowest, name))
     for checkpoint in site.checkpoints:
-        true = _at(sheet, *checkpoint.position[:2], checkpoint.floor)
+        true = _pixel_within(sheet, *checkpoint.position[:2], checkpoint.floor)
         size = (_RADIUS + 1.0) * FINER
-        place = spots.nearest(true, size, size, checkpoint.floor)
-        if place != true:
-            draw.line([true, place], fill=STYLES["open"].rim, width=FINER)
+        position = labels.reserve_nearest(true, size, size, checkpoint.floor)
+        if position != true:
+            draw.line([true, position], fill=STYLES["open"].rim, width=FINER)
         _draw_face(draw, true, checkpoint.yaw)
-        paint_disc(draw, place, _RADIUS, "open", str(checkpoint.id))
+        paint_disc(draw, position, _RADIUS, "open", str(checkpoint.id))
     named += _stairs(sheet, site)
-    for place, floor, name in named:
-        draw_plate(draw, spots, place, name, floor)
+    for position, floor, name in named:
+        draw_plate(draw, labels, position, name, floor)
 
 
 def _stairs(sheet: FloorSheet, site: Site) -> Iterator[tuple[Pixel, int, str]]:
-    """Where stairs begin, and their names, on each floor that they lead up from."""
+    """Yield the foot and the name of stairs, on each floor that they lead up from."""
     for tower in site.spec.towers:
         for floor in site.spec.floors[:-1]:
             if tower.flights:
                 x, y = min(tower.flights, key=lambda flight: flight.foot[2]).foot[:2]
-                yield _at(sheet, x, y, floor.number), floor.number, tower.name
+                yield _pixel_within(sheet, x, y, floor.number), floor.number, tower.name
 
 
-def _draw_face(draw: ImageDraw.ImageDraw, place: Pixel, yaw: float) -> None:
-    """A line from a checkpoint to where its face looks."""
+def _draw_face(draw: ImageDraw.ImageDraw, position: Pixel, yaw: float) -> None:
+    """Draw a line from a checkpoint in the direction of its face."""
     end = (
-        place[0] + _FACE * FINER * math.cos(yaw),
-        place[1] - _FACE * FINER * math.sin(yaw),
+        position[0] + _FACE * FINER * math.cos(yaw),
+        position[1] - _FACE * FINER * math.sin(yaw),
     )
-    draw.line([place, end], fill=STYLES["open"].rim, width=2 * FINER)
+    draw.line([position, end], fill=STYLES["open"].rim, width=2 * FINER)
 
 
-def _draw_flaw(draw: ImageDraw.ImageDraw, spots: Spots, true: Pixel, floor: int, text: str) -> None:
-    """A point where a flaw shows, and its number beside it."""
+def _draw_flaw(
+    draw: ImageDraw.ImageDraw, labels: LabelPlacer, true: Pixel, floor: int, text: str
+) -> None:
+    """Draw a point at a flaw, with its number beside it."""
     size = _FLAW * FINER
-    place = spots.beside(true, size, size, floor, 4.0 * FINER)
-    draw.line([true, place], fill=_RED, width=2 * FINER)
+    position = labels.reserve_beside(true, size, size, floor, 4.0 * FINER)
+    draw.line([true, position], fill=_RED, width=2 * FINER)
     r = 4.0 * FINER
     x, y = true
     draw.ellipse((x - r, y - r, x + r, y + r), fill=_RED, outline=PAPER, width=FINER)
-    _paint_flaw(draw, place, text)
+    _paint_flaw(draw, position, text)
 
 
-def _paint_flaw(draw: ImageDraw.ImageDraw, place: Pixel, text: str) -> None:
-    (x, y), r = place, _FLAW * FINER
+def _paint_flaw(draw: ImageDraw.ImageDraw, position: Pixel, text: str) -> None:
+    (x, y), r = position, _FLAW * FINER
     box = (x - r, y - r, x + r, y + r)
     draw.rounded_rectangle(box, 3 * FINER, fill=_RED, outline=PAPER, width=FINER)
-    draw.text(place, text, fill=PAPER, font=font(13), anchor="mm")
+    draw.text(position, text, fill=PAPER, font=font(13), anchor="mm")
 
 
 def _draw_north(draw: ImageDraw.ImageDraw) -> None:
-    """An arrow to the north, at the upper right."""
+    """Draw an arrow to the north, at the upper right."""
     x, y = SIZE[0] * FINER - _LEFT - 6 * FINER, HEAD * FINER / 2
     high, wide = 12 * FINER, 6 * FINER
     draw.polygon(
@@ -206,11 +214,11 @@ def _draw_north(draw: ImageDraw.ImageDraw) -> None:
 def _draw_legend(
     draw: ImageDraw.ImageDraw, sheet: FloorSheet, places: bool, shaded: bool, flaws: bool
 ) -> None:
-    """What the marks mean, and the scale."""
+    """Draw the legend of the marks, and the scale."""
     y, face, x = (SIZE[1] - FOOT / 2) * FINER, font(12), _LEFT
     r = 7 * FINER
 
-    def word(text: str) -> None:
+    def draw_entry(text: str) -> None:
         nonlocal x
         draw.text((x + 2 * r, y), text, fill=SOFT, font=face, anchor="lm")
         x += 2 * r + draw.textlength(text, font=face) + 16 * FINER
@@ -218,13 +226,13 @@ def _draw_legend(
     _draw_face(draw, (x + r / 2, y), 0.0)
     paint_disc(draw, (x + r / 2, y), 7.0, "open", "3")
     x += r
-    word("checkpoint, and where it looks")
+    draw_entry("checkpoint, and where it looks")
     draw.rectangle((x, y - r + FINER, x + 2 * r - 2 * FINER, y + r - FINER), fill=INK)
     x += r / 2
-    word("docking station")
+    draw_entry("docking station")
     if places:
         draw.ellipse((x, y - r / 1.5, x + 1.33 * r, y + r / 1.5), PAPER, INK, 2 * FINER)
-        word("place")
+        draw_entry("place")
     if shaded:
         for ink, text in ((_REACHED, "can be reached"), (_UNREACHED, "can't be reached")):
             pale = tuple(round(255 - (255 - c) * 0.35) for c in ink)
@@ -233,16 +241,16 @@ def _draw_legend(
             if ink is _UNREACHED:
                 draw.line((x, y + r, x + 2 * r, y - r), fill=ink, width=2 * FINER)
             x += r
-            word(text)
+            draw_entry(text)
     if flaws:
         _paint_flaw(draw, (x + r, y), "1")
         x += r
-        word("error, see below")
-    draw_length(draw, sheet, SIZE[0] * FINER - _LEFT, y)
+        draw_entry("error, see below")
+    draw_length_scale(draw, sheet, SIZE[0] * FINER - _LEFT, y)
 
 
-def _with_text(image: Image.Image, flaws: Sequence[Flaw]) -> Image.Image:
-    """The picture with the flaws in words below it."""
+def _add_flaw_texts(image: Image.Image, flaws: Sequence[Flaw]) -> Image.Image:
+    """Return the picture with the messages of the flaws below it."""
     draw = ImageDraw.Draw(image)
     lines = []
     for k, flaw in enumerate(flaws, start=1):
@@ -263,7 +271,7 @@ def _with_text(image: Image.Image, flaws: Sequence[Flaw]) -> Image.Image:
 
 
 def _wrapped(draw: ImageDraw.ImageDraw, text: str, room: float) -> Iterator[str]:
-    """The text in lines of no more than `room` px, cut between words."""
+    """Yield the text in lines of no more than `room` px, broken between words."""
     line = ""
     for word in text.split():
         longer = f"{line} {word}".strip()

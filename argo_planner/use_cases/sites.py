@@ -57,9 +57,10 @@ def make_site_report(site: OpenedSite) -> SiteReport:
 
 def draw_report(site: OpenedSite, report: SiteReport) -> bytes:
     """Return a PNG of the site that marks its flaws."""
-    from argo_env.pictures.site_plan import draw_site  # rarely needed, and slow to import
+    # The import is slow, and few commands need the picture.
+    from argo_env.pictures.site_plan import draw_site_plan
 
-    return draw_site(site.site, report.flaws, report.standing)
+    return draw_site_plan(site.site, report.flaws, report.standing)
 
 
 def describe_site(site: OpenedSite, name: str) -> str:

@@ -1,4 +1,4 @@
-"""The pictures of `docs/evaluating.md`: mission #1 with less time than it has, and several faults.
+"""Pictures of `docs/evaluating.md`: mission #1 with a lower time limit, and several faults.
 
 python -m tests.pictures.evaluation docs/images
 """
@@ -29,8 +29,8 @@ UMAD = Path(__file__).parents[2] / "scenarios" / "umad"
 FAULTS = ("connection_loss", "drive_dysfunction", "emergency_stop", "low_battery", "worn_battery")
 
 
-def evaluated(worlds: int) -> EvaluationResults:
-    """Mission #1 as it is written and in the best order, with less time than it has."""
+def evaluate_mission(worlds: int) -> EvaluationResults:
+    """Evaluate mission #1 as written and in the best order, with a lower time limit."""
     site = open_site("umad").prepare()
     script = UMAD / "missions" / "mission_1.txt"
     upload = Upload(script.name, script.read_bytes())
@@ -58,7 +58,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--worlds", type=int, default=60)
     given = parser.parse_args(arguments)
-    results = evaluated(given.worlds)
+    results = evaluate_mission(given.worlds)
     first, second = results.plan.plans
     rates = Figure(figsize=(11, 4.6), layout="constrained")
     left, right = rates.subplots(1, 2)

@@ -1,10 +1,11 @@
-"""A picture of the portfolio at work: which solver has its turn when, and what is known by then.
+"""A picture of a search by the portfolio: the turns of its solvers, best route and bound over time.
 
     python -m tests.pictures.route_portfolio docs/images/route-portfolio.png
     python -m tests.pictures.route_portfolio out.png --time-limit 10 --workers 1
 
-Searches one problem of each kind, made from random places, and draws the solvers' turns above the
-curve of the best route and its bound. Nothing else should run on the machine.
+The command searches for routes of one problem of each kind, made from random positions, and draws
+the solvers' turns above the curve of the best route and its bound. Nothing else should run on the
+machine.
 """
 
 import argparse
@@ -28,14 +29,14 @@ CASES = {
 }
 
 
-def problem_of(kind: str, count: int) -> RouteProblem:
-    """A random problem of that kind (see `benchmarks.routes_limits`)."""
+def make_problem(kind: str, count: int) -> RouteProblem:
+    """Return a random problem of that kind (see `benchmarks.routes_limits`)."""
     rng = np.random.default_rng(count)
     return KINDS[kind](random_problem(count, rng), rng)
 
 
-def draw(name: str, made: RouteSuggestion, turns: Axes, curve: Axes) -> None:
-    """The turns of one search, and below them what was known when."""
+def draw_search(name: str, made: RouteSuggestion, turns: Axes, curve: Axes) -> None:
+    """Draw the turns of one search, and below them its best route and bound over time."""
     solvers = list(dict.fromkeys(turn.solver for turn in made.turns))
     end = max((turn.end for turn in made.turns), default=0.0)
     for turn in made.turns:
@@ -44,8 +45,8 @@ def draw(name: str, made: RouteSuggestion, turns: Axes, curve: Axes) -> None:
         turns.barh(row, length, left=turn.begin, color=f"C{row}", height=0.7)
     turns.set_yticks(range(len(solvers)), solvers, fontsize=8)
     turns.invert_yaxis()
-    said = "proven" if made.proven else f"gap {made.gap:.1%}" if made.gap is not None else "none"
-    turns.set_title(f"{name}: {said} after {end:.1f} s", fontsize=10)
+    result = "proven" if made.proven else f"gap {made.gap:.1%}" if made.gap is not None else "none"
+    turns.set_title(f"{name}: {result} after {end:.1f} s", fontsize=10)
     turns.tick_params(axis="x", labelsize=8)
     curve.tick_params(labelsize=8)
     curve.set_xlabel("s", fontsize=8)
@@ -79,12 +80,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     figure, axes = plt.subplots(
         6, 2, figsize=(11, 13), height_ratios=[1.2, 1] * 3, sharex="none", layout="constrained"
     )
-    suggest_route(problem_of("plain", 3))  # libraries are imported now
+    suggest_route(make_problem("plain", 3))  # imports the libraries
     for number, (name, (kind, count)) in enumerate(CASES.items()):
-        made = suggest_route(problem_of(kind, count), given.time_limit, workers=given.workers)
+        made = suggest_route(make_problem(kind, count), given.time_limit, workers=given.workers)
         row, column = 2 * (number // 2), number % 2
         axes[row + 1, column].sharex(axes[row, column])
-        draw(name, made, axes[row, column], axes[row + 1, column])
+        draw_search(name, made, axes[row, column], axes[row + 1, column])
     axes[1, 0].legend(fontsize=8)
     figure.savefig(given.output, dpi=110)
 

@@ -1,1 +1,1 @@
-"""The parts that drawn plans of sites are made of: floors, ways, marks, legends."""
+"""Parts of drawn plans of sites: floors, paths, marks and legends."""

@@ -1,4 +1,4 @@
-"""Floors as they are drawn behind routes: the site's own, or those of sites that do not exist."""
+"""Floor plans behind routes, of a real site or of sites that do not exist."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -9,26 +9,29 @@ from argo_env.site import Site
 from argo_env.site.shapes import Role
 
 Rectangle = tuple[float, float, float, float]
-"""x0, y0, x1, y1 in m"""
+"""bounds x0, y0, x1, y1 in m"""
 Shapes = tuple[tuple[Role, tuple[tuple[Point, ...], ...]], ...]
-"""outlines in m, what lies below first"""
+"""outlines in m, the lower ones first"""
 
-_GROUND = 1.2  # m of bare ground that is shown around what stands on it
+_GROUND = 1.2  # m of bare ground that is shown around what is on it
 _EDGE = 0.4  # m
 
 
 @dataclass(frozen=True)
 class FloorPlan:
-    """What is on a floor, seen from above."""
+    """Outlines of what is on a floor, seen from above."""
 
     number: int
     bounds: Rectangle
     shapes: Shapes
 
 
-def plans_of(site: Site) -> tuple[FloorPlan, ...]:
-    """The floors of a site. All upper ones have the same bounds, so that what stands above one
-    another is in the same place of each; the lowest one has more where there is ground around."""
+def floor_plans(site: Site) -> tuple[FloorPlan, ...]:
+    """Return the plans of the floors of a site.
+
+    All upper floors have the same bounds, so that what is above one another is at the same position
+    in each panel; the lowest one is larger where there is ground around.
+    """
     shapes = {floor.number: _shapes(site, floor.number) for floor in site.spec.floors}
     edges = {number: _bounds(parts) for number, parts in shapes.items()}
     lowest = min(shapes)
@@ -41,9 +44,11 @@ def plans_of(site: Site) -> tuple[FloorPlan, ...]:
 
 
 @lru_cache(maxsize=8)
-def aisles(width: float, depth: float, floors: int, ends: int = 1) -> tuple[FloorPlan, ...]:
-    """Floors of one open deck each, from (0, 0) on, with stairs all along the side x = 0, and along
-    x = width where there are stairs at two ends."""
+def aisle_plans(width: float, depth: float, floors: int, ends: int = 1) -> tuple[FloorPlan, ...]:
+    """Return the plans of floors with one open deck each, from (0, 0) on.
+
+    Stairs are all along the side x = 0, and along x = width if there are stairs at two ends.
+    """
     deck = _box((-0.6, -0.6, width + 0.6, depth + 0.6))
     edges = [-2.1 + 0.3 * k for k in range(5)]
     edges += [width + 0.6 + 0.3 * k for k in range(5) if ends > 1]
@@ -53,8 +58,8 @@ def aisles(width: float, depth: float, floors: int, ends: int = 1) -> tuple[Floo
     return tuple(FloorPlan(number, bounds, shapes) for number in range(1, floors + 1))
 
 
-def open_floors(points: Sequence[Point], numbers: Iterable[int]) -> tuple[FloorPlan, ...]:
-    """Floors of which nothing is known but the points that are on one of them."""
+def empty_floor_plans(points: Sequence[Point], numbers: Iterable[int]) -> tuple[FloorPlan, ...]:
+    """Return plans without outlines, whose bounds contain the points."""
     low = [min(p[axis] for p in points) for axis in (0, 1)]
     high = [max(p[axis] for p in points) for axis in (0, 1)]
     margin = 0.08 * max(high[0] - low[0], high[1] - low[1], 1.0)
@@ -64,15 +69,15 @@ def open_floors(points: Sequence[Point], numbers: Iterable[int]) -> tuple[FloorP
 
 def _shapes(site: Site, number: int) -> Shapes:
     z = next(f.z for f in site.spec.floors if f.number == number)
-    found: dict[Role, list[tuple[Point, ...]]] = {role: [] for role in DRAWING_ORDER}
+    outlines: dict[Role, list[tuple[Point, ...]]] = {role: [] for role in DRAWING_ORDER}
     for element in site.elements:
         solids = on_floor(element, z, site.spec.storey)
-        found[element.role] += [tuple(outline(solid, (0, 1))) for solid in solids]
-    return tuple((role, tuple(shapes)) for role, shapes in found.items() if shapes)
+        outlines[element.role] += [tuple(outline(solid, (0, 1))) for solid in solids]
+    return tuple((role, tuple(shapes)) for role, shapes in outlines.items() if shapes)
 
 
 def _bounds(shapes: Shapes) -> Rectangle:
-    """What is shown of a floor: what stands there, with some ground around it if there is any."""
+    """Return the bounds of what is on a floor, with some ground around it if there is any."""
     ground = [p for role, parts in shapes if role is Role.GROUND for part in parts for p in part]
     above = [p for role, parts in shapes if role is not Role.GROUND for part in parts for p in part]
     if ground:

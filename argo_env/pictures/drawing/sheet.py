@@ -1,4 +1,4 @@
-"""A sheet of floors: where each floor's plan is in a picture, and the plans drawn there."""
+"""A sheet of floors: the position of each floor's plan in a picture, with the plans drawn."""
 
 import math
 from collections.abc import Sequence
@@ -7,16 +7,16 @@ from functools import lru_cache
 
 from PIL import Image, ImageDraw, ImageFont
 
-from argo_env.pictures.drawing.floors import FloorPlan, plans_of
+from argo_env.pictures.drawing.floors import FloorPlan, floor_plans
 from argo_env.planning import open_site
 from argo_env.site.shapes import Role
 
 SIZE = (1280, 720)
-"""px of a picture"""
+"""width and height of a picture in px"""
 FINER = 2
-"""a picture is drawn so many times larger and then reduced, for smooth edges"""
+"""factor by which a picture is drawn larger and then reduced, for smooth edges"""
 HEAD, FOOT = 40, 40
-"""px above the floors for the headline, and below them for the legend"""
+"""height in px of the headline above the floors, and of the legend below them"""
 INK, SOFT, PAPER = (28, 39, 51), (91, 107, 124), (255, 255, 255)
 _TITLE = 20  # px above each floor
 _GAP = 12  # px
@@ -24,7 +24,7 @@ _LARGEST = 60.0  # px for 1 m, at most
 _WIDTH, _HEIGHT = FINER * SIZE[0], FINER * (SIZE[1] - HEAD - FOOT)  # of all floors
 _PANEL, _FRAME = (248, 249, 250), (205, 212, 219)
 
-# Paler than in a report, as what stands out here are the checkpoints and the way.
+# Colours are paler than in a report, as the checkpoints and the path must stand out.
 _COLOURS: dict[Role, tuple[str, str]] = {
     Role.GROUND: ("#f4f2ec", "#f4f2ec"),
     Role.DECK: ("#e3e8ed", "#ccd4dc"),
@@ -39,7 +39,7 @@ _COLOURS: dict[Role, tuple[str, str]] = {
 
 Font = ImageFont.ImageFont | ImageFont.FreeTypeFont
 Pixel = tuple[float, float]
-"""x, y in px of the finer picture"""
+"""x and y in px of the finer picture"""
 
 
 @dataclass(frozen=True)
@@ -55,25 +55,25 @@ class Panel:
 
 @dataclass(frozen=True)
 class FloorSheet:
-    """Floors side by side, all to the same scale, and north up."""
+    """Floors side by side, all on the same scale, with north up."""
 
     panels: dict[int, Panel]
-    """by the number of the floor"""
+    """panels by the number of the floor"""
     scale: float
-    """px of the finer picture for 1 m"""
+    """size of 1 m in px of the finer picture"""
     image: Image.Image
-    """the plans, FINER times as large as a picture; not to be drawn on"""
+    """drawn plans, FINER times as large as a picture; do not draw on it"""
 
-    def at(self, x: float, y: float, floor: int) -> Pixel:
-        """Where a point (m) of a floor is."""
+    def pixel_at(self, x: float, y: float, floor: int) -> Pixel:
+        """Return the pixel of a point (m) of a floor."""
         panel = self.panels[floor]
         x0, _, _, y1 = panel.plan.bounds
         return panel.left + (x - x0) * self.scale, panel.top + (y1 - y) * self.scale
 
 
 def make_sheet(plans: Sequence[FloorPlan], dim: Sequence[int] = ()) -> FloorSheet:
-    """The sheet of these floors, in their order; those of `dim` are pale."""
-    grid = max((_Grid.of(plans, n) for n in range(1, len(plans) + 1)), key=lambda g: g.scale)
+    """Return the sheet of these floors, in their order; those numbered in `dim` are pale."""
+    grid = max((_Grid.arrange(plans, n) for n in range(1, len(plans) + 1)), key=lambda g: g.scale)
     scale = grid.scale
     beside = (_WIDTH - scale * sum(grid.widths)) / (len(grid.widths) + 1)
     below = (_HEIGHT - scale * sum(grid.heights)) / len(grid.heights) - FINER * _TITLE
@@ -92,7 +92,7 @@ def make_sheet(plans: Sequence[FloorPlan], dim: Sequence[int] = ()) -> FloorShee
 
 
 def font(size: float) -> Font:
-    """The font of pictures, for a height in px of the picture."""
+    """Return the font of pictures, for a height in px of the picture."""
     return _font(round(size * FINER))
 
 
@@ -110,14 +110,14 @@ class _Grid:
     heights: tuple[float, ...]
 
     @classmethod
-    def of(cls, plans: Sequence[FloorPlan], columns: int) -> "_Grid":
+    def arrange(cls, plans: Sequence[FloorPlan], columns: int) -> "_Grid":
         rows = tuple(tuple(plans[k : k + columns]) for k in range(0, len(plans), columns))
         widths = tuple(max(_width(plan) for plan in plans[k::columns]) for k in range(columns))
         return cls(rows, widths, tuple(max(map(_height, row)) for row in rows))
 
     @property
     def scale(self) -> float:
-        """px of the finer picture for 1 m, as large as fits."""
+        """Largest scale with which the floors fit, in px of the finer picture for 1 m."""
         across = (_WIDTH - FINER * _GAP * (len(self.widths) + 1)) / sum(self.widths)
         down = (_HEIGHT - FINER * (_TITLE + _GAP) * len(self.heights)) / sum(self.heights)
         return min(across, down, FINER * _LARGEST)
@@ -132,7 +132,7 @@ def _height(plan: FloorPlan) -> float:
 
 
 def _draw(image: Image.Image, panel: Panel, scale: float, dim: bool) -> None:
-    """The plan of a floor in its panel, with its number above."""
+    """Draw the plan of a floor in its panel, with its number above."""
     x0, _, _, y1 = panel.plan.bounds
     part = Image.new("RGB", (panel.width, panel.height), _PANEL)
     draw = ImageDraw.Draw(part)
@@ -149,18 +149,18 @@ def _draw(image: Image.Image, panel: Panel, scale: float, dim: bool) -> None:
     edge = (panel.left, panel.top, panel.left + panel.width, panel.top + panel.height)
     draw.rectangle(edge, outline=_FRAME, width=FINER)
     title = f"floor {panel.plan.number}" + (" (not asked for)" if dim else "")
-    place = (panel.left, panel.top - math.ceil(3 * FINER))
-    draw.text(place, title, fill=SOFT if dim else INK, font=font(13), anchor="ls")
+    position = (panel.left, panel.top - math.ceil(3 * FINER))
+    draw.text(position, title, fill=SOFT if dim else INK, font=font(13), anchor="ls")
 
 
 @lru_cache(maxsize=4)  # a sheet takes 11 MB
-def site_sheet(scenario: str, low: int, high: int, asked: tuple[int, ...]) -> FloorSheet:
-    """The floors of a site from `low` to `high`; those that are not asked for are pale."""
+def site_sheet(scenario: str, low: int, high: int, requested: tuple[int, ...]) -> FloorSheet:
+    """Return the floors of a site from `low` to `high`; those that are not `requested` are pale."""
     plans = [plan for plan in _plans(scenario) if low <= plan.number <= high]
-    return make_sheet(plans, [p.number for p in plans if p.number not in asked])
+    return make_sheet(plans, [p.number for p in plans if p.number not in requested])
 
 
-# By name, as a navigator would be kept alive for its plans.
+# The key is a name, as a cache of navigators would keep them alive.
 @lru_cache(maxsize=8)
 def _plans(scenario: str) -> tuple[FloorPlan, ...]:
-    return plans_of(open_site(scenario).site)
+    return floor_plans(open_site(scenario).site)

@@ -1,4 +1,4 @@
-"""Styles of the things on a plan; headline of a picture, and legend and scales below it."""
+"""Styles of marks on a plan, the headline of a picture, its legend and its scales."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -26,20 +26,20 @@ Ink = str | tuple[int, int, int]
 
 ROBOT = (29, 78, 216)
 POINT = 8.0
-"""px from the middle of the sign of a robot that is a point to its corners"""
+"""distance in px from the middle to the corners of the mark of a robot without extent"""
 STAIRS = (15.0, 8.0)
-"""px from the middle of the mark of stairs to its sides, and to its top and bottom"""
+"""half of the width and of the height in px of the mark of stairs"""
 
 
 @dataclass(frozen=True)
 class Style:
-    """The colours of a checkpoint's disc."""
+    """Colours of a checkpoint's disc."""
 
     fill: str
     rim: str
     text: str
     struck: bool = False
-    """whether a line goes through it"""
+    """True if a line goes through the disc"""
 
 
 STYLES = {
@@ -50,14 +50,14 @@ STYLES = {
     "closed": Style("#cbd2d9", "#64707c", "#3c4854", struck=True),
     "outside": Style("#f8f9fa", "#b4bdc6", "#97a2ad"),
 }
-"""By the state of the checkpoint. They differ in lightness too, for prints without colour."""
+"""styles by the state of the checkpoint, with different lightness, for prints without colour"""
 
 
 def paint_disc(
-    draw: ImageDraw.ImageDraw, place: Pixel, radius: float, state: str, name: str
+    draw: ImageDraw.ImageDraw, position: Pixel, radius: float, state: str, name: str
 ) -> None:
-    """The disc of a checkpoint with its number; `radius` in px of the picture."""
-    (x, y), r, style = place, radius * FINER, STYLES[state]
+    """Draw the disc of a checkpoint with its number; `radius` in px of the picture."""
+    (x, y), r, style = position, radius * FINER, STYLES[state]
     draw.ellipse((x - r, y - r, x + r, y + r), style.fill, style.rim, round(1.5 * FINER))
     if style.struck:
         half = 0.7 * r
@@ -66,41 +66,45 @@ def paint_disc(
     draw.text((x, y), name, style.text, font(size), "mm")
 
 
-def paint_station(draw: ImageDraw.ImageDraw, place: Pixel, half: float) -> None:
-    """The square of a station; `half` of its side in px of the picture."""
-    (x, y), r = place, half * FINER
+def paint_station(draw: ImageDraw.ImageDraw, position: Pixel, half: float) -> None:
+    """Draw the square of a station; `half` of its side in px of the picture."""
+    (x, y), r = position, half * FINER
     draw.rectangle((x - r, y - r, x + r, y + r), fill=INK, outline=PAPER, width=FINER)
 
 
-def paint_ring(draw: ImageDraw.ImageDraw, place: Pixel, radius: float) -> None:
-    """The ring about a checkpoint that was chosen; `radius` of its disc in px of the picture."""
+def paint_ring(draw: ImageDraw.ImageDraw, position: Pixel, radius: float) -> None:
+    """Draw the ring about a chosen checkpoint; `radius` of its disc in px of the picture."""
     for wider, ink in ((5.0, PAPER), (4.5, ROBOT), (1.5, PAPER)):
-        disc(draw, place, (radius + wider) * FINER, ink)
+        draw_disc(draw, position, (radius + wider) * FINER, ink)
 
 
 def paint_robot(
-    draw: ImageDraw.ImageDraw, place: Pixel, footprint: Footprint, scale: float, heading: float
+    draw: ImageDraw.ImageDraw, position: Pixel, footprint: Footprint, scale: float, heading: float
 ) -> None:
-    """The robot's footprint with its front; `scale` in px of the finer picture for 1 m."""
+    """Draw the robot's footprint with its front; `scale` in px of the finer picture for 1 m."""
     front, rear, wide = (scale * v for v in (footprint.front, footprint.rear, footprint.half_width))
     for rim, ink in ((1.5 * FINER, PAPER), (0.0, ROBOT)):
         x0, x1, y = -rear - rim, front + rim, wide + rim
         body = ((x0, -y), (x1, -y), (x1, y), (x0, y))
-        draw.polygon(turned(body, place, -heading), fill=ink)
+        draw.polygon(rotate_shape(body, position, -heading), fill=ink)
     nose = ((0.1 * front, -0.6 * wide), (0.75 * front, 0.0), (0.1 * front, 0.6 * wide))
-    draw.polygon(turned(nose, place, -heading), fill=PAPER)
+    draw.polygon(rotate_shape(nose, position, -heading), fill=PAPER)
 
 
-def paint_point(draw: ImageDraw.ImageDraw, place: Pixel) -> None:
-    """The sign of a robot that is a point: a diamond."""
+def paint_point(draw: ImageDraw.ImageDraw, position: Pixel) -> None:
+    """Draw a diamond, which stands for a robot without extent."""
     for share, ink in ((1.3, PAPER), (1.0, ROBOT), (0.4, PAPER)):
         r = share * POINT * FINER
-        draw.polygon(turned(((-r, 0.0), (0.0, -r), (r, 0.0), (0.0, r)), place, 0.0), fill=ink)
+        draw.polygon(
+            rotate_shape(((-r, 0.0), (0.0, -r), (r, 0.0), (0.0, r)), position, 0.0), fill=ink
+        )
 
 
-def paint_stairs(draw: ImageDraw.ImageDraw, place: Pixel, floor: int, up: bool, ink: Ink) -> None:
-    """The mark of stairs to a floor above or below."""
-    x, y = place
+def paint_stairs(
+    draw: ImageDraw.ImageDraw, position: Pixel, floor: int, up: bool, ink: Ink
+) -> None:
+    """Draw the mark of stairs to a floor above or below."""
+    x, y = position
     wide, high = STAIRS[0] * FINER, STAIRS[1] * FINER
     draw.rounded_rectangle((x - wide, y - high, x + wide, y + high), high, fill=ink)
     rise = -4.5 * FINER if up else 4.5 * FINER
@@ -109,82 +113,89 @@ def paint_stairs(draw: ImageDraw.ImageDraw, place: Pixel, floor: int, up: bool, 
     draw.text((x + 6.5 * FINER, y), str(floor), fill=PAPER, font=font(12), anchor="mm")
 
 
-def disc(draw: ImageDraw.ImageDraw, place: Pixel, r: float, ink: Ink) -> None:
-    """A disc; `r` in px of the finer picture."""
-    x, y = place
+def draw_disc(draw: ImageDraw.ImageDraw, position: Pixel, r: float, ink: Ink) -> None:
+    """Draw a disc; `r` in px of the finer picture."""
+    x, y = position
     draw.ellipse((x - r, y - r, x + r, y + r), fill=ink)
 
 
-def turned(shape: Sequence[Pixel], place: Pixel, turn: float, scale: float = 1.0) -> list[Pixel]:
-    """The shape about (0, 0) turned by `turn` (rad, clockwise in the picture), at a place."""
+def rotate_shape(
+    shape: Sequence[Pixel], position: Pixel, turn: float, scale: float = 1.0
+) -> list[Pixel]:
+    """Return the shape about (0, 0), turned by `turn` (rad, clockwise in the picture) and moved.
+
+    `position` is where its origin is moved, `scale` the factor of its size.
+    """
     cos, sin = scale * math.cos(turn), scale * math.sin(turn)
-    return [(place[0] + cos * x - sin * y, place[1] + sin * x + cos * y) for x, y in shape]
+    return [(position[0] + cos * x - sin * y, position[1] + sin * x + cos * y) for x, y in shape]
 
 
 _ROBOT = 18.0 * FINER  # px long
 _LEFT = 16.0 * FINER
-_BAR = 90.0 * FINER  # px long, of times
+_BAR = 90.0 * FINER  # px, length of the time scale
 _BARS = (1, 2, 5, 10, 20, 50)
-"""m"""
-_LONGEST = 110.0 * FINER  # px of the bar of lengths
+"""possible lengths of the length scale in m"""
+_LONGEST = 110.0 * FINER  # px, greatest length of the length scale
 
 
 @dataclass(frozen=True)
-class Shown:
-    """What there is in a picture that has to be explained."""
+class LegendContent:
+    """Things in a picture that the legend explains."""
 
     states: Mapping[str, str]
-    """of checkpoints, and what they mean"""
+    """states of checkpoints, and their meanings"""
     chosen: bool
-    """whether one was chosen last"""
+    """True if a checkpoint was chosen last"""
     footprint: Footprint | None
-    """of the robot; None: it is a point"""
+    """footprint of the robot; None for a robot without extent"""
     stairs: bool
-    """whether any were taken"""
+    """True if any were taken"""
     end: float | None
-    """s, the time of the end of the way; None: there is no way"""
+    """time at the end of the path in s; None without a path"""
 
 
 def draw_headline(draw: ImageDraw.ImageDraw, text: str) -> None:
-    """The text above the floors, cut to what fits."""
+    """Draw the text above the floors, shortened until it fits."""
     face, room = font(16), SIZE[0] * FINER - 2 * _LEFT
     while draw.textlength(text, font=face) > room:
         text = shorten(text, len(text) - 1)
     draw.text((_LEFT, HEAD * FINER / 2), text, fill=INK, font=face, anchor="lm")
 
 
-def draw_legend(draw: ImageDraw.ImageDraw, sheet: FloorSheet, shown: Shown) -> None:
-    """What the states and marks mean, and the scales of time and length."""
+def draw_legend(draw: ImageDraw.ImageDraw, sheet: FloorSheet, content: LegendContent) -> None:
+    """Draw the legend of states and marks, and the scales of time and length."""
     x, y = _LEFT, (SIZE[1] - FOOT / 2) * FINER
-    for state, meaning in shown.states.items():
+    for state, meaning in content.states.items():
         paint_disc(draw, (x + 7 * FINER, y), 7.0, state, "")
-        x = _word(draw, meaning, x + 19 * FINER, y)
-    if shown.chosen:
+        x = _draw_entry(draw, meaning, x + 19 * FINER, y)
+    if content.chosen:
         paint_ring(draw, (x + 7 * FINER, y), 4.0)
-        x = _word(draw, "chosen last", x + 20 * FINER, y)
-    if shown.footprint:
-        length = shown.footprint.front + shown.footprint.rear
-        paint_robot(draw, (x + 9 * FINER, y), shown.footprint, _ROBOT / length, 0.0)
+        x = _draw_entry(draw, "chosen last", x + 20 * FINER, y)
+    if content.footprint:
+        length = content.footprint.front + content.footprint.rear
+        paint_robot(draw, (x + 9 * FINER, y), content.footprint, _ROBOT / length, 0.0)
     else:
         paint_point(draw, (x + POINT * FINER, y))
-    x = _word(draw, "robot", x + 22 * FINER, y)
-    if shown.stairs:
+    x = _draw_entry(draw, "robot", x + 22 * FINER, y)
+    if content.stairs:
         paint_stairs(draw, (x + STAIRS[0] * FINER, y), 2, True, colour(0.5))
-        _word(draw, "stairs taken", x + (2 * STAIRS[0] + 4) * FINER, y)
-    right = draw_length(draw, sheet, SIZE[0] * FINER - _LEFT, y) - 22 * FINER
-    if shown.end is not None:
-        _times(draw, right, y, shown.end)
+        _draw_entry(draw, "stairs taken", x + (2 * STAIRS[0] + 4) * FINER, y)
+    right = draw_length_scale(draw, sheet, SIZE[0] * FINER - _LEFT, y) - 22 * FINER
+    if content.end is not None:
+        _draw_time_scale(draw, right, y, content.end)
 
 
-def _word(draw: ImageDraw.ImageDraw, text: str, x: float, y: float) -> float:
-    """Writes it; where the next entry begins."""
+def _draw_entry(draw: ImageDraw.ImageDraw, text: str, x: float, y: float) -> float:
+    """Draw the text, and return the x at which the next entry begins."""
     face = font(12)
     draw.text((x, y), text, fill=SOFT, font=face, anchor="lm")
     return x + draw.textlength(text, font=face) + 14 * FINER
 
 
-def draw_length(draw: ImageDraw.ImageDraw, sheet: FloorSheet, right: float, y: float) -> float:
-    """A bar of some m that ends at the right; where it begins."""
+def draw_length_scale(
+    draw: ImageDraw.ImageDraw, sheet: FloorSheet, right: float, y: float
+) -> float:
+    """Draw a bar of some metres that ends at `right`, and return the x at which it begins."""
     metres = max((m for m in _BARS if m * sheet.scale <= _LONGEST), default=_BARS[0])
     left, tick, face = right - metres * sheet.scale, 4 * FINER, font(12)
     bar = [(left, y - tick), (left, y + tick), (left, y), (right, y), (right, y - tick)]
@@ -194,12 +205,12 @@ def draw_length(draw: ImageDraw.ImageDraw, sheet: FloorSheet, right: float, y: f
     return left - 6 * FINER - draw.textlength(text, font=face)
 
 
-def _times(draw: ImageDraw.ImageDraw, right: float, y: float, end: float) -> None:
-    """The colours of the way from its start to now."""
+def _draw_time_scale(draw: ImageDraw.ImageDraw, right: float, y: float, end: float) -> None:
+    """Draw the colours of the path from its start to now."""
     face, text = font(12), f"{end:.0f} s"
     draw.text((right, y), text, fill=SOFT, font=face, anchor="rm")
     right -= draw.textlength(text, font=face) + 6 * FINER
     left, half = right - _BAR, 3 * FINER
     for k in range(round(_BAR)):
         draw.line((left + k, y - half, left + k, y + half), fill=colour(k / _BAR))
-    draw.text((left - 6 * FINER, y), "way  0 s", fill=SOFT, font=face, anchor="rm")
+    draw.text((left - 6 * FINER, y), "path  0 s", fill=SOFT, font=face, anchor="rm")

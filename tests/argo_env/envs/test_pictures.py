@@ -14,12 +14,12 @@ from argo_env.envs.inspection import InspectEnv
 from argo_env.envs.route import RouteEnv
 from argo_env.envs.route_batch import RouteVectorEnv
 from argo_env.envs.route_instance import make_instance
-from argo_env.pictures.drawing.floors import aisles, open_floors, plans_of
+from argo_env.pictures.drawing.floors import aisle_plans, empty_floor_plans, floor_plans
+from argo_env.pictures.drawing.label_placement import LabelPlacer
+from argo_env.pictures.drawing.path import PathPoint, draw_lines, path_lines
 from argo_env.pictures.drawing.plan import Marker, PlanDrawing, StationMark, draw_plan
 from argo_env.pictures.drawing.sheet import FINER, FOOT, HEAD, SIZE, make_sheet
-from argo_env.pictures.drawing.spots import Spots
 from argo_env.pictures.drawing.style import POINT, ROBOT, STYLES
-from argo_env.pictures.drawing.way import Moment, draw_lines, lines
 from argo_env.pictures.drive import GOAL
 from argo_env.report.track import colour
 from argo_env.robot.spec import Footprint
@@ -32,7 +32,7 @@ SHAPE = (SIZE[1], SIZE[0], 3)
 
 def near(picture, sheet, x, y, floor, radius=12):
     """Return the part of a picture around a point of a floor."""
-    column, row = (round(v / FINER) for v in sheet.at(x, y, floor))
+    column, row = (round(v / FINER) for v in sheet.pixel_at(x, y, floor))
     return picture[row - radius : row + radius, column - radius : column + radius]
 
 
@@ -52,7 +52,7 @@ def draw(sheet, **changed):
         "headline": "10 s",
         "markers": [],
         "stations": [],
-        "way": [Moment(0.0, 15.0, 15.0, 1)],
+        "path": [PathPoint(0.0, 15.0, 15.0, 1)],
         "heading": 0.0,
         "footprint": None,
         "legend": {},
@@ -75,7 +75,7 @@ def test_floors_are_apart_and_in_the_picture(sizes):
     plans = [
         plan
         for number, (width, depth, x) in enumerate(sizes, start=1)
-        for plan in open_floors([(x, x), (x + width, x + depth)], [number])
+        for plan in empty_floor_plans([(x, x), (x + width, x + depth)], [number])
     ]
     sheet = make_sheet(plans)
     assert list(sheet.panels) == list(range(1, len(sizes) + 1))
@@ -88,8 +88,8 @@ def test_floors_are_apart_and_in_the_picture(sizes):
             assert a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] or b[3] <= a[1]
     for panel in sheet.panels.values():
         x0, y0, x1, y1 = panel.plan.bounds
-        assert sheet.at(x0, y1, panel.plan.number) == (panel.left, panel.top)
-        right, bottom = sheet.at(x1, y0, panel.plan.number)
+        assert sheet.pixel_at(x0, y1, panel.plan.number) == (panel.left, panel.top)
+        right, bottom = sheet.pixel_at(x1, y0, panel.plan.number)
         assert abs(right - panel.left - panel.width) <= 1
         assert abs(bottom - panel.top - panel.height) <= 1
 
@@ -99,16 +99,16 @@ def test_floors_are_apart_and_in_the_picture(sizes):
 @example([(0.0, 0.0)] * 12)
 @example([(30.0, 20.0)] * 12)
 def test_discs_do_not_cover_one_another(points):
-    spots = Spots(sheet := make_sheet(aisles(30.0, 20.0, 1)))
+    labels = LabelPlacer(sheet := make_sheet(aisle_plans(30.0, 20.0, 1)))
     half = 11.0 * FINER
-    placed = [spots.nearest(sheet.at(x, y, 1), half, half, 1) for x, y in points]
-    assert placed[0] == sheet.at(*points[0], 1)
+    placed = [labels.reserve_nearest(sheet.pixel_at(x, y, 1), half, half, 1) for x, y in points]
+    assert placed[0] == sheet.pixel_at(*points[0], 1)
     for k, (x, y) in enumerate(placed):
         assert all(max(abs(x - a), abs(y - b)) >= 2 * half for a, b in placed[k + 1 :])
 
 
 def test_plans_show_the_site(navigator):
-    plans = plans_of(navigator.site)
+    plans = floor_plans(navigator.site)
     assert [plan.number for plan in plans] == [f.number for f in navigator.site.spec.floors]
     for plan in plans:
         roles = {role for role, _ in plan.shapes}
@@ -131,7 +131,7 @@ def test_upper_floors_have_one_frame(navigator):
     height = site.spec.floors[3].z - 0.5
     places = [(e, e.solids[0].center) for e in site.elements]
     less = tuple(e for e, (x, _, z) in places if z < height or 3.0 < x < 11.0)
-    plans = plans_of(site.with_elements(less))
+    plans = floor_plans(site.with_elements(less))
     assert len({plan.bounds for plan in plans[1:]}) == 1
     lowest, upper = plans[0].bounds, plans[1].bounds
     # The ground floor is larger, and extends beyond all that is above it.
@@ -143,7 +143,7 @@ def test_upper_floors_have_one_frame(navigator):
 
 
 def test_states_look_different():
-    sheet = make_sheet(aisles(30.0, 20.0, 2))
+    sheet = make_sheet(aisle_plans(30.0, 20.0, 2))
     pictures = {
         state: near(draw(sheet, markers=[Marker(5.0, 5.0, 2, "7", state)]), sheet, 5, 5, 2)
         for state in STYLES
@@ -158,10 +158,10 @@ def test_states_look_different():
 
 
 def test_the_legend_has_what_is_in_the_picture(navigator):
-    sheet = make_sheet(aisles(30.0, 20.0, 2))
+    sheet = make_sheet(aisle_plans(30.0, 20.0, 2))
     meanings = {"open": "to be read", "done": "read"}
     one = Marker(5.0, 5.0, 2, "7", "open")
-    way = [Moment(0.0, 15.0, 15.0, 1), Moment(10.0, 20.0, 15.0, 1)]
+    way = [PathPoint(0.0, 15.0, 15.0, 1), PathPoint(10.0, 20.0, 15.0, 1)]
     plain = legend_of(draw(sheet, legend=meanings))
     assert not any(has(plain, STYLES[state].fill) for state in meanings)
     parts = {
@@ -169,8 +169,8 @@ def test_the_legend_has_what_is_in_the_picture(navigator):
         "another state": {"markers": [one, Marker(9.0, 5.0, 2, "8", "done")]},
         "the one chosen last": {"markers": [replace(one, chosen=True)]},
         "a footprint": {"footprint": navigator.robot.footprint},
-        "a way": {"way": [*way, Moment(20.0, 20.0, 5.0, 1)]},
-        "a way over stairs": {"way": [*way, Moment(20.0, 20.0, 15.0, 2)]},
+        "a way": {"path": [*way, PathPoint(20.0, 20.0, 5.0, 1)]},
+        "a way over stairs": {"path": [*way, PathPoint(20.0, 20.0, 15.0, 2)]},
     }
     drawn = {name: legend_of(draw(sheet, legend=meanings, **part)) for name, part in parts.items()}
     for name, part in drawn.items():
@@ -182,26 +182,26 @@ def test_the_legend_has_what_is_in_the_picture(navigator):
 
 def test_no_line_crosses_a_disc():
     """Lines that join shifted discs to their positions lie below all discs."""
-    sheet = make_sheet(aisles(30.0, 20.0, 1))
+    sheet = make_sheet(aisle_plans(30.0, 20.0, 1))
     crowd = [Marker(15.0, 10.0, 1, "", "open") for _ in range(12)]
-    picture = draw(sheet, markers=crowd, way=[Moment(0.0, 1.0, 1.0, 1)])
-    spots = Spots(sheet)
-    spots.take(sheet.at(1.0, 1.0, 1), POINT * FINER, POINT * FINER)
+    picture = draw(sheet, markers=crowd, path=[PathPoint(0.0, 1.0, 1.0, 1)])
+    labels = LabelPlacer(sheet)
+    labels.occupy(sheet.pixel_at(1.0, 1.0, 1), POINT * FINER, POINT * FINER)
     half = (crowd[0].radius + 1.0) * FINER
     for marker in crowd:
-        x, y = spots.nearest(sheet.at(marker.x, marker.y, 1), half, half, 1)
+        x, y = labels.reserve_nearest(sheet.pixel_at(marker.x, marker.y, 1), half, half, 1)
         column, row = round(x / FINER), round(y / FINER)
         disc = picture[row - 5 : row + 6, column - 5 : column + 6]
         assert not has(disc, STYLES["open"].rim)
 
 
 def test_the_footprint_is_drawn_to_scale():
-    sheet = make_sheet(aisles(30.0, 20.0, 1))
-    way = [Moment(0.0, 15.0, 10.0, 1)]
+    sheet = make_sheet(aisle_plans(30.0, 20.0, 1))
+    way = [PathPoint(0.0, 15.0, 10.0, 1)]
     robot = Footprint(front=1.0, rear=2.0, half_width=0.5)
-    picture = draw(sheet, footprint=robot, way=way)
+    picture = draw(sheet, footprint=robot, path=way)
     rows, columns = np.nonzero((picture[HEAD:-FOOT] == ROBOT).all(axis=-1))
-    x, y = (v / FINER for v in sheet.at(15.0, 10.0, 1))
+    x, y = (v / FINER for v in sheet.pixel_at(15.0, 10.0, 1))
     scale = sheet.scale / FINER
     assert columns.max() - x == pytest.approx(1.0 * scale, abs=2.0)
     assert x - columns.min() == pytest.approx(2.0 * scale, abs=2.0)
@@ -210,17 +210,21 @@ def test_the_footprint_is_drawn_to_scale():
 
 def test_the_name_of_a_dock_is_not_covered(navigator):
     """The robot, the path and the checkpoints leave it whole."""
-    sheet = make_sheet(aisles(30.0, 20.0, 1))
+    sheet = make_sheet(aisle_plans(30.0, 20.0, 1))
     dock = StationMark(15.0, 10.0, 1, "dock")
     crowd = [Marker(15.0 + dx, 10.0 + dy, 1, "9", "open") for dx in (-1, 1, 2) for dy in (-1, 0, 1)]
-    way = [Moment(0.0, 15.0, 10.0, 1), Moment(5.0, 25.0, 10.0, 1), Moment(10.0, 15.0, 10.0, 1)]
+    way = [
+        PathPoint(0.0, 15.0, 10.0, 1),
+        PathPoint(5.0, 25.0, 10.0, 1),
+        PathPoint(10.0, 15.0, 10.0, 1),
+    ]
     alone = draw(sheet, stations=[dock], headline="")
     full = draw(
         sheet,
         stations=[dock],
         headline="",
         markers=crowd,
-        way=way,
+        path=way,
         heading=1.0,
         footprint=navigator.robot.footprint,
     )
@@ -238,14 +242,14 @@ def test_the_name_of_a_dock_is_not_covered(navigator):
 
 
 def test_the_path_is_drawn_between_floors():
-    sheet = make_sheet(aisles(30.0, 20.0, 2))
+    sheet = make_sheet(aisle_plans(30.0, 20.0, 2))
     climb = [
-        Moment(0.0, 20.0, 10.0, 1),
-        Moment(50.0, 5.0, 10.0, 1),
-        Moment(60.0, 5.0, 4.0, 2),
-        Moment(90.0, 25.0, 4.0, 2),
+        PathPoint(0.0, 20.0, 10.0, 1),
+        PathPoint(50.0, 5.0, 10.0, 1),
+        PathPoint(60.0, 5.0, 4.0, 2),
+        PathPoint(90.0, 25.0, 4.0, 2),
     ]
-    drawn = lines(sheet, climb)
+    drawn = path_lines(sheet, climb)
     assert len(drawn) == 2  # no line from floor to floor
     for line, number in zip(drawn, (1, 2), strict=True):
         panel = sheet.panels[number]
@@ -254,7 +258,7 @@ def test_the_path_is_drawn_between_floors():
         assert all(a <= b for a, b in pairwise(line.shades))
     # There is a mark at the lower end and one at the upper end: around each, more pixels have the
     # colour of its time than in a picture with the line alone.
-    picture, bare = draw(sheet, way=climb), sheet.image.copy()
+    picture, bare = draw(sheet, path=climb), sheet.image.copy()
     draw_lines(ImageDraw.Draw(bare), drawn)
     bare = np.asarray(bare.reduce(FINER))
     for moment in climb[1:3]:
@@ -279,7 +283,7 @@ def test_a_picture_shows_the_state_of_an_inspection(inspect, navigator):
     before = inspect.render()
     assert before.shape == SHAPE
     assert before.dtype == np.uint8
-    sheet = make_sheet(plans_of(navigator.site))
+    sheet = make_sheet(floor_plans(navigator.site))
     c = navigator.site.checkpoints[5]
     place = (c.position[0], c.position[1], c.floor)
     assert has(near(before, sheet, *place), STYLES["open"].fill)
@@ -301,7 +305,7 @@ def test_an_inspection_shows_the_chosen_floors(inspect, navigator):
         inspect.reset(seed=2, options=options)
         pictures.append(inspect.render())
         # Each floor that is shown has its frame; fewer floors are drawn larger.
-        sheet = make_sheet(plans_of(navigator.site)[:count])
+        sheet = make_sheet(floor_plans(navigator.site)[:count])
         for panel in sheet.panels.values():
             for row in (panel.top, panel.top + panel.height):
                 line = pictures[-1][row // FINER, panel.left // FINER + 2 :][: panel.width // 4]
@@ -366,7 +370,7 @@ def test_a_picture_shows_the_state_of_a_route(scenario):
 def test_routes_show_the_chosen_floors():
     env = RouteEnv(render_mode="rgb_array")
     env.reset(seed=0, options={"floor": [1, 3]})
-    sheet = make_sheet(aisles(30.0, 20.0, 3))
+    sheet = make_sheet(aisle_plans(30.0, 20.0, 3))
     x, y, _ = next(p for p in env.instance.positions[1:-1].tolist() if p[2] == 2)
     part = near(env.render(), sheet, x, y, 2)
     assert has(part, STYLES["outside"].rim)

@@ -16,11 +16,11 @@ from argo_env.files import cache
 from argo_env.pictures import check_film, film, overview, write_film, write_overview
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.chase import ChaseCamera
-from argo_env.pictures.light import shadowed, sun_camera
+from argo_env.pictures.light import shadow_mask, sun_camera
 from argo_env.pictures.motion import RecordedMotion
-from argo_env.pictures.overview import site_camera, still_view, with_robot
+from argo_env.pictures.overview import add_robot, site_camera, site_view
 from argo_env.pictures.scene import Scene
-from argo_env.pictures.site_plan import draw_site
+from argo_env.pictures.site_plan import draw_site_plan
 from argo_env.planning.flaws.flaw import Flaw, Mark
 from argo_env.robot.pose import BodyPose
 from argo_env.run.record import PathSample, Reading, Result
@@ -33,7 +33,7 @@ DURATION = 20.0
 
 @pytest.fixture(scope="module")
 def record(umad):
-    """20 s along the south side of the slab, with a reading after 12 s."""
+    """A record of 20 s along the south side of the slab, with a reading after 12 s."""
     mission = Mission(site="umad", tasks=(Task(name="START", action=Action.START),))
     path = tuple(
         PathSample(t=t, x=3.0 + 0.4 * t, y=-2.0, z=-0.03, yaw=0.0, pitch=0.0, floor=1)
@@ -63,7 +63,7 @@ def test_a_film_is_an_mp4_or_a_gif(tmp_path, name):
         check_film(tmp_path / name)
 
 
-def test_a_film_needs_a_folder_and_a_name_of_its_own(tmp_path):
+def test_a_film_needs_an_existing_folder_and_a_name_that_is_no_folder(tmp_path):
     with pytest.raises(ArgoError, match=r"folder .* does not exist"):
         check_film(tmp_path / "none" / "film.gif")
     (tmp_path / "folder.gif").mkdir()
@@ -84,19 +84,19 @@ def test_every_element_is_in_a_storey(umad):
 
 
 def test_floors_above_are_hidden(scene):
-    # Straight down on the south aisle of floor 2, which lies over the slab.
+    # The camera looks straight down on the south aisle of floor 2, which is above the slab.
     camera = Camera((6.0, 1.5, 30.0), (6.0, 1.6, 0.0), (60, 60), 3.0)
     heights = {}
     for top in (6, 2, 1):
         scene.show_floors(top)
-        heights[top] = 30.0 - np.median(scene.look(camera).depth)
+        heights[top] = 30.0 - np.median(scene.render_view(camera).depth)
     assert heights == pytest.approx({6: 12.5, 2: 2.5, 1: 0.0}, abs=0.1)
 
 
-def test_a_camera_finds_again_what_it_sees(scene):
+def test_projection_inverts_unprojection(scene):
     scene.show_floors(6)
     camera = Camera((-16.0, -22.0, 17.0), (8.0, 5.0, 6.0), (200, 150), 40.0, near=5.0)
-    view = scene.look(camera)
+    view = scene.render_view(camera)
     row, column = np.indices((150, 200)).reshape(2, -1)
     depth = np.where(np.isfinite(view.depth), view.depth, 50.0)[row, column]
     pixels = camera.project(camera.unproject(column, row, depth)).reshape(150, 200, 3)
@@ -109,10 +109,10 @@ def test_the_robot_is_in_the_middle_of_the_frame(scene, robot):
     chase = ChaseCamera(scene, (120, 80), 0.1)
     scene.show_floors(1, 2)
     scene.hide_robot()
-    camera = chase.follow(pose)
-    without = scene.look(camera).colours
+    camera = chase.next_camera(pose)
+    without = scene.render_view(camera).colours
     scene.place_robot(pose, robot.arm_stowed)
-    changed = np.abs(scene.look(camera).colours.astype(int) - without).sum(axis=2) > 30
+    changed = np.abs(scene.render_view(camera).colours.astype(int) - without).sum(axis=2) > 30
     rows, columns = np.nonzero(changed)
     assert changed[40, 60]
     assert columns.mean() == pytest.approx(60, abs=8)
@@ -122,9 +122,9 @@ def test_the_robot_is_in_the_middle_of_the_frame(scene, robot):
 def test_the_arm_is_raised_while_measuring(record, robot):
     motion = RecordedMotion(record, robot)
     raised, stowed = robot.arm_raised["arm_elbow"], robot.arm_stowed["arm_elbow"]
-    angles = [motion.joints(t)["arm_elbow"] for t in (3.9, 8.0, 12.1)]
+    angles = [motion.joints_at(t)["arm_elbow"] for t in (3.9, 8.0, 12.1)]
     assert angles == pytest.approx([stowed, raised, stowed])
-    assert motion.pose(0.25).x == pytest.approx(3.1)
+    assert motion.pose_at(0.25).x == pytest.approx(3.1)
 
 
 def test_flippers_lie_flat_on_stairs(record, robot):
@@ -132,7 +132,7 @@ def test_flippers_lie_flat_on_stairs(record, robot):
         update={"path": tuple(s.model_copy(update={"pitch": -0.5}) for s in record.path)}
     )
     flat, stairs = (
-        RecordedMotion(r, robot).joints(1.0)["left_flipper_joint"] for r in (record, tilted)
+        RecordedMotion(r, robot).joints_at(1.0)["left_flipper_joint"] for r in (record, tilted)
     )
     assert (flat, stairs) == (pytest.approx(30.0), 0.0)
 
@@ -163,7 +163,7 @@ def test_a_gif_has_a_frame_for_each_time(record, umad, robot, tmp_path):
         )  # fmt: skip
     with Image.open(tmp_path / "a.gif") as image:
         assert (image.format, image.size) == ("GIF", (120, 80))
-        # 20 s at 10 times and 4 frames a second, and the last for 2 s.
+        # 20 s, 10 times as fast, with 4 frames per second, and the last frame for 2 s.
         assert image.n_frames == 8 + 8
         assert image.info["duration"] == 250
         image.seek(8)
@@ -177,17 +177,17 @@ def test_a_gif_has_a_frame_for_each_time(record, umad, robot, tmp_path):
 def test_several_processes_draw_the_same_film(record, umad, robot, tmp_path, monkeypatch):
     monkeypatch.setattr(film, "usable_processors", lambda: 2)
     for name, worth_it in (("alone.gif", 10**6), ("together.gif", 2)):
-        monkeypatch.setattr(film, "_WORTH_IT", worth_it)
+        monkeypatch.setattr(film, "_MIN_PARALLEL_SHOTS", worth_it)
         write_film(record, umad, robot, tmp_path / name, speed=10, fps=4, size=(120, 80))
     assert (tmp_path / "alone.gif").read_bytes() == (tmp_path / "together.gif").read_bytes()
 
 
 @pytest.mark.long
-def test_a_process_that_draws_and_is_killed_is_told(record, umad, robot, tmp_path, monkeypatch):
+def test_a_killed_process_is_reported(record, umad, robot, tmp_path, monkeypatch):
     monkeypatch.setattr(film, "usable_processors", lambda: 2)
-    monkeypatch.setattr(film, "_WORTH_IT", 2)
-    monkeypatch.setattr(film, "_drawn", killed)
-    with pytest.raises(ArgoError, match="a process that drew the frames was ended"):
+    monkeypatch.setattr(film, "_MIN_PARALLEL_SHOTS", 2)
+    monkeypatch.setattr(film, "_draw_shot", killed)
+    with pytest.raises(ArgoError, match="a process that drew the frames was killed"):
         write_film(record, umad, robot, tmp_path / "film.gif", speed=10, fps=4, size=(120, 80))
     assert list(tmp_path.iterdir()) == []
 
@@ -210,10 +210,10 @@ def test_the_last_frames_show_the_verdict(record, umad, robot, tmp_path):
                 image.seek(k)
                 shown.append(np.asarray(image.convert("RGB")).astype(int))
             films.append(shown)
-    assert all((ended == last).all() for _, ended, last in films), "it stands still"
+    assert all((ended == last).all() for _, ended, last in films), "the film has stopped"
     for k, verdict in enumerate((False, True, True)):
         differs = (np.abs(films[0][k] - films[1][k]).sum(axis=2) > 90).mean(axis=1)
-        # Between the picture above it and the caption below.
+        # The verdict is between the picture above it and the caption below.
         assert (differs[90:140].max() > 0.05) == verdict
         assert differs[:60].max() < 0.05
         assert differs[145:].max() < 0.05
@@ -231,7 +231,7 @@ def test_an_mp4_has_a_frame_for_each_time(record, umad, robot, tmp_path):
 
 
 @pytest.mark.parametrize("wrong", [{"speed": 0.0}, {"speed": math.nan}, {"size": (121, 80)}])
-def test_numbers_that_make_no_film_are_refused(record, umad, robot, tmp_path, wrong):
+def test_invalid_numbers_for_a_film_are_refused(record, umad, robot, tmp_path, wrong):
     with pytest.raises(ArgoError, match="a film needs"):
         write_film(record, umad, robot, tmp_path / "film.gif", **wrong)
 
@@ -248,8 +248,8 @@ def test_a_record_of_another_site_is_refused(record, umad, robot, tmp_path):
 def test_a_mark_far_outside_is_drawn_at_the_edge(words):
     site = load_site("darmstadt")
     flaw = Flaw("wrong " * words, (Mark(1, -500.0, 900.0),))
-    drawn = Image.open(io.BytesIO(draw_site(site, [flaw])))
-    plain = Image.open(io.BytesIO(draw_site(site)))
+    drawn = Image.open(io.BytesIO(draw_site_plan(site, [flaw])))
+    plain = Image.open(io.BytesIO(draw_site_plan(site)))
     assert plain.size == (1280, 720)
     assert drawn.height == 720 + 17 * (2 if words == 1 else 4 + 1)
     corner = (0, 60, 60, 300)  # the north-west of floor 1
@@ -277,37 +277,37 @@ def alone(robot):
     st.floats(-3.0, 18.0), st.floats(-4.0, 12.0), st.sampled_from([-0.03, 2.5, 5.0, 12.5]),
     st.floats(-3.0, 3.0),
 )  # fmt: skip
-def test_both_are_equal_pixel_by_pixel(umad, robot, whole, alone, x, y, z, yaw):
+def test_a_composed_view_is_equal_to_a_rendered_one(umad, robot, whole, alone, x, y, z, yaw):
     camera, sun = site_camera(umad, SIZE), sun_camera(umad, MAP)
-    still = still_view(umad, robot, camera, sun)
+    site_only = site_view(umad, robot, camera, sun)
     for scene in (whole, alone):
         scene.place_robot(BodyPose(x, y, z, yaw), robot.arm_raised)
-    put = with_robot(still, alone, camera, sun)
-    seen, lit = whole.look(camera), whole.look(sun)
-    # Where two surfaces are equally near either may be seen.
-    assert (put.view.colours != seen.colours).any(axis=2).mean() < 1e-3
+    composed = add_robot(site_only, alone, camera, sun)
+    seen, lit = whole.render_view(camera), whole.render_view(sun)
+    # Where two surfaces are equally near, either may be visible.
+    assert (composed.view.colours != seen.colours).any(axis=2).mean() < 1e-3
     finite = np.isfinite(seen.depth)
-    assert (np.isfinite(put.view.depth) == finite).all()
-    assert put.view.depth[finite] == pytest.approx(seen.depth[finite], abs=1e-3)
-    dark = shadowed(camera, seen.depth, sun, lit.depth)
-    assert (put.dark != dark).mean() < 1e-4
+    assert (np.isfinite(composed.view.depth) == finite).all()
+    assert composed.view.depth[finite] == pytest.approx(seen.depth[finite], abs=1e-3)
+    dark = shadow_mask(camera, seen.depth, sun, lit.depth)
+    assert (composed.dark != dark).mean() < 1e-4
 
 
-def test_it_is_rendered_once(umad, robot, tmp_path, monkeypatch):
+def test_the_view_of_a_site_is_rendered_once(umad, robot, tmp_path, monkeypatch):
     monkeypatch.setenv(cache.VARIABLE, str(tmp_path))
     camera, sun = site_camera(umad, (80, 60)), sun_camera(umad, 50)
-    first = still_view(umad, robot, camera, sun)
-    monkeypatch.setattr("argo_env.pictures.overview.Scene", None)  # none can be made any more
-    again = still_view(umad, robot, camera, sun)
+    first = site_view(umad, robot, camera, sun)
+    monkeypatch.setattr("argo_env.pictures.overview.Scene", None)  # no further scene can be made
+    again = site_view(umad, robot, camera, sun)
     assert (again.view.colours == first.view.colours).all()
     assert (again.view.depth == first.view.depth).all()
     assert (again.dark == first.dark).all()
 
 
-def test_another_site_or_camera_is_another_picture(umad, robot, tmp_path, monkeypatch):
+def test_another_site_or_camera_has_another_view(umad, robot, tmp_path, monkeypatch):
     monkeypatch.setenv(cache.VARIABLE, str(tmp_path))
     camera, sun = site_camera(umad, (80, 60)), sun_camera(umad, 50)
-    first = still_view(umad, robot, camera, sun)
+    first = site_view(umad, robot, camera, sun)
     fewer = umad.with_elements(umad.elements[: len(umad.elements) // 2])
-    assert (still_view(fewer, robot, camera, sun).view.colours != first.view.colours).any()
-    assert still_view(umad, robot, site_camera(umad, (60, 80)), sun).view.depth.shape == (80, 60)
+    assert (site_view(fewer, robot, camera, sun).view.colours != first.view.colours).any()
+    assert site_view(umad, robot, site_camera(umad, (60, 80)), sun).view.depth.shape == (80, 60)

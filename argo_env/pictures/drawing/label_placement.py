@@ -1,0 +1,110 @@
+"""Placement of labels in a picture, so that they cover neither each other nor what they name."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import ImageDraw
+
+from argo_env.pictures.drawing.sheet import FINER, INK, PAPER, SIZE, SOFT, FloorSheet, Pixel, font
+
+_CELL = 4  # px of the finer picture
+_AROUND = 8  # directions that are tried
+_STEP = 6.0 * FINER  # px farther out when all directions are occupied
+_TRIES = 16
+
+
+class LabelPlacer:
+    """Placement of labels on a sheet.
+
+    It holds the occupied area, and the path.
+    """
+
+    def __init__(self, sheet: FloorSheet) -> None:
+        self._sheet = sheet
+        shape = SIZE[1] * FINER // _CELL, SIZE[0] * FINER // _CELL
+        self._taken = np.zeros(shape, np.bool_)
+        self._path = np.zeros(shape, np.bool_)
+
+    def occupy(self, position: Pixel, wide: float, high: float) -> None:
+        """Mark a rectangle about a position as occupied.
+
+        It extends `wide` px to each side, and `high` px up and down.
+        """
+        self._taken[_cells(position, wide, high)] = True
+
+    def avoid_path(self, points: NDArray[np.float64]) -> None:
+        """Add points of the path, shape (n, 2), which labels avoid as far as possible."""
+        columns, rows = (points / _CELL).astype(np.int64).T
+        height, width = self._path.shape
+        self._path[rows.clip(0, height - 1), columns.clip(0, width - 1)] = True
+
+    def reserve_nearest(self, position: Pixel, wide: float, high: float, floor: int) -> Pixel:
+        """Return the position itself if it is free, else one beside it, and occupy it."""
+        if self._taken[_cells(position, wide, high)].any():
+            return self.reserve_beside(position, wide, high, floor, min(wide, high))
+        self.occupy(position, wide, high)
+        return position
+
+    def reserve_beside(
+        self, position: Pixel, wide: float, high: float, floor: int, away: float = 10.0 * FINER
+    ) -> Pixel:
+        """Return a free position, `away` px or more beside the given one, and occupy it.
+
+        If none is free, the best one of those that were tried is returned.
+        """
+        tried = []
+        for k in range(_AROUND * _TRIES):
+            out = away + _STEP * (k // _AROUND)
+            turn = 2 * math.pi * (k % _AROUND) / _AROUND
+            spot = (
+                position[0] + (out + wide) * math.cos(turn),
+                position[1] - (out + high) * math.sin(turn),
+            )
+            if self._inside(spot, wide, high, floor):
+                cells = _cells(spot, wide, high)
+                # Covering the path is as bad as being three steps farther out.
+                worse = 3 * _AROUND * bool(self._path[cells].any())
+                tried.append((bool(self._taken[cells].any()), k + worse, spot))
+                if tried[-1][:2] == (False, k):
+                    break
+        _, _, best = min(tried, default=(True, 0, position))
+        self.occupy(best, wide, high)
+        return best
+
+    def _inside(self, position: Pixel, wide: float, high: float, floor: int) -> bool:
+        panel = self._sheet.panels[floor]
+        x, y = position
+        return (
+            panel.left <= x - wide
+            and x + wide <= panel.left + panel.width
+            and panel.top <= y - high
+            and y + high <= panel.top + panel.height
+        )
+
+
+def draw_plate(
+    draw: ImageDraw.ImageDraw,
+    labels: LabelPlacer,
+    position: Pixel,
+    text: str,
+    floor: int,
+    large: bool = False,
+) -> None:
+    """Draw a name on a plate beside a position, where it covers nothing."""
+    size, rim = (12, INK) if large else (11, SOFT)
+    face = font(size)
+    wide = draw.textlength(text, font=face) / 2 + (size - 7.0) * FINER
+    high = (size - 3.0) * FINER
+    x, y = labels.reserve_beside(position, wide, high, floor)
+    box = (x - wide, y - high, x + wide, y + high)
+    draw.rounded_rectangle(box, (size - 8) * FINER, fill=PAPER, outline=rim, width=FINER)
+    draw.text((x, y), text, fill=INK, font=face, anchor="mm")
+
+
+def _cells(position: Pixel, wide: float, high: float) -> tuple[slice, slice]:
+    x, y = position
+    return (
+        slice(max(0, int((y - high) / _CELL)), int((y + high) / _CELL) + 1),
+        slice(max(0, int((x - wide) / _CELL)), int((x + wide) / _CELL) + 1),
+    )
